@@ -122,12 +122,12 @@ class Case(Mapping[str, Any]):
         if self.face not in (None, *FACES):
             raise ValueError(f"face = {self.face!r}, but it must be one of {', '.join(FACES)}")
         if self.face in FACES[1:] and not pair.gear_1.beta:
-            told = f"face = {self.face!r}, but the gears have no helix angle (beta = 0): their teeth are straight"
-            warnings.warn(told, stacklevel=4)
+            message = f"face = {self.face!r}, but the gears have no helix angle (beta = 0): their teeth are straight"
+            warnings.warn(message, stacklevel=4)
         cracks, pits = by_gear(pair, self.damage)
         made: dict[str, Any] = {"forces": tuple(forces), "materials": materials, "cracks": cracks, "pits": pits}
         if self.damage:
-            made |= {"damage": {name: own for (name, _), own in zip(SIDES, by_side(self.damage), strict=True) if own}}
+            made |= {"damage": {name: defects for (name, _), defects in zip(SIDES, by_side(self.damage), strict=True) if defects}}
         made |= {"forms": flank_forms(pair, self.flanks, self.misalignment)}
         made |= {"held": supports_of(pair, self.supports, forces, self.face)}
         if self.torque is not None:
@@ -143,7 +143,7 @@ class Case(Mapping[str, Any]):
 
     def __iter__(self) -> Iterator[str]:
         """Names of what was given: pair, force, material, face and groove, and of all else what is not the default."""
-        return (own.name for own in GIVEN if own.name in FIRST or getattr(self, own.name) not in (None, own.default, {}))
+        return (item.name for item in GIVEN if item.name in FIRST or getattr(self, item.name) not in (None, item.default, {}))
 
     def __len__(self) -> int:
         return sum(1 for _ in self)
@@ -175,7 +175,7 @@ class Case(Mapping[str, Any]):
     @property
     def why_wide(self) -> str:
         """Why the case needs three dimensions; empty if its transverse section is the whole truth."""
-        if why := why_wide([one for own in (*self.cracks, *self.pits) for one in own]):
+        if why := why_wide([one for defects in (*self.cracks, *self.pits) for one in defects]):
             return why
         if self.runs != "spur":
             return "contact lines run across helical teeth"
@@ -186,8 +186,10 @@ class Case(Mapping[str, Any]):
     @property
     def first_tooth(self) -> int | None:
         """Number of the tooth pair that the first crack or pit is in; None without damage."""
-        hurt = [sense * one.tooth for i, (_, sense) in enumerate(SIDES) for own in (self.cracks, self.pits) for one in own[i]]
-        return hurt[0] if hurt else None
+        teeth = [
+            sense * defect.tooth for i, (_, sense) in enumerate(SIDES) for kind in (self.cracks, self.pits) for defect in kind[i]
+        ]
+        return teeth[0] if teeth else None
 
     def overlap(self, face: str | None = None) -> float:
         """Overlap ratio of teeth that run as `face` says (default `runs`), of one half if herringbone; 0 for spur."""
@@ -234,24 +236,24 @@ def forces_of(pair: GearPair, force: Any, torque: Any) -> list[float]:
             "on the pinion [N m]"
         )
     name, unit, given = ("force", " N", force) if torque is None else ("torque", " N m", torque)
-    found = np.atleast_1d(numbers(name, given, f" [{unit.strip()}]"))
-    if found.ndim > 1 or found.size == 0:
+    values = np.atleast_1d(numbers(name, given, f" [{unit.strip()}]"))
+    if values.ndim > 1 or values.size == 0:
         raise ValueError(f"{name} = {given!r}, but give one {name} or a non-empty list of {name}s [{unit.strip()}]")
-    for value in found.tolist():
+    for value in values.tolist():
         if not (math.isfinite(value) and value > 0):
             raise ValueError(f"{name} = {value}{unit}, but a mesh is pressed together: give a finite {name} > 0")
-    return (found if torque is None else found * (1e3 / pair.gear_1.r_b)).tolist()
+    return (values if torque is None else values * (1e3 / pair.gear_1.r_b)).tolist()
 
 
 def check_load(pair: GearPair, force: float, materials: tuple[Material, Material]) -> None:
-    """Refuse a force under which even the stiffest gears would be beyond small strains, before anything is solved.
+    """Reject a force under which even the stiffest gears would leave small strains, before anything is solved.
 
     Raises
     ------
     ValueError
         If ``force / (b E / 5)``, with the stiffer E, is more than `REFUSE` modules: no mesh of teeth is as stiff as b E / 5.
     """
-    width, stiffest = min(pair.gear_1.b, pair.gear_2.b), max(own.E for own in materials)
+    width, stiffest = min(pair.gear_1.b, pair.gear_2.b), max(material.E for material in materials)
     least = 5 * force / (width * stiffest) / pair.gear_1.m_n
     if least > REFUSE:
         raise ValueError(
@@ -263,11 +265,11 @@ def check_load(pair: GearPair, force: float, materials: tuple[Material, Material
 def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Crack, ...], ...], tuple[tuple[Any, ...], ...]]:
     """What weakens pinion and wheel (cracks) and takes their contact away (pits, spalls), numbered in each gear's own frame."""
     cracks, pits = [], []
-    for (_, sense), gear, given in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
-        for text in filter(None, (one.doubts(gear) for one in given)):
+    for (_, sense), gear, defects in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
+        for text in filter(None, (defect.doubts(gear) for defect in defects)):
             warnings.warn(text, stacklevel=5)
-        weakens, removes = split(replace(one, tooth=sense * one.tooth) for one in given)
-        check_apart(gear, split(given)[0])
+        weakens, removes = split(replace(defect, tooth=sense * defect.tooth) for defect in defects)
+        check_apart(gear, split(defects)[0])
         cracks.append(weakens)
         pits.append(removes)
     return tuple(cracks), tuple(pits)

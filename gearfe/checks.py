@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from geometry.checks import is_number
 
 COARSEST = 0.2  # at 0.4 sections are off by 0.2 %, at 0.2 by 0.5 %, below they follow no mesh any more (25 % at 1e-9)
-FINEST = 64.0  # edges of a 64th: k changes by less than rounding and contact leave
+FINEST = 64.0  # edges 64 times shorter: beyond, k changes by less than the errors of rounding and contact
 
 
 def number(name: str, value: Any) -> float:
-    """The number as a float; ValueError if it is none, nan or a truth value."""
+    """The number as a float; ValueError if it is no number, nan or a truth value."""
     if not is_number(value) or math.isnan(value):
         raise ValueError(f"{name} = {value!r}, but it needs a number")
     return float(value)
@@ -31,8 +31,8 @@ def whole(name: str, value: Any, least: int) -> int:
     """
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         close = is_number(value) and math.isfinite(value) and value == int(value) and value >= least
-        told = f": give {name} = {int(value)}" if close else f" from {least} on"
-        raise ValueError(f"{name} = {value!r}, but it is a whole number{told}")
+        remedy = f": give {name} = {int(value)}" if close else f" from {least} on"
+        raise ValueError(f"{name} = {value!r}, but it is a whole number{remedy}")
     return int(value)
 
 
@@ -52,18 +52,18 @@ def truth(name: str, value: Any) -> bool:
 def numbers(name: str, value: Any, unit: str) -> NDArray:
     """One number or several as an array of floats; text, truth values and complex numbers are refused."""
     try:
-        found = np.asarray(value)
+        array = np.asarray(value)
     except ValueError as error:
         raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}") from error
-    plain = found.dtype.kind in "iuf" and not _has_truth(value)
-    if not plain and not (found.dtype.kind == "O" and found.size and all(is_number(one) for one in found.ravel())):
+    plain = array.dtype.kind in "iuf" and not _has_truth(value)
+    if not plain and not (array.dtype.kind == "O" and array.size and all(is_number(element) for element in array.ravel())):
         raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}, not {_kind(value)}")
-    return found.astype(float)
+    return array.astype(float)
 
 
 def _has_truth(value):
     """Whether a truth value hides among numbers of a list."""
-    return isinstance(value, (list, tuple)) and any(isinstance(one, (bool, np.bool_)) for one in value)
+    return isinstance(value, (list, tuple)) and any(isinstance(element, (bool, np.bool_)) for element in value)
 
 
 def _kind(value):

@@ -69,8 +69,8 @@ def _beside(path):
     try:
         handle, name = new_file(path.parent, f".{path.stem}-", path.suffix.lower())
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
-        told = getattr(error, "strerror", None) or error
-        raise ValueError(f"cannot write {path}: {told}; give an existing, writable folder") from error
+        reason = getattr(error, "strerror", None) or error
+        raise ValueError(f"cannot write {path}: {reason}; give an existing, writable folder") from error
     os.close(handle)
     return name
 
@@ -101,12 +101,19 @@ def check_output(path, kind):
     os.unlink(_beside(path))
 
 
+def check_folder(path):
+    """Raise ValueError if no file can be made at `path`, whatever its suffix."""
+    if os.path.isdir(path):
+        raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
+    os.unlink(_beside(path))
+
+
 def suffixes(kind, *, reading=False):
     """Suffixes of the files that hold what `kind` says."""
-    found = [suffix for suffix, row in FORMATS.items() if kind in (row.reads if reading else row.writes)]
-    if not found:
+    known = [suffix for suffix, row in FORMATS.items() if kind in (row.reads if reading else row.writes)]
+    if not known:
         raise ValueError(f"kind = {kind!r}, but no file holds such a thing; see gearfe.files.FORMATS")
-    return found
+    return known
 
 
 def suffix_of(path, kind, *, reading=False):
@@ -138,7 +145,7 @@ def save_figure(figure, path, dpi):
     """Draw a matplotlib figure into a file, unless `path` is None; gives the figure back."""
     if path is not None:
         suffix_of(path, "picture")
-        for text in figure.findobj(lambda one: hasattr(one, "set_parse_math") and "$" in one.get_text()):
+        for text in figure.findobj(lambda artist: hasattr(artist, "set_parse_math") and "$" in artist.get_text()):
             text.set_parse_math("\\mathdefault" in text.get_text())  # a name of a file is no formula; a number of an axis may be
         with _drawing, written(path) as name:  # the fonts of matplotlib are shared by all threads
             figure.savefig(name, dpi=dpi)

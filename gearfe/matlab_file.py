@@ -1,4 +1,4 @@
-"""MATLAB files of version 7 and older (MAT 5 and MAT 4), read so that a damaged one can do no more than be refused.
+"""MATLAB files of version 7 and older (MAT 5 and MAT 4), read so that a damaged one raises an error and does no other harm.
 
 Compiled readers trust the lengths and indices that a file states, and some damage ends the process in them. Here every length is
 checked against the bytes there are before anything is made of it: no array is larger than what the file can hold.
@@ -90,8 +90,8 @@ def variables(data: bytes) -> dict[str, Any]:
     version = struct.unpack(f"{file.order}H", file.take(126)[124:126])[0]
     file.take(2)
     if version >> 8 != 1:
-        told = "7.3, but holds no HDF5" if version >> 8 == 2 else f"{version >> 8} of the format, but 1 is known"
-        raise ValueError(f"it says version {told}: it is damaged")
+        version_text = "7.3, but holds no HDF5" if version >> 8 == 2 else f"{version >> 8} of the format, but 1 is known"
+        raise ValueError(f"it says version {version_text}: it is damaged")
     out = {}
     while file.left():
         kind, content = file.element()
@@ -146,12 +146,12 @@ def _matrix(file, depth):
     count = math.prod(shape)
     if count * (len(names) if kind == STRUCT else 1) * 8 > file.left():
         raise ValueError(f"{name!r} has {count} entries, more than the file can hold")
-    out = np.empty(count, dtype=[(one, object) for one in names] if kind == STRUCT else object)
+    out = np.empty(count, dtype=[(field, object) for field in names] if kind == STRUCT else object)
     for i in range(count):
         if kind == CELL:
             out[i] = _entry(file, depth)
-        for one in names:
-            out[one][i] = _entry(file, depth)
+        for field in names:
+            out[field][i] = _entry(file, depth)
     return name, out.reshape(shape, order="F")
 
 
@@ -226,15 +226,15 @@ def _old(data):
     while file.left():
         kind, rows, columns, imaginary, length = file.numbers(5)
         machine, rest = divmod(kind, 1000)
-        number, what = divmod(rest, 10)
-        if machine != (order == ">") or not 0 <= number < len(OLD) or what not in (0, 1, 2) or min(rows, columns) < 0:
+        number, form = divmod(rest, 10)
+        if machine != (order == ">") or not 0 <= number < len(OLD) or form not in (0, 1, 2) or min(rows, columns) < 0:
             raise ValueError(f"it has neither a header of MATLAB nor one of MAT 4 ({kind}, {rows} x {columns})")
         name = bytes(file.take(length)).split(b"\0")[0].decode("latin-1")
         dtype = np.dtype(order + OLD[number])
         parts = [np.frombuffer(file.take(rows * columns * dtype.itemsize), dtype=dtype) for _ in range(2 if imaginary else 1)]
-        if what == 2:
+        if form == 2:
             out[name] = SPARSE_TOLD
-        elif what == 1:
+        elif form == 1:
             if not (parts[0] == np.clip(parts[0], 0, 0xFFFF)).all():
                 raise ValueError(f"{name!r} is a text of numbers that are no letters")
             out[name] = _rows("".join(map(chr, parts[0].astype(int))), (rows, columns))

@@ -24,7 +24,7 @@ def _process_free():
     except ImportError:  # no such limits on this system
         return math.inf
     soft = [resource.getrlimit(kind)[0] for kind in (resource.RLIMIT_AS, resource.RLIMIT_DATA)]
-    least = min((float(one) for one in soft if one != resource.RLIM_INFINITY), default=math.inf)
+    least = min((float(limit) for limit in soft if limit != resource.RLIM_INFINITY), default=math.inf)
     if least == math.inf:
         return least
     try:
@@ -38,9 +38,9 @@ def _process_free():
 def _group_free():
     """What is left to the control group of this process (a container); version 2 has two files, version 1 others."""
     left = math.inf
-    for limit, used, told, cached in CONTROL_GROUP:
+    for limit, used, details, cached in CONTROL_GROUP:
         try:
-            most, taken, lines = (Path(name).read_text(encoding="ascii").strip() for name in (limit, used, told))
+            most, taken, lines = (Path(name).read_text(encoding="ascii").strip() for name in (limit, used, details))
         except OSError:
             continue
         files = next((float(line.split()[1]) for line in lines.splitlines() if line.startswith(f"{cached} ")), 0.0)

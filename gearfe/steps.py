@@ -1,4 +1,4 @@
-"""How far long work is: it says so to whoever listens, for instance the bar of the command line; without a listener, silence.
+"""Progress of long work, told to whoever listens, for instance the bar of the command line; without a listener, silence.
 
 Work inside of a part of other work counts as a part of that part, so that one bar runs once from its start to its end.
 """
@@ -83,7 +83,7 @@ def steps(items: Iterable[T], text: str | Callable[[T], str] = "", weights: Sequ
     items = list(items)
     cost = [1.0] * len(items) if weights is None else list(weights)
     done = 0.0
-    for item, own in zip(items, cost, strict=True):
-        with part(text(item) if callable(text) else text, done / sum(cost), (done + own) / sum(cost)):
+    for item, weight in zip(items, cost, strict=True):
+        with part(text(item) if callable(text) else text, done / sum(cost), (done + weight) / sum(cost)):
             yield item
-        done += own
+        done += weight

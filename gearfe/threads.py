@@ -17,8 +17,8 @@ P = ParamSpec("P")
 R = TypeVar("R")
 CHOSEN = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 
-# Python's own locks are of single modules: of two threads that load parts of a package at the same time one may be told that
-# they wait for each other
+# Python locks one module at a time while it is imported: of two threads that import parts of a package at the same time one may
+# be told that they wait for each other
 loading = threading.RLock()
 
 
@@ -107,9 +107,9 @@ def _dealt() -> Iterator[None]:
         before = warnings.showwarning
 
         def show(message, category, filename, lineno, file=None, line=None):
-            for kind, found in reversed(_lists.open):
+            for kind, caught in reversed(_lists.open):
                 if issubclass(category, kind):
-                    found.append(warnings.WarningMessage(message, category, filename, lineno, file, line))
+                    caught.append(warnings.WarningMessage(message, category, filename, lineno, file, line))
                     return
             before(message, category, filename, lineno, file, line)
 
@@ -127,11 +127,11 @@ def own_warnings(kind: type[Warning] = UserWarning) -> Iterator[list[Any]]:
     As ``warnings.catch_warnings(record=True)``, which several threads may not use at once: warnings of another thread would
     come into the list, and filters that one has set could stay for good.
     """
-    found: list[Any] = []
+    caught: list[Any] = []
     with _dealing:
         warnings.simplefilter("always", kind)
-        _lists.open.append((kind, found))
+        _lists.open.append((kind, caught))
         try:
-            yield found
+            yield caught
         finally:
             _lists.open.pop()

@@ -34,7 +34,7 @@ def seal(value: Any) -> None:
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
     elif isinstance(value, (tuple, list)):
-        for one in value:
-            seal(one)
+        for part in value:
+            seal(part)
     elif isinstance(value, SimpleNamespace):
         seal(list(vars(value).values()))

@@ -1,9 +1,15 @@
 """Pages of the articles: the simulations they name are those behind their numbers, and no two pages disagree."""
 
-import pytest
+from dataclasses import replace
 
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.scene import verdicts
 from validation.make import machines
-from validation.shared import simulated, state, table_rows
+from validation.shared import openings, places, simulated, state, table_rows
 from validation.shared.openings import OPENINGS
 
 PAGES = list(machines.PAGES)
@@ -56,3 +62,91 @@ def test_pages_open_with_what_is_claimed_found_and_decides(page):
     assert "of a model" in state.without_first_line(page).splitlines()[2], "the counts are the answer"
     for part in parts:
         assert part in head
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_verdicts_follow_from_the_numbers_on_file(page):
+    """Judged again with the words of today: a verdict that an assumption sets is called so, and no other row is on file."""
+    own = table_rows.read(page)
+    for one in machines.references(page):
+        rows = [row for row in own if row.id == one.id]
+        ours = {(row.case, row.pair) if row.pair else row.case: None if np.isnan(row.ours) else row.ours for row in rows}
+        assert [row.verdict for row in verdicts.judge(one, ours)] == [row.verdict for row in rows], one.id
+    assert {row.id for row in own} == {one.id for one in machines.references(page)}
+
+
+def test_what_the_raised_cosine_sets_does_not_hold_on_the_other_path():
+    rows = table_rows.rows_of(places.TABLES / "planetary_pitting_paths_laws.csv")
+    assert [(row["raised cosine"], row["ring on its bearing"]) for row in rows if row["case"] == "holds"] == [("yes", "no")]
+
+
+def test_play_is_crossed_by_the_torque_turned_round():
+    rows = table_rows.rows_of(places.TABLES / "herringbone_machine_play_laws.csv")
+    back = {row["case"]: float(row["healthy"]) for row in rows if "back flank" in row["case"]}
+    assert back["-100 N m, back flank"] == 100
+    assert max(value for case, value in back.items() if case[0] != "-") == 0
+
+
+def test_statements_that_the_places_of_pits_set_are_not_counted():
+    rows = table_rows.read("helical_pitting")
+    said = [
+        row
+        for row in rows
+        if row.id in ("statements", "further") and "lost contact line" not in row.case and "the same" not in row.case
+    ]
+    held = sum(row.verdict == verdicts.REPRODUCED for row in said)
+    assert f"{held} of its {len(said)} statements hold" in openings.helical_pitting(machines.Found(rows))[1]
+
+
+def test_repeats_tell_levels_apart_by_what_the_rows_say():
+    rows = table_rows.read("planetary_pitting")
+    assert "apart by SC by S1's formula, RMS, kurtosis" in openings.planetary_pitting(machines.Found(rows))[1]
+    none = [row._replace(ours=float("does not" in row.case)) if "three repeats" in row.case else row for row in rows]
+    assert "apart by none of its indicators" in openings.planetary_pitting(machines.Found(none))[1]
+
+
+def test_power_of_mesh_lines_is_found_in_records_of_any_length():
+    """Two mesh lines and a hundredth of their power elsewhere, in a record that holds no whole periods of them."""
+    from validation.make import compound_numbers
+
+    (one, two), _ = compound_numbers.frequencies()
+    time = np.arange(round(3.3 * 52416)) / 52416.0
+    x = sum(a * np.cos(2 * np.pi * f * time) for a, f in ((1.0, one), (1.0, two), (0.2, one + two + 16.8)))
+    made = gf.Signal(x, 52416.0, "rad/s2")
+    assert_allclose(compound_numbers.of_mesh_lines(made), 2 / 2.04, rtol=1e-3)
+    assert_allclose(compound_numbers.of_mesh_lines(replace(made, values=x[: round(20 / 14 * 52416)])), 2 / 2.04, rtol=1e-3)
+
+
+def test_folded_lines_do_not_hide_what_pits_raise():
+    """At S0's 10 kHz the healthy force has lines where the pits' are; sampled finer it has none, and the verdict follows."""
+    rows = table_rows.rows_of(places.TABLES / "planetary_pitting_laws.csv")
+    finer, folded = (
+        {row["case"]: float(row["impact law"]) for row in rows if row["quantity"] == quantity}
+        for quantity in ("the same, sampled 71680 times a second [N]", "sidebands f_m +- 40 Hz [N]")
+    )
+    said = {row.case: row.ours for row in table_rows.read("planetary_pitting")}
+    assert finer["healthy"] == 0 < finer["mild"] < finer["moderate"] < finer["severe"]
+    assert folded["mild"] < 10 * folded["healthy"]
+    word = "pits raise sidebands 40 Hz beside 280 Hz"
+    assert [said[word], said[f"{word}, sampled finer"]] == [0, 1]
+
+
+@pytest.mark.slow
+def test_a_finer_sampled_sideband_is_computed_again():
+    from validation.make import planetary_runs
+
+    found = planetary_runs.finer("mild")
+    mesh, fault = planetary_runs.speeds()[2:]
+    side = (simulated.amplitude(found, mesh - fault) + simulated.amplitude(found, mesh + fault)) / 2
+    rows = table_rows.rows_of(places.TABLES / "planetary_pitting_laws.csv")
+    (row,) = (row for row in rows if row["quantity"].startswith("the same, sampled") and row["case"] == "mild")
+    assert_allclose(side, float(row["impact law"]), rtol=0.02, err_msg="run python -m validation machines planetary_pitting")
+
+
+def test_dominant_frequencies_are_judged_of_what_s2_simulates_too():
+    rows = table_rows.rows_of(places.TABLES / "compound_planetary_laws.csv")
+    (power,) = (row for row in rows if row["quantity"].startswith("power of the healthy signal below"))
+    said = {row.case: row.ours for row in table_rows.read("compound_planetary")}
+    word = "dominant frequencies are below 2000 Hz"
+    assert said[word] == (float(power["ring.theta acceleration"]) > 50)
+    assert said[f"{word}, of sun 2's velocity"] == (float(power["sun2.theta velocity"]) > 50)

@@ -10,8 +10,8 @@ import gearfe as gf
 from validation.shared import herringbone_contact_line as line
 from validation.shared import herringbone_layouts as layouts
 from validation.shared import herringbone_layouts_page as page
+from validation.shared import herringbone_page, state, table_rows
 from validation.shared import herringbone_statements as statements
-from validation.shared import state, table_rows
 from validation.shared.places import PAGES, TABLES
 
 
@@ -133,3 +133,50 @@ def test_losses_by_pits_in_the_scenes_are_those_of_the_table():
 
 def test_pages_have_no_word_of_a_bound_that_is_none():
     assert "upper bound" not in (PAGES / "holes.md").read_text(encoding="utf-8")
+
+
+def test_no_stiffness_of_a_model_is_called_reproduced():
+    """Bores of 0.7 of the root radius would move every one beyond its tolerance: what agrees agrees by the scene's."""
+    from gearfe.scene import verdicts
+
+    _, rows = herringbone_page.judged()
+    assert {row.verdict for row in rows if row.kind == "model"} == {verdicts.ASSUMED, verdicts.NOT}
+    assert {row.verdict for row in rows if row.kind == "arithmetic"} == {verdicts.REPRODUCED, verdicts.CORRECTED}
+    own = {row["case"]: float(row["ritz3d [N/m]"]) for row in table_rows.rows_of(TABLES / "herringbone_sensitivity.csv")
+           if row["variation"] == "bores 0.7 of the root radius" and row["pair"] == "planet_ring"}  # fmt: skip
+    by_case = {(row.id, row.case): row for row in rows}
+    for case in ("planet1", "planet2"):
+        row = by_case["stiffness_fe", case]
+        target = row.printed if np.isnan(row.corrected) else row.corrected
+        assert abs(own[case] / target - 1) > 0.03
+
+
+def test_notes_of_the_fit_name_the_method_that_is_judged():
+    for method in ("fe3d", "ritz3d"):
+        assert f"Ours: `{method}` at the phase" in line.verdicts(method)
+
+
+def test_what_speaks_against_the_fit_is_on_the_page():
+    """Pits of S4's test gears, two rows of pits in case 4, twice its number of pits: as the tables have it."""
+    text = " ".join(state.without_first_line("herringbone").split())
+    small = [row for row in page.of("sample", "contact line, both halves") if float(row["pit"]) <= 0.5]
+    most = max(100 * (1 - float(row["sun_planet case4"]) / float(row["sun_planet healthy"])) for row in small)
+    assert f"of the {len(small)} readings of the sample with pits so small" in text
+    assert f"case 4 of sun and planet takes {most:.1f} % at most" in text
+    worst, own = page.fitted()["contact line, two in case 4, both halves"]
+    assert f"in two rows of seven the fit comes within {worst:.1f} % and {own:.1f} points" in text
+    assert min(worst, own) > layouts.POINTS
+    assert "so that case 4 has 28" in text
+    assert len(gf.load_scene(line.SCENE).pair().damage["case4"]["pinion"]) == 28 + 1, "and a crack"
+
+
+def test_the_list_of_reductions_is_that_of_the_formulas_but_for_three():
+    """14.03 is 0.08 below 1 - 1.035 / 1.205, which rounds to 1.03 and 1.21; 5.03 lies between 4.91 and 6.27."""
+    assert page.rounding() == "5 of 8 within rounding and 3 up to 0.08 points beyond it"
+
+
+def test_the_plateau_is_as_long_as_the_losses_say(monkeypatch):
+    lost = np.interp(line.OFFSETS, [-0.2, -0.1, 0.1, 0.2], [0.0, 0.3, 0.3, 0.0])
+    k = {("ritz3d", "sun_planet", "healthy"): np.ones(len(lost)), ("ritz3d", "sun_planet", "case4"): 1 - lost}
+    monkeypatch.setattr(line, "load", lambda: k)
+    assert page.plateau() == pytest.approx(0.22, abs=0.02)

@@ -27,6 +27,7 @@ def test_every_input_is_drawn_once_in_each_part_of_its_range(page):
     assert joint_inputs.draws(page) == found, "the same every time"
 
 
+@pytest.mark.slow
 def test_a_draw_changes_the_machine_as_it_says():
     made = simulated.machine("herringbone")
     one = joint_inputs.Draw("herringbone_machine", 0, (("load", 0.5), ("supports", 4.0), ("groove", 9.0), ("damping", 2.0)))
@@ -166,3 +167,17 @@ def test_lines_of_drawn_records_do_not_leak():
     lines += [(herringbone_runs.SECONDS, f) for f in herringbone_runs.speeds()[2:]]
     for seconds, frequency in lines:
         assert abs(seconds * frequency - round(seconds * frequency)) < 1e-6, f"{frequency} Hz in {seconds} s"
+
+
+def test_what_is_printed_of_the_measured_acceleration_is_counted_on_it(monkeypatch):
+    """A force whose RMS never rises says nothing of the ring's acceleration, whose RMS the articles print."""
+    held = {planetary_repeats.FORCE: False, planetary_repeats.SENSOR: True}
+    rows = [{"holds": {"rms rises with severity": held, "impacts raise the force": {planetary_repeats.FORCE: False}}}] * 3
+    monkeypatch.setattr(joint, "rows_of", lambda _: rows)
+    assert {word: found.all() for word, found in joint.judged("planetary_pitting").items()} == {
+        "rms rises with severity": True,
+        "impacts raise the force": False,
+    }
+    assert joint.counts("planetary_pitting") == (1, 1, 0)
+    assert joint.judges("planetary_pitting").startswith("the first; of 'rms rises with severity' ring.y acceleration")
+    assert joint.judges("helical_pitting") == "the first"

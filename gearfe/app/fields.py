@@ -160,14 +160,14 @@ def checked_state(given: Any) -> dict[str, Any]:
 
 
 def _value(field, value):
-    said = f"{field.label} ({field.name}) = {shown(value)}{field.unit and ' ' + field.unit}"
+    stated = f"{field.label} ({field.name}) = {shown(value)}{field.unit and ' ' + field.unit}"
     if field.choices:
         if value not in field.choices:
-            raise ValueError(f"{said}, but it must be one of {', '.join(field.choices)}")
+            raise ValueError(f"{stated}, but it must be one of {', '.join(field.choices)}")
         return value
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not number or not abs(value) < math.inf or (field.whole and value != int(value)):
-        raise ValueError(f"{said}: expected a {'whole' if field.whole else 'finite'} number")
+        raise ValueError(f"{stated}: expected a {'whole' if field.whole else 'finite'} number")
     if not field.low <= value <= field.high:
-        raise ValueError(f"{said}, but this page takes {field.low:g} to {field.high:g}: for others use gearfe in Python")
+        raise ValueError(f"{stated}, but this page takes {field.low:g} to {field.high:g}: for others use gearfe in Python")
     return int(value) if field.whole else float(value)

@@ -64,8 +64,8 @@ class Guard:
 
         async def safe(message):
             if message["type"] == "http.response.start":
-                own = [(name.encode(), value.encode()) for name, value in SAFE.items()]
-                message = message | {"headers": [*message.get("headers", ()), *own]}
+                added = [(name.encode(), value.encode()) for name, value in SAFE.items()]
+                message = message | {"headers": [*message.get("headers", ()), *added]}
             await send(message)
 
         if not why:

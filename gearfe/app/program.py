@@ -51,7 +51,7 @@ def program(scene: Scene, phases: int = 64, solid: int = 16) -> str:
     hurt = ", damaged {damaged.zones()[zone] / 1e6:.4g} N/um" if damage else ""
     return TEXT.format(
         title=" ".join(scene.title.split()), one=said(pair.gear_1), two=said(pair.gear_2), a=pair.a, force=chosen.force,
-        material=said(chosen.materials), options="".join(f"\n    {name}={said(one)}," for name, one in options.items()),
+        material=said(chosen.materials), options="".join(f"\n    {name}={said(option)}," for name, option in options.items()),
         method=method, phases=spelled, why=why, damaged=DAMAGED.format(damage=said(damage)) if damage else "", printed=hurt,
     )  # fmt: skip
 
@@ -71,5 +71,5 @@ def said(one: Any) -> str:
         return f"({', '.join(map(said, one))}{',' if len(one) == 1 else ''})"
     if not hasattr(one, "__dataclass_fields__"):
         return repr(one)
-    given = [(f.name, getattr(one, f.name)) for f in fields(one) if f.init and getattr(one, f.name) != f.default]
-    return f"gf.{type(one).__name__}({', '.join(f'{name}={said(value)}' for name, value in given)})"
+    arguments = [(f.name, getattr(one, f.name)) for f in fields(one) if f.init and getattr(one, f.name) != f.default]
+    return f"gf.{type(one).__name__}({', '.join(f'{name}={said(value)}' for name, value in arguments)})"

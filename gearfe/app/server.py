@@ -32,7 +32,7 @@ PORT, LARGEST_SCENE = 8033, 90_000  # characters, so that a request with it is b
 
 
 class Answer(Response):
-    """Lines of JSON: while a task waits what is known of that, at last its answer; whoever goes away gives his task up."""
+    """Lines of JSON: how a task waits, and at last its answer; a page that is closed cancels its task."""
 
     def __init__(self, pool: Pool, lane: str, kind: str, given: dict[str, Any]):
         super().__init__(media_type="application/x-ndjson")
@@ -51,14 +51,14 @@ class Answer(Response):
                 pass
 
         await send({"type": "http.response.start", "status": 200, "headers": self.raw_headers})
-        work, gone = (asyncio.ensure_future(one) for one in (self.pool.ask(self.lane, self.kind, self.given, tell), left()))
+        work, gone = (asyncio.ensure_future(task) for task in (self.pool.ask(self.lane, self.kind, self.given, tell), left()))
         try:
             await asyncio.wait({work, gone}, return_when=asyncio.FIRST_COMPLETED)
             if work.done():
                 await send({"type": "http.response.body", "body": work.result() + b"\n"})
         finally:
-            for one in (work, gone):
-                one.cancel()
+            for task in (work, gone):
+                task.cancel()
 
 
 def application(
@@ -171,7 +171,7 @@ def serve(
     Raises
     ------
     ValueError
-        If the port is taken, or a number is none that can be.
+        If the port is taken, or a number is out of its range.
     """
     for name, value in (("workers", workers), ("users", users), ("tasks", tasks)):
         if value is not None and value < 1:

@@ -58,8 +58,8 @@ def compared(scene: Scene, method: str, phases: int, *, error: bool) -> tuple[Co
     whole, hurt = solve(case.healthy, how), solve(case, how)
     coarse = replace(how, phases=cycle, error=False)
     doubt = loss_errors(within(whole, cycle), within(hurt, cycle), case, coarse) if error else {}
-    said = told_damage(case.pair, case.damage), kind_of(case.damage)
-    return Comparison("stage", {method: hurt}, {method: 0.0}, {method: whole}, doubt, *said, {}, cycle), left_out
+    damage_and_kind = told_damage(case.pair, case.damage), kind_of(case.damage)
+    return Comparison("stage", {method: hurt}, {method: 0.0}, {method: whole}, doubt, *damage_and_kind, {}, cycle), left_out
 
 
 def quick(state: dict[str, Any]) -> dict[str, Any]:
@@ -78,7 +78,7 @@ def solid(state: dict[str, Any]) -> dict[str, Any]:
 
 
 def _answer(state, method, phases, *, error):
-    with own_warnings() as told:
+    with own_warnings() as caught:
         scene, left_out = scene_from(state), ()
         if method == "ritz" and _wide(state):
             scene = scene_from(state | ALONG | ({"crack": "none"} if state["part"] != ALONG["part"] else {}))
@@ -86,22 +86,24 @@ def _answer(state, method, phases, *, error):
                 "pits, cracks of part of the width, crowning along it, misalignment and tilting supports "
                 "are not in this section: solve in three dimensions",
             )
-        found, more = compared(scene, method, phases, error=error)
-    curve = found.reference
+        comparison, further = compared(scene, method, phases, error=error)
+    curve = comparison.reference
     return {
-        "headline": found.headline,
+        "headline": comparison.headline,
         "named": f"{title_of(state)}; {state['force']:g} N in the line of action, {state['b_1']:g} and {state['b_2']:g} mm wide",
-        "definition": found.definition,
+        "definition": comparison.definition,
         "method": f"{method}: {phases} phases in a mesh cycle"
         + (", with estimated errors" if error else ", a first picture without estimates" if method == "ritz" else ""),
-        "section": bool(left_out or more),
-        "table": _table(found),
-        "curves": [*(_curve("healthy", one) for one in found.healthy.values()), _curve(found.kind or "healthy", curve)],
-        "share": {"phase": _numbers(curve.phase), "order": [int(one) for one in curve.order],
-                  "value": [_numbers(one) for one in np.where(curve.force > 0, curve.share, np.nan).T]},
+        "section": bool(left_out or further),
+        "table": _table(comparison),
+        "curves": [*(_curve("healthy", entry) for entry in comparison.healthy.values()),
+                   _curve(comparison.kind or "healthy", curve)],
+        "share": {"phase": _numbers(curve.phase), "order": [int(entry) for entry in curve.order],
+                  "value": [_numbers(entry) for entry in np.where(curve.force > 0, curve.share, np.nan).T]},
         "picture": picture(scene_from(state)),
-        "notes": [*left_out, *more, *dict.fromkeys(str(one.message) for one in told), *scene.pair().pair.notes],
-        "assumed": [one["what"] for one in of_stiffness(scene.assumptions)] + [f"changed: {one}" for one in scene.changed],
+        "notes": [*left_out, *further, *dict.fromkeys(str(entry.message) for entry in caught), *scene.pair().pair.notes],
+        "assumed": [entry["what"] for entry in of_stiffness(scene.assumptions)]
+        + [f"changed: {entry}" for entry in scene.changed],
     }  # fmt: skip
 
 
@@ -139,8 +141,8 @@ def picture(scene: Scene) -> dict[str, Any]:
     for i, gear in enumerate((pair.gear_1, pair.gear_2)):
         points = outline_points(gear, points=9)
         step = (float(later[i] - starts[i]) + math.pi) % (2 * math.pi) - math.pi
-        own = [one for case in chosen.damage.values() for one in case.get(("pinion", "wheel")[i], [])]
-        hurt = [{"kind": one.nouns[0], "line": one.outline(gear).T.round(5).tolist()} for one in own]
+        damages = [one for case in chosen.damage.values() for one in case.get(("pinion", "wheel")[i], [])]
+        hurt = [{"kind": one.nouns[0], "line": one.outline(gear).T.round(5).tolist()} for one in damages]
         gears.append({
             "z": gear.z, "tooth": points[:, : points.shape[1] // gear.z].T.round(5).tolist(), "held": gear.held,
             "mirror": (1, pair.outward)[i], "turn": float(starts[i]), "rate": step / 0.01, "damage": hurt,
@@ -160,12 +162,12 @@ def stress(state: dict[str, Any]) -> dict[str, Any]:
 
     scene = scene_from(state)
     case = scene.case(case=CASE if scene.pair().damage else None)
-    with own_warnings() as told, tempfile.TemporaryDirectory() as folder:
+    with own_warnings() as caught, tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "stress.png"
-        found = render_stress(case, file, size=STRESS, refine=0.7, title=scene.title)
+        facts = render_stress(case, file, size=STRESS, refine=0.7, title=scene.title)
         data = base64.b64encode(file.read_bytes()).decode()
-    text = f"{found['text']}; largest von Mises stress on the fillets {found['root']:.0f} MPa"
-    return {"png": data, "text": " ".join(text.splitlines()), "notes": [str(one.message) for one in told]}
+    text = f"{facts['text']}; largest von Mises stress on the fillets {facts['root']:.0f} MPa"
+    return {"png": data, "text": " ".join(text.splitlines()), "notes": [str(warning.message) for warning in caught]}
 
 
 def spectrum(state: dict[str, Any]) -> dict[str, Any]:
@@ -174,19 +176,19 @@ def spectrum(state: dict[str, Any]) -> dict[str, Any]:
 
     if not state["speed"]:
         raise ValueError("speed of the pinion = 0 rpm, but a vibration needs one: give it a speed under Load")
-    with own_warnings() as told:
+    with own_warnings() as caught:
         scene = scene_from(state)
-        found = analysis(responses(scene, CASE if scene.pair().damage else None, duration=SECONDS))
-    last = 1.15 * max(found.lines.values(), default=math.inf)
+        analysed = analysis(responses(scene, CASE if scene.pair().damage else None, duration=SECONDS))
+    last = 1.15 * max(analysed.lines.values(), default=math.inf)
     spectra = []
-    for name, one in found.spectra.items():
+    for name, one in analysed.spectra.items():
         rows = slice(1, min(int(np.searchsorted(one.frequency, last)) + 1, SHOWN))
         spectra.append({"name": name, "f": _numbers(one.frequency[rows]), "value": _numbers(one.values[rows])})
-    lines = [{"name": name, "f": value} for name, value in found.lines.items() if name in found.standing()]
-    words = ", ".join(f"{in_words(line['name'])} {line['f']:.1f} Hz" for line in lines)
-    text = f"{SECONDS:g} s of vibration; lines that stand out: {words or 'none'}"
-    title = f"{found.channel} [{found.unit}]"
-    return {"title": title, "text": text, "spectra": spectra, "lines": lines, "notes": [str(one.message) for one in told]}
+    lines = [{"name": name, "f": value} for name, value in analysed.lines.items() if name in analysed.standing()]
+    named = ", ".join(f"{in_words(line['name'])} {line['f']:.1f} Hz" for line in lines)
+    text = f"{SECONDS:g} s of vibration; lines that stand out: {named or 'none'}"
+    title = f"{analysed.channel} [{analysed.unit}]"
+    return {"title": title, "text": text, "spectra": spectra, "lines": lines, "notes": [str(one.message) for one in caught]}
 
 
 def load(given: dict[str, Any]) -> dict[str, Any]:
@@ -199,7 +201,7 @@ def load(given: dict[str, Any]) -> dict[str, Any]:
             f"no scene {shown(name)}: give the text of one, or the name of a built-in one: {', '.join(scene_names())}"
         )
     chosen = {key: given.get(key) for key in ("pair", "case")}
-    if not all(isinstance(one, str | None) for one in chosen.values()):
+    if not all(isinstance(choice, str | None) for choice in chosen.values()):
         raise ValueError(f"pair and case = {shown(chosen)}: give their names")
     try:
         state, notes = read(name, text, **chosen)
@@ -223,9 +225,9 @@ def as_csv(state: dict[str, Any]) -> dict[str, Any]:
     scene = scene_from(state)
     method = "ritz3d" if _wide(state) or state["beta"] else "ritz"
     with own_warnings(), tempfile.TemporaryDirectory() as folder:
-        found, _ = compared(scene, method, SOLID if method == "ritz3d" else FINE, error=method == "ritz")
+        comparison, _ = compared(scene, method, SOLID if method == "ritz3d" else FINE, error=method == "ritz")
         file = Path(folder) / "curve.csv"
-        found.reference.to_csv(file)
+        comparison.reference.to_csv(file)
         return {"file": "curve.csv", "kind": "text/csv", "text": file.read_text(encoding="utf-8")}
 
 

@@ -61,9 +61,9 @@ def tables_of(state: dict[str, Any]) -> dict[str, Any]:
     face = ("helical" if state["beta"] else None) if state["face"] == FACE else state["face"]
     out["pair"][PAIR] |= {"face": face} if face else {}
     flanks = {side: _flank(state, i, side) for i, side in SPELLED.items()}
-    out |= {"flank": found} if (found := {side: table for side, table in flanks.items() if table}) else {}
+    out |= {"flank": modified} if (modified := {side: table for side, table in flanks.items() if table}) else {}
     soft = {side: {key: value for name, key in SUPPORT.items() if (value := state[f"{name}_{i}"])} for i, side in SPELLED.items()}
-    soft = {side: {"gear": side} | own for side, own in soft.items() if own}
+    soft = {side: {"gear": side} | springs for side, springs in soft.items() if springs}
     out |= {"support": soft} if soft else {}
     if state["crack"] != "none":
         size = {"length_mm": state["crack_length"]} if state["crack"] == "length" else {"level": state["crack_level"]}
@@ -109,19 +109,19 @@ def _written(table, head, mark=""):
     yield "\n".join([*lines, *(f"{_key(key)} = {_value(value)}" for key, value in plain.items())])
     for key, value in table.items():
         if _tables(value):
-            for one in value:
-                yield from _written(one, key, "[[")
+            for row in value:
+                yield from _written(row, key, "[[")
         elif key not in plain:
             yield from _written(value, f"{head}.{_key(key)}" if head else _key(key))
 
 
 def _tables(value):
-    return isinstance(value, list) and bool(value) and all(isinstance(one, dict) for one in value)
+    return isinstance(value, list) and bool(value) and all(isinstance(entry, dict) for entry in value)
 
 
 def _value(value):
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{_key(key)} = {_value(one)}" for key, one in value.items()) + " }" if value else "{}"
+        return "{ " + ", ".join(f"{_key(key)} = {_value(entry)}" for key, entry in value.items()) + " }" if value else "{}"
     if isinstance(value, list):
         return f"[{', '.join(map(_value, value))}]"
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f") if isinstance(value, (str, bool)) else repr(value)
@@ -146,10 +146,10 @@ def read(name: str, text: str, pair: str | None = None, case: str | None = None)
     if pair is None and case is None:
         rest = _rest(scene, tables, None, None)
         if rest:
-            told = "; ".join(rest)
+            further = "; ".join(rest)
             choices = {one: ["", *own.damage] for one, own in scene.pairs.items()}
             raise SeveralError(
-                f"{name}: the page shows one pair in one case, and here is more: {told}; choose a pair and case", choices
+                f"{name}: the page shows one pair in one case, and here is more: {further}; choose a pair and case", choices
             )
     chosen = scene.pair(pair)
     pair = pair or next(iter(scene.pairs))
@@ -158,23 +158,24 @@ def read(name: str, text: str, pair: str | None = None, case: str | None = None)
     rest = _rest(scene, tables, pair, case)
     own, notes = _renamed(name, tables, pair, case)
     state = _fields(name, own, chosen.force * chosen.pair.gear_1.r_b * 1e-3)
-    given, made = dict(_flat(_filled(name, own))), dict(_flat(_filled(name, tables_of(state))))
-    for place in [*given, *made]:
-        if place == "gear.wheel.beta_deg" and given[place] and _same(given[place], -made[place]):
-            notes.append(f"the hand of the wheel's helix, given as {given[place]:g}°, is written as {made[place]:g}°")
-        elif not _same(given.get(place), made.get(place)):
-            raise ValueError(f"{name}: {place} = {shown(given.get(place))}, but the page has {shown(made.get(place))} there: no "
+    stated, page = dict(_flat(_filled(name, own))), dict(_flat(_filled(name, tables_of(state))))
+    for place in [*stated, *page]:
+        if place == "gear.wheel.beta_deg" and stated[place] and _same(stated[place], -page[place]):
+            notes.append(f"the hand of the wheel's helix, given as {stated[place]:g}°, is written as {page[place]:g}°")
+        elif not _same(stated.get(place), page.get(place)):
+            raise ValueError(f"{name}: {place} = {shown(stated.get(place))}, but the page has {shown(page.get(place))} there: no "
                              "field of it holds this; nothing is dropped, so compute this scene by gearfe compare")  # fmt: skip
     return checked_state(state), [*(f"not taken from {name}: {one}" for one in rest), *notes]
 
 
 def _rest(scene: Scene, tables: dict[str, Any], pair: str | None, case: str | None) -> list[str]:
     """What a scene says beside its pair (of several the chosen one) and case, in words."""
-    others = [one for one in scene.pairs if one != pair] if len(scene.pairs) > 1 else []
-    names = dict.fromkeys(hurt for own in scene.pairs.values() for hurt in own.damage)
+    others = [other for other in scene.pairs if other != pair] if len(scene.pairs) > 1 else []
+    names = dict.fromkeys(hurt for scene_pair in scene.pairs.values() for hurt in scene_pair.damage)
     cases = [name for name in names if name != case] if case is not None or len(names) > 1 else []
-    out = [f"{what} {', '.join(found)}" for what, found in (("pairs", others), ("cases", cases)) if found]
+    out = [f"{noun} {', '.join(left)}" for noun, left in (("pairs", others), ("cases", cases)) if left]
     out += [f"machine {scene.machine['model']}"] if scene.machine and not _runs(tables) else []
+    out += ["the planetary set"] if scene.set is not None else []
     used = {row[key] for row in tables["pair"].values() for key in ("gear_1", "gear_2")}
     spare = [gear for gear in scene.gears if gear not in used]
     out += [f"gears in no pair {', '.join(spare)}"] if spare else []
@@ -193,40 +194,40 @@ def _renamed(name, tables, pair, case):
     gears = {side: dict(tables["gear"][gear]) for gear, side in sides.items()}
     materials = {side: dict(tables["material"][gear["material"]]) for side, gear in gears.items()}
     names = {f"gear.{gear}.": f"gear.{side}." for gear, side in sides.items()} | {f"pair.{pair}.": f"pair.{PAIR}."}
-    own = {"title": tables["title"], "source": tables["source"], "material": materials, "gear": gears}
-    own["pair"] = {PAIR: row | {"gear_1": "pinion", "gear_2": "wheel"}}
+    out = {"title": tables["title"], "source": tables["source"], "material": materials, "gear": gears}
+    out["pair"] = {PAIR: row | {"gear_1": "pinion", "gear_2": "wheel"}}
     for gear, side in sides.items():
         names |= {f"material.{tables['gear'][gear]['material']}.": f"material.{side}."}
         gears[side]["material"] = side
     for kind in ("flank", "support", "shaft"):
-        for key, one in tables.get(kind, {}).items():
-            if one["gear"] in sides and one.get("pair") in (None, pair):
+        for key, entry in tables.get(kind, {}).items():
+            if entry["gear"] in sides and entry.get("pair") in (None, pair):
                 if kind == "shaft":
                     raise ValueError(
                         f"{name}: [shaft.{key}] holds a gear of this pair; the page has supports by their stiffness only"
                     )
-                table = {k: v for k, v in one.items() if k != "pair"}
-                own.setdefault(kind, {})[sides[one["gear"]]] = table | {"gear": sides[one["gear"]]}
+                table = {k: v for k, v in entry.items() if k != "pair"}
+                out.setdefault(kind, {})[sides[entry["gear"]]] = table | {"gear": sides[entry["gear"]]}
     for kind in DAMAGE:
-        for one in tables.get(kind, []):
-            if one["case"] == case and one["gear"] in sides and one.get("pair") in (None, pair):
-                table = {k: v for k, v in one.items() if k != "pair"}
-                own.setdefault(kind, []).append(table | {"case": CASE, "gear": sides[one["gear"]]})
-    for kind, found in ((kind, own.get(kind, [])) for kind in DAMAGE):
-        if len(found) > 1:
-            raise ValueError(f"{name}: {len(found)} tables [[{kind}]] in one case; the page has fields for one")
+        for entry in tables.get(kind, []):
+            if entry["case"] == case and entry["gear"] in sides and entry.get("pair") in (None, pair):
+                table = {k: v for k, v in entry.items() if k != "pair"}
+                out.setdefault(kind, []).append(table | {"case": CASE, "gear": sides[entry["gear"]]})
+    for kind, entries in ((kind, out.get(kind, [])) for kind in DAMAGE):
+        if len(entries) > 1:
+            raise ValueError(f"{name}: {len(entries)} tables [[{kind}]] in one case; the page has fields for one")
     if _runs(tables):
-        own["machine"] = tables["machine"]
-    for one in tables.get("assumption", []):
-        held = {new + key.removeprefix(old): value for key, value in one.get("holds", {}).items()
+        out["machine"] = tables["machine"]
+    for entry in tables.get("assumption", []):
+        held = {new + key.removeprefix(old): value for key, value in entry.get("holds", {}).items()
                 for old, new in names.items() if key.startswith(old)}  # fmt: skip
-        if held or not one.get("holds"):
-            own.setdefault("assumption", []).append(one | ({"holds": held} if held else {}))
-    return own, notes
+        if held or not entry.get("holds"):
+            out.setdefault("assumption", []).append(entry | ({"holds": held} if held else {}))
+    return out, notes
 
 
 def _filled(name, tables):
-    """Tables with the defaults of their keys; those that may be left out stand in with their defaults."""
+    """Tables with the defaults of their keys filled in; tables that may be left out are there too, with their defaults."""
     out = {"title": tables["title"], "source": tables["source"]}
     wanted = [("material", side) for side in SIDES] + [("gear", side) for side in SIDES] + [("pair", PAIR)]
     for kind, key in wanted + [(kind, side) for kind in ("flank", "support") for side in SIDES]:
@@ -235,15 +236,15 @@ def _filled(name, tables):
     if not out[f"pair.{PAIR}"]["face"] and out["gear.pinion"]["beta_deg"]:
         out[f"pair.{PAIR}"]["face"] = "helical"
     for kind, keys in DAMAGE.items():
-        for one in tables.get(kind, []):
-            row = checked(name, kind, one, keys)
+        for entry in tables.get(kind, []):
+            row = checked(name, kind, entry, keys)
             if kind == "pits":  # of a row about its middle something else is left that no field holds
                 first = row["first_mm"] or 0.0
                 row |= {"first_mm": first, "last_mm": first if row["last_mm"] is None else row["last_mm"]}
             out[kind] = row
     if "machine" in tables:
         out["machine"] = checked_machine(name, tables["machine"])
-    out["assumption"] = [{"why": "", "depends": "", "holds": {}} | one for one in tables.get("assumption", [])]
+    out["assumption"] = [{"why": "", "depends": "", "holds": {}} | entry for entry in tables.get("assumption", [])]
     return out
 
 
@@ -264,40 +265,40 @@ def _same(one, other):
 
 
 def _fields(name, tables, torque):
-    """Values of the fields from renamed tables; what no field holds is left, and found by who compares."""
-    out, own = dict(START) | {"crack": "none"}, _filled(name, tables)
+    """Values of the fields from renamed tables; what no field holds is left out, and found when `read` compares."""
+    out, filled = dict(START) | {"crack": "none"}, _filled(name, tables)
     for field in FIELDS:
         if field.places:
             place, key = field.places[0].rsplit(".", 1)
-            out[field.name] = own[place][key]
+            out[field.name] = filled[place][key]
     for i, side in SPELLED.items():
-        gear, flank = own[f"gear.{side}"], own[f"flank.{side}"]
+        gear, flank = filled[f"gear.{side}"], filled[f"flank.{side}"]
         out[f"held_{i}"] = gear["r_rim_mm"] if gear["r_bore_mm"] is None else gear["r_bore_mm"]
         out |= {f"{field}_{i}": flank[key] for field, key in FLANK.items()}
-        out |= {f"{field}_{i}": own[f"support.{side}"][key] or 0.0 for field, key in SUPPORT.items()}
+        out |= {f"{field}_{i}": filled[f"support.{side}"][key] or 0.0 for field, key in SUPPORT.items()}
         for end in ENDS:
             out[f"{end}_exponent_{i}"] = flank[f"{end}_exponent"]
             if flank[f"{end}_start_length_mm"] is not None:
                 out[f"{end}_length_{i}"] = flank[f"{end}_start_length_mm"]
-    pair = own[f"pair.{PAIR}"]
-    out |= {"wheel": "ring" if own["gear.wheel"]["r_rim_mm"] is not None else "external", "a": pair["a_mm"] or 0.0}
-    out["face"] = FACE if pair["face"] == ("helical" if own["gear.pinion"]["beta_deg"] else None) else pair["face"]
-    if "crack" in own:
-        row = own["crack"]
+    pair = filled[f"pair.{PAIR}"]
+    out |= {"wheel": "ring" if filled["gear.wheel"]["r_rim_mm"] is not None else "external", "a": pair["a_mm"] or 0.0}
+    out["face"] = FACE if pair["face"] == ("helical" if filled["gear.pinion"]["beta_deg"] else None) else pair["face"]
+    if "crack" in filled:
+        row = filled["crack"]
         out |= {field: row[key] for field, key in CRACK.items()}
         out |= {"crack": "length", "crack_length": row["length_mm"]} if row["level"] is None else {
             "crack": "level", "crack_level": row["level"], "turning": "yes" if row["turning"] else "no"}  # fmt: skip
         if row["width_mm"] is not None:
             rounded = "rounded" if row["rounded"] else "straight"
             out |= {"part": "a part", "part_first": row["width_mm"][0], "part_last": row["width_mm"][1], "part_rounded": rounded}
-    if "pits" in own:
-        row = own["pits"]
+    if "pits" in filled:
+        row = filled["pits"]
         out |= {field: row[key] for field, key in PITS.items()} | {"pits": "yes"}
         out |= {"pit_along": row["axes_mm"][0], "pit_across": row["axes_mm"][1]}
-    if "machine" in own:
-        drive = own["machine"]["torque_Nm"]
-        out |= {"speed": own["machine"]["speed_rpm"], "drive": 0.0 if _same(drive, torque) else drive}
-    for field in (one for one in FIELDS if one.whole or not one.choices):
+    if "machine" in filled:
+        drive = filled["machine"]["torque_Nm"]
+        out |= {"speed": filled["machine"]["speed_rpm"], "drive": 0.0 if _same(drive, torque) else drive}
+    for field in (numeric for numeric in FIELDS if numeric.whole or not numeric.choices):
         value = out[field.name]
         out[field.name] = float(value) if isinstance(value, int) and not field.whole else value
     title = tables["title"]

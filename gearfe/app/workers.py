@@ -132,46 +132,46 @@ class Pool:
         `tell` gets, twice a second, how many wait before it, then once the seconds that are expected of a slow one. Whoever
         is cancelled (a page that was closed) gives his place up; a slow task under way is ended with its process.
         """
-        for other in [one for one in self.waiting if one.lane == lane]:
+        for other in [queued for queued in self.waiting if queued.lane == lane]:
             self.waiting.remove(other)
             other.answer.set_result(_json(STALE))
         if len(self.waiting) >= self.most:
             return _json({"refused": f"{len(self.waiting)} others wait for the solvers: please try again in a while"})
-        own = Task(lane, kind, given, asyncio.get_running_loop().create_future())
-        self.waiting.append(own)
+        task = Task(lane, kind, given, asyncio.get_running_loop().create_future())
+        self.waiting.append(task)
         self._deal()
         try:
             told = False
-            while not own.answer.done():
-                if own.slow and own.worker and not told:
+            while not task.answer.done():
+                if task.slow and task.worker and not told:
                     told = True
                     await tell({"expected": self.expected[kind]})
-                await asyncio.wait([own.answer], timeout=0.5)
-                if own in self.waiting:
-                    await tell({"waiting": self.waiting.index(own)})
-            return own.answer.result()
+                await asyncio.wait([task.answer], timeout=0.5)
+                if task in self.waiting:
+                    await tell({"waiting": self.waiting.index(task)})
+            return task.answer.result()
         finally:
-            if own in self.waiting:
-                self.waiting.remove(own)
-            elif own.slow and own.worker and not own.answer.done():
-                own.worker.kill()
+            if task in self.waiting:
+                self.waiting.remove(task)
+            elif task.slow and task.worker and not task.answer.done():
+                task.worker.kill()
 
     def _deal(self) -> None:
         """Give free processes to those who wait longest; tasks that take seconds leave one free."""
-        for one in list(self.waiting):
-            if self.free and not (one.slow and self.slow >= self.count - 1):
-                self.waiting.remove(one)
-                self.slow += one.slow
-                one.worker = self.free.pop()
-                run = asyncio.ensure_future(self._run(one, one.worker))
+        for task in list(self.waiting):
+            if self.free and not (task.slow and self.slow >= self.count - 1):
+                self.waiting.remove(task)
+                self.slow += task.slow
+                task.worker = self.free.pop()
+                run = asyncio.ensure_future(self._run(task, task.worker))
                 self.running.add(run)
                 run.add_done_callback(self.running.discard)
 
     async def _run(self, task: Task, worker: Worker) -> None:
         started = time.perf_counter()
-        found = await asyncio.to_thread(worker.ask, task.kind, task.given)
+        reply = await asyncio.to_thread(worker.ask, task.kind, task.given)
         if not task.answer.done():
-            task.answer.set_result(found)
+            task.answer.set_result(reply)
         if worker.ended:
             await asyncio.to_thread(worker.end)
             worker = await asyncio.to_thread(Worker, self.context, self.memory)

@@ -5,7 +5,7 @@ import os
 from functools import partial
 
 from ..stiffness.methods import NAMES, described, having
-from . import filling, shell, signals, tools
+from . import filling, sets, shell, signals, tools
 from . import verbs as run
 
 SIGNALS = (".csv", ".txt", ".mat", ".npz", ".h5", ".wav", ".uff", ".tdms", ".parquet")  # as of gearfe.files
@@ -91,10 +91,30 @@ def main(argv=None):
     )  # fmt: skip
     add("--channel", metavar="NAME", help="channel to analyse, e.g. 'sun.theta acceleration' (default: first mesh's force)")
     add("--contact", choices=("linear", "impact"), help="contact law (default: the scene's, else linear)")
+    add(
+        "--loads", type=float, nargs="+", default=(1.0,), metavar="X",
+        help="laws of force solved under these multiples of the meshes' own loads, e.g. 0.0625 0.25 0.5 1 2: for resonances and "
+        "loads that change (default: 1, a stiffness over the phase)",
+    )  # fmt: skip
     add("--method", default="fast", help="fast or a method of scipy's solve_ivp, e.g. DOP853 (default: fast)")
     add("-o", "--output", metavar="FILE", help="save the response: .csv, .npz or .mat")
     _assumptions(add)
     _analysis_arguments(add)
+    add = verb("set", sets.planetary_set, "a whole planetary set in one contact: stiffness of its meshes, load shares, pictures")
+    add("scene", metavar="SCENE", help="a .toml file with a [set] table")
+    add("--case", metavar="NAME", help="case of cracks, compared with healthy (default: healthy alone)")
+    add("--positions", type=int, default=32, metavar="N", help="positions of the sun, at least (default: 32)")
+    add(
+        "--cycles", type=int, metavar="N",
+        help="mesh cycles that they are spread over (default: 1; of a ring on pads a pitch of the pads; with --case 2, in which "
+        "tooth 0 goes through its mesh)",
+    )  # fmt: skip
+    add("--refine", type=float, default=1.0, metavar="X", help="finite-element resolution: divides the edge lengths (default: 1)")
+    add("-o", "--output", metavar="FILE", help="save loads, stiffness and transmission error: .csv, .npz, .mat or .json")
+    add("--plot", metavar="FILE", help="draw them over the positions: .png, .svg or .pdf")
+    add("--picture", metavar="FILE", help="draw the set bent under its load, coloured by stress: .png, .svg or .pdf")
+    add("--animate", metavar="FILE", help="the same moving, over a mesh cycle or --cycles: .gif")
+    _assumptions(add)
     add = verb("signal", signals.signal, "a measured signal: spectrum lines, indicators, kurtogram and squared envelope")
     add("file", metavar="FILE", nargs="+", help=f"signal as {', '.join(SIGNALS)}; several: cases, the first healthy")
     add("--list", action="store_true", help="only list the channels of the files")

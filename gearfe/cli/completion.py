@@ -34,15 +34,15 @@ def script(shell, verbs):
     scenes = sorted(place.name.removesuffix(".toml") for place in places if place.name.endswith(".toml"))
     options, choices, with_scene = [], [], []
     for name, parser in verbs.items():
-        found = [text for action in parser._actions for text in action.option_strings]
+        flags = [text for action in parser._actions for text in action.option_strings]
         plain = [str(c) for action in parser._actions if not action.option_strings for c in action.choices or ()]
-        options.append(f'    {name}) found="{" ".join([*plain, *found])}" ;;')
+        options.append(f'    {name}) found="{" ".join([*plain, *flags])}" ;;')
         with_scene += [name for action in parser._actions if action.dest == "scene"]
         for action in parser._actions:
             if action.choices and action.option_strings:
                 when = "|".join(f'"{name} {text}"' for text in action.option_strings)
-                words = " ".join(map(str, action.choices))
-                choices.append(f'    {when}) COMPREPLY=($(compgen -W "{words}" -- "$word")); return ;;')
+                values = " ".join(map(str, action.choices))
+                choices.append(f'    {when}) COMPREPLY=($(compgen -W "{values}" -- "$word")); return ;;')
     parts = {"verbs": " ".join(verbs), "choices": "\n".join(choices), "options": "\n".join(options)}
     bash = BASH.format(**parts, with_scene="|".join(with_scene), scenes=" ".join(scenes))
     return bash if shell == "bash" else ZSH + bash

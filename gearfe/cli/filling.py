@@ -34,18 +34,18 @@ def dataset(arguments):
 
     if arguments.dry_run:
         with working("trying one condition"):
-            found = size_of(arguments.plan)
-        print(found.text(arguments.workers))
+            size = size_of(arguments.plan)
+        print(size.text(arguments.workers))
         return
     with working("data set"):
-        made = run(arguments.plan, arguments.output, also=arguments.also, workers=arguments.workers)
-    labels = made.labels()
-    print(f"{made.about['title']}: {len(labels)} windows of {labels['condition'].nunique()} conditions")
+        data_set = run(arguments.plan, arguments.output, also=arguments.also, workers=arguments.workers)
+    labels = data_set.labels()
+    print(f"{data_set.about['title']}: {len(labels)} windows of {labels['condition'].nunique()} conditions")
     for (fault, severity), part in labels.groupby(["fault", "severity"]):
         sides = ", ".join(f"{(part['side'] == side).sum()} {side}" for side in ("train", "validation", "test"))
-        told = fault if fault == "healthy" else f"{fault} {severity:g}"
-        print(f"  {told:16s} {sides}; largest loss of stiffness {100 * part['loss_max'].mean():.1f} %")
-    lost = made.failed()
+        label = fault if fault == "healthy" else f"{fault} {severity:g}"
+        print(f"  {label:16s} {sides}; largest loss of stiffness {100 * part['loss_max'].mean():.1f} %")
+    lost = data_set.failed()
     if lost:
         print(f"  {len(lost)} conditions could not be simulated, the first: {next(iter(lost.values()))}")
     print(f"written: {arguments.output}, described in card.md")

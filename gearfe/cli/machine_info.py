@@ -30,7 +30,7 @@ def lines():
 
     yield f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
     yield from (f"{name} {version(name) or 'is not installed'}" for name in ("gearfe", *requirements().get("", ())))
-    yield from (f"{name} {found}" for name in OPTIONAL if (found := version(name)))
+    yield from (f"{name} {installed}" for name in OPTIONAL if (installed := version(name)))
     yield f"threads: {os.environ.get('OMP_NUM_THREADS', 'all')} of {os.cpu_count()} cores (OMP_NUM_THREADS)"
     yield f"memory: {free_memory() / 1e9:.1f} GB free"
     ordered = "by METIS" if dissects() else "by least degree: pip install pymetis, where there is one, for an order twice as good"
@@ -80,7 +80,7 @@ def cache(place):
 
 
 def advice():
-    """What would make it faster, or is not possible yet."""
+    """Lines on what would make gearfe faster on this machine, or what it cannot do yet."""
     for name, (module, good) in OPTIONAL.items():
         if importlib.util.find_spec(module) is None:
             yield f"not installed: {name}, for {good}: {command(name)}"

@@ -3,8 +3,8 @@
 Texts of files (titles, names of cases and columns, paths) are printed by every verb; all of it passes here, where characters
 that would steer the terminal are spelled out.
 
-0: done. 1: something given cannot be, or cannot be written; standard error says what. 2: wrong options (argparse). 130:
-interrupted. 141: whoever read the output has gone (as of a program ended by SIGPIPE).
+0: done. 1: an input is impossible, or a file cannot be written; standard error says which. 2: wrong options (argparse). 130:
+interrupted. 141: the program that read the output has ended (as after SIGPIPE).
 """
 
 import codecs
@@ -22,7 +22,7 @@ STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u20
 
 def harmless(text):
     """Text in which characters that steer a terminal are spelled out; line ends and tabs stay."""
-    return STEERING.sub(lambda found: ascii(found[0])[1:-1], text)
+    return STEERING.sub(lambda control: ascii(control[0])[1:-1], text)
 
 
 class Harmless:
@@ -58,8 +58,8 @@ def as_options(error, options):
     text, names = str(error), "|".join(map(re.escape, options))
     if not names:
         return text
-    text = re.sub(rf"\b({names})_frequency = ", lambda found: f"--{found[1]} ", text)  # of the verb `signal`: --mesh, --fault
-    return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda found: f"--{found[1]}", text)
+    text = re.sub(rf"\b({names})_frequency = ", lambda match: f"--{match[1]} ", text)  # of the verb `signal`: --mesh, --fault
+    return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda match: f"--{match[1]}", text)
 
 
 def run(work, options=()):
@@ -96,7 +96,7 @@ def run(work, options=()):
 
 
 def _forget_output():
-    """What is still buffered can go nowhere: keep the interpreter from trying again at its end."""
+    """Send what is still buffered nowhere, so that the interpreter does not try again to write it when it ends."""
     if sys.stdout is not None:
         with contextlib.suppress(OSError, ValueError):
             nowhere = os.open(os.devnull, os.O_WRONLY)

@@ -24,10 +24,10 @@ def signal(arguments):
         with part("", 0.0, 0.5):
             signals = _read(arguments)
         with part("spectra and indicators", 0.5, 1.0):
-            found = analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=", ".join(signals))
-    for one in signals.values():
-        print(_told(one))
-    _print_analysis(found, arguments)
+            analysed = analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=", ".join(signals))
+    for record in signals.values():
+        print(_told(record))
+    _print_analysis(analysed, arguments)
     if arguments.teeth is not None:
         from ..signal.gear_indicators import gear_indicator_table, gear_table_text
 
@@ -39,7 +39,7 @@ def signal(arguments):
 
 
 def _told(one):
-    """What a record is: samples, rate, length, and the turns of its shaft."""
+    """One line on a record: samples, rate, length, and the turns of its shaft."""
     import numpy as np
 
     text = f"{one.name}: {one.values.size} samples at {one.rate:.7g} Hz, {one.duration:.4g} s"
@@ -61,17 +61,17 @@ def _print_channels(arguments):
     from ..signal.signal_file import channels
 
     for file in arguments.file:
-        found = channels(file, arguments.header)
+        recording = channels(file, arguments.header)
         print(file)
-        for name in found.channels():
-            rate = f", {found.rates[name]:g} Hz" if name in found.rates else ""
-            print(f"  {name} [{found.units.get(name) or 'no unit'}]: {found.vectors[name].size} samples{rate}")
-        for name in [*found.axes(TIMES), *found.axes(ANGLES)]:
-            values = found.vectors[name]
-            print(f"  {name} [{found.units.get(name) or 'no unit'}]: from {values[0]:.9g} to {values[-1]:.9g}")
-        for name, value in found.stated.items():
+        for name in recording.channels():
+            rate = f", {recording.rates[name]:g} Hz" if name in recording.rates else ""
+            print(f"  {name} [{recording.units.get(name) or 'no unit'}]: {recording.vectors[name].size} samples{rate}")
+        for name in [*recording.axes(TIMES), *recording.axes(ANGLES)]:
+            values = recording.vectors[name]
+            print(f"  {name} [{recording.units.get(name) or 'no unit'}]: from {values[0]:.9g} to {values[-1]:.9g}")
+        for name, value in recording.stated.items():
             print(f"  stated: {name} = {value}")
-        for text in found.other:
+        for text in recording.other:
             print(f"  not read: {text}")
 
 
@@ -82,18 +82,18 @@ def _read(arguments):
 
     out = {}
     for file in steps(arguments.file, lambda file: f"reading {file}"):
-        found = read_signals(
+        channels = read_signals(
             file, None if arguments.column is None else [arguments.column], units=arguments.unit, rate=arguments.rate,
             header=arguments.header, scale=arguments.scale, tachometer=arguments.tacho, pulses=arguments.pulses,
             level=arguments.level,
         )  # fmt: skip
-        if len(found) > 1:
-            raise ValueError(f"{file}: {len(found)} channels, {', '.join(map(repr, found))}: choose one by --column")
-        (one,) = found.values()
-        if one.name in out:
+        if len(channels) > 1:
+            raise ValueError(f"{file}: {len(channels)} channels, {', '.join(map(repr, channels))}: choose one by --column")
+        (channel,) = channels.values()
+        if channel.name in out:
             raise ValueError("two files have the same name: their cases could not be told apart; rename one")
-        turns = {"shaft_frequency": arguments.shaft} if arguments.shaft is not None and one.angle is None else {}
-        out[one.name] = replace(one, **turns)
+        turns = {"shaft_frequency": arguments.shaft} if arguments.shaft is not None and channel.angle is None else {}
+        out[channel.name] = replace(channel, **turns)
     return out
 
 
@@ -102,8 +102,8 @@ def _draw(one, arguments):
     from ..pictures.vibration_plots import plot_cepstrum, plot_spectrogram
     from ..signal.time_frequency import cepstrum, spectrogram
 
-    wanted = (arguments.cepstrum, plot_cepstrum, cepstrum), (arguments.spectrogram, plot_spectrogram, spectrogram)
-    for path, draw, of in wanted:
+    pictures = (arguments.cepstrum, plot_cepstrum, cepstrum), (arguments.spectrogram, plot_spectrogram, spectrogram)
+    for path, draw, of in pictures:
         if path:
             draw(of(one), path, one.name)
             print(f"written: {path}")
@@ -117,6 +117,6 @@ def _draw_orders(signals, arguments):
 
     lines = expected_lines(arguments.teeth, 1.0, count=2, harmonics=2) if arguments.teeth else {"f_fault": 1.0}
     named = {name.replace("f_m", "mesh").replace("f_fault", "turn"): order for name, order in lines.items()}
-    spectra = {name: order_spectrum(one) for name, one in signals.items()}
+    spectra = {name: order_spectrum(record) for name, record in signals.items()}
     plot_spectra(spectra, named, arguments.orders, top=None if arguments.teeth else spectra[next(iter(spectra))].frequency[-1])
     print(f"written: {arguments.orders}")

@@ -15,11 +15,11 @@ def report(arguments):
         from ..reports.sweep_page import sweep_report
 
         with working("report"):
-            made = sweep_report(arguments.scene, arguments.output)
+            page = sweep_report(arguments.scene, arguments.output)
     else:
         with working("report"):
-            made = run(arguments.scene, arguments.output, arguments.case, duration=arguments.duration)
-    print(f"written: {made} ({made.stat().st_size / 1e6:.1f} MB)")
+            page = run(arguments.scene, arguments.output, arguments.case, duration=arguments.duration)
+    print(f"written: {page} ({page.stat().st_size / 1e6:.1f} MB)")
 
 
 def new(arguments):
@@ -30,8 +30,8 @@ def new(arguments):
     options |= {"torque_Nm": arguments.torque, "crack": arguments.crack}
     amount, length = arguments.tip_relief or (None, None)
     options |= {"width": arguments.width, "ring": arguments.ring, "tip_relief_um": amount, "tip_length_mm": length}
-    made = new_scene(arguments.output, **options)
-    print(f"written: {made}\n\n  gearfe check {made}\n  gearfe compare {made} --case cracked")
+    file = new_scene(arguments.output, **options)
+    print(f"written: {file}\n\n  gearfe check {file}\n  gearfe compare {file} --case cracked")
 
 
 def check(arguments):

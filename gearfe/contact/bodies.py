@@ -33,8 +33,8 @@ def seen_gears(pair, face, groove):
 def seen_cracks(gear, cracks, seen, band):
     """Cracks of a gear in the body `seen` over a band (first, last), heights counted from its first end."""
     first, inwards = (0.0, 1.0) if band[0] < band[1] else (gear.b, -1.0)
-    found = (crack_in_band(crack, gear.b, first, first + inwards * seen.b) for crack in cracks)
-    return tuple(crack for crack in found if crack is not None)
+    in_band = (crack_in_band(crack, gear.b, first, first + inwards * seen.b) for crack in cracks)
+    return tuple(crack for crack in in_band if crack is not None)
 
 
 class Bodies(NamedTuple):
@@ -96,8 +96,8 @@ def bodies_of(case, bands, flexible, ahead=None):
         for band in bands
     ]
     if ahead:
-        ahead([(given, held) for own in wanted for given, held, _ in own])
-    return [[(flexible(*given, **held), offset) for given, held, offset in steps(own)] for own in steps(wanted)]
+        ahead([(arguments, held) for own in wanted for arguments, held, _ in own])
+    return [[(flexible(*arguments, **held), offset) for arguments, held, offset in steps(own)] for own in steps(wanted)]
 
 
 def _as_seen(shaft, band):
@@ -109,18 +109,18 @@ def between(cells, bodies):
 
     `bodies` are those of `bodies_of`.
     """
-    out = [np.zeros((own.z.size,) * 2) for own in cells]
+    out = [np.zeros((group.z.size,) * 2) for group in cells]
     order, half, depth, *rolls = (
-        np.concatenate([getattr(own, name) for own in cells]) for name in ("order", "half", "depth", "roll_1", "roll_2")
+        np.concatenate([getattr(group, name) for group in cells]) for name in ("order", "half", "depth", "roll_1", "roll_2")
     )
-    start = np.cumsum([0, *(own.z.size for own in cells)])
+    start = np.cumsum([0, *(group.z.size for group in cells)])
     phase = np.repeat(np.arange(len(cells)), np.diff(start))
     new = np.append(True, (np.diff(half) != 0) | (np.diff(order) != 0) | (np.diff(phase) != 0))
     ends = np.append(np.flatnonzero(new), new.size).tolist()
     for number, gears in enumerate(bodies):
-        own = [(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True) if half[a] == number]
+        group = [(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True) if half[a] == number]
         for (body, offset), sense, roll in zip(gears, (1, -1), rolls, strict=True):
-            lines = [_Line(int(phase[a]), sense * int(order[a]), slice(a, b), int(start[phase[a]])) for a, b in own]
+            lines = [_Line(int(phase[a]), sense * int(order[a]), slice(a, b), int(start[phase[a]])) for a, b in group]
             _add(out, body, body.basis(roll, depth + offset), lines)
     return [(matrix + matrix.T) / 2 for matrix in out]
 
@@ -143,20 +143,20 @@ def _add(out, body, rows, lines):
     """Add what one body gives, from its basis `rows` at all cells: the products with its kernels for all phases at once."""
     pairs = {}
     for _, group in groupby(lines, lambda line: line.phase):
-        for one, two in product(list(group), repeat=2):
-            if one.tooth <= two.tooth:
-                pairs.setdefault((one.tooth, two.tooth), []).append((one, two))
-    for (first, second), found in pairs.items():
+        for lower, upper in product(list(group), repeat=2):
+            if lower.tooth <= upper.tooth:
+                pairs.setdefault((lower.tooth, upper.tooth), []).append((lower, upper))
+    for (first, second), couples in pairs.items():
         kernel = body.between(first, second)
         if kernel is None:
             continue
-        left = np.concatenate([rows[one.at] for one, _ in found]) @ kernel
-        ends = np.cumsum([one.at.stop - one.at.start for one, _ in found])[:-1]
-        for (one, two), mine in zip(found, np.split(left, ends), strict=True):
-            part = mine @ rows[two.at].T
-            out[one.phase][one.own, two.own] += part
+        left = np.concatenate([rows[lower.at] for lower, _ in couples]) @ kernel
+        ends = np.cumsum([lower.at.stop - lower.at.start for lower, _ in couples])[:-1]
+        for (lower, upper), weighted in zip(couples, np.split(left, ends), strict=True):
+            approach = weighted @ rows[upper.at].T
+            out[lower.phase][lower.own, upper.own] += approach
             if first != second:
-                out[one.phase][two.own, one.own] += part.T
+                out[lower.phase][upper.own, lower.own] += approach.T
 
 
 def mirrors_of(cells, bodies):
@@ -165,13 +165,13 @@ def mirrors_of(cells, bodies):
     As ``[(float, (n,), (n,)), ...]``, nearer ends first.
     """
     faces = {}
-    for side, other in ((False, False), (False, True), (True, False), (True, True)):
+    for side, far in ((False, False), (False, True), (True, False), (True, True)):
         low, high, weight = np.zeros(cells.z.size), np.zeros(cells.z.size), 0.0
         for half in np.unique(cells.half).tolist():
             at, (body, offset) = cells.half == half, bodies[half][side]
             ends = [cells.depth[at] + offset + sign * cells.width[at] / 2 for sign in (-1, 1)]
-            low[at], high[at] = (np.array(ends) if not other else body.gear.b - np.array(ends[::-1])) / math.cos(body.gear.beta_b)
-            weight, place = body.edge, (other, offset, body.gear.b)  # faces of equally wide gears are flush
+            low[at], high[at] = (np.array(ends) if not far else body.gear.b - np.array(ends[::-1])) / math.cos(body.gear.beta_b)
+            weight, place = body.edge, (far, offset, body.gear.b)  # faces of equally wide gears are flush
         faces[place] = (weight + faces.get(place, (0.0,))[0], low, high)
     return list(faces.values())
 
@@ -184,7 +184,7 @@ def faces_of(cells, bodies):
     (ndarray (m, n), ndarray (m, m), ndarray (m,)) or None
         Opening under unit normal forces on the cells, and of unit forces that push the faces apart [mm/N], and the half.
     """
-    rows, own, halves = [], [], []
+    rows, influences, halves = [], [], []
     for half in np.unique(cells.half).tolist():
         at = np.flatnonzero(cells.half == half)
         for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
@@ -192,6 +192,6 @@ def faces_of(cells, bodies):
                 row = np.zeros((body.seam.influence.shape[0], cells.z.size))
                 row[:, at] = body.opening(sense * cells.order[at], roll[at], cells.depth[at] + offset)
                 rows.append(row)
-                own.append(body.seam.influence)
+                influences.append(body.seam.influence)
                 halves.append(np.full(row.shape[0], half))
-    return (np.concatenate(rows), block_diag(*own), np.concatenate(halves)) if rows else None
+    return (np.concatenate(rows), block_diag(*influences), np.concatenate(halves)) if rows else None

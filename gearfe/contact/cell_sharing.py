@@ -13,10 +13,10 @@ from .joined_lines import FLOOR, JoinedLines
 from .pair_contact import OVERLAP
 from .sharing import share
 
-MOST = 60  # steps, the second half of them with exact contact problems
+MOST = 60  # steps at most; the second half of them solve exact contact problems
 WIDTHS = 20  # steps in which the strips' widths follow the loads, half of their change in the second half
 SETTLED = 1e-7  # change of a cell's load in the last step, of the whole load
-SLOW = 0.2  # of the change of the step before: a step that changes more asks for a new factor
+SLOW = 0.2  # a step that changes more than this part of the step before makes a new factor
 SLOPE = 1e-4  # relative change of the line load by which the slope of the local law is found
 
 
@@ -68,18 +68,18 @@ class SharedLines:
         RuntimeError
             If the load sharing does not settle, or the flexibility is not positive definite.
         """
-        one = self.joined
+        lines = self.joined
         load = np.asarray(load, dtype=float)
         forces, actives = self._started(load)
-        mean, x, open_ = one.smoother(load), None, list(range(load.size))
+        mean, x, open_ = lines.smoother(load), None, list(range(load.size))
         approaches, changes, slow = np.zeros(load.size), np.full(load.size, np.inf), np.full(load.size, True)
         for attempt in range(MOST):
             if attempt < WIDTHS:
-                wide = one.wide(one.along(mean, forces, load), local)
+                wide = lines.wide(lines.along(mean, forces, load), local)
                 x = wide if attempt < WIDTHS // 2 else np.sqrt(x * wide)
-                if one.near is None:
-                    one.begin(x)
-                one.widen(x)
+                if lines.near is None:
+                    lines.begin(x)
+                lines.widen(x)
             still = []
             for p in open_:
                 free, before = attempt < MOST // 2, None if slow[p] else forces[p]
@@ -90,35 +90,35 @@ class SharedLines:
                 actives[p], forces[p] = wanted, np.maximum(new, 0.0)
                 if not settled:
                     still.append(p)
-                    n = one.systems[p].gap.size
+                    n = lines.systems[p].gap.size
                     if not wanted[:n].any():
                         actives[p][:n] = True
             open_ = still
             if not open_:
                 tangents = self._tangents(forces, load, x, local)
-                return [Shared(*own) for own in zip(forces, approaches.tolist(), tangents, strict=True)]
+                return [Shared(*values) for values in zip(forces, approaches.tolist(), tangents, strict=True)]
         raise RuntimeError(f"load sharing along the contact lines did not settle at {load[open_[0]]:g} N")
 
     def _started(self, load):
-        """First forces of each problem and what of it pushes: evenly all cells."""
-        one, forces = self.joined, []
-        length = np.bincount(one.problem, one.width)
-        for p, gap in enumerate(one.gaps):
-            even = load[p] * one.width[one.slices[p]] / length[p]
+        """First forces of each problem, even over its cells, and what pushes at first: all cells, no faces of cracks."""
+        lines, forces = self.joined, []
+        length = np.bincount(lines.problem, lines.width)
+        for p, gap in enumerate(lines.gaps):
+            even = load[p] * lines.width[lines.slices[p]] / length[p]
             forces.append(np.append(even, np.zeros(gap.size - even.size)))
-        return forces, [weight > 0 for weight in one.weights]
+        return forces, [weight > 0 for weight in lines.weights]
 
     def _step(self, p, load, active, before, free):
         """Forces and approach of a problem, and which of its cells and faces should push; `before`: the last step's forces."""
-        one = self.joined
-        total, gap, weight, n = one.totals[p], one.gaps[p], one.weights[p], one.systems[p].gap.size
+        lines = self.joined
+        total, gap, weight, n = lines.totals[p], lines.gaps[p], lines.weights[p], lines.systems[p].gap.size
         if not free:
             new, approach = share(total, gap, load, weight)
             return new, approach, new > 0
         new, approach = self._free(p, load, active, before)
-        rests = total @ np.maximum(new, 0.0) + gap - approach * weight
-        let = np.append(np.full(n, 1e-12 * approach), np.full(gap.size - n, OVERLAP * np.abs(rests[n:]).max(initial=0.0)))
-        return new, approach, np.where(active, new > 0, rests < -let)
+        distances = total @ np.maximum(new, 0.0) + gap - approach * weight
+        slack = np.append(np.full(n, 1e-12 * approach), np.full(gap.size - n, OVERLAP * np.abs(distances[n:]).max(initial=0.0)))
+        return new, approach, np.where(active, new > 0, distances < -slack)
 
     def _free(self, p, load, active, before):
         """Forces of the active cells of a problem and their common approach, whatever their signs.
@@ -126,17 +126,17 @@ class SharedLines:
         Those of the last step are corrected with a factor that is known, of the same cells with other strips: it differs little.
         Without them, or if other cells are active, a new factor is made.
         """
-        one, known = self.joined, self._factors[p]
-        total, gap, weight = one.totals[p], one.gaps[p], one.weights[p]
+        lines, known = self.joined, self._factors[p]
+        total, gap, weight = lines.totals[p], lines.gaps[p], lines.weights[p]
         fresh = before is None or known is None or (known[0] != active).any()
         if fresh:
-            parts = [self._factor(p, at) for block in one.blocks[p] if (at := block[active[block]]).size]
+            parts = [self._factor(p, at) for block in lines.blocks[p] if (at := block[active[block]]).size]
             known = self._factors[p] = active.copy(), parts
         kept = np.zeros(gap.size) if fresh else np.where(active, before, 0.0)
-        rests = gap if fresh else gap + total @ kept
+        distances = gap if fresh else gap + total @ kept
         ones, moved = np.zeros(gap.size), np.zeros(gap.size)
-        for at, factor, own in known[1]:
-            ones[at], moved[at] = own, dpotrs(factor, rests[at])[0]
+        for at, factor, unit in known[1]:
+            ones[at], moved[at] = unit, dpotrs(factor, distances[at])[0]
         approach = (load - weight @ kept + weight @ moved) / (weight @ ones)
         return kept + approach * ones - moved, approach
 
@@ -157,25 +157,25 @@ class SharedLines:
 
             (T + d(T P)/dx dx/dP) dP + d(T P)/dx dx/dload dload = dd,    sum(dP) = dload
         """
-        one = self.joined
-        mean, more = one.smoother(load), one.smoother(load * (1 + SLOPE))
-        along, further = (one.along(matrix, forces, load) for matrix in (mean, more))
+        lines = self.joined
+        mean, raised = lines.smoother(load), lines.smoother(load * (1 + SLOPE))
+        along, further = (lines.along(matrix, forces, load) for matrix in (mean, raised))
         rate = np.full(along.size, 0.5)
         if local is not None:
             rate = rate - (local(along * (1 + SLOPE)) - local(along)) / np.log1p(SLOPE)
-        free = (one.wide(along, local) < one.widest) & (along > FLOOR * load[one.problem] / one.width)
+        free = (lines.wide(along, local) < lines.widest) & (along > FLOOR * load[lines.problem] / lines.width)
         rate = np.where(free, rate * x / along, 0.0)  # of x over the mean line load
-        change = one.change(forces, x) * rate
+        change = lines.change(forces, x) * rate
         slope = (change @ mean).tocoo()
-        jacobian = one.flat.copy()
-        jacobian[one.places(slope.row, slope.col)] += slope.data
-        by_load = change @ (further - along) / SLOPE / load[one.problem]
+        jacobian = lines.flat.copy()
+        jacobian[lines.places(slope.row, slope.col)] += slope.data
+        by_load = change @ (further - along) / SLOPE / load[lines.problem]
         out = []
         for p in range(load.size):
-            n, at = one.sizes[p], np.flatnonzero(forces[p] > 0)
-            whole = jacobian[one.base[p] : one.base[p] + n * n].reshape(n, n)
-            moved = np.append(by_load[one.slices[p]], np.zeros(n - one.systems[p].gap.size))[at]
-            weight = one.weights[p][at]
+            n, at = lines.sizes[p], np.flatnonzero(forces[p] > 0)
+            whole = jacobian[lines.base[p] : lines.base[p] + n * n].reshape(n, n)
+            moved = np.append(by_load[lines.slices[p]], np.zeros(n - lines.systems[p].gap.size))[at]
+            weight = lines.weights[p][at]
             ones, moved = np.linalg.solve(whole[np.ix_(at, at)], np.array([weight, moved]).T).T
             out.append(float(weight @ ones / (1 + weight @ moved)))
         return out

@@ -15,11 +15,11 @@ from .pieces import cut
 
 BESIDE = 0.25  # modules from an end face: edge contact
 END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
-GROWTH = 0.6  # of their length per length
+GROWTH = 0.6  # of a cell's length per length, away from the ends
 BEYOND = 12  # cells at least on the part of a line that is beyond the path of contact: gaps open there
 CARRYING = 20  # cells of a phase at least that carry load where the flanks' gaps change along the width
-SETTLED = 0.7  # the carrying part of a line has been found when it is no less than so much of what it was found to be before
-TIMES = 12  # that it is looked for
+SETTLED = 0.7  # the search for the carrying part of a line ends when a step leaves at least this much of its length
+TIMES = 12  # steps of that search at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,8 +52,8 @@ class Cells:
 
     def some(self, which: NDArray | slice) -> "Cells":
         """Those of `which`, a mask, slice or numbers."""
-        found = {name: getattr(self, name) for name in Cells.__slots__}
-        return Cells(**{name: value[which] for name, value in found.items() if value is not None})
+        arrays = {name: getattr(self, name) for name in Cells.__slots__}
+        return Cells(**{name: value[which] for name, value in arrays.items() if value is not None})
 
     def at_ends(self, pair: GearPair) -> list[tuple[float, float]]:
         """Edge contact, where a line carries the most beside an end face: (z, roll length of the pinion) [mm].
@@ -90,8 +90,8 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
         By phase and piece: first depth, last depth, longest cell between them [mm].
     """
     rows, number = [], []
-    for i, (own, size) in enumerate(zip(pieces, sizes, strict=True)):
-        for k, piece in enumerate(own):
+    for i, (group, size) in enumerate(zip(pieces, sizes, strict=True)):
+        for k, piece in enumerate(group):
             edge = _edges(piece, *size, slope, (fine or {}).get((i, k)))
             edge = np.append(edge[:-1:longer], edge[-1])
             first, last = bands[piece.half]
@@ -103,9 +103,9 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
     *named, count = (np.array(values) for values in zip(*number, strict=True))
     phase, half, order, corner, floor = (np.repeat(values, count) for values in named)
     roll_1, roll_2, gap = nominal.copy(), pair.mate_roll(nominal), np.zeros(z.size)
-    there, radius = (corner > 0) | _cut(pair, nominal), np.zeros(z.size)
-    if there.any():
-        roll_1[there], roll_2[there], gap[there], corner[there] = touching(pair, nominal[there])[:4]
+    at_corner, radius = (corner > 0) | _cut(pair, nominal), np.zeros(z.size)
+    if at_corner.any():
+        roll_1[at_corner], roll_2[at_corner], gap[at_corner], corner[at_corner] = touching(pair, nominal[at_corner])[:4]
     if flanks is not None:
         met = first_touch(pair, flanks, nominal, order, gap, z)
         roll_1, roll_2, gap, radius, corner = met.roll_1, met.roll_2, met.gap, met.radius, met.corner
@@ -132,7 +132,7 @@ def carrying(cells, phase, pieces, force, bed):
     a phase carry the `force` together [N], on a `bed` of both teeth's stiffness per width [N/mm**2].
     """
     out = {}
-    for i, own in enumerate(pieces):
+    for i, group in enumerate(pieces):
         at = np.flatnonzero(phase == i)
         if not at.size:
             continue
@@ -141,11 +141,11 @@ def carrying(cells, phase, pieces, force, bed):
         pressed = (force / bed + np.cumsum(cells.gap[order] * cells.width[order])) / width  # approach, were so many to carry
         deep = pressed[np.flatnonzero(pressed >= gap)[-1]]
         loaded = at[cells.gap[at] < deep]
-        for k, piece in enumerate(own if loaded.size < CARRYING else ()):
+        for k, piece in enumerate(group if loaded.size < CARRYING else ()):
             inside = (cells.order[loaded] == piece.order) & (cells.half[loaded] == piece.half)
-            mine = loaded[inside & (cells.depth[loaded] > piece.first) & (cells.depth[loaded] < piece.last)]
-            if mine.size:
-                first, last = mine[np.argmin(cells.depth[mine])], mine[np.argmax(cells.depth[mine])]
+            on_piece = loaded[inside & (cells.depth[loaded] > piece.first) & (cells.depth[loaded] < piece.last)]
+            if on_piece.size:
+                first, last = on_piece[np.argmin(cells.depth[on_piece])], on_piece[np.argmax(cells.depth[on_piece])]
                 low, high = cells.depth[first] - cells.width[first], cells.depth[last] + cells.width[last]
                 low, high = max(low, piece.first), min(high, piece.last)
                 out[i, k] = low, high, (high - low) / CARRYING

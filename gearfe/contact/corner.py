@@ -29,12 +29,12 @@ from .pieces import AT_END, cut
 from .rows import LEAST, RESOLVED, Wanted, finest_hat
 from .sharing import approaches, stacked
 
-LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, of the even one
-LIGHT = 16.0  # times lighter loads than the even one, for which hats are fine enough
-FINER = 2  # times as many where a tip presses into a fillet
-MARGIN = 2.25  # of the load whose contacts the table reaches: contacts 1.5 times as wide
+LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, as multiples of the even one (the load spread evenly over the width)
+LIGHT = 16.0  # hats are fine enough for loads this many times lighter than the even one
+FINER = 2  # times as many loads where a tip presses into a fillet
+MARGIN = 2.25  # the table covers the contacts of a load this many times larger: they are 1.5 times as wide
 PLACES = 17  # abscissae of the table at each end of the path
-BETWEEN = 200  # abscissae at which is looked for what touches
+BETWEEN = 200  # abscissae at which the touching corner is looked up
 
 
 class CornerLaw:
@@ -74,13 +74,13 @@ class CornerLaw:
         """Add to ``ln(2 / a) + 1/2`` ``(n,)`` at line loads ``(n,)`` [N/mm]: zero where `ends` is -1."""
         out = np.zeros(ends.size)
         for k, sign in ((0, -1), (1, 1)):
-            own = np.flatnonzero(ends == k)
-            if own.size and self._tables[k] is not None:
+            at_end = np.flatnonzero(ends == k)
+            if at_end.size and self._tables[k] is not None:
                 spline, least, most, low, high = self._tables[k]
                 # a contact that the hats do not resolve sees a wedge, which looks the same at every scale
-                scale = np.sqrt(np.maximum(least / line_load[own], 1.0))
-                away = np.clip(sign * (nominal[own] - self.path[k]) * scale, low, high)
-                out[own] = spline.ev(np.log(np.clip(line_load[own], least, most)), away)
+                scale = np.sqrt(np.maximum(least / line_load[at_end], 1.0))
+                away = np.clip(sign * (nominal[at_end] - self.path[k]) * scale, low, high)
+                out[at_end] = spline.ev(np.log(np.clip(line_load[at_end], least, most)), away)
         return out
 
 
@@ -140,7 +140,7 @@ def _table(pair, materials, line_load, end, span, cache):
     loads = line_load * LOADS
     loads = loads[loads >= least]
     touches = np.where(mesh.found.corner[:, column] > 0, mesh.found.corner[:, column], corner)
-    there = np.isfinite(mesh.found.gap[:, column]) & np.isfinite(mesh.found.corner_gap[touches - 1, np.arange(away.size), column])
+    meets = np.isfinite(mesh.found.gap[:, column]) & np.isfinite(mesh.found.corner_gap[touches - 1, np.arange(away.size), column])
     rolls = mesh.found.roll_1[:, column], mesh.found.roll_2[:, column]
     radius = plain_radius(pair, *rolls)
     if inside:  # what presses into a hollow changes more with the load
@@ -148,20 +148,20 @@ def _table(pair, materials, line_load, end, span, cache):
     width = half_width(MARGIN * line_load, radius, modulus)
     zone = np.maximum(TIP_ZONE * pair.gear_1.m_n, (1 + BEYOND) * width).tolist()
     # on the path flanks touch beside a tip that is in a fillet: corners and hats are then those of the plane
-    both = (mesh.found.corner[:, column] > 0) & (nominal > pair.path[0]) & (nominal < pair.path[1])
+    twofold = (mesh.found.corner[:, column] > 0) & (nominal > pair.path[0]) & (nominal < pair.path[1])
     reached = [values[:, column] for values in mesh.corners(line_load, np.isfinite(mesh.found.gap))]
-    taking, beside = np.where(mesh.found.corner[:, column] > 0, reached[0], 0), np.where(both, reached[2], 0)
+    taking, beside = np.where(mesh.found.corner[:, column] > 0, reached[0], 0), np.where(twofold, reached[2], 0)
     taking = taking.astype(int) | (1 << (touches - 1))
-    at = np.flatnonzero(there).tolist()
+    at = np.flatnonzero(meets).tolist()
     made = mesh.rows([Wanted(i, column, int(taking[i]), zone[i], finest, float(beside[i])) for i in at])
-    there[there] = [row.gap.size > 0 for row in made]  # else no point near the corner has a flank before it
+    meets[meets] = [row.gap.size > 0 for row in made]  # else no point near the corner has a flank before it
     rows = [row for row in made if row.gap.size]
-    away = away[there]
+    away = away[meets]
     if away.size < 2:
         return None
-    smooth = sum(_read(*own, roll[there], cache) for own, roll in zip(gears, rolls, strict=True))
-    closing = pressed(rows, loads) - mesh.found.gap[there, column]
-    width = half_width(loads[:, None], radius[there], modulus)
+    smooth = sum(_read(*gear_material, roll[meets], cache) for gear_material, roll in zip(gears, rolls, strict=True))
+    closing = pressed(rows, loads) - mesh.found.gap[meets, column]
+    width = half_width(loads[:, None], radius[meets], modulus)
     out = (closing / loads[:, None] - smooth) / c - np.log(2 / width) - 0.5
     return RectBivariateSpline(np.log(loads), away, out, kx=1, ky=1), loads[0], loads[-1], away[0], away[-1]
 
@@ -169,10 +169,10 @@ def _table(pair, materials, line_load, end, span, cache):
 def pressed(rows, loads):
     """Approach ``(loads, rows)`` [mm] of each `gearfe.contact.rows.Row` under line loads [N/mm]."""
     flexibility, gap = (stacked([getattr(row, name) for row in rows]) for name in ("influence", "gap"))
-    there = np.arange(gap.shape[1]) < np.array([row.gap.size for row in rows])[:, None]
+    filled = np.arange(gap.shape[1]) < np.array([row.gap.size for row in rows])[:, None]
     case = (np.concatenate([values] * loads.size) for values in (flexibility, gap))
-    found = approaches(*case, np.repeat(loads, len(rows)), np.concatenate([there] * loads.size))
-    return found.reshape(loads.size, len(rows))
+    closing = approaches(*case, np.repeat(loads, len(rows)), np.concatenate([filled] * loads.size))
+    return closing.reshape(loads.size, len(rows))
 
 
 def _read(gear, material, roll, cache):

@@ -46,18 +46,18 @@ def met(contact, at, roll, host):
         nan where nothing is met.
     direction : Direction
     """
-    pair, found = contact.pair, contact.found
-    own = {"start": found.gap[at], "flanks": contact.flanks, "order": found.order[at[1]]}
-    gap, other, *forces = approach(pair, roll, found.nominal[at], driver=host == 0, **own)
+    pair, points = contact.pair, contact.found
+    options = {"start": points.gap[at], "flanks": contact.flanks, "order": points.order[at[1]]}
+    gap, other, *forces = approach(pair, roll, points.nominal[at], driver=host == 0, **options)
     sense = 1 if host == 0 else -1
     arms, out = np.array(forces[:2][::sense]), np.array(forces[2:][::sense])
     rate = arms.mean(axis=0)
-    parts = [_parts(*one) for one in zip((pair.gear_1, pair.gear_2), (roll, other)[::sense], arms, out, strict=True)]
+    parts = [_parts(*place) for place in zip((pair.gear_1, pair.gear_2), (roll, other)[::sense], arms, out, strict=True)]
     return gap, other, Direction(rate, arms / rate, np.array(parts) / rate)
 
 
 def _parts(gear, roll, arm, out):
-    """Parts ``(2, n)`` of unit forces along the involute's normal and the tangent away from the centre, as of `Met`."""
+    """Parts ``(2, n)`` of unit forces along the involute's normal and the tangent away from the centre, as of `Direction`."""
     radius = side(gear, roll)[0]
     across = np.minimum(gear.r_b / radius, 1.0)
     inside = -gear.outward * np.sqrt(1 - across**2)  # of the normal: how far it points away from the centre
@@ -80,23 +80,23 @@ def leaning(contact, matrices):
     turns : ndarray, shape (2, phases, pairs)
         As of `Direction`.
     """
-    found, out = contact.found, []
-    where = np.isfinite(found.gap)
-    _, _, way = met(contact, where.nonzero(), found.roll_1[where], 0)
+    points, out = contact.found, []
+    where = np.isfinite(points.gap)
+    _, _, way = met(contact, where.nonzero(), points.roll_1[where], 0)
     sure = np.isfinite(way.rate)  # else the pinion's place faces nothing: a corner of the wheel touches, which is a row of hats
     where[where], way = sure, Direction(*(values[..., sure] for values in way))
     rate, turns, parts = np.ones(where.shape), np.ones((2, *where.shape)), np.zeros((2, 2, *where.shape))
     rate[where], turns[:, where], parts[:, 0], parts[:, :, where] = way.rate, way.turns, 1.0, way.parts
-    log, diagonal = np.log(contact.pair.gear_1.m_n), np.arange(found.order.size)
+    log, diagonal = np.log(contact.pair.gear_1.m_n), np.arange(points.order.size)
     places = zip(
-        contact.flexibility, contact.coefficients, matrices, (found.roll_1, found.roll_2), (1, -1), turns, parts, strict=True
+        contact.flexibility, contact.coefficients, matrices, (points.roll_1, points.roll_2), (1, -1), turns, parts, strict=True
     )
     for flexible, coefficient, matrix, roll, sense, turn, (normal, tangent) in places:
-        local, own = coefficient * log, np.diagonal(matrix, axis1=1, axis2=2)
+        local, alone = coefficient * log, np.diagonal(matrix, axis1=1, axis2=2)
         total = turn[:, :, None] * turn[:, None] * matrix
-        for k, order in enumerate(found.order.tolist()):
+        for k, order in enumerate(points.order.tolist()):
             leans = flexible.yields_across(roll[:, k], sense * order)
-            smooth = own[:, k] - local
+            smooth = alone[:, k] - local
             if leans is None:
                 total[:, k, k] = turn[:, k] ** 2 * smooth
             else:

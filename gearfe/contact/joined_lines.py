@@ -13,7 +13,7 @@ from ..flexibility.halfspace import pair_kernel, pair_slope, strip
 from ..flexibility.hertz import half_width
 
 SMOOTH = 8.0  # half widths over which the line load is averaged before the width of the strip follows it
-FLOOR = 1e-9  # of the load: least load of a cell where its logarithm is taken
+FLOOR = 1e-9  # least load of a cell, in parts of the whole load, where its logarithm is taken
 NEAR = 25.0  # strip distances within which the kernel follows the strips' widths; further away it no longer knows them
 
 
@@ -93,7 +93,7 @@ class JoinedLines:
         self.widest = self._pieces() / 2  # a piece shorter than it is wide acts as one as wide as it is long
         self._arrange()
         mirrors = zip(*(system.mirrors for system in systems), strict=True)
-        self.mirrors = [(own[0][0], *(np.concatenate([one[k] for one in own]) for k in (1, 2))) for own in mirrors]
+        self.mirrors = [(face[0][0], *(np.concatenate([image[k] for image in face]) for k in (1, 2))) for face in mirrors]
         self.near, self.images = None, []
 
     def _pieces(self):
@@ -110,21 +110,21 @@ class JoinedLines:
         self.flat, self.base, self.sizes = np.zeros(base[-1]), base[:-1], np.array(sizes)
         self.totals = [self.flat[at : at + n * n].reshape(n, n) for at, n in zip(base[:-1].tolist(), sizes, strict=True)]
         self.gaps, self.weights, self.blocks = [], [], []
-        for one, total in zip(self.systems, self.totals, strict=True):
-            n, m = one.gap.size, total.shape[0] - one.gap.size
-            total[:n, :n] = one.matrix
-            number = np.zeros(n, dtype=int) if one.block is None else one.block
-            if one.faces is not None:
-                total[n:, :n], total[:n, n:], total[n:, n:] = one.faces[0], one.faces[0].T, one.faces[1]
-                number = np.append(number, one.faces[2])
-            self.gaps.append(np.append(one.gap, np.zeros(m)))
+        for problem, total in zip(self.systems, self.totals, strict=True):
+            n, m = problem.gap.size, total.shape[0] - problem.gap.size
+            total[:n, :n] = problem.matrix
+            number = np.zeros(n, dtype=int) if problem.block is None else problem.block
+            if problem.faces is not None:
+                total[n:, :n], total[:n, n:], total[n:, n:] = problem.faces[0], problem.faces[0].T, problem.faces[1]
+                number = np.append(number, problem.faces[2])
+            self.gaps.append(np.append(problem.gap, np.zeros(m)))
             self.weights.append(np.append(np.ones(n), np.zeros(m)))
             self.blocks.append([np.flatnonzero(number == k) for k in np.unique(number)])
 
     def places(self, i, j):
         """Places in the array of all flexibilities of the pairs ``(i, j)`` of cells."""
         problem = self.problem[i]
-        first = np.array([one.start for one in self.slices])[problem]
+        first = np.array([span.start for span in self.slices])[problem]
         return self.base[problem] + (i - first) * self.sizes[problem] + (j - first)
 
     def begin(self, x):
@@ -146,10 +146,10 @@ class JoinedLines:
     def widen(self, x):
         """The half-space and the images in end faces of strips with distances `x`."""
         i, j, forth, back, bulk = self.near
-        own = bulk + self.kernel * pair_kernel((self.start, self.stop), i, j, x)
+        influence = bulk + self.kernel * pair_kernel((self.start, self.stop), i, j, x)
         for weight, low, high, at, before in self.images:
-            own[at] += weight * pair_kernel((low, high), i[at], j[at], x, (-high, -low)) - before
-        self.flat[forth] = self.flat[back] = own
+            influence[at] += weight * pair_kernel((low, high), i[at], j[at], x, (-high, -low)) - before
+        self.flat[forth] = self.flat[back] = influence
 
     def smoother(self, load):
         """Sparse matrix from the cells' forces to mean line loads over some half widths, within their lines and floors."""
@@ -167,12 +167,12 @@ class JoinedLines:
 
     def cells(self, forces):
         """Forces of all cells, those of faces left out."""
-        return np.concatenate([force[: one.gap.size] for force, one in zip(forces, self.systems, strict=True)])
+        return np.concatenate([force[: system.gap.size] for force, system in zip(forces, self.systems, strict=True)])
 
     def along(self, mean, forces, load):
-        """Mean line loads of all cells [N/mm]: none carries more than all do, though the first steps may have it pull others."""
-        own = load[self.problem]
-        return np.maximum(mean @ np.minimum(self.cells(forces), own), FLOOR * own / self.width)
+        """Mean line loads of all cells [N/mm], each at most the whole load: in the first steps cells may pull on others."""
+        whole_load = load[self.problem]
+        return np.maximum(mean @ np.minimum(self.cells(forces), whole_load), FLOOR * whole_load / self.width)
 
     def wide(self, along, local):
         """Distances x of the strips ``(n,)`` [mm] at mean line loads `along`, with the local law of `SharedLines.solve`."""
@@ -190,8 +190,8 @@ class JoinedLines:
             slope[at] += weight * pair_slope((low, high), i[at], j[at], x, (-high, -low))
         apart = i != j
         i, j, slope = np.append(i, j[apart]), np.append(j, i[apart]), np.append(slope, slope[apart])
-        own, number = x * np.bincount(i, slope * cells[j], minlength=x.size), np.arange(x.size)
-        values = np.append(slope * cells[j] * x[j], own)
+        diagonal, number = x * np.bincount(i, slope * cells[j], minlength=x.size), np.arange(x.size)
+        values = np.append(slope * cells[j] * x[j], diagonal)
         return csr_array((values, (np.append(i, number), np.append(j, number))), shape=(x.size,) * 2)
 
 

@@ -21,13 +21,13 @@ from .corner import pressed
 from .kinks import REACH, kink_rows
 from .pair_contact import PairContact
 
-LOADS = 2.0 ** np.arange(-5, 4)  # line loads of the table, of the even one
-PLACES = 9  # of the table on each side of a kink, within what a contact is wide
+LOADS = 2.0 ** np.arange(-5, 4)  # line loads of the table, as multiples of the even one (the load spread evenly over the width)
+PLACES = 9  # of the table on each side of a kink, within the half width of a contact
 ON = 9  # of the table from there to where contact leaves the kink
-BESIDE = 1e-6  # of these the first
-LEAST = 0.05  # of what contacts are wide at most: less far on needs no places
-SAMPLES = 400  # of a base pitch, where it is looked for what stays on the kink
-SOFT = 80  # approach of a pair of teeth, as if it were local: of pi E* times the load per width; more than any has
+BESIDE = 1e-6  # the first of these places
+LEAST = 0.05  # of the widest contact: where contact stays on the kink for less than this, no places are needed
+SAMPLES = 400  # of a base pitch, to find how far contact stays on the kink
+SOFT = 80  # line loads over pi E*: more than any pair of teeth approaches
 
 
 class KinkLaw:
@@ -46,14 +46,14 @@ class KinkLaw:
         modulus = contact_modulus(materials)
         step = modulus * pair.gear_1.m_n
         load = step * 2.0 ** round(math.log2(line_load / step))  # so that loads alike share a table
-        kept, own = solved_gears(cache), tuple(form.flank for form in forms)
+        kept, modifications = solved_gears(cache), tuple(form.flank for form in forms)
         start, end = pair.path
         self.zones = []
         for gear, form in enumerate(forms):
             for roll, _ in form.kinks:
                 nominal = pair.outward * (pair.length - roll) if gear else roll
                 if start < nominal < end:
-                    case = (pair, materials, load, own, gear, roll, nominal)
+                    case = (pair, materials, load, modifications, gear, roll, nominal)
                     self.zones.append((nominal, *kept.get(("kink", *case), partial(_table, *case[:3], forms, *case[4:], kept))))
 
     def __call__(self, inside, nominal, line_load):
@@ -62,15 +62,15 @@ class KinkLaw:
         for at, unit, stays, (spline, least, most) in self.zones:
             load = np.clip(line_load, least, most)
             place = _place((nominal - at) / unit, np.sqrt(load), stays)
-            own = np.flatnonzero((np.abs(place) < 2) & inside)
-            out[own] += spline.ev(np.log(load[own]), place[own])
+            near = np.flatnonzero((np.abs(place) < 2) & inside)
+            out[near] += spline.ev(np.log(load[near]), place[near])
         return out
 
 
 def _place(away, wide, stays):
     """Places in the table: -1 to 1 within what contacts are `wide`, on to 2 over what the contact `stays` on the kink beyond."""
-    more = np.abs(away) - wide
-    return np.where(more < 0, away / wide, np.sign(away) * (1 + more / np.where(away < 0, *stays)))
+    further = np.abs(away) - wide
+    return np.where(further < 0, away / wide, np.sign(away) * (1 + further / np.where(away < 0, *stays)))
 
 
 def _table(pair, materials, line_load, flanks, gear, roll, nominal, cache):
@@ -86,26 +86,26 @@ def _table(pair, materials, line_load, flanks, gear, roll, nominal, cache):
     # from the arc, in which contacts are wide, to the abscissa
     unit = REACH * float(half_width(1.0, radius, modulus)) * gears[gear].r_b / roll
     wide = np.sqrt(loads)
-    found = (_stays(pair, flanks, gear, roll, nominal, sign, modulus, loads[-1]) / unit for sign in (-1, 1))
-    stays = [max(away - wide[-1], LEAST * wide[-1]) for away in found]
+    lengths = (_stays(pair, flanks, gear, roll, nominal, sign, modulus, loads[-1]) / unit for sign in (-1, 1))
+    stays = [max(away - wide[-1], LEAST * wide[-1]) for away in lengths]
     on, inside = 1 + np.linspace(0, 1, ON)[1:] ** 1.5, np.linspace(0, 1, PLACES)
     inside[0] = BESIDE  # on both sides of the kink: the radius of curvature may jump there
-    each = [np.append(inside, on if beyond > LEAST * wide[-1] else []) for beyond in stays]
-    places = np.append(-each[0][::-1], each[1])
-    more = np.maximum(np.abs(places) - 1, 0.0) * np.where(places < 0, *stays)
-    away = np.sign(places) * (np.minimum(np.abs(places), 1.0) * wide[:, None] + more)
+    sides = [np.append(inside, on if beyond > LEAST * wide[-1] else []) for beyond in stays]
+    places = np.append(-sides[0][::-1], sides[1])
+    further = np.maximum(np.abs(places) - 1, 0.0) * np.where(places < 0, *stays)
+    away = np.sign(places) * (np.minimum(np.abs(places), 1.0) * wide[:, None] + further)
     phase = ((nominal + unit * away - pair.path[0]) / pair.p_bt).ravel()
     mesh = PairContact(pair, materials, bodies, phase, extended=True, state="plane strain", flanks=flanks)
     column = int(np.flatnonzero(mesh.found.order == 0)[0])
     gap, touches = mesh.found.gap[:, column], mesh.found.corner[:, column] == 0
     c, out = sum(half_plane(m) for m in materials), np.zeros(phase.size)
-    for own, load in zip(np.arange(phase.size).reshape(away.shape), loads.tolist(), strict=True):
-        there = own[np.isfinite(gap[own]) & touches[own]]
-        rows = kink_rows(mesh, np.array([there, np.full(there.size, column)]).T, load)
+    for numbers, load in zip(np.arange(phase.size).reshape(away.shape), loads.tolist(), strict=True):
+        on_flanks = numbers[np.isfinite(gap[numbers]) & touches[numbers]]
+        rows = kink_rows(mesh, np.array([on_flanks, np.full(on_flanks.size, column)]).T, load)
         if rows:
-            closing = pressed([rows[phase, column] for phase in there.tolist()], np.array([load]))[0] - gap[there]
-            width = half_width(load, mesh.radius[there, column], mesh.modulus)
-            out[there] = (closing / load - _straight(mesh, there, column)) / c - np.log(2 / width) - 0.5
+            closing = pressed([rows[phase, column] for phase in on_flanks.tolist()], np.array([load]))[0] - gap[on_flanks]
+            width = half_width(load, mesh.radius[on_flanks, column], mesh.modulus)
+            out[on_flanks] = (closing / load - _straight(mesh, on_flanks, column)) / c - np.log(2 / width) - 0.5
     out = out.reshape(away.shape)
     return unit, stays, (RectBivariateSpline(np.log(loads), places, out, kx=1, ky=1), loads[0], loads[-1])
 
@@ -114,12 +114,12 @@ def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):
     """How far from a kink [mm of abscissa], to one side, contact is on it or so near that it feels it, while gaps can close."""
     reach = SOFT / (math.pi * modulus) * line_load
     away = np.arange(1, SAMPLES + 1) / SAMPLES * pair.p_bt
-    found = flank_contacts(pair, (nominal + sign * away - pair.path[0]) / pair.p_bt, extended=True, flanks=flanks)
-    column = int(np.flatnonzero(found.order == 0)[0])
-    rolls, host = (found.roll_1[:, column], found.roll_2[:, column]), (pair.gear_1, pair.gear_2)[gear]
+    points = flank_contacts(pair, (nominal + sign * away - pair.path[0]) / pair.p_bt, extended=True, flanks=flanks)
+    column = int(np.flatnonzero(points.order == 0)[0])
+    rolls, host = (points.roll_1[:, column], points.roll_2[:, column]), (pair.gear_1, pair.gear_2)[gear]
     beside = REACH * half_width(line_load, np.abs(pair.relative_radius(*rolls)), modulus)
     on = np.abs(arc_at(host, rolls[gear]) - arc_at(host, roll)) < beside
-    stays = on & (found.gap[:, column] < reach) & (found.corner[:, column] == 0)
+    stays = on & (points.gap[:, column] < reach) & (points.corner[:, column] == 0)
     count = int(np.argmin(np.append(stays, False)))  # of the first places, until one is off it
     return float(away[count - 1]) if count else 0.0
 
@@ -129,7 +129,7 @@ def _straight(mesh, phases, column):
 
     The plane's own matrix turns them to the modified flank's normal, which jumps at a kink.
     """
-    found, out = mesh.found, 0.0
-    for flexible, roll, sense in zip(mesh.flexibility, (found.roll_1, found.roll_2), (1, -1), strict=True):
-        out = out + flexible.matrix(roll[phases], sense * found.order)[:, column, column]
+    points, out = mesh.found, 0.0
+    for flexible, roll, sense in zip(mesh.flexibility, (points.roll_1, points.roll_2), (1, -1), strict=True):
+        out = out + flexible.matrix(roll[phases], sense * points.order)[:, column, column]
     return out

@@ -7,25 +7,25 @@ from geometry.tooth.profile import arc_at
 from ..flexibility.hertz import half_width
 from .rows import hat_rows
 
-REACH = 1.3  # a contact with a kink within so many half widths of the whole load is resolved hat by hat
+REACH = 1.3  # a contact with a kink within this many half widths of the whole load is resolved hat by hat
 ZONE = 1.8  # half length of the row, in half widths of the whole load
 FINEST, GROWTH = 5e-4, 0.5  # of hats: next to a kink [m_n], and how they grow by their distance from it
 WITHIN = 4.0  # hats over a half width
-STEEP = 20.0  # hats next to a kink that a wedge with its angle presses at least
+STEEP = 20.0  # hats at least over what is pressed of a wedge with the angle of the kink
 SHALLOW = 1e-3  # slopes of kinks below which no hat need be shorter
 
 
 def near_kink(contact, line_load):
     """For each phase and pair of a `gearfe.contact.pair_contact.PairContact`: whether a kink lies within its contact."""
-    found = contact.found
-    out = np.zeros(found.gap.shape, dtype=bool)
+    points = contact.found
+    out = np.zeros(points.gap.shape, dtype=bool)
     if contact.flanks is None:
         return out
     reach = REACH * half_width(line_load, contact.flat_radius, contact.modulus)
-    for form, roll in zip(contact.flanks, (found.roll_1, found.roll_2), strict=True):
+    for form, roll in zip(contact.flanks, (points.roll_1, points.roll_2), strict=True):
         for kink, _ in form.kinks:
             out |= np.abs(arc_at(form.gear, roll) - arc_at(form.gear, kink)) < reach
-    return out & np.isfinite(found.gap)
+    return out & np.isfinite(points.gap)
 
 
 def kink_rows(contact, where, line_load):
@@ -44,13 +44,13 @@ def kink_rows(contact, where, line_load):
     wedge = line_load / (contact.modulus * np.maximum(np.abs(slope), SHALLOW))  # about as long as a ridge is pressed
     least = np.minimum(FINEST * contact.pair.gear_1.m_n, wedge / STEEP)
     for k, form in enumerate(contact.flanks):
-        own = np.flatnonzero(host == k)
-        if own.size:
+        on_flank = np.flatnonzero(host == k)
+        if on_flank.size:
             tip = float(arc_at(form.gear, form.gear.roll_a))
-            cases = zip(kink[own], middle[own], touch[own], flat[own], least[own], strict=True)
+            cases = zip(kink[on_flank], middle[on_flank], touch[on_flank], flat[on_flank], least[on_flank], strict=True)
             knots = [_knots(*case, tip, fine) for case in cases]
-            rows = hat_rows(contact, where[own].tolist(), knots, [None] * own.size, k, [(True, True)] * own.size)
-            out |= {(int(i[n]), int(column[n])): row for n, row in zip(own, rows, strict=True)}
+            rows = hat_rows(contact, where[on_flank].tolist(), knots, [None] * on_flank.size, k, [(True, True)] * on_flank.size)
+            out |= {(int(i[n]), int(column[n])): row for n, row in zip(on_flank, rows, strict=True)}
     return out
 
 

@@ -22,9 +22,9 @@ from .rows import LEAST, RESOLVED, SHARP, Row, Wanted, corner_rows, finest_hat
 from .sharing import LineContacts, line_contact, line_contacts, stacked
 from .sliding import bounded, left_out, sliding
 
-CORNER = 1.0  # a contact whose middle is closer to a corner than so many half widths of the whole load is resolved hat by hat
-BEYOND = 1.5  # half widths on from its middle that such a row reaches at least
-KINK = 16  # of a pair whose contact reaches a kink of a flank; less: the corners of a row, bit n - 1 for corner n
+CORNER = 1.0  # a contact whose middle is closer to a corner than this many half widths of the whole load is resolved hat by hat
+BEYOND = 1.5  # such a row reaches at least this many half widths on from its middle
+KINK = 16  # mark of a pair whose contact reaches a kink of a flank; smaller: the corners of a row, bit n - 1 for corner n
 SMOOTH = 0.5  # of a smooth contact's parabola: a corner with a smaller gap than that is a second place of contact
 UNKNOWN = ("roll_1", "roll_2", "gap", "coefficient", "radius", "tilt", "turn_1", "turn_2", "fillet")  # of a contact
 OVERLAP = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
@@ -64,20 +64,20 @@ class PairContact:
         self.pair, self.flexibility, self.flanks = pair, flexibility, flanks
         self.coefficients = [half_plane(m, state) for m in materials]
         self.modulus = contact_modulus(materials, state)
-        self.found = found = flank_contacts(pair, phase, extended=extended, flanks=flanks)
+        self.found = points = flank_contacts(pair, phase, extended=extended, flanks=flanks)
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
-        matrices = [flexibility[0].matrix(found.roll_1, found.order), flexibility[1].matrix(found.roll_2, -found.order)]
-        self.coefficient, self.turns = np.full(found.gap.shape, sum(self.coefficients)), np.ones((2, *found.gap.shape))
+        matrices = [flexibility[0].matrix(points.roll_1, points.order), flexibility[1].matrix(points.roll_2, -points.order)]
+        self.coefficient, self.turns = np.full(points.gap.shape, sum(self.coefficients)), np.ones((2, *points.gap.shape))
         if flanks is not None:
             matrices, self.coefficient, self.turns = leaning(self, matrices)
         self.matrix = matrices[0] + matrices[1]
         self.alone = np.diagonal(self.matrix, axis1=1, axis2=2)  # cracks glued shut
-        self.radius = self.flat_radius = found.radius
+        self.radius = self.flat_radius = points.radius
         if any(form.edge for form in flanks or ()):  # on a rounded tip: of the flank beside it, which shares the contact
-            beside = pair.relative_radius(found.roll_1, found.roll_2)
-            self.flat_radius = np.where(beside > 0, np.maximum(beside, found.radius), found.radius)
-        self.opening = self.opening_at(found.roll_1, found.roll_2, found.order)
+            beside = pair.relative_radius(points.roll_1, points.roll_2)
+            self.flat_radius = np.where(beside > 0, np.maximum(beside, points.radius), points.radius)
+        self.opening = self.opening_at(points.roll_1, points.roll_2, points.order)
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
             self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
@@ -86,10 +86,10 @@ class PairContact:
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
-        found, tilt = self.found, bounded(self, line_load)
+        points, tilt = self.found, bounded(self, line_load)
         # all beyond the first touch: a light load closes so little that it would drown in the digits of the gaps
-        least = found.gap.min(axis=1)
-        reach, beyond = self._reach(line_load), found.gap - least[:, None]
+        least = points.gap.min(axis=1)
+        reach, beyond = self._reach(line_load), points.gap - least[:, None]
         possible = beyond < reach[:, None]
         corner, zone, width = self.corners(line_load, possible)
         single = LineContacts(self.matrix, beyond, self.coefficient, self.radius, self.modulus, tilt)
@@ -110,7 +110,7 @@ class PairContact:
             sets = self.contacts_at(
                 [(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in open_.tolist()], rows, tilt
             )
-            sets = [one | {"gap": one["gap"] - least[i]} for i, one in zip(open_.tolist(), sets, strict=True)]
+            sets = [problem | {"gap": problem["gap"] - least[i]} for i, problem in zip(open_.tolist(), sets, strict=True)]
             sets = [_within(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
             line[open_], pressure[open_], closing[open_], tangent[open_], closed, fillet = self._solved(
                 sets, line_load, line[open_]
@@ -118,7 +118,7 @@ class PairContact:
         unloaded = least if self.flanks is not None or least.any() else None
         marked = (tuple(open_[which].tolist()) for which in (closed, fillet))
         doubt = left_out(self, line, closing, beyond)
-        return Solved(found.order, closing, tangent, line, pressure, *marked, unloaded, left_out=doubt)
+        return Solved(points.order, closing, tangent, line, pressure, *marked, unloaded, left_out=doubt)
 
     def _solved(self, sets, line_load, smooth):
         """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch.
@@ -128,35 +128,35 @@ class PairContact:
         """
         names = ("flexibility", "gap", "coefficient", "radius", "column", "tilt")
         flexibility, gap, coefficient, radius, column, tilt = (stacked([contacts[name] for contacts in sets]) for name in names)
-        there = stacked([np.ones(contacts["gap"].size, dtype=bool) for contacts in sets])
-        radius[~there] = 1.0
+        filled = stacked([np.ones(contacts["gap"].size, dtype=bool) for contacts in sets])
+        radius[~filled] = 1.0
         row = np.broadcast_to(np.arange(len(sets))[:, None], column.shape)
         least = np.full(smooth.shape, np.inf)
-        np.minimum.at(least, (row[there], column[there]), gap[there])
+        np.minimum.at(least, (row[filled], column[filled]), gap[filled])
         close = gap - least[row, column] <= sum(self.coefficients) * smooth[row, column]
         case = LineContacts(flexibility, gap, coefficient, radius, self.modulus, tilt)
-        force, approach, tangent, settled = line_contacts(case, line_load, there, there & ((coefficient > 0) | close))
+        force, approach, tangent, settled = line_contacts(case, line_load, filled, filled & ((coefficient > 0) | close))
         closed, fillet = [], []
         for k, contacts in enumerate(sets):
-            own = force[k, : contacts["gap"].size]
+            carried = force[k, : contacts["gap"].size]
             if not settled[k]:
-                own[:], approach[k], tangent[k] = self._share(contacts, line_load)
-            if self.opening is not None and _closing(own @ contacts["opening"]):
+                carried[:], approach[k], tangent[k] = self._share(contacts, line_load)
+            if self.opening is not None and _closing(carried @ contacts["opening"]):
                 closed.append(k)
-                own[:], approach[k], tangent[k] = self._share_closing(contacts, line_load)
-            if (contacts["fillet"] & (own > 0)).any():
+                carried[:], approach[k], tangent[k] = self._share_closing(contacts, line_load)
+            if (contacts["fillet"] & (carried > 0)).any():
                 fillet.append(k)
         line, pressure = np.zeros((2, len(sets), self.found.order.size))
         np.add.at(line, (row, column), force)
-        single, hat = coefficient > 0, there & (coefficient == 0)
+        single, hat = coefficient > 0, filled & (coefficient == 0)
         pressure[row[hat], column[hat]] = np.nan
         pressure[row[single], column[single]] = peak_pressure(force[single], radius[single], self.modulus)
         pressure[(line == 0) & np.isnan(pressure)] = 0.0
         return line, pressure, approach, tangent, closed, fillet
 
     def _share(self, contacts, line_load, weight=None):
-        own = (contacts[name] for name in ("flexibility", "gap", "coefficient", "radius"))
-        return line_contact(LineContacts(*own, self.modulus, contacts["tilt"]), line_load, weight)
+        values = (contacts[name] for name in ("flexibility", "gap", "coefficient", "radius"))
+        return line_contact(LineContacts(*values, self.modulus, contacts["tilt"]), line_load, weight)
 
     def _share_closing(self, contacts, line_load):
         """The same contacts with crack faces that can push each other apart but not pass through."""
@@ -206,37 +206,37 @@ class PairContact:
         A corner takes part if the contact of the flanks reaches it, or if it is a second place of contact of the same pair and
         closer than the load presses flanks into each other.
         """
-        found, gear = self.found, self.pair.gear_1
-        corner = np.zeros(found.gap.shape, dtype=int)
+        points, gear = self.found, self.pair.gear_1
+        corner = np.zeros(points.gap.shape, dtype=int)
         if not self.extended:
             return corner, *np.zeros((2, *corner.shape))
         start, end = self.pair.path
-        mate = self.pair.mate_roll(found.nominal)
-        radius = np.where(found.corner > 0, self.pair.relative_radius(found.nominal, mate), self.radius)
+        mate = self.pair.mate_roll(points.nominal)
+        radius = np.where(points.corner > 0, self.pair.relative_radius(points.nominal, mate), self.radius)
         width = half_width(line_load, np.where(radius > 0, radius, 1.0), self.modulus)
         pressed = sum(self.coefficients) * line_load * (np.log(2 * gear.m_n / width) + 0.5)
-        away = np.abs(arc_at(gear, found.corner_roll[0]) - arc_at(gear, found.roll_1))
-        other = self.pair.gear_2  # nearer on the side of the corner's own gear: neither gear is preferred
-        away[1::2] = np.abs(arc_at(other, found.corner_roll[1, 1::2]) - arc_at(other, found.roll_2))
-        more = found.corner_gap - np.where(possible, found.gap, 0.0)
+        away = np.abs(arc_at(gear, points.corner_roll[0]) - arc_at(gear, points.roll_1))
+        wheel = self.pair.gear_2  # nearer on the side of the corner's own gear: neither gear is preferred
+        away[1::2] = np.abs(arc_at(wheel, points.corner_roll[1, 1::2]) - arc_at(wheel, points.roll_2))
+        excess = points.corner_gap - np.where(possible, points.gap, 0.0)
         with np.errstate(invalid="ignore"):
             reached = away < CORNER * width
-            second = (more < pressed) & ((found.corner > 0) | (more < SMOOTH * away**2 / (2 * radius)))
-        there = possible & np.isfinite(found.corner_gap)
-        corner = ((there & (reached | second)) * (1 << np.arange(4))[:, None, None]).sum(axis=0)
-        smooth = (corner > 0) & (found.corner == 0)
-        also = (corner > 0) & (found.corner > 0) & (found.nominal > start) & (found.nominal < end) & (-found.gap < pressed)
-        apart = also | (smooth & ~(there & reached).any(axis=0))  # the flanks touch on the path, besides
-        further = np.where(there & reached, away, 0.0).max(axis=0) + BEYOND * width
+            second = (excess < pressed) & ((points.corner > 0) | (excess < SMOOTH * away**2 / (2 * radius)))
+        meets = possible & np.isfinite(points.corner_gap)
+        corner = ((meets & (reached | second)) * (1 << np.arange(4))[:, None, None]).sum(axis=0)
+        smooth = (corner > 0) & (points.corner == 0)
+        also = (corner > 0) & (points.corner > 0) & (points.nominal > start) & (points.nominal < end) & (-points.gap < pressed)
+        apart = also | (smooth & ~(meets & reached).any(axis=0))  # the flanks touch on the path, besides
+        further = np.where(meets & reached, away, 0.0).max(axis=0) + BEYOND * width
         zone = np.where(smooth, np.maximum(further, TIP_ZONE * gear.m_n), TIP_ZONE * gear.m_n)
         return corner, zone, np.where(apart, width, 0.0)
 
     def rows(self, wanted):
         """`Row` of each `gearfe.contact.rows.Wanted`; those that do not depend on the load are kept."""
-        new = [one for one in dict.fromkeys(wanted) if one not in self._rows]
+        new = [request for request in dict.fromkeys(wanted) if request not in self._rows]
         made = dict(zip(new, corner_rows(self, new), strict=True))
-        self._rows |= {one: row for one, row in made.items() if not one.width}
-        return [made[one] if one in made else self._rows[one] for one in wanted]
+        self._rows |= {request: row for request, row in made.items() if not request.width}
+        return [made[request] if request in made else self._rows[request] for request in wanted]
 
     def contacts_at(self, wanted, rows, tilt):
         """Unknowns of the contact problems at some phases.
@@ -259,8 +259,8 @@ class PairContact:
         alike, out = {}, {}  # phases at which the same pairs touch in the same way
         for i, near, corner in wanted:
             alike.setdefault((tuple(near.tolist()), tuple((corner > 0).tolist())), []).append(i)
-        for (near, row), own in alike.items():
-            out |= dict(zip(own, self._built(np.array(own), near, row, rows, tilt), strict=True))
+        for (near, row), phases in alike.items():
+            out |= dict(zip(phases, self._built(np.array(phases), near, row, rows, tilt), strict=True))
         return [out[i] for i, _, _ in wanted]
 
     def _built(self, phases, near, row, rows, tilt):
@@ -276,16 +276,18 @@ class PairContact:
             turn = values[f"turn_{k}"]
             total = total + turn[:, :, None] * turn[:, None] * self.flexibility[k - 1].matrix(values[f"roll_{k}"], teeth)
         for part, k in zip(parts, near, strict=True):
-            own = np.flatnonzero(column == k)
-            total[:, own[:, None], own] = part["influence"] if "influence" in part else self.alone[phases, k][:, None, None]
+            unknowns = np.flatnonzero(column == k)
+            total[:, unknowns[:, None], unknowns] = (
+                part["influence"] if "influence" in part else self.alone[phases, k][:, None, None]
+            )
         opening = self.opening_at(values["roll_1"], values["roll_2"], order)
         if opening is not None:
             total = total + opening @ self.stiffness @ np.swapaxes(opening, -1, -2)
-        out, there = [], np.isfinite(values["gap"])
-        for k, on in enumerate(there):
-            own = {name: values[name][k, on] for name in ("gap", "coefficient", "radius", "tilt", "fillet")}
-            own |= {"column": column[on], "flexibility": total[k][on][:, on]}
-            out.append(own | {"opening": None if opening is None else opening[k, on]})
+        out, meets = [], np.isfinite(values["gap"])
+        for k, on in enumerate(meets):
+            unknowns = {name: values[name][k, on] for name in ("gap", "coefficient", "radius", "tilt", "fillet")}
+            unknowns |= {"column": column[on], "flexibility": total[k][on][:, on]}
+            out.append(unknowns | {"opening": None if opening is None else opening[k, on]})
         return out
 
     def _single(self, phases, column, tilt):

@@ -21,12 +21,12 @@ from .joined_lines import System
 from .kink_law import KinkLaw
 from .pieces import beyond, gaps, pieces_of
 
-FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
-ALIKE = 1e-9  # difference of the cells of two halves that are solved once, in base pitches
-DEEPEST = 0.01  # modules: the floor of a pit that covers a whole line is looked for so deep
+FINEST = 1.5  # shortest cell, in Hertz half widths: the load on a shorter one would not be a line any more
+ALIKE = 1e-9  # largest difference of the cells of two halves that are solved once, in base pitches
+DEEPEST = 0.01  # modules: how deep the floor of a pit that covers a whole line is looked for
 FINE, ROUNDS = 9, 2  # places along the cell with the least gap, and how often they are looked for more closely
-ROW = math.sqrt(2)  # of forces whose cells others have, each over the next smaller one
-REACH = 1.3  # of search radii for gaps, each over the one before, where the first is too small
+ROW = math.sqrt(2)  # ratio of neighbouring forces in the row for which cells are made
+REACH = 1.3  # ratio of each search radius for gaps to the one before, where the first is too small
 TOGETHER = 16  # phases that are solved at once
 
 
@@ -86,7 +86,7 @@ class PhaseContact:
         outside = [None if held and held.integral else held for held in case.held or ()]  # other shafts are part of the bodies
         self.hubs = [held and held.hub() for held in outside] if any(outside) else None
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
-        self.floors = sorted({pit.depth for own in pits for pit in own if pit.side == "loaded"})
+        self.floors = sorted({pit.depth for gear_pits in pits for pit in gear_pits if pit.side == "loaded"})
         self.deepest = DEEPEST * pair.gear_1.m_n
         self.bands = bands_of(pair, case.runs, case.groove)
         self.width = sum(abs(last - first) for first, last in self.bands)
@@ -130,20 +130,20 @@ class PhaseContact:
             If there is no contact; the message says at which phase.
         """
         parts = [phases[k : k + TOGETHER] for k in range(0, len(phases), TOGETHER)]
-        return [one for part in steps(parts, weights=[len(part) for part in parts]) for one in self._part(part, bodies)]
+        return [carried for part in steps(parts, weights=[len(part) for part in parts]) for carried in self._part(part, bodies)]
 
     def _part(self, phases, bodies):
         """`solve` of phases that are solved at once; how far cells reach depends on their own phase alone, so that k does."""
-        found = [None] * len(phases)
+        done = [None] * len(phases)
         reaches, closings, open_ = np.full(len(phases), self.least + self.reach), np.zeros(len(phases)), list(range(len(phases)))
         while open_:
             cells = self._cells([phases[i] for i in open_], reaches[open_], closings[open_])
-            again, some = [], [(i, own) for i, own in zip(open_, cells, strict=True) if own is not None]
-            empty = [i for i, own in zip(open_, cells, strict=True) if own is None]
-            if some:
-                carried = self._shared(self._batch([own for _, own in some], bodies))
-                for i, one in zip((i for i, _ in some), carried, strict=True):
-                    closes = one.approach - one.least  # what of it teeth can close gaps by
+            again, filled = [], [(i, group) for i, group in zip(open_, cells, strict=True) if group is not None]
+            empty = [i for i, group in zip(open_, cells, strict=True) if group is None]
+            if filled:
+                carried = self._shared(self._batch([group for _, group in filled], bodies))
+                for i, loaded in zip((i for i, _ in filled), carried, strict=True):
+                    closes = loaded.approach - loaded.least  # what of it teeth can close gaps by
                     normal = closes * math.cos(self.beta_b)
                     if any(closings[i] < depth < normal for depth in self.floors):
                         closings[i] = normal  # shallow pits: solved again with their floors, which can only make it stiffer
@@ -153,7 +153,7 @@ class PhaseContact:
                         reaches[i] = self.least + (reaches[i] - self.least) * REACH ** math.ceil(math.log(needed, REACH))
                         again.append(i)
                     else:
-                        found[i] = one
+                        done[i] = loaded
             for i in empty:
                 if reaches[i] - self.least <= self.furthest:
                     reaches[i] *= 2
@@ -164,7 +164,7 @@ class PhaseContact:
                         f"no contact at phase {phases[i]:g}: damage covers it all, or the pair has left its path of contact"
                     )
             open_ = sorted([*again, *empty])
-        return found
+        return done
 
     def unloaded(self, found):
         """Approach at which the gears first touch, from the `Cells` of each phase ``(phases,)`` [mm]: the least gap.
@@ -200,9 +200,9 @@ class PhaseContact:
             further = self._further(reach)
             pieces.append(pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, further, closing))
         sizes = []
-        for own in pieces:
-            length = sum(piece.last - piece.first for piece in own if not piece.floor or all(one.floor for one in own))
-            finest = FINEST * self._half_width(length) if own else 0.0
+        for group in pieces:
+            length = sum(piece.last - piece.first for piece in group if not piece.floor or all(each.floor for each in group))
+            finest = FINEST * self._half_width(length) if group else 0.0
             sizes.append((finest, max(self.step, finest)))
         if not any(pieces):
             return [None] * len(phases)
@@ -211,52 +211,52 @@ class PhaseContact:
         return [whole.some(slice(a, b)) if b > a else None for a, b in zip(ends[:-1], ends[1:], strict=True)]
 
     def _half_width(self, length):
-        """Hertz's, of the force on so much of a line [mm]."""
+        """Hertz's half width under the force on a contact line of a `length` [mm]."""
         return float(half_width(self.sized / length, self.radius, self.modulus))
 
     def _close(self, pieces, sizes):
         """`cells_of` the pieces, shorter where flanks that change along the width let a few cells alone carry."""
-        given = self.pair, pieces, self.bands, math.tan(self.beta_b), sizes, self.flanks
+        arguments = self.pair, pieces, self.bands, math.tan(self.beta_b), sizes, self.flanks
         fine = {}
         if self.flanks is not None and any(form.wide for form in self.flanks):
             for _ in range(TIMES):
-                more = carrying(*cells_of(*given, fine=fine), pieces, self.sized, self.bed)
-                least = {at: FINEST * self._half_width(high - low) for at, (low, high, _) in more.items()}
-                more = {at: (*one[:2], max(one[2], least[at])) for at, one in more.items()}
-                more = {at: one for at, one in more.items() if one[2] < SETTLED * (fine[at][2] if at in fine else self.step)}
-                if not more:
+                finer = carrying(*cells_of(*arguments, fine=fine), pieces, self.sized, self.bed)
+                least = {at: FINEST * self._half_width(high - low) for at, (low, high, _) in finer.items()}
+                finer = {at: (*zone[:2], max(zone[2], least[at])) for at, zone in finer.items()}
+                finer = {at: zone for at, zone in finer.items() if zone[2] < SETTLED * (fine[at][2] if at in fine else self.step)}
+                if not finer:
                     break
-                fine |= more
-        return cells_of(*given, longer=self.longer, fine=fine)
+                fine |= finer
+        return cells_of(*arguments, longer=self.longer, fine=fine)
 
     def _batch(self, cells, bodies):
         """`Batch` of phases; two halves that are alike are solved once."""
-        cos, found = math.cos(self.beta_b), bodies(max(int(np.ptp(own.order)) for own in cells))
-        double = len(found) > 1 and self.hubs is None and _same(*found)
-        alike = np.array([double and _alike(own, own.half == 0, ALIKE * self.pair.p_bt) for own in cells])
-        solved = [own.some(own.half == 0) if half else own for own, half in zip(cells, alike.tolist(), strict=True)]
+        cos, halves = math.cos(self.beta_b), bodies(max(int(np.ptp(group.order)) for group in cells))
+        double = len(halves) > 1 and self.hubs is None and _same(*halves)
+        alike = np.array([double and _alike(group, group.half == 0, ALIKE * self.pair.p_bt) for group in cells])
+        solved = [group.some(group.half == 0) if half else group for group, half in zip(cells, alike.tolist(), strict=True)]
         systems, yields = [], []
-        for own, matrix in zip(solved, between(solved, found), strict=True):
-            ends = tuple((own.depth + side * own.width / 2) / cos for side in (-1, 1))
-            line = np.cumsum(np.append(0, (np.diff(own.half) != 0) | (np.diff(own.order) != 0)))
-            faces, mirrors, block = faces_of(own, found), mirrors_of(own, found), own.half
+        for group, matrix in zip(solved, between(solved, halves), strict=True):
+            ends = tuple((group.depth + side * group.width / 2) / cos for side in (-1, 1))
+            line = np.cumsum(np.append(0, (np.diff(group.half) != 0) | (np.diff(group.order) != 0)))
+            faces, mirrors, block = faces_of(group, halves), mirrors_of(group, halves), group.half
             yields.append(None)
             if self.hubs is not None:  # both halves of a herringbone gear are on one hub
-                yields[-1] = given_way(own, self.pair, self.hubs, self.bands, self.beta_b)
-                matrix, block = matrix + yields[-1], np.zeros(own.z.size, dtype=int)
+                yields[-1] = given_way(group, self.pair, self.hubs, self.bands, self.beta_b)
+                matrix, block = matrix + yields[-1], np.zeros(group.z.size, dtype=int)
                 faces = None if faces is None else (*faces[:2], np.zeros_like(faces[2]))
-            systems.append(System(matrix, cos * own.gap, ends, line, self._radius(own), block, faces, own.floor, mirrors))
-        lines = SharedLines(systems, sum(body.kernel for body, _ in found[0]), self.modulus)
+            systems.append(System(matrix, cos * group.gap, ends, line, self._radius(group), block, faces, group.floor, mirrors))
+        lines = SharedLines(systems, sum(body.kernel for body, _ in halves[0]), self.modulus)
         names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")
-        whole = Cells(*(np.concatenate([getattr(own, name) for own in solved]) for name in names))
+        whole = Cells(*(np.concatenate([getattr(group, name) for group in solved]) for name in names))
         return Batch(cells, solved, alike, lines, whole, yields)
 
     def _shared(self, batch):
         """`Carried` of the phases of a batch."""
         load = self.force / math.cos(self.beta_b) / np.where(batch.alike, 2, 1)
         shared = batch.lines.solve(load, self._local(batch.all))
-        own = zip(batch.cells, batch.solved, shared, batch.alike.tolist(), batch.yields, strict=True)
-        return [self._told(*one) for one in own]
+        cases = zip(batch.cells, batch.solved, shared, batch.alike.tolist(), batch.yields, strict=True)
+        return [self._told(*case) for case in cases]
 
     def _local(self, cells):
         """Local law of the cells, as `SharedLines.solve` takes it; None if it is Hertz's everywhere."""
@@ -280,10 +280,10 @@ class PhaseContact:
         pressure = peak_pressure(load * cos / solved.width, radius, self.modulus)
         pressure[(solved.corner > 0) & (load > 0)] = np.nan
         times = 2 if alike else 1
-        told = replace(cells, load=np.tile(load, times), pressure=np.tile(pressure, times))
+        loaded = replace(cells, load=np.tile(load, times), pressure=np.tile(pressure, times))
         way = np.zeros(n) if yields is None else yields @ load / cos
         given = float(load @ way / load.sum()), float(way.min())
-        return Carried(told, shared.approach / cos, times * shared.tangent * cos**2, closed, *given)
+        return Carried(loaded, shared.approach / cos, times * shared.tangent * cos**2, closed, *given)
 
     def _radius(self, cells):
         """Relative radii of curvature of cells at right angles to the flanks [mm]."""
@@ -297,8 +297,8 @@ def _same(one, two):
 
 
 def _alike(cells, first, slack):
-    one, two = cells.some(first), cells.some(~first)
-    if one.z.size != two.z.size:
+    half, mirrored = cells.some(first), cells.some(~first)
+    if half.z.size != mirrored.z.size:
         return False
     names = ("order", "width", "depth", "nominal", "gap")
-    return all(np.allclose(getattr(one, name), getattr(two, name), rtol=0, atol=slack) for name in names)
+    return all(np.allclose(getattr(half, name), getattr(mirrored, name), rtol=0, atol=slack) for name in names)

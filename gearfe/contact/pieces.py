@@ -51,8 +51,8 @@ def gaps(pair):
         if 0 < first < gap.size - 2:  # it meets between two samples: what the gap is at the one before, at least
             first -= 1
             gap[first] = max(2 * gap[first + 1] - gap[first + 2], 0.0)
-        own = slice(first, met[-1] + 1 if met.size else gap.size)
-        out.append((away[own], np.minimum.accumulate(gap[own][::-1])[::-1]))
+        span = slice(first, met[-1] + 1 if met.size else gap.size)
+        out.append((away[span], np.minimum.accumulate(gap[span][::-1])[::-1]))
     return out
 
 
@@ -61,9 +61,9 @@ def cut(pair):
     """How far on the path itself, from its start and from its end [mm], a tip cuts into its mate's fillet; 0 where none does."""
     start, end = pair.path
     nominal = np.linspace(start, end, max(2, math.ceil(pair.eps_alpha * SAMPLES)))
-    found, step = touching(pair, nominal), nominal[1] - nominal[0]
+    met, step = touching(pair, nominal), nominal[1] - nominal[0]
     away = nominal - start, end - nominal
-    return tuple(max((away[k][(found.gap < 0) & np.isin(found.corner, AT_END[k])] + step).tolist(), default=0.0) for k in (0, 1))
+    return tuple(max((away[k][(met.gap < 0) & np.isin(met.corner, AT_END[k])] + step).tolist(), default=0.0) for k in (0, 1))
 
 
 def beyond(pair, reach):
@@ -72,7 +72,7 @@ def beyond(pair, reach):
 
 
 def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0), closing=0.0):
-    """`Piece` of all contact lines of one phase that pits leave, up to so far beyond the path [mm].
+    """`Piece` of all contact lines of one phase that pits leave, on the path and up to `further` beyond it [mm].
 
     Pits deeper than `closing` take their pieces away: nothing can reach their floor. Those of others stay, on the floor. Line by
     line, from the end that touches first to the other.
@@ -108,27 +108,27 @@ def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0), closing=0.0)
                 pieces.append(Piece(half, order, roll, corner, low, high, ends))
     deep, *shallow = _by_depth(pits, closing)
     taken = _taken(pair, deep, bands, pieces, slope)
-    pieces = [part for piece, own in zip(pieces, taken, strict=True) for part in _left(piece, own, width)]
+    pieces = [part for piece, pitted in zip(pieces, taken, strict=True) for part in _left(piece, pitted, width)]
     if not shallow:
         return pieces
-    floors = [(gear, depth, _taken(pair, own, bands, pieces, slope)) for gear, depth, own in shallow]
-    own = [[(gear, depth, *part) for gear, depth, found in floors for part in found[k]] for k in range(len(pieces))]
-    return [part for piece, above in zip(pieces, own, strict=True) for part in _on_floors(piece, above, width)]
+    floors = [(gear, depth, _taken(pair, pitted, bands, pieces, slope)) for gear, depth, pitted in shallow]
+    pitted = [[(gear, depth, *part) for gear, depth, intervals in floors for part in intervals[k]] for k in range(len(pieces))]
+    return [part for piece, above in zip(pieces, pitted, strict=True) for part in _on_floors(piece, above, width)]
 
 
 def _by_depth(pits, closing):
     """Pits of both gears deeper than `closing`; then (gear, depth, pits of both gears) of each depth that is not."""
-    out = [tuple(tuple(pit for pit in own if pit.depth > closing) for own in pits)]
-    for gear, own in enumerate(pits):
-        for depth in sorted({pit.depth for pit in own if pit.depth <= closing}):
-            alike = tuple(pit for pit in own if pit.depth == depth)
+    out = [tuple(tuple(pit for pit in gear_pits if pit.depth > closing) for gear_pits in pits)]
+    for gear, gear_pits in enumerate(pits):
+        for depth in sorted({pit.depth for pit in gear_pits if pit.depth <= closing}):
+            alike = tuple(pit for pit in gear_pits if pit.depth == depth)
             out.append((gear, depth, ((), alike) if gear else (alike, ())))
     return out
 
 
 def _on_floors(piece, above, width):
     """Parts of a piece under pits `above` (gear, depth, first, last): of one gear the deepest counts, of both their sum."""
-    edges = np.unique(np.clip([piece.first, piece.last, *(at for one in above for at in one[2:])], piece.first, piece.last))
+    edges = np.unique(np.clip([piece.first, piece.last, *(at for pit in above for at in pit[2:])], piece.first, piece.last))
     edges = edges[np.concatenate([[True], np.diff(edges) > 1e-6 * width])]
     edges[-1] = piece.last
     middles = (edges[1:] + edges[:-1]) / 2
@@ -152,8 +152,8 @@ def _parts(roll, slope, width, limits, slack):
     corners = (1, None, 0, None, 2)
     if slope > 1e-12:
         at = np.clip([(roll - limit) / slope for limit in limits], 0.0, width)
-        found = zip(corners, at[:-1].tolist(), at[1:].tolist(), strict=True)
-        return [(corner, low, high) for corner, low, high in found if corner is not None and high - low > 1e-6 * width]
+        ranges = zip(corners, at[:-1].tolist(), at[1:].tolist(), strict=True)
+        return [(corner, low, high) for corner, low, high in ranges if corner is not None and high - low > 1e-6 * width]
     top, after, end, start, before, bottom = limits
     if start - slack <= roll < end + slack:
         return [(0, 0.0, width)]
@@ -176,21 +176,21 @@ def _left(piece, taken, width):
 
 def _taken(pair, pits, bands, pieces, slope):
     """Intervals of depth that pits take from each piece; beyond the path a line is bent, so it is looked at in `PARTS`."""
-    out, (one, two) = [[] for _ in pieces], (pair.gear_1.z, pair.gear_2.z)
-    teeth_1, teeth_2 = {pit.tooth % one for pit in pits[0]}, {pit.tooth % two for pit in pits[1]}
-    found = [k for k, piece in enumerate(pieces) if piece.order % one in teeth_1 or -piece.order % two in teeth_2]
-    if not found:
+    out, (z_1, z_2) = [[] for _ in pieces], (pair.gear_1.z, pair.gear_2.z)
+    teeth_1, teeth_2 = {pit.tooth % z_1 for pit in pits[0]}, {pit.tooth % z_2 for pit in pits[1]}
+    pitted = [k for k, piece in enumerate(pieces) if piece.order % z_1 in teeth_1 or -piece.order % z_2 in teeth_2]
+    if not pitted:
         return out
-    depths = [np.linspace(pieces[k].first, pieces[k].last, PARTS + 1 if pieces[k].corner else 2) for k in found]
-    which = np.concatenate([np.full(depth.size - 1, k) for k, depth in zip(found, depths, strict=True)])
+    depths = [np.linspace(pieces[k].first, pieces[k].last, PARTS + 1 if pieces[k].corner else 2) for k in pitted]
+    which = np.concatenate([np.full(depth.size - 1, k) for k, depth in zip(pitted, depths, strict=True)])
     depth = np.concatenate([np.stack([depth[:-1], depth[1:]], axis=1) for depth in depths])
     half, order, roll, corner = (np.array(values)[which] for values in list(zip(*pieces, strict=True))[:4])
     nominal = roll[:, None] - slope * depth
     rolls = nominal.copy(), pair.mate_roll(nominal)
     beyond_it = np.flatnonzero(corner)
     if beyond_it.size:
-        for own, met in zip(rolls, touching(pair, nominal[beyond_it].ravel()), strict=False):
-            own[beyond_it] = met.reshape(-1, 2)
+        for gear_rolls, met in zip(rolls, touching(pair, nominal[beyond_it].ravel()), strict=False):
+            gear_rolls[beyond_it] = met.reshape(-1, 2)
     ends = np.array(bands)[half]
     z = ends[:, :1] + np.sign(ends[:, 1:] - ends[:, :1]) * depth
     row, _, first, last = covered(pair, pits, order, rolls, z)

@@ -24,7 +24,7 @@ from .directions import met
 FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # of hats: next to a corner and at most [m_n], and how they grow per length
 RESOLVED = 4.0  # hats at a corner that a half width must span: a narrower contact falls between them
 SHARP = 100.0  # hats at a corner that the half width of a smooth contact spans: what an edge presses is as much narrower
-LEAST = 7.5e-6  # of hats, as long as a half width spans `RESOLVED` of them [m_n]
+LEAST = 7.5e-6  # length of the shortest hats, while a half width spans `RESOLVED` of them [m_n]
 WITHIN = 4.0  # hats over a half width where Hertz's contact shares a row with a corner
 
 
@@ -80,8 +80,8 @@ def _side_of(offsets, length):
     count = int(np.searchsorted(offsets, half))
     if count >= offsets.size:  # further apart than the zone: even steps go on
         step = offsets[-1] - offsets[-2]
-        more = np.arange(1, max(2, int(np.ceil((half - offsets[-1]) / step)) + 1))
-        offsets = np.append(offsets, offsets[-1] + more * (half - offsets[-1]) / more[-1])
+        number = np.arange(1, max(2, int(np.ceil((half - offsets[-1]) / step)) + 1))
+        offsets = np.append(offsets, offsets[-1] + number * (half - offsets[-1]) / number[-1])
         return offsets
     count = max(count, 1)
     return offsets[: count + 1] * half / offsets[count]
@@ -92,8 +92,8 @@ def _tops(marks, ends, offsets):
     out = [marks[0] - offsets[:0:-1]] if not ends[0] else []
     out.append(marks[:1])
     for low, high in zip(marks[:-1], marks[1:], strict=True):
-        own = _side_of(offsets, high - low)
-        out += [low + own[1:], (high - own[-2::-1])]
+        away = _side_of(offsets, high - low)
+        out += [low + away[1:], (high - away[-2::-1])]
     if not ends[1]:
         out.append(marks[-1] + offsets[1:])
     return np.concatenate(out)
@@ -116,9 +116,9 @@ def corner_rows(contact, wanted):
     """`Row` of each `Wanted` of a `gearfe.contact.pair_contact.PairContact`."""
     out = [None] * len(wanted)
     for host in (0, 1):
-        own = [k for k, one in enumerate(wanted) if _host(one) == host]
-        if own:
-            for k, row in zip(own, _on_side(contact, [wanted[k] for k in own], host), strict=True):
+        numbers = [k for k, request in enumerate(wanted) if _host(request) == host]
+        if numbers:
+            for k, row in zip(numbers, _on_side(contact, [wanted[k] for k in numbers], host), strict=True):
                 out[k] = row
     return out
 
@@ -134,10 +134,10 @@ def _host(one):
 
 def _on_side(contact, wanted, host):
     """Rows along the side of one gear."""
-    knots = [_placed(contact, one, host) for one in wanted]
-    at = [(one.phase, one.column) for one in wanted]
-    kernels = [_standing(contact, one, host)[1] if _alone(one) else None for one in wanted]
-    tips = [[tip in _numbers(one) for tip in TIP] for one in wanted]
+    knots = [_placed(contact, request, host) for request in wanted]
+    at = [(request.phase, request.column) for request in wanted]
+    kernels = [_standing(contact, request, host)[1] if _alone(request) else None for request in wanted]
+    tips = [[tip in _numbers(request) for tip in TIP] for request in wanted]
     return hat_rows(contact, at, knots, kernels, host, tips)
 
 
@@ -157,30 +157,30 @@ def hat_rows(contact, at, knots, kernels, host, tips):
     tips : sequence of (bool, bool)
         Whether the tips of pinion and wheel may press into the mate's fillet.
     """
-    found, pair = contact.found, contact.pair
+    points, pair = contact.found, contact.pair
     gear = (pair.gear_1, pair.gear_2)[host]
-    count = [own.shape[1] for own in knots]
-    each = tuple(np.repeat(values, count) for values in np.array(at).T)
-    roll = roll_at_arc(gear, np.concatenate([own.mean(axis=0) for own in knots]))
-    gap, other, way = met(contact, each, roll, host)
+    count = [row.shape[1] for row in knots]
+    at_hats = tuple(np.repeat(values, count) for values in np.array(at).T)
+    roll = roll_at_arc(gear, np.concatenate([row.mean(axis=0) for row in knots]))
+    gap, other, way = met(contact, at_hats, roll, host)
     values = np.array([*(roll, other)[:: 1 if host == 0 else -1], gap, *way.turns, way.rate, *np.concatenate(way.parts)])
     cuts = np.cumsum(count)[:-1]
-    there = np.split(np.isfinite(gap), cuts)
-    parts = [own[:, on] for own, on in zip(np.split(values, cuts, axis=1), there, strict=True)]
-    order = found.order[[column for _, column in at]]
+    meets = np.split(np.isfinite(gap), cuts)
+    parts = [row[:, on] for row, on in zip(np.split(values, cuts, axis=1), meets, strict=True)]
+    order = points.order[[column for _, column in at]]
     bodies = [
         flexible.within([part[k] for part in parts], (sign * order).tolist())
         for k, (flexible, sign) in enumerate(zip(contact.flexibility, (1, -1), strict=True))
     ]
     made, log = [], np.log(gear.m_n)  # local is what happens within about a module
-    rows = zip(knots, kernels, there, parts, tips, order.tolist(), *bodies, strict=True)
+    rows = zip(knots, kernels, meets, parts, tips, order.tolist(), *bodies, strict=True)
     for hats, kernel, on, part, reach, tooth, *within in rows:
         roll_1, roll_2, gaps, *turns, rate = part[:6]
         kernel = hat_logarithm(hats[:, on], hats[:, on]) if kernel is None else kernel[np.ix_(on, on)]
         influence = sum(contact.coefficients) * (kernel + log) / np.outer(rate, rate)
         leaning = zip(contact.flexibility, within, part[:2], (tooth, -tooth), part[6:].reshape(2, 2, -1), turns, strict=True)
-        for coefficient, (flexible, *own) in zip(contact.coefficients, leaning, strict=True):
-            influence = influence + towards(flexible, *own, coefficient * log)
+        for coefficient, (flexible, *row) in zip(contact.coefficients, leaning, strict=True):
+            influence = influence + towards(flexible, *row, coefficient * log)
         fillet = reach[0] & on_fillet(pair.gear_2, roll_2) | reach[1] & on_fillet(pair.gear_1, roll_1)
         made.append(Row(roll_1, roll_2, gaps, influence, *turns, fillet))
     return made
@@ -218,9 +218,9 @@ def _ends(numbers, host):
 
 def _placed(contact, one, host):
     """Knots ``(3, n)`` of the hats of a row, on the arc of its side [mm]."""
-    found, at = contact.found, (one.phase, one.column)
+    points, at = contact.found, (one.phase, one.column)
     gear, fine = _scale(contact, host)
-    marks = {n: float(arc_at(gear, found.corner_roll[(host, n - 1, *at)])) for n in _numbers(one)}
+    marks = {n: float(arc_at(gear, points.corner_roll[(host, n - 1, *at)])) for n in _numbers(one)}
     if _alone(one):
         return next(iter(marks.values())) + _standing(contact, one, host)[0]
     offsets, ends = _offsets(gear.m_n, fine, one.zone, one.finest), _ends(marks, host)
@@ -231,9 +231,9 @@ def _placed(contact, one, host):
     places = _apart(places, offsets[1], ends[1])
     if not one.width:
         return _knots(_tops(places, ends, offsets), ends)
-    flanks = (found.roll_1[at], found.roll_2[at])
-    if found.corner[at]:
-        flanks = (found.nominal[at], contact.pair.mate_roll(found.nominal[at]))
+    flanks = (points.roll_1[at], points.roll_2[at])
+    if points.corner[at]:
+        flanks = (points.nominal[at], contact.pair.mate_roll(points.nominal[at]))
     middle = float(arc_at(gear, flanks[host]))
     steps = middle + one.width / WITHIN * np.arange(-2 * WITHIN, 2 * WITHIN + 1)
     tops = _tops(np.unique([*places, middle]), ends, offsets)

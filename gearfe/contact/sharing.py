@@ -9,7 +9,7 @@ from scipy.optimize import nnls
 
 from ..flexibility.hertz import half_width
 
-STEPS = 20  # of the active set before non-negative least squares
+STEPS = 20  # steps of the active set before non-negative least squares are tried
 ROUNDING = 1e-12  # of the largest distance: overlaps below it are rounding
 
 
@@ -69,9 +69,9 @@ def share(flexibility, gap, load, weight=None, start=None):
     weight = np.ones(gap.size) if weight is None else weight
     if gap.size == 1:
         return np.array([load]), float(flexibility[0, 0] * load + gap[0])
-    found = _settled(flexibility, gap, load, weight, np.ones(gap.size, dtype=bool) if start is None else start)
-    if found is not None:
-        return found
+    settled = _settled(flexibility, gap, load, weight, np.ones(gap.size, dtype=bool) if start is None else start)
+    if settled is not None:
+        return settled
     try:
         upper = cholesky(flexibility)
     except np.linalg.LinAlgError as error:
@@ -98,8 +98,8 @@ def _settled(flexibility, gap, load, weight, active):
         approach = (load + weight[at] @ gaps) / (weight[at] @ ones)
         force = np.zeros(gap.size)
         force[at] = approach * ones - gaps
-        rests = flexibility[:, at] @ force[at] + gap - approach * weight
-        wanted = np.where(active, force > 0, rests < -ROUNDING * np.abs(rests).max())
+        distances = flexibility[:, at] @ force[at] + gap - approach * weight
+        wanted = np.where(active, force > 0, distances < -ROUNDING * np.abs(distances).max())
         if (wanted == active).all():
             return force, float(approach)
         active = wanted
@@ -235,17 +235,17 @@ def approaches(flexibility, gap, load, possible):
     possible : ndarray of bool, shape (sets, n)
         Contacts that there are; at least one in each set.
     """
-    _, found, _, settled = line_contacts(LineContacts(flexibility, gap, 0.0, np.ones(gap.shape), 1.0), load, possible)
+    _, approach, _, settled = line_contacts(LineContacts(flexibility, gap, 0.0, np.ones(gap.shape), 1.0), load, possible)
     for k in np.flatnonzero(~settled).tolist():
         on = possible[k]
-        found[k] = share(flexibility[k][np.ix_(on, on)], gap[k, on], float(load[k]))[1]
-    return found
+        approach[k] = share(flexibility[k][np.ix_(on, on)], gap[k, on], float(load[k]))[1]
+    return approach
 
 
 def stacked(arrays):
     """Arrays ``(n,)`` or ``(n, n)`` of different sizes as one, zeros after each."""
     most = max(array.shape[0] for array in arrays)
     out = np.zeros((len(arrays), *(most,) * arrays[0].ndim), dtype=arrays[0].dtype)
-    for own, array in zip(out, arrays, strict=True):
-        own[tuple(slice(n) for n in array.shape)] = array
+    for row, array in zip(out, arrays, strict=True):
+        row[tuple(slice(n) for n in array.shape)] = array
     return out

@@ -8,8 +8,8 @@ from geometry.tooth.profile import arc_at, roll_at_arc
 
 from ..flexibility.hertz import half_width
 
-MOST = 0.05  # of what a pair yields at most that it comes closer by sliding: more would be no small strains
-STEP = 0.01  # m_n: over which a flexibility changes along the flank
+MOST = 0.05  # largest approach by sliding, as a part of what the pair yields: more would not be small strains
+STEP = 0.01  # along the flank, over which the change of a flexibility is taken [m_n]
 
 
 def sliding(contact):
@@ -19,10 +19,10 @@ def sliding(contact):
     by ``x = -R P S' / 2`` to where they are parallel again, and comes closer by ``P S' x + x**2 / 2 R = -3/8 R (P S')**2``. That
     counts where flanks nearly conform: 0.5 % of ring pairs under a heavy load. At the ends of flanks it is left out.
     """
-    found, step = contact.found, STEP * contact.pair.gear_1.m_n
+    points, step = contact.found, STEP * contact.pair.gear_1.m_n
     ahead, behind = _alone(contact, step * np.array([1, -1])[:, None, None])
-    on = np.isfinite(found.gap)
-    for flexible, roll in zip(contact.flexibility, (found.roll_1, found.roll_2), strict=True):
+    on = np.isfinite(points.gap)
+    for flexible, roll in zip(contact.flexibility, (points.roll_1, points.roll_2), strict=True):
         gear = flexible.gear
         arc, low, high = arc_at(gear, roll), arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
         on &= (arc > low + step) & (arc < high - step)
@@ -31,14 +31,14 @@ def sliding(contact):
 
 def _alone(contact, moved):
     """Flexibility of each pair alone ``(k, phases, pairs)``, its contact moved up the pinion's side by `moved` (k, 1, 1) [mm]."""
-    found, rolls = contact.found, []
-    out = np.zeros((len(moved), *found.gap.shape))
-    places = ((found.roll_1, found.order, moved), (found.roll_2, -found.order, -moved))
+    points, rolls = contact.found, []
+    out = np.zeros((len(moved), *points.gap.shape))
+    places = ((points.roll_1, points.order, moved), (points.roll_2, -points.order, -moved))
     for flexible, (roll, teeth, by) in zip(contact.flexibility, places, strict=True):
         rolls.append(roll_at_arc(flexible.gear, arc_at(flexible.gear, roll) + by))
         for k in range(teeth.size):
             out[..., k] += flexible.matrix(rolls[-1][..., k, None], teeth[k : k + 1])[..., 0, 0]
-    opening = contact.opening_at(*rolls, found.order)
+    opening = contact.opening_at(*rolls, points.order)
     return out if opening is None else out + np.einsum("...f,fg,...g->...", opening, contact.stiffness, opening)
 
 
@@ -59,14 +59,14 @@ def left_out(contact, line, closing, beyond):
     Of line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``; `closing` ``(phases,)`` is how far the
     load moves the gears [mm].
     """
-    found, (start, end) = contact.found, contact.pair.path
-    off = (line > 0) & ((found.nominal < start) | (found.nominal > end))
+    points, (start, end) = contact.found, contact.pair.path
+    off = (line > 0) & ((points.nominal < start) | (points.nominal > end))
     softer = _cut_away(contact, line)
     if not (off.any() or softer.any()):
         return np.zeros(closing.size)
     closed = closing[:, None] - beyond
     stiff = np.where(line > 0, line / np.maximum(closed, 1e-3 * closing[:, None]), 0.0)
-    u, gap = math.tan(contact.pair.alpha_w) * closing[:, None], np.where(off, np.maximum(found.gap, 0.0), 0.0)
+    u, gap = math.tan(contact.pair.alpha_w) * closing[:, None], np.where(off, np.maximum(points.gap, 0.0), 0.0)
     changed = np.where(off, (np.sqrt(2 * contact.radius * gap) * u + u**2 / 2) / contact.radius, 0.0)
     changed = np.minimum(changed, np.where(off, closed, 0.0))  # no gap is unsure by more than it is closed
     return (stiff * (changed + softer)).sum(axis=1) / stiff.sum(axis=1) / closing
@@ -79,8 +79,8 @@ def _cut_away(contact, line):
     flank turns; where it is stressed, from the contact's width to the chamfer's, it is softer by about that part of two right
     angles.
     """
-    found, out = contact.found, np.zeros(line.shape)
-    for form, coefficient, roll in zip(contact.flanks or (), contact.coefficients, (found.roll_1, found.roll_2), strict=False):
+    points, out = contact.found, np.zeros(line.shape)
+    for form, coefficient, roll in zip(contact.flanks or (), contact.coefficients, (points.roll_1, points.roll_2), strict=False):
         if form.edge is None or form.edge.kink <= 0:
             continue
         gear, start = form.gear, form.edge.start

@@ -22,7 +22,7 @@ from .corner import in_fillet
 from .phase_contact import PhaseContact
 
 STEP = 0.2  # longest cell along the width [m_n]
-LONGER = 2  # cells that are one in what the estimate compares with
+LONGER = 2  # cells that become one in the coarser solution that the error estimate compares with
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,8 +102,8 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
     if not (math.isfinite(step) and step > 0):
         raise ValueError(f"step = {step} mm, but it is the longest cell: give step > 0")
     phase = np.arange(phases) / phases if np.ndim(phases) == 0 else np.asarray(phases, dtype=float)
-    for gear, found in zip((pair.gear_1, pair.gear_2), case.pits, strict=True):
-        check_hollows(gear, found)
+    for gear, pits in zip((pair.gear_1, pair.gear_2), case.pits, strict=True):
+        check_hollows(gear, pits)
     bodies = bodies or energy_bodies(cache=cache)
 
     def contacts_of(longer):
@@ -145,17 +145,19 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
 def _solved(contact, phase, bodies):
     """`Contact3D` of one force."""
     dofs = tuple(body.unknowns for body, _ in bodies(0)[0])
-    own = contact.solve(phase.tolist(), bodies)
-    cells = tuple(one.cells for one in own)
-    approach, tangent = np.array([one.approach for one in own]), 1e3 * np.array([one.tangent for one in own])
+    carried = contact.solve(phase.tolist(), bodies)
+    cells = tuple(loaded.cells for loaded in carried)
+    approach, tangent = np.array([loaded.approach for loaded in carried]), 1e3 * np.array([loaded.tangent for loaded in carried])
     orders = np.array(sorted({order for cell in cells for order in cell.order.tolist()}))
     load = np.zeros((phase.size, orders.size))
-    for i, one in enumerate(cells):
-        np.add.at(load[i], np.searchsorted(orders, one.order), one.load * math.cos(contact.beta_b))
-    closed = tuple(i for i, one in enumerate(own) if one.closed)
-    fillet = tuple(i for i, one in enumerate(cells) if (in_fillet(contact.pair, one.roll_1, one.roll_2) & (one.load > 0)).any())
+    for i, loaded in enumerate(cells):
+        np.add.at(load[i], np.searchsorted(orders, loaded.order), loaded.load * math.cos(contact.beta_b))
+    closed = tuple(i for i, loaded in enumerate(carried) if loaded.closed)
+    fillet = tuple(
+        i for i, loaded in enumerate(cells) if (in_fillet(contact.pair, loaded.roll_1, loaded.roll_2) & (loaded.load > 0)).any()
+    )
     unloaded = contact.unloaded(cells)
     k = 1e3 * contact.force / (approach - unloaded)
-    given = None if contact.hubs is None else np.array([one.given for one in own])
-    more = {"closed": closed, "fillet": fillet, "unloaded": unloaded, "k_tangent": tangent, "supports": given}
-    return Contact3D(phase, k, approach, orders, load, cells, dofs, **more)
+    supports = None if contact.hubs is None else np.array([loaded.given for loaded in carried])
+    details = {"closed": closed, "fillet": fillet, "unloaded": unloaded, "k_tangent": tangent, "supports": supports}
+    return Contact3D(phase, k, approach, orders, load, cells, dofs, **details)

@@ -49,11 +49,11 @@ def write_contact_section(path: str | os.PathLike[str], case: Case, phase: float
     """The deck of `gearfe.decks.contact_inp.write_contact_inp` in plane strain; TIP edges at the tip corner that touches."""
     pair, materials, forms = case.pair, case.materials, case.forms
     gears, line_load = (pair.gear_1, pair.gear_2), case.forces[0] / min(pair.gear_1.b, pair.gear_2.b)
-    found = flank_contacts(pair, [phase], flanks=forms)
-    near = np.flatnonzero(found.gap[0] < 1.5 * approach)
-    order = found.order[near]
-    rolls = found.roll_1[0, near], found.roll_2[0, near]
-    widths = half_width(line_load, found.radius[0, near], contact_modulus(materials))
+    candidates = flank_contacts(pair, [phase], flanks=forms)
+    near = np.flatnonzero(candidates.gap[0] < 1.5 * approach)
+    order = candidates.order[near]
+    rolls = candidates.roll_1[0, near], candidates.roll_2[0, near]
+    widths = half_width(line_load, candidates.radius[0, near], contact_modulus(materials))
     bodies = [
         _meshed(gear, sense * order, arc_at(gear, roll), widths, how.per_width or SECTION, how.refine)
         for gear, roll, sense in zip(gears, rolls, (1, -1), strict=True)
@@ -61,7 +61,7 @@ def write_contact_section(path: str | os.PathLike[str], case: Case, phase: float
     if forms is not None:
         bodies = [relieved(body, form, order, sense) for body, form, sense in zip(bodies, forms, (1, -1), strict=True)]
     turned = how.turned(pair, approach)
-    turns = pair.turn(found.nominal[0, near[0]] - order[0] * pair.p_bt)
+    turns = pair.turn(candidates.nominal[0, near[0]] - order[0] * pair.p_bt)
     text = Sections()
     for i, (body, material) in enumerate(zip(bodies, materials, strict=True)):
         points = np.array(posed(body.mesh.doflocs, turns[i], (1, pair.outward)[i]))

@@ -87,13 +87,13 @@ def write_contact_inp(
         If elements of the mesh fold, where CalculiX would stop.
     """
     suffix_of(path, "deck")
-    given = {name: options.pop(name) for name in GIVEN if name in options}
+    of_case = {name: options.pop(name) for name in GIVEN if name in options}
     how = Pressing(**options)
     if not isinstance(pair, Case):
         force = None if line_load is None else line_load * min(pair.gear_1.b, pair.gear_2.b)
-        case = case_of(pair, force, materials, **given)
+        case = case_of(pair, force, materials, **of_case)
     else:
-        case = case_of(pair, **given)
+        case = case_of(pair, **of_case)
     if not approach > 0:
         raise ValueError(f"approach = {approach} mm, but the gears are pressed together: give approach > 0")
     if case.face is None:

@@ -30,10 +30,10 @@ from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, pl
 # edge lengths in modules, see `geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "far": 3.0, "crack": 0.3, "crack tip": 0.08}
 TETS = {"far": 1.4, "tooth": 0.7, "flank": 0.6, "fillet": 0.25}  # see `geometry.mesh.holes.SIZES`
-STRETCH = 2.0  # tets are so many times longer along the width
+STRETCH = 2.0  # length of tets along the width over that in the section
 RIM = 0.6  # edges at pits' rims against those along the contact lines
 SECTIONS = 33  # transverse sections at which the contacts are looked for
-REACH = 1.5  # contacts whose gap is below so many approaches
+REACH = 1.5  # gap below which a contact may touch, in approaches
 STRIP = 2.5  # Hertz half widths to either side of the contact line that are refined
 SOLID = 1.5  # edges per Hertz half width
 END = 1.0  # height of the layers at the end faces against that in between
@@ -55,11 +55,11 @@ class SolidDeck(ContactDeck):
         CalculiX prints force F and moment M about the origin; the line is ``F x M / |F|**2 + t F``, and the height is that of its
         point nearest to the middle of the contact area, which is printed too. Pairs that do not touch are left out.
         """
-        found = contact_sums(path)
+        sums = contact_sums(path)
         out = {}
         for k, (order, (side, _)) in enumerate(self.slaves.items()):
-            if f"C{side + 1}P{k}" in found:
-                force, moment, middle = found[f"C{side + 1}P{k}"]
+            if f"C{side + 1}P{k}" in sums:
+                force, moment, middle = sums[f"C{side + 1}P{k}"]
                 foot = np.cross(force, moment) / (force @ force)
                 z = (foot + (middle - foot) @ force / (force @ force) * force)[2]
                 out[order] = float(np.linalg.norm(force)), float(z)
@@ -113,24 +113,24 @@ def touching(case: Case, phase: float, approach: float) -> Touching:
     """Tooth pairs whose flanks meet within `REACH` approaches anywhere along the width, and where on the flanks."""
     pair, forms, common = case.pair, case.forms, min(case.pair.gear_1.b, case.pair.gear_2.b)
     heights, modulus = np.linspace(0.0, common, SECTIONS), contact_modulus(case.materials)
-    found = contacts(pair, (nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
+    candidates = contacts(pair, (nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
     if forms is not None:
-        found = _modified(pair, found, heights, forms)
+        candidates = _modified(pair, candidates, heights, forms)
     out = Touching([], [], ([], []), [], [], ([], []))
-    for k, order in enumerate(found.order.tolist()):
-        near = found.gap[:, k] < REACH * approach
+    for k, order in enumerate(candidates.order.tolist()):
+        near = candidates.gap[:, k] < REACH * approach
         if not near.any():
             continue
-        rolls = found.roll_1[near, k], found.roll_2[near, k]
+        rolls = candidates.roll_1[near, k], candidates.roll_2[near, k]
         out.order.append(order)
         out.heights.append(heights[near])
         out.rolls[0].append(rolls[0])
         out.rolls[1].append(rolls[1])
-        out.width.append(float(half_width(case.forces[0] / common, float(found.radius[near, k].max()), modulus)))
-        corners = [np.isin(found.corner[near, k], own).any() for own in ((1, 3), (2, 4))]  # a corner of pinion or wheel
+        out.width.append(float(half_width(case.forces[0] / common, float(candidates.radius[near, k].max()), modulus)))
+        corners = [np.isin(candidates.corner[near, k], ids).any() for ids in ((1, 3), (2, 4))]  # a corner of pinion or wheel
         out.slave.append(int(corners[1] and not corners[0]))
         for number, gear in enumerate((pair.gear_1, pair.gear_2)):
-            edge = found.corner_gap[FORM[number] - 1, :, k] < REACH * approach  # it may touch as a second place of contact
+            edge = candidates.corner_gap[FORM[number] - 1, :, k] < REACH * approach  # it may touch as a second place of contact
             out.fillet[number].append(bool(edge.any() or on_fillet(gear, rolls[number]).any()))
     return out
 
@@ -151,23 +151,23 @@ def write_contact_solid(path: str | os.PathLike[str], case: Case, phase: float, 
     """
     pair, forms, fineness = case.pair, case.forms, (how.per_width or SOLID) * how.refine
     common = min(pair.gear_1.b, pair.gear_2.b)
-    found = touching(case, phase, approach)
+    touch = touching(case, phase, approach)
     parts = []
     damage = [(*cracks, *pits) for cracks, pits in zip(case.cracks, case.pits, strict=True)]
-    for number, own in enumerate(damage):
+    for number, damages in enumerate(damage):
         gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
         low = -(gear.b - common) / 2
-        teeth = [(1, -1)[number] * order % gear.z for order in found.order]
-        if any(one.removes_contact for one in (own or damage[1 - number])):  # loads change quickly along the width on both
-            cut = [_strip(gear, found, number, k, tooth, low, fineness) for k, tooth in enumerate(teeth)]
-            body = _holed(gear, own, cut, how)
+        teeth = [(1, -1)[number] * order % gear.z for order in touch.order]
+        if any(hurt.removes_contact for hurt in (damages or damage[1 - number])):  # loads change quickly along the width on both
+            cut = [_strip(gear, touch, number, k, tooth, low, fineness) for k, tooth in enumerate(teeth)]
+            body = _holed(gear, damages, cut, how)
         else:
-            patches = {tooth: [_patch(gear, found, number, k, fineness)] for k, tooth in enumerate(teeth)}
+            patches = {tooth: [_patch(gear, touch, number, k, fineness)] for k, tooth in enumerate(teeth)}
             fine = [(z, z, END * gear.b / how.layers) for z in (0.0, gear.b)]
             options = {"layer": gear.b / how.layers, "loaded": teeth, "patches": patches, "fine": fine}
-            made = solid(gear, cracks=tuple(own), refine=how.refine, sizes=SIZES, **options)
-            body = part_of(made)
-            body = replace(body, faces=body.faces | {f"fillet {tooth}": faces[:4] for tooth, faces in made.fillets.items()})
+            mesh = solid(gear, cracks=tuple(damages), refine=how.refine, sizes=SIZES, **options)
+            body = part_of(mesh)
+            body = replace(body, faces=body.faces | {f"fillet {tooth}": faces[:4] for tooth, faces in mesh.fillets.items()})
         if forms is not None:
             body = replace(body, points=relieved_points(body.points, gear, forms[number], teeth))
         turn = float(pair.turn(nominal_at(pair, phase, low))[number])
@@ -177,10 +177,10 @@ def write_contact_solid(path: str | os.PathLike[str], case: Case, phase: float, 
         parts.append(placed(body, place, mirrored=mirror < 0))
     turned = how.turned(pair, approach)
     slaves = {}
-    for k, order in enumerate(found.order):
-        side = found.slave[k]
-        slaves[order] = side, _faces(pair, parts[side], found, side, k)
-    write_lines(path, _text(case, parts, found, turned, how.penalty))
+    for k, order in enumerate(touch.order):
+        side = touch.slave[k]
+        slaves[order] = side, _faces(pair, parts[side], touch, side, k)
+    write_lines(path, _text(case, parts, touch, turned, how.penalty))
     starts = [0, parts[0].points.shape[1]]
     held = [part.held + start + 1 for part, start in zip(parts, starts, strict=True)]
     centred = [_from_centre(pair, part, number) for number, part in enumerate(parts)]
@@ -218,23 +218,23 @@ def _holed(gear: Gear, damage, strips, how) -> Part:
         raise ValueError("beside holes cut out a gear has at most one crack, through the whole width: leave out the others")
     tooth = damage[0].tooth % gear.z if damage else 0
     turn = 2 * math.pi * tooth / gear.z
-    own = [(np.array([*posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
+    turned = [(np.array([*posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
     least = min((min(pit.axes) for pit in holes), default=1.0)
     rim = RIM * how.refine * min(size for *_, size in strips) / least
     sizes = TETS | {"rim": min(rim, HOLES["rim"])}
-    made = holed_sector(gear, holes, *cracks, teeth=None, refine=how.refine, sizes=sizes, strips=own, stretch=STRETCH)
-    body = holed_part(made if how.pits == "cut" else filled(made, teeth=None), own)
+    sector = holed_sector(gear, holes, *cracks, teeth=None, refine=how.refine, sizes=sizes, strips=turned, stretch=STRETCH)
+    body = holed_part(sector if how.pits == "cut" else filled(sector, teeth=None), turned)
     if how.pits == "lost":
         body = replace(body, faces=_uncovered(body.faces))
     points = np.array([*posed(body.points[:2], turn, 1), body.points[2]])
-    faces = {_renamed(name, tooth, gear.z): found for name, found in body.faces.items()}
+    faces = {_renamed(name, tooth, gear.z): corners for name, corners in body.faces.items()}
     return replace(body, points=points, faces=faces)
 
 
 def _uncovered(faces):
     """Faces with the flanks without what lies above the pits."""
     above = {tuple(face) for face in faces["pits"].T.tolist()}
-    return {name: found[:, [tuple(face) not in above for face in found.T.tolist()]] for name, found in faces.items()}
+    return {name: corners[:, [tuple(face) not in above for face in corners.T.tolist()]] for name, corners in faces.items()}
 
 
 def _renamed(name, tooth, z):

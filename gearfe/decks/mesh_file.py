@@ -69,9 +69,9 @@ def export_mesh(
     cells = cells or ("tetrahedra" if pits or teeth is not None else "hexahedra")
     if cells not in KINDS:
         raise ValueError(f"cells = {cells!r}, but they are one of {', '.join(KINDS)}")
-    made = (_tets if cells == "tetrahedra" else _hexes)(gear, pits, cracks, teeth, refine)
-    _write(path, suffix, made, KINDS[cells])
-    return made
+    part = (_tets if cells == "tetrahedra" else _hexes)(gear, pits, cracks, teeth, refine)
+    _write(path, suffix, part, KINDS[cells])
+    return part
 
 
 def _tets(gear, pits, cracks, teeth, refine):
@@ -96,7 +96,7 @@ def _write(path, suffix, part, kind):
     import meshio
 
     check_folds(part.points, part.cells)
-    sets = {name.replace(" ", "_"): np.unique(found) for name, found in part.faces.items() if found.size}
+    sets = {name.replace(" ", "_"): np.unique(faces) for name, faces in part.faces.items() if faces.size}
     sets["held"] = part.held
     if suffix == ".inp":
         mesh = meshio.Mesh(part.points.T, [(kind, part.cells.T)], point_sets=sets)

@@ -54,10 +54,10 @@ def _flank_faces(body, nodes, key):
 
 
 def pressing(stiffness, contacts, motions, step="*STEP, INC=200, NLGEOM"):
-    """Contacts between surfaces (slave, master), springs of so much pressure per overlap [N/mm^3], and the step that moves."""
+    """Contacts between surfaces (slave, master) of a stiffness, pressure over overlap [N/mm^3], and the step with the motions."""
     yield f"*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{stiffness:.6e}"
-    for two in contacts:
-        yield from ("*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE", ", ".join(two))
+    for surfaces in contacts:
+        yield from ("*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE", ", ".join(surfaces))
     yield from (f"{step}\n*STATIC\n1., 1.", "*BOUNDARY", *motions)
 
 
@@ -68,21 +68,22 @@ def write_lines(path, lines):
 
 
 def read_rows(path, heading=None):
-    """Three values of every node from the ``.dat`` file that CalculiX printed, of the part whose heading begins with a word.
+    """Three values of every node from the ``.dat`` file that CalculiX printed.
 
-    RuntimeError if the file is not there or has none: CalculiX did not get that far.
+    Only those under lines that begin with the word `heading`, default all. RuntimeError if the file is not there or has none:
+    CalculiX did not get that far.
     """
     try:
         lines = Path(path).read_text(encoding="ascii").splitlines()
     except FileNotFoundError as error:
         raise RuntimeError(f"{path} is not there: run 'ccx -i NAME'; if it ran, its output says why it stopped") from error
-    out, wanted = {}, heading is None
+    out, in_part = {}, heading is None
     for row in map(str.split, lines):
         if row and not row[0].isdigit():
-            wanted = heading in (None, row[0])
-        elif wanted and len(row) == 4:
+            in_part = heading in (None, row[0])
+        elif in_part and len(row) == 4:
             out[int(row[0])] = tuple(map(float, row[1:]))
     if not out:
-        told = heading or "values"
-        raise RuntimeError(f"{path} holds no {told}: CalculiX found no equilibrium; its .sta and .cvg files say how far it came")
+        noun = heading or "values"
+        raise RuntimeError(f"{path} holds no {noun}: CalculiX found no equilibrium; its .sta and .cvg files say how far it came")
     return out

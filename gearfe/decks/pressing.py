@@ -20,11 +20,11 @@ class Pressing:
     refine: float = 1.0
 
     def __post_init__(self) -> None:
-        """Refuse what is unknown."""
+        """Raise ValueError for an unknown pose, or for pits to be treated in an unknown way."""
         for name, known in (("pose", PINION), ("pits", PITS)):
             one_of(name, getattr(self, name), known)
 
     def turned(self, pair, approach):
-        """Angles by which the bores of pinion and wheel are turned for an approach [mm]."""
+        """Angles [rad] by which the bores of pinion and wheel are turned for an approach [mm]."""
         part = PINION[self.pose]
         return part * approach / pair.gear_1.r_b, pair.outward * (1 - part) * approach / pair.gear_2.r_b

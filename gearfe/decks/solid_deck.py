@@ -39,7 +39,7 @@ class Part:
 
 def part_of(mesh: Solid) -> Part:
     """Hexahedra of a gear in its own frame."""
-    return Part(mesh.points, mesh.cells[TWENTY], mesh.held, {name: found[:4] for name, found in mesh.faces.items()})
+    return Part(mesh.points, mesh.cells[TWENTY], mesh.held, {name: nodes[:4] for name, nodes in mesh.faces.items()})
 
 
 def holed_part(mesh: Holed, strips=()) -> Part:
@@ -53,17 +53,17 @@ def holed_part(mesh: Holed, strips=()) -> Part:
     gear = mesh.gear
     for name in sorted(mesh.faces, reverse=True):  # flanks last, the most exact
         if name.startswith(("outline", "held", "flank ")) and mesh.faces[name].size:
-            there = nodes_of(mesh.faces[name], number)
-            x, y, z = nodes[:, there]
+            on_surface = nodes_of(mesh.faces[name], number)
+            x, y, z = nodes[:, on_surface]
             radius, angle = _on_surface(gear, name, np.hypot(x, y), np.arctan2(x, y) - gear.twist_rate * z)
-            nodes[:2, there] = cartesian(radius, angle + gear.twist_rate * z)
+            nodes[:2, on_surface] = cartesian(radius, angle + gear.twist_rate * z)
     bent, nodes = nodes, unfolded(nodes, cells)
     _check_strips(gear, nodes[:, (nodes != bent).any(axis=0)], strips)
     held = nodes_of(mesh.faces["held"], number)
     used, kept = np.unique(cells, return_inverse=True)
     place = np.full(nodes.shape[1], -1)
     place[used] = np.arange(used.size)
-    faces = {name: place[found] for name, found in mesh.faces.items()}
+    faces = {name: place[corners] for name, corners in mesh.faces.items()}
     return Part(nodes[:, used], kept.reshape(cells.shape), place[held], faces)
 
 
@@ -99,10 +99,10 @@ def placed(part: Part, points: NDArray[np.float64], *, mirrored: bool = False) -
 def sides_of(cells, faces):
     """(element, side) of outer faces, both from 0: ``(2, k)`` for the faces ``(corners, k)``."""
     corners = np.array(FACES[len(cells)])
-    every = np.sort(cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1), axis=0)
-    wanted = np.sort(faces, axis=0)
-    place = np.unique(np.hstack([every, wanted]), axis=1, return_inverse=True)[1]
-    side, element = np.divmod(np.flatnonzero(np.isin(place[: every.shape[1]], place[every.shape[1] :])), cells.shape[1])
+    sides = np.sort(cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1), axis=0)
+    outer = np.sort(faces, axis=0)
+    place = np.unique(np.hstack([sides, outer]), axis=1, return_inverse=True)[1]
+    side, element = np.divmod(np.flatnonzero(np.isin(place[: sides.shape[1]], place[sides.shape[1] :])), cells.shape[1])
     return np.array([element, side])
 
 
@@ -124,5 +124,5 @@ def element_lines(part, number, first, element, material):
 
 def surface_lines(part, name, faces, element):
     """Surface `name` of outer faces ``(corners, k)``."""
-    found = sides_of(part.cells, faces)
-    return [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *(f"{element + j + 1}, S{s + 1}" for j, s in found.T.tolist())]
+    sides = sides_of(part.cells, faces)
+    return [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *(f"{element + j + 1}, S{s + 1}" for j, s in sides.T.tolist())]

@@ -25,9 +25,9 @@ def zone_forces(mesh):
         ends = np.linspace(middle[2].min(), middle[2].max(), ALONG + 1)[1:-1]
         zone = np.searchsorted(np.linspace(0.0, 1.0 - NEAR_TIP, ACROSS + 1)[1:], place) * ALONG + np.searchsorted(ends, middle[2])
         sign = _to_tooth(mesh, faces[1, :, 0], forces[:, :, 0].sum(axis=0))
-        for own in (np.flatnonzero(zone == k) for k in range(ACROSS * ALONG)):
-            if own.size:
-                out.append(_apart(count, faces[:, :, own], sign * forces[:, :, own]))
+        for in_zone in (np.flatnonzero(zone == k) for k in range(ACROSS * ALONG)):
+            if in_zone.size:
+                out.append(_apart(count, faces[:, :, in_zone], sign * forces[:, :, in_zone]))
     return np.column_stack(out) if out else np.zeros((3 * count, 0))
 
 

@@ -16,7 +16,7 @@ from ..material import Material
 
 GAUSS_3 = (np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)]), np.array([5.0, 8.0, 5.0]) / 9)
 STRAIGHT = 1e-12  # edges whose middle is closer to that of their chord, by the size of the mesh
-LEAF = 24  # triangles that `Body.between` puts together at once, and up to twice as many
+LEAF = 24  # triangles that `Body.between` assembles at a time, at least; at most twice as many
 
 
 class Body:

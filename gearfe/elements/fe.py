@@ -59,8 +59,8 @@ def hats(section_, tooth, *, corner=False, tilt=0.0):
     knots = hat_knots(arc, corner=corner)
     first = np.minimum(SPAN * np.arange(knots.shape[1]), roll.size - 1 - 2 * SPAN)
     if tilt:
-        own = _leans(gear, knots)
-        knots, first = knots[:, own], first[own]
+        numbers = _leans(gear, knots)
+        knots, first = knots[:, numbers], first[numbers]
 
     def height(s):
         start, top, stop = knots[:, :, None, None]
@@ -109,8 +109,8 @@ def turned(vectors, angle):
 def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
     """Section of `gear` meshed for loads on the teeth `loaded` and for reading displacements on the teeth `read`.
 
-    `refine` divides every edge length of `EDGES`; of the whole gear or of so many `teeth` on a plain rim, with `cracks`, as in
-    `geometry.mesh.section_mesh.section`.
+    `refine` divides every edge length of `EDGES`. It is the section of the whole gear, or of a number of `teeth` on a plain rim,
+    with `cracks`, as in `geometry.mesh.section_mesh.section`.
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
@@ -141,14 +141,14 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
     body = Body(mesh.mesh, material, state=state)
     on = {0: hats(mesh, 0, corner=True)} | {tooth: hats(mesh, tooth) for tooth in range(1, neighbours + 1)}
     tilted = _tilted(mesh, 0)
-    influence, at = _between(body, [one.load for one in (*on.values(), *tilted)])
+    influence, at = _between(body, [part.load for part in (*on.values(), *tilted)])
     loaded, c = on[0], half_plane(material, state)
-    near, own = own_tooth(loaded, influence[at[0], at[0]], c)
+    near, block = own_tooth(loaded, influence[at[0], at[0]], c)
     leans = _leaning(gear, loaded, influence, at[0], at[-2:], c)
     far = {(0, k): RectBivariateSpline(loaded.arc, on[k].arc, influence[at[0], at[k]]) for k in on if k}
     limits = loaded.arc[0], loaded.arc[-1]
     return Flexibility(
-        gear, {0: near}, far, {0: own}, limits, refine, 2 * mesh.mesh.doflocs.shape[1], basis=basis(loaded), leans={0: leans}
+        gear, {0: near}, far, {0: block}, limits, refine, 2 * mesh.mesh.doflocs.shape[1], basis=basis(loaded), leans={0: leans}
     )
 
 
@@ -167,9 +167,9 @@ def _leans(gear, knots):
 
 def _leaning(gear, on, influence, plain, tilted, coefficient):
     """What `leaning` gives of a tooth with hats `on`, from the influence of all loads and where these and the tilted ones are."""
-    own = _leans(gear, on.knots)
-    local, found = coefficient * np.diag(hat_logarithm(on.knots[:, own], on.knots[:, own])), np.diag(influence)
-    return leaning(on.arc[own], found[plain][own] - local, *(found[one] - local for one in tilted))
+    numbers = _leans(gear, on.knots)
+    local, diagonal = coefficient * np.diag(hat_logarithm(on.knots[:, numbers], on.knots[:, numbers])), np.diag(influence)
+    return leaning(on.arc[numbers], diagonal[plain][numbers] - local, *(diagonal[part] - local for part in tilted))
 
 
 def _between(body, loads):
@@ -190,29 +190,29 @@ def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state=
     body = Body(mesh.mesh, material, state=state)
     on = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
     faces = _face_columns(mesh)
-    tilted = [one for tooth in solved for one in _tilted(mesh, tooth)]
-    influence, at = _between(body, [*(on[tooth].load for tooth in solved), faces, *(one.load for one in tilted)])
+    tilted = [part for tooth in solved for part in _tilted(mesh, tooth)]
+    influence, at = _between(body, [*(on[tooth].load for tooth in solved), faces, *(part.load for part in tilted)])
     pairs = zip(solved, at[len(solved) + 1 :: 2], at[len(solved) + 2 :: 2], strict=True)
-    leaned = {tooth: own for tooth, *own in pairs}
+    leaned = {tooth: blocks for tooth, *blocks in pairs}
     at, opened = dict(zip(solved, at, strict=False)), at[len(solved)]
     opening = {tooth: influence[opened, at[tooth]] for tooth in solved}
     apart = influence[opened, opened]
     stiffness = np.linalg.inv(apart)
-    near, own, far, leans = {}, {}, {}, {}
+    near, blocks, far, leans = {}, {}, {}, {}
     for tooth in solved:
         shut = influence.copy()
-        for one in (at[tooth], *leaned[tooth]):
-            shut[one, one] -= influence[opened, one].T @ stiffness @ influence[opened, one]
+        for part in (at[tooth], *leaned[tooth]):
+            shut[part, part] -= influence[opened, part].T @ stiffness @ influence[opened, part]
         leans[tooth] = _leaning(gear, on[tooth], shut, at[tooth], leaned[tooth], half_plane(material, state))
         for other in solved:
             glued = influence[at[tooth], at[other]] - opening[tooth].T @ stiffness @ opening[other]
             if other == tooth:
-                near[tooth], own[tooth] = own_tooth(on[tooth], glued, half_plane(material, state))
+                near[tooth], blocks[tooth] = own_tooth(on[tooth], glued, half_plane(material, state))
             elif (other - tooth) % gear.z <= gear.z // 2:
                 far[tooth, other] = RectBivariateSpline(on[tooth].arc, on[other].arc, glued)
     seam = SeamFaces({t: CubicSpline(on[t].arc, opening[t].T) for t in solved}, apart, stiffness)
     limits = on[solved[0]].arc[0], on[solved[0]].arc[-1]
-    return Flexibility(gear, near, far, own, limits, refine, faces.shape[0], healthy, seam, basis(on[solved[0]]), leans)
+    return Flexibility(gear, near, far, blocks, limits, refine, faces.shape[0], healthy, seam, basis(on[solved[0]]), leans)
 
 
 def _face_columns(mesh):
@@ -243,9 +243,9 @@ def own_tooth(on, influence, coefficient):
     """
     smooth = influence - coefficient * hat_logarithm(on.knots, on.knots)
     arc, wide, single = on.arc[:-1], wider(on.knots[:, :-1]), np.diag(smooth)[:-1]  # without the corner's
-    middle, found = wide @ arc, np.einsum("ij,jk,ik->i", wide, smooth[:-1, :-1], wide)
-    inner = CubicSpline(middle[1:-1], found[1:-1])
-    found[[0, -1]] = single[[0, -1]] + inner(arc[[1, -2]]) - single[[1, -2]]
-    near = CubicSpline(middle, found)
-    more = near(arc) - single
-    return near, (smooth + smooth.T) / 2 + np.diag(np.append(more, more[-1]))
+    middle, values = wide @ arc, np.einsum("ij,jk,ik->i", wide, smooth[:-1, :-1], wide)
+    inner = CubicSpline(middle[1:-1], values[1:-1])
+    values[[0, -1]] = single[[0, -1]] + inner(arc[[1, -2]]) - single[[1, -2]]
+    near = CubicSpline(middle, values)
+    excess = near(arc) - single
+    return near, (smooth + smooth.T) / 2 + np.diag(np.append(excess, excess[-1]))

@@ -35,8 +35,8 @@ class Patches:
     knots : ndarray, shape (3, arcs)
         Start, top and end of each hat along the flank, as of `geometry.tooth.profile.arc_at` [mm].
     modes : int
-        So many functions along the width, the Legendre polynomials ``P_a(2 z / b - 1) / b``, of which the first is a uniform line
-        load of unit resultant.
+        Number of functions along the width: the Legendre polynomials ``P_a(2 z / b - 1) / b``, of which the first is a uniform
+        line load of unit resultant.
     """
 
     teeth: tuple
@@ -90,9 +90,9 @@ class Influence:
     @classmethod
     def between(cls, patches, matrix, dofs):
         """From the whole matrix between the patches, then the zones."""
-        shape, own = patches.shape, math.prod(patches.shape)
-        within = matrix[:own, :own].reshape(*shape, *shape)
-        return cls(within, dofs, matrix[own:, :own].reshape(-1, *shape), matrix[own:, own:])
+        shape, size = patches.shape, math.prod(patches.shape)
+        within = matrix[:size, :size].reshape(*shape, *shape)
+        return cls(within, dofs, matrix[size:, :size].reshape(-1, *shape), matrix[size:, size:])
 
 
 def mesh_patches(gear, patches, *, cracks=(), refine=1.0, per_hat=4, layer=None, sizes=None, fine=()):
@@ -150,18 +150,18 @@ def helicoid_normal(gear, roll, z, turn=0.0):
 def points_between(ends, cuts, count):
     """Gauss points between all of `ends` and `cuts`: interval of `ends`, place in it (-1..1), place and weight."""
     inner = [c for c in cuts if ends[0] < c < ends[-1]]
-    every = np.unique(np.concatenate([ends, inner]))
-    every = every[np.concatenate([[True], np.diff(every) > 1e-12 * (ends[-1] - ends[0])])]
+    breaks = np.unique(np.concatenate([ends, inner]))
+    breaks = breaks[np.concatenate([[True], np.diff(breaks) > 1e-12 * (ends[-1] - ends[0])])]
     gauss, weight = legendre.leggauss(count)
-    half = np.diff(every)[:, None] / 2
-    place = ((every[1:] + every[:-1])[:, None] / 2 + half * gauss).ravel()
+    half = np.diff(breaks)[:, None] / 2
+    place = ((breaks[1:] + breaks[:-1])[:, None] / 2 + half * gauss).ravel()
     interval = np.clip(np.searchsorted(ends, place) - 1, 0, ends.size - 2)
     local = 2 * (place - ends[interval]) / (ends[interval + 1] - ends[interval]) - 1
     return interval, local, place, (half * weight).ravel()
 
 
 def planned(mesh, patches, more=0):
-    """`gearfe.elements.solver.Plan` of the influence between patches, with so many `more` right-hand sides."""
+    """`gearfe.elements.solver.Plan` of the influence between patches, with `more` right-hand sides beside theirs."""
     free = mesh.points.shape[1] - np.unique(mesh.held).size
     return plan(3 * free, columns=math.prod(patches.shape) + more)
 
@@ -192,11 +192,11 @@ def influence(mesh, material, patches, *, tell=None, zones=None):
     Influence
     """
     patches.check(mesh.gear)
-    made = planned(mesh, patches, 0 if zones is None else zones.shape[1])
+    cost = planned(mesh, patches, 0 if zones is None else zones.shape[1])
     if tell:
-        tell(made)
+        tell(cost)
     load, free, rows = loads_and_rows(mesh, patches, zones)
-    matrix = factor(assemble(mesh.points, mesh.cells, material, free), made).gram(load[rows])
+    matrix = factor(assemble(mesh.points, mesh.cells, material, free), cost).gram(load[rows])
     if not np.isfinite(matrix).all():
         raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
     return Influence.between(patches, matrix, rows.size)

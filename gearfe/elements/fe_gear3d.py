@@ -26,7 +26,7 @@ SIZES = {"flank": 0.13, "corner": 0.07, "fillet": 0.17, "root": 0.27, "near": 0.
 
 
 def axial_modes(width, m_n):
-    """Highest degree of the patches along a `width` [mm]: 0.8 per normal module and 2, at least 8: 2 more than `ritz3d` keeps."""
+    """Highest degree of the patches along a `width` [mm]: 0.8 per normal module plus 2, at least 8; `ritz3d` keeps 2 less."""
     return max(8, math.ceil(0.8 * width / m_n) + 2)
 
 
@@ -43,8 +43,8 @@ class WholeGear:
     neighbours : int
         How many following teeth may carry load at the same time.
     degree : int, optional
-        Of the patches along the width; default `axial_modes`, `less` so many. The highest that the layers cannot carry, at most
-        two, are dropped (seen on the gear without cracks).
+        Of the patches along the width, before `less` is taken off; default `axial_modes`. At most two of the highest degrees are
+        dropped if the layers cannot carry them (seen on the gear without cracks).
     refine : float
         Divides all edge lengths and the layers.
     section : float, optional
@@ -84,11 +84,11 @@ class WholeGear:
     def plan(self):
         """`gearfe.elements.solver.Plan` of its `solid_flexibility`, refused if it does not fit; costs its mesh alone."""
         mesh, patches = self.meshed()
-        more = zone_forces(mesh).shape[1]
+        columns = zone_forces(mesh).shape[1]
         if self.shaft is not None:
             mesh, discs = on_stubs(mesh, self.shaft)
-            more += discs.shape[1]
-        return planned(mesh, patches, more)
+            columns += discs.shape[1]
+        return planned(mesh, patches, columns)
 
 
 def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
@@ -113,18 +113,18 @@ def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
     gear, (mesh, patches) = whole.gear, whole.meshed()
     teeth, degree = patches.teeth, patches.modes - 1
     solve = influence if whole.shaft is None else partial(integral_influence, shaft=whole.shaft)
-    found = solve(mesh, material, patches, tell=tell, zones=zone_forces(mesh))
+    solved = solve(mesh, material, patches, tell=tell, zones=zone_forces(mesh))
     unit = np.tile(np.sqrt((2 * np.arange(degree + 1) + 1) * gear.b), patches.knots.shape[1])  # from P_a / b to orthonormal
     size = unit.size
-    matrix = found.matrix.reshape(len(teeth), size, len(teeth), size) * unit[:, None, None] * unit
+    matrix = solved.matrix.reshape(len(teeth), size, len(teeth), size) * unit[:, None, None] * unit
     kept = _resolved(whole, material, matrix[0, :, 0], degree, cache) if healthy is None else healthy.degree
-    own = np.flatnonzero(np.arange(size) % (degree + 1) <= kept)
-    between = {(i, j): matrix[a][np.ix_(own, [b], own)][:, 0] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
-    made = parted(gear, material, kept, between, found.dofs, healthy, cache=cache)
-    if not found.mutual.size:
-        return made
-    opening = {tooth: (found.opening[:, k].reshape(-1, size) * unit)[:, own] for k, tooth in enumerate(teeth)}
-    return replace(made, seam=Faces(opening, found.mutual))
+    carried = np.flatnonzero(np.arange(size) % (degree + 1) <= kept)
+    between = {(i, j): matrix[a][np.ix_(carried, [b], carried)][:, 0] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
+    flexibility = parted(gear, material, kept, between, solved.dofs, healthy, cache=cache)
+    if not solved.mutual.size:
+        return flexibility
+    opening = {tooth: (solved.opening[:, k].reshape(-1, size) * unit)[:, carried] for k, tooth in enumerate(teeth)}
+    return replace(flexibility, seam=Faces(opening, solved.mutual))
 
 
 def _resolved(whole, material, own, degree, cache):

@@ -8,7 +8,7 @@ from geometry.kept import keeping
 from .hexahedron import TWENTY, gauss, shapes
 from .tetrahedron import EDGES, INNER, OUTER
 
-LEFT = 0.05  # a bent tet keeps at least such a part of the straight one's Jacobian
+LEFT = 0.05  # least Jacobian of a bent tet over that of the straight one
 NEAR = 0.975  # of the way to a hexahedron's corner: quads with a straight angle there are no fault
 HALVINGS = 5  # of a bend, before the edge is left straight
 
@@ -37,8 +37,8 @@ def jacobians(points, cells):
     slopes = _slopes(len(cells))
     out = np.empty(cells.shape[1])
     for start in range(0, cells.shape[1], 5000):
-        some = slice(start, start + 5000)
-        out[some] = np.linalg.det(np.einsum("dkm,kcq->mqdc", points[:, cells[:, some]], slopes, optimize=True)).min(axis=1)
+        chunk = slice(start, start + 5000)
+        out[chunk] = np.linalg.det(np.einsum("dkm,kcq->mqdc", points[:, cells[:, chunk]], slopes, optimize=True)).min(axis=1)
     return out
 
 

@@ -107,8 +107,8 @@ def assemble(points, cells, material, free, element=element_stiffness):
         local = element(points[:, part], lam, mu).transpose(0, 1, 3, 2, 4)
         place = number[part].T
         row, column = np.broadcast_arrays(place[:, :, None], place[:, None, :])
-        wanted = (row >= column) & (column >= 0)
-        key, block = _summed(row[wanted] * free.size + column[wanted], local[wanted].reshape(-1, 9))
+        lower = (row >= column) & (column >= 0)
+        key, block = _summed(row[lower] * free.size + column[lower], local[lower].reshape(-1, 9))
         keys.append(key)
         blocks.append(block)
     key, block = _summed(np.concatenate(keys), np.concatenate(blocks))

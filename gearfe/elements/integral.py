@@ -32,16 +32,16 @@ def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None)
     mesh, discs = on_stubs(mesh, shaft)
     load, _, rows = loads_and_rows(mesh, patches, zones)
     columns = load.shape[1]
-    made = planned(mesh, patches, columns - math.prod(patches.shape) + discs.shape[1])
+    cost = planned(mesh, patches, columns - math.prod(patches.shape) + discs.shape[1])
     if tell:
-        tell(made)
+        tell(cost)
     whole = assemble(mesh.points, mesh.cells, material, np.arange(mesh.points.shape[1]))
     moved = whole @ discs + whole.T @ discs - whole.diagonal()[:, None] * discs  # of which the lower triangle is kept
-    found = factor(whole[rows][:, rows].tocsc(), made).gram(np.hstack([load[rows], -moved[rows]]))
-    own, cross, back = found[:columns, :columns], found[:columns, columns:], found[columns:, columns:]
+    gram = factor(whole[rows][:, rows].tocsc(), cost).gram(np.hstack([load[rows], -moved[rows]]))
+    direct, cross, back = gram[:columns, :columns], gram[:columns, columns:], gram[columns:, columns:]
     used = np.flatnonzero(np.abs(discs).max(axis=0))
     stiff = discs.T @ moved - back + stub_stiffness(shaft, mesh.gear.b)
-    total = own + cross[:, used] @ np.linalg.solve(stiff[np.ix_(used, used)], cross[:, used].T)
+    total = direct + cross[:, used] @ np.linalg.solve(stiff[np.ix_(used, used)], cross[:, used].T)
     return Influence.between(patches, (total + total.T) / 2, rows.size)
 
 
@@ -66,10 +66,10 @@ def on_stubs(mesh, shaft):
                 f"shaft: its radius {stub:g} mm beside the gear is inside of the centre hole, r_bore = {gear.r_bore:g} mm"
             )
         x, y = points[0, disc], points[1, disc]
-        own = motions[disc, :, MOTIONS * k : MOTIONS * (k + 1)]
-        own[:, [0, 1, 2], [0, 1, 2]] = 1.0
-        own[:, 2, 3], own[:, 2, 4] = y, -x  # turns about x and y move the disc along z, a turn about z in its plane
-        own[:, 0, 5], own[:, 1, 5] = -y, x
-        motions[disc, :, MOTIONS * k : MOTIONS * (k + 1)] = own
+        rigid = motions[disc, :, MOTIONS * k : MOTIONS * (k + 1)]
+        rigid[:, [0, 1, 2], [0, 1, 2]] = 1.0
+        rigid[:, 2, 3], rigid[:, 2, 4] = y, -x  # turns about x and y move the disc along z, a turn about z in its plane
+        rigid[:, 0, 5], rigid[:, 1, 5] = -y, x
+        motions[disc, :, MOTIONS * k : MOTIONS * (k + 1)] = rigid
         held.append(disc)
     return replace(mesh, held=np.concatenate(held)), motions.reshape(-1, 2 * MOTIONS)

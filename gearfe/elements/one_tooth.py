@@ -53,11 +53,11 @@ def check_load_along(line_load, gear, material):
         return check_line_load(line_load, gear, material)
     z, b = np.linspace(0.0, gear.b, SAMPLES), gear.b
     try:
-        found = np.asarray(line_load(z))
-        load = np.broadcast_to(found, z.shape)
+        values = np.asarray(line_load(z))
+        load = np.broadcast_to(values, z.shape)
     except (TypeError, ValueError) as error:
         raise ValueError(f"line_load at {SAMPLES} heights z: {error}; give a function of an array of heights [mm]") from error
-    if found.dtype.kind not in "iuf" or not np.isfinite(load).all() or load.min() < 0 or not load.max() > 0:
+    if values.dtype.kind not in "iuf" or not np.isfinite(load).all() or load.min() < 0 or not load.max() > 0:
         raise ValueError(
             f"line_load from z = 0 to {b:g} mm gives {load[0]!s} to {load[-1]!s}, but a tooth is pushed: give numbers >= 0 "
             "[N/mm], somewhere > 0"

@@ -36,8 +36,8 @@ def finer_section(found, material, cracks=(), *, refine, cache=True):
 
     def lacking(tooth):
         """Displacement ``(PLACES, PLACES)`` of the hats under a unit force per width that the section lacks [mm**2/N]."""
-        own = tuple(replace(whole(c), tooth=0) for c in cracks if c.tooth % gear.z == tooth)
-        case = gear, material, own
+        on_tooth = tuple(replace(whole(c), tooth=0) for c in cracks if c.tooth % gear.z == tooth)
+        case = gear, material, on_tooth
         return kept.get(("section error", *case, refine), lambda: plane_hats(*case, FINER * refine) - plane_hats(*case, refine))
 
     near = {tooth: near + np.kron(lacking(tooth), even) for tooth, near in found.near.items()}

@@ -45,7 +45,7 @@ def dissects():
 
 
 def plan(unknowns, *, columns=0, free=None):
-    """What the factor of a three-dimensional body takes, refused if it does not fit.
+    """Memory and time that the factor of a three-dimensional body takes; RuntimeError if it does not fit.
 
     The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers, all of which are read for each
     right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The constants are measured on
@@ -78,13 +78,13 @@ def plan(unknowns, *, columns=0, free=None):
     first, second, each = SECONDS[ordered]
     numbers = n ** (4 / 3)
     seconds = first * n + second * n**2 + each * columns * numbers
-    made = Plan(n, matrix * n + factored * numbers + 24.0 * columns * n, seconds, free)
-    if made.memory > free:
+    cost = Plan(n, matrix * n + factored * numbers + 24.0 * columns * n, seconds, free)
+    if cost.memory > free:
         raise RuntimeError(
-            f"{n} unknowns need about {made.memory / 1e9:.3g} GB and {float(f'{made.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "
+            f"{n} unknowns need about {cost.memory / 1e9:.3g} GB and {float(f'{cost.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "
             f"are free: coarsen the mesh (a smaller refine), or use a machine with more memory"
         )
-    return made
+    return cost
 
 
 def factor(matrix, plan_=None):
@@ -127,15 +127,15 @@ def factor(matrix, plan_=None):
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
     def solve(rhs, part=A):
-        given = np.reshape(rhs, (matrix.shape[0], -1))
-        out, width = np.empty(given.shape, order="F"), max(1, BLOCK // (8 * matrix.shape[0]))
-        for start in range(0, given.shape[1], width):
-            own = slice(start, start + width)
-            block = dense(np.asfortranarray(given[:, own], dtype=float))
+        sides = np.reshape(rhs, (matrix.shape[0], -1))
+        out, width = np.empty(sides.shape, order="F"), max(1, BLOCK // (8 * matrix.shape[0]))
+        for start in range(0, sides.shape[1], width):
+            span = slice(start, start + width)
+            block = dense(np.asfortranarray(sides[:, span], dtype=float))
             if part == L:
                 cholmod.solve(factored, block, sys=P)
             # as sparse columns CHOLMOD takes several at once, so that the factor is read less often: half the time
-            out[:, own] = np.asarray(dense(cholmod.spsolve(factored, sparse(block), sys=part)))
+            out[:, span] = np.asarray(dense(cholmod.spsolve(factored, sparse(block), sys=part)))
         return out.reshape(np.shape(rhs))
 
     def gram(rhs):

@@ -26,11 +26,11 @@ def second_order(points, cells):
     def key(a, b):
         return np.minimum(a, b) * count + np.maximum(a, b)
 
-    every = np.array([key(cells[a], cells[b]) for a, b in EDGES])
-    edges, place = np.unique(every, return_inverse=True)
+    keys = np.array([key(cells[a], cells[b]) for a, b in EDGES])
+    edges, place = np.unique(keys, return_inverse=True)
     first, second = np.divmod(edges, count)
     nodes = np.hstack([points, (points[:, first] + points[:, second]) / 2])
-    return nodes, np.vstack([cells, count + place.reshape(every.shape)]), lambda a, b: count + np.searchsorted(edges, key(a, b))
+    return nodes, np.vstack([cells, count + place.reshape(keys.shape)]), lambda a, b: count + np.searchsorted(edges, key(a, b))
 
 
 def nodes_of(faces, number):

@@ -17,10 +17,10 @@ from scipy.optimize import nnls
 
 from ..flexibility.hertz import half_width
 
-STEPS, SINGLE = 40, 400  # of Newton and the active set, changed all at once and one by one
+STEPS, SINGLE = 40, 400  # most steps of Newton and the active set, changed all at once; then one by one
 HOLD = 1e-11  # of the load, by mm: springs on all motions, so that a planet out of mesh stays somewhere
 ROUNDING = 1e-12  # of the largest distance: overlaps below it are rounding
-SETTLED = 1e-11  # last change of a force, in those of all
+SETTLED = 1e-11  # largest last change of a force, as a part of the load
 STIFF = 1e6  # of the balance in the start by non-negative least squares
 
 
@@ -44,9 +44,9 @@ class Problem(NamedTuple):
 
         `closing` ``(n + m, motions)``.
         """
-        more = flexibility.shape[0] - self.gap.size
+        count = flexibility.shape[0] - self.gap.size
         free = {"gap": 0.0, "coefficient": 0.0, "radius": 1.0, "modulus": 1.0, "tilt": 0.0}
-        values = {name: np.append(getattr(self, name), np.full(more, value)) for name, value in free.items()}
+        values = {name: np.append(getattr(self, name), np.full(count, value)) for name, value in free.items()}
         return self._replace(flexibility=flexibility, closing=closing, **values)
 
 
@@ -59,9 +59,9 @@ def balance(problem: Problem) -> tuple[NDArray[np.float64], NDArray[np.float64]]
     unit = np.abs(problem.load).max()
     active = _likely(problem, unit)
     for most, at_once in ((STEPS, True), (SINGLE, False)):
-        found = _settled(problem, active, unit, most, at_once)
-        if found is not None:
-            return found
+        settled = _settled(problem, active, unit, most, at_once)
+        if settled is not None:
+            return settled
     raise RuntimeError("the loads of the set's meshes did not settle: change the load or the position a little")
 
 
@@ -70,10 +70,10 @@ def _settled(problem, active, unit, most, at_once):
     floor = 1e-9 * unit
     force = np.where(active, unit / max(np.count_nonzero(active), 1), 0.0)
     for _ in range(most):
-        found = _newton(problem, active, force, floor)
-        if found is None:
+        solution = _newton(problem, active, force, floor)
+        if solution is None:
             return None
-        new, motion = found
+        new, motion = solution
         free = problem.flexibility @ np.maximum(new, 0.0) + problem.gap - problem.closing @ motion
         pulls, overlaps = active & (new < 0), ~active & (free < -ROUNDING * np.abs(free).max())
         flips = pulls | overlaps

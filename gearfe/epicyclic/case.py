@@ -19,7 +19,7 @@ from .rim_supports import check_support
 from .standing import assembled
 
 GEARS = ("sun", "planet", "ring")
-LARGEST = 0.1  # modules: position errors beyond are no errors of a gear that runs
+LARGEST = 0.1  # modules: larger position errors are probably given in another unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,13 +54,13 @@ class PlanetaryCase:
         tooth 0 of the sun meets tooth 0 of planet 0, see `gearfe.epicyclic.standing`.
     damage : dict, optional
         Lists of cracks through the whole width ``{"sun": [Crack(...)], ...}``, by the same names. The loaded side of a planet's
-        tooth is the one that the sun loads. A crack changes how the meshes near it yield to their own loads; that it also changes
-        how they feel the loads of other meshes is left out. A ring that bends may have none.
+        tooth is the one that the sun loads. One crack to a side of a tooth. In what a gear feels of its other meshes, and in how
+        a ring bends, faces of cracks are free; in the mesh that loads their tooth they do not pass through each other.
 
     Raises
     ------
     ValueError
-        If the set cannot be; the message says what to change.
+        If the set is impossible; the message says what to change.
     """
 
     gears: PlanetarySet
@@ -76,7 +76,7 @@ class PlanetaryCase:
     pairs: tuple[GearPair, GearPair] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Bring all into one form, and refuse what cannot be."""
+        """Bring all values into one form; raise ValueError for a set that is impossible."""
         if not isinstance(self.gears, PlanetarySet):
             raise ValueError(f"gears = {self.gears!r}, but give a PlanetarySet")
         put = object.__setattr__
@@ -116,7 +116,7 @@ class PlanetaryCase:
     @property
     def width(self) -> float:
         """Face width that all gears have in common [mm]."""
-        return float(min(one.b for one in (self.gears.sun, self.gears.planet, self.gears.ring)))
+        return float(min(gear.b for gear in (self.gears.sun, self.gears.planet, self.gears.ring)))
 
     @property
     def ring_gear(self) -> Any:
@@ -124,17 +124,17 @@ class PlanetaryCase:
         return self.pairs[1].gear_2
 
     def _errors(self):
-        given = np.zeros((self.planets, 2)) if self.errors is None else numbers("errors", self.errors, " [mm]")
-        if given.shape != (self.planets, 2) or not np.isfinite(given).all():
+        errors = np.zeros((self.planets, 2)) if self.errors is None else numbers("errors", self.errors, " [mm]")
+        if errors.shape != (self.planets, 2) or not np.isfinite(errors).all():
             raise ValueError(
-                f"errors of shape {given.shape}, but give (outwards, clockwise) for each of {self.planets} planets [mm]"
+                f"errors of shape {errors.shape}, but give (outwards, clockwise) for each of {self.planets} planets [mm]"
             )
         most = LARGEST * self.gears.sun.m_n
-        if np.abs(given).max() > most:
+        if np.abs(errors).max() > most:
             raise ValueError(
-                f"errors up to {np.abs(given).max():g} mm, more than a tenth of the module: amounts are in mm (20 um are 0.02)"
+                f"errors up to {np.abs(errors).max():g} mm, more than a tenth of the module: amounts are in mm (20 um are 0.02)"
             )
-        return tuple(map(tuple, given.tolist()))
+        return tuple(map(tuple, errors.tolist()))
 
     def _by_gear(self, what, given, kind, *, single):
         """By gear, planets one by one: ``{"sun": ..., ("planet", i): ..., "ring": ...}``, those given only."""
@@ -144,7 +144,7 @@ class PlanetaryCase:
             raise ValueError(f"{what} = {given!r}, but give them by gear: {{'sun': ..., 'planet': ..., 'ring': ...}}")
         names = {"sun", "ring", *(("planet", i) for i in range(self.planets))}
         out: dict[Any, Any] = {}
-        for name in sorted(given, key=lambda one: one != "planet"):
+        for name in sorted(given, key=lambda entry: entry != "planet"):
             if name not in names and name != "planet":
                 raise ValueError(f"{what} of {name!r}, but give 'sun', 'planet', 'ring' or ('planet', 0 ... {self.planets - 1})")
             value = given[name]
@@ -152,23 +152,21 @@ class PlanetaryCase:
                 if not isinstance(value, (list, tuple)):
                     raise ValueError(f"{what} of {name!r} = {value!r}, but give a list of {kind.__name__}, even of one")
                 value = tuple(value)
-            for one in (value,) if single else value:
-                if not isinstance(one, kind):
-                    raise ValueError(f"{what} of {name!r}: {one!r} is no {kind.__name__}; the section has no other")
+            for entry in (value,) if single else value:
+                if not isinstance(entry, kind):
+                    raise ValueError(f"{what} of {name!r}: {entry!r} is no {kind.__name__}; the section has no other")
             out |= {("planet", i): value for i in range(self.planets)} if name == "planet" else {name: value}
         return out
 
     def _check_faults(self):
-        for name, one in self.flanks.items():
-            if one.wide:
+        for name, flank in self.flanks.items():
+            if flank.wide:
                 raise ValueError(f"flanks of {name!r} change along the width, but a section knows none: leave that out")
-            if one.eccentricity and name not in ("sun", "ring"):
+            if flank.eccentricity and name not in ("sun", "ring"):
                 raise ValueError(f"eccentricity of {name!r}: give that of a planet as pitch deviations")
-            one.on(self.gear_of(name))
-        for name, found in self.damage.items():
-            check_through(found, "the section of a planetary set")
-            if name == "ring" and found and self.ring != "held":
-                raise ValueError("a crack in a ring that bends is not modelled: give ring = 'held', or no crack there")
+            flank.on(self.gear_of(name))
+        for cracks in self.damage.values():
+            check_through(cracks, "the section of a planetary set")
 
     def gear_of(self, name: Any) -> Any:
         """Gear by its name."""

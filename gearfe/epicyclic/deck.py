@@ -62,13 +62,18 @@ class SetDeck:
             rows = np.column_stack([np.append(outer[:, i], -1.0), np.append(inner[:, i], 1.0)])
             right = -np.append(sums[1 + i], moments[1 + i] / gears.planet.r_b)
             meshes.append(np.linalg.lstsq(rows, right, rcond=None)[0])
-        found = np.array(meshes).T
-        return {"sun": moments[0] / gears.sun.r_b, "ring": moments[-1] / gears.ring.r_b, "outer": found[0], "inner": found[1]}
+        loads = np.array(meshes).T
+        return {
+            "sun": moments[0] / gears.sun.r_b,
+            "ring": moments[-1] / gears.ring.r_b,
+            "outer": loads[0],
+            "inner": loads[1],
+        }
 
     def moved(self, path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad]; how they move outwards, clockwise ``(n, 2)`` [mm]."""
-        found = read_rows(path, "displacements")
-        u = np.array([found[n] for n in self.rim.tolist()])[:, :2]
+        displacements = read_rows(path, "displacements")
+        u = np.array([displacements[n] for n in self.rim.tolist()])[:, :2]
         angle = np.arctan2(*self.around)
         sin, cos = np.sin(angle), np.cos(angle)
         out = np.column_stack([sin * u[:, 0] + cos * u[:, 1], cos * u[:, 0] - sin * u[:, 1]])
@@ -125,15 +130,15 @@ def write_set_inp(
     for number, (gear, material, centre, angle, (turn, shift)) in enumerate(bodies):
         rolls = _rolls(gear, [side for pair in pressed for side in pair if side["body"] == number], per_width, refine)
         edge = edge_lengths(gear, EDGES, refine)
-        made, fixed = meshed(case, gear, rolls, edge["fillet"], edge["near"], edge["far"], 0.05 / refine)
-        points = np.array(posed(made.mesh.doflocs, angle, 1))
-        surfaces = {_surface(number, *flank): flank for flank in made.flank}
+        section, fixed = meshed(case, gear, rolls, edge["fillet"], edge["near"], edge["far"], 0.05 / refine)
+        points = np.array(posed(section.mesh.doflocs, angle, 1))
+        surfaces = {_surface(number, *flank): flank for flank in section.flank}
 
         def moved(place, turn=turn, shift=shift):
             return np.array([place[1] * turn, -place[0] * turn]) + np.reshape(shift, (2, 1))
 
-        text.add(number, made, material, points, centre, fixed, surfaces, moved)
-    edge_of_ring = held_nodes(made.mesh)
+        text.add(number, section, material, points, centre, fixed, surfaces, moved)
+    edge_of_ring = held_nodes(section.mesh)
     rim, around = edge_of_ring + text.count - points.shape[1] + 1, points[:, edge_of_ring]
     head = ["** gearfe: planetary set, plane strain; mm, N, MPa, per mm of width", "*NODE, NSET=ALL"]
     step = pressing(penalty * max(m.E for m in case.material), _contacts(pressed), text.motions, "*STEP, INC=200")

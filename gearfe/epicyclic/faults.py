@@ -20,17 +20,17 @@ def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, b
     # the pinion's tooth in pair j is tooth j, of a planet in a ring -j; the wheel's is first - j
     teeth = [np.arange(gear.z) * (-1 if inner and k == 0 else 1) for k, gear in enumerate((pair.gear_1, pair.gear_2))]
     teeth[1] = first - teeth[1]
-    own = {}
+    pair_flanks = {}
     for k, (side, flank, tooth) in enumerate(zip(("pinion", "wheel"), flanks, teeth, strict=True)):
         back = -1 if inner and k == 0 else 1  # a tooth that lies behind on one side is ahead on the other
         moved = tuple(back * flank.pitch[t % len(teeth[k])] for t in tooth.tolist()) if flank.pitch else ()
         scaled = tuple(flank.tooth_scale[t % len(teeth[k])] for t in tooth.tolist()) if flank.tooth_scale else ()
         centre = flank.eccentric_tooth if k == 0 else first - flank.eccentric_tooth
-        own[side] = replace(flank, pitch=moved, tooth_scale=scaled, eccentric_tooth=centre)
-    forms = flank_forms(pair, own)
-    one, two = (case.damage.get(name, ()) for name in names)
+        pair_flanks[side] = replace(flank, pitch=moved, tooth_scale=scaled, eccentric_tooth=centre)
+    forms = flank_forms(pair, pair_flanks)
+    cracks_1, cracks_2 = (case.damage.get(name, ()) for name in names)
     if inner:  # mirrored: what the sun loads is unloaded here
-        one = tuple(replace(c, tooth=-c.tooth, side="unloaded" if c.side == "loaded" else "loaded") for c in one)
-    two = tuple(replace(c, tooth=c.tooth - first) for c in two)
-    differs = bool(one or two) or any(form.differs for form in forms or ())
-    return forms, (one, two), differs
+        cracks_1 = tuple(replace(c, tooth=-c.tooth, side="unloaded" if c.side == "loaded" else "loaded") for c in cracks_1)
+    cracks_2 = tuple(replace(c, tooth=c.tooth - first) for c in cracks_2)
+    differs = bool(cracks_1 or cracks_2) or any(form.differs for form in forms or ())
+    return forms, (cracks_1, cracks_2), differs

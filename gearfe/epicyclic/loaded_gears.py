@@ -47,9 +47,9 @@ def meshed(case, gear, rolls, fillet, near, far, pad):
     """`Section` of a gear by its edge lengths [mm], `pad` those at the ends of a ring's pads; and its nodes that are held."""
     pads = gear.internal and case.ring != "held"
     marks = case.ring.ends(gear) if pads else ()
-    made = both_flanks(gear, rolls, fillet_size=fillet, size=near, far_size=far, marks=marks, mark_size=pad)
-    held = held_nodes(made.mesh)
-    return made, held[case.ring.covers(gear, made.mesh.doflocs[:, held])] if pads else held
+    section = both_flanks(gear, rolls, fillet_size=fillet, size=near, far_size=far, marks=marks, mark_size=pad)
+    held = held_nodes(section.mesh)
+    return section, held[case.ring.covers(gear, section.mesh.doflocs[:, held])] if pads else held
 
 
 def touching(case, stand, curves, at):
@@ -63,25 +63,27 @@ def touching(case, stand, curves, at):
         for i in range(case.planets):
             phase = float(phases[0, i])
             whole = math.floor(phase)
-            found = contacts(pair, [phase - whole])
+            candidates = contacts(pair, [phase - whole])
             load = curves.force[inner, at, i] / case.width
             force = dict(zip(curves.order.tolist(), curves.pair_force[inner, at, i].tolist(), strict=True))
             approach = curves.force[inner, at, i] / curves.k[inner, at, i] * 1e3
-            for k in np.flatnonzero(found.gap[0] < NEAR * approach).tolist():
-                tooth = int(found.order[k]) - whole
+            for k in np.flatnonzero(candidates.gap[0] < NEAR * approach).tolist():
+                tooth = int(candidates.order[k]) - whole
                 first = (-tooth if inner else tooth), int(firsts[i]) - tooth
-                width = float(half_width(load, found.radius[0, k], contact_modulus(case.material[inner : inner + 2])))
+                width = float(half_width(load, candidates.radius[0, k], contact_modulus(case.material[inner : inner + 2])))
                 sides = []
-                for which, (gear, roll) in enumerate(zip((pair.gear_1, pair.gear_2), (found.roll_1, found.roll_2), strict=True)):
+                for which, (gear, roll) in enumerate(
+                    zip((pair.gear_1, pair.gear_2), (candidates.roll_1, candidates.roll_2), strict=True)
+                ):
                     body = ((0, 1 + i), (1 + i, 1 + case.planets))[inner][which]
                     sides.append({
                         "body": body, "tooth": first[which] % gear.z, "side": 1 if inner and not which else 0,
                         "arc": float(arc_at(gear, roll[0, k])), "width": width,
-                        "roll": float(roll[0, k]), "force": force.get(int(found.order[k]), 0.0) / case.width,
+                        "roll": float(roll[0, k]), "force": force.get(int(candidates.order[k]), 0.0) / case.width,
                         "tip": abs(float(roll[0, k]) - gear.roll_a) < 1e-9 * gear.m_n,
                     })  # fmt: skip
                 out.append(sides)
-    counted = Counter((one["body"], one["tooth"], one["side"]) for pair in out for one in pair)
+    counted = Counter((side["body"], side["tooth"], side["side"]) for pair in out for side in pair)
     if max(counted.values()) > 1:
         raise ValueError("a flank touches two others here: choose another position")
     return out

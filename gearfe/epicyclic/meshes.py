@@ -65,8 +65,8 @@ class Mesh:
         """Contacts at phases by their number, as many as a load of about `line_load` [N/mm] may close."""
         new = sorted({i for i in wanted if (i, line_load) not in self._found})
         if new:
-            made = _contacts(self.contact, new, line_load)
-            self._found |= {(i, line_load): one for i, one in zip(new, made, strict=True)}
+            solved = _contacts(self.contact, new, line_load)
+            self._found |= {(i, line_load): contacts for i, contacts in zip(new, solved, strict=True)}
         return [self._found[i, line_load] for i in wanted]
 
     def alone(self, line_load: float) -> NDArray[np.float64]:
@@ -77,7 +77,7 @@ class Mesh:
 
 
 class Met(NamedTuple):
-    """`Contacts` of a mesh at one position; tooth of the pinion in pair 0, and so many pairs are ahead of the newest one."""
+    """`Contacts` of a mesh at one position, pinion tooth `first` of pair 0, and how many pairs are ahead of the newest one."""
 
     contacts: Contacts
     first: int
@@ -136,7 +136,7 @@ class Meshes:
         pair, materials = self.case.pairs[inner], self.case.material[inner : inner + 2]
         near = math.ceil(pair.eps_alpha) + sum(near_pitches(pair)) - 2
         gears = zip((pair.gear_1, pair.gear_2), materials, cracks, strict=True)
-        bodies = [flexibility(gear, m, own, neighbours=near, **self._options) for gear, m, own in gears]
+        bodies = [flexibility(gear, m, gear_cracks, neighbours=near, **self._options) for gear, m, gear_cracks in gears]
         contact = PairContact(pair, materials, bodies, phase, extended=True, state="plane strain", flanks=forms)
         return Mesh(contact), {value: k for k, value in enumerate(phase.tolist())}
 
@@ -149,29 +149,29 @@ def near_load(line_load: float, unit: float) -> float:
 
 def _contacts(contact: Any, phases: list[int], line_load: float) -> list[Contacts]:
     """`Contacts` at some phases, chosen as `PairContact.solve` does."""
-    found, tilt = contact.found, bounded(contact, line_load)
-    least = found.gap.min(axis=1)
+    candidates, tilt = contact.found, bounded(contact, line_load)
+    least = candidates.gap.min(axis=1)
     reach = contact._reach(line_load)
-    possible = found.gap - least[:, None] < reach[:, None]
+    possible = candidates.gap - least[:, None] < reach[:, None]
     corner, zone, width = contact.corners(line_load, possible)
     kink = near_kink(contact, line_load) & possible & (corner == 0)
-    own = np.zeros(possible.shape, dtype=bool)
-    own[phases] = True
-    finest, at = contact.finest(line_load), np.argwhere((corner > 0) & own).tolist()
+    asked = np.zeros(possible.shape, dtype=bool)
+    asked[phases] = True
+    finest, at = contact.finest(line_load), np.argwhere((corner > 0) & asked).tolist()
     rows = contact.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), finest, float(width[i, k])) for i, k in at])
-    rows = dict(zip(map(tuple, at), rows, strict=True)) | kink_rows(contact, np.argwhere(kink & own), line_load)
+    rows = dict(zip(map(tuple, at), rows, strict=True)) | kink_rows(contact, np.argwhere(kink & asked), line_load)
     corner = np.where(kink, KINK, corner)
     sets = contact.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in phases], rows, tilt)
-    return [_one(contact, i, one, rows, possible[i], least[i], reach[i]) for i, one in zip(phases, sets, strict=True)]
+    return [_one(contact, i, built, rows, possible[i], least[i], reach[i]) for i, built in zip(phases, sets, strict=True)]
 
 
 def _one(contact, i, built, rows, possible, least, reach):
     """`Contacts` of one phase from what `PairContact.contacts_at` gives, with the places it leaves out."""
-    found, places = contact.found, []
+    candidates, places = contact.found, []
     for k in np.flatnonzero(possible).tolist():
         row = rows.get((i, k))
         if row is None:
-            places.append([found.roll_1[i, k], found.roll_2[i, k], *contact.turns[:, i, k]])
+            places.append([candidates.roll_1[i, k], candidates.roll_2[i, k], *contact.turns[:, i, k]])
         else:
             places.append([row.roll_1, row.roll_2, row.turn_1, row.turn_2])
     values = np.hstack([np.reshape(place, (4, -1)) for place in places])
@@ -181,7 +181,7 @@ def _one(contact, i, built, rows, possible, least, reach):
         built["flexibility"][np.ix_(near, near)],
         *(built[name][near] for name in ("gap", "coefficient", "radius", "tilt")),
         *values[:, near],
-        found.order[built["column"][near]],
+        candidates.order[built["column"][near]],
         built["opening"][near] if seams else None,
         block_diag(*(seam.influence for seam in seams)) if seams else None,
         float(least),

@@ -60,8 +60,8 @@ def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray
         local.append(_sharper(whole, support.width, number * edge, edge, weight)[np.ix_(held, held)])
     p = len(held) * terms
     total = np.zeros((support.count * p,) * 2)
-    for k, own in enumerate(local):
-        total[k * p : (k + 1) * p, k * p : (k + 1) * p] = own.transpose(0, 2, 1, 3).reshape(p, p)
+    for k, pad in enumerate(local):
+        total[k * p : (k + 1) * p, k * p : (k + 1) * p] = pad.transpose(0, 2, 1, 3).reshape(p, p)
     load = np.concatenate(columns, axis=1).reshape(z, 2 * nodes, -1)
     return Pads(load, np.concatenate(turns, axis=1), total + np.diag(np.concatenate(compliance)), moved)
 
@@ -90,7 +90,7 @@ def _nodal(angle, which, step, count):
 
 
 def _sharper(whole, width, tops, edge, weight):
-    """What a pad's own tractions move it more than those that the hats spread ``(2, 2, terms, terms)`` [mm per N/mm].
+    """How much more a pad's own tractions move it than the hats that stand for them ``(2, 2, terms, terms)`` [mm per N/mm].
 
     Both differ only near by, where the rim is a half-plane. On it tractions ``T_n(s) / (pi sqrt(1 - s**2))`` move the surface
     along themselves by c ``ln(4 / width)`` (n = 0) or ``c T_n(s) / n``, and across by the jump of Flamant's field.
@@ -130,5 +130,5 @@ def among(pads):
 def by_teeth(pads):
     """Displacement ``(p, z, PLACES)`` [mm per N/mm] of pads under loads on the teeth."""
     z, waves = pads.load.shape[0], _series(pads.load)
-    found = np.einsum("hrp,hra->hpa", waves.conj(), pads.moved[:, :, :PLACES], optimize=True)
-    return np.fft.irfft(found.conj(), n=z, axis=0).transpose(1, 0, 2)
+    spectrum = np.einsum("hrp,hra->hpa", waves.conj(), pads.moved[:, :, :PLACES], optimize=True)
+    return np.fft.irfft(spectrum.conj(), n=z, axis=0).transpose(1, 0, 2)

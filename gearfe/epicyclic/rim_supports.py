@@ -77,7 +77,7 @@ class RimSupports:
     pushes: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse pads that cannot be or do not hold."""
+        """Refuse pads of impossible sizes, and pads that do not hold the ring."""
         if isinstance(self.count, bool) or not isinstance(self.count, Integral) or self.count < 1:
             raise ValueError(f"rim supports: count = {self.count!r}, but a ring that nothing holds moves away: give at least 1")
         for name in ("width", "first", "radial", "tangential"):

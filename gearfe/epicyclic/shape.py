@@ -2,6 +2,7 @@
 
 import math
 import os
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ from ..decks.contact_deck import posed
 from ..elements.elasticity import Body
 from ..files import check_output
 from ..pictures.set_plot import draw_set
+from ..steps import steps
 from .curves import SetCurves
 from .loaded_gears import drawable, meshed, placed, touching
 from .whole_gear import line_loads
@@ -71,35 +73,57 @@ def plot_planetary_set(
         check_output(path, "picture")
     if magnified is not None and not (is_number(magnified) and 0 < magnified < math.inf):
         raise ValueError(f"magnified = {magnified!r}, but give a finite number > 0, or leave it out")
-    case, stand = drawable(curves, at)
-    sides = [one for pair in touching(case, stand, curves, at) for one in pair]
-    bodies = placed(case, stand, curves, at)
-    shapes = [_shape(case, body, [side for side in sides if side["body"] == k]) for k, body in enumerate(bodies)]
-    supports = None
-    if case.ring != "held":
-        supports = cartesian(1.03 * case.ring_gear.r_rim, case.ring.middles + bodies[-1][3])
+    ((shapes, supports),) = loaded_shapes(curves, [at])
     return draw_set(shapes, supports, path, magnified=magnified, dpi=dpi)
 
 
-def _shape(case, body, sides):
-    """`Shape` of one gear under the loads of its flanks, held where it is."""
-    gear, material, centre, angle, _ = body
+def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[list[Shape], NDArray[np.float64] | None]]:
+    """At each of these positions, by their numbers: `Shape` of every gear, and where the ring is held ``(2, n)`` [mm].
+
+    The latter is None if it is held all around; pads turn with the ring, since the carrier stands still. Each gear is meshed and
+    factored once. ValueError as of `gearfe.epicyclic.loaded_gears.drawable`.
+    """
+    sides, bodies = [], []
+    for at in positions:
+        case, stand = drawable(curves, at)
+        sides.append([one for pair in touching(case, stand, curves, at) for one in pair])
+        bodies.append(placed(case, stand, curves, at))
+    made = []
+    for k, same in enumerate(steps(list(zip(*bodies, strict=True)))):
+        made.append(_shapes(case, same, [[side for side in one if side["body"] == k] for one in sides]))
+    pads: list[NDArray[np.float64] | None] = [None] * len(bodies)
+    if case.ring != "held":
+        pads = [cartesian(1.03 * case.ring_gear.r_rim, case.ring.middles + there[-1][3]) for there in bodies]
+    return [(list(one), held) for one, held in zip(zip(*made, strict=True), pads, strict=True)]
+
+
+def _shapes(case, bodies, sides):
+    """`Shape` of one gear at each position, under the loads of its flanks there, held where it is."""
+    gear, material, centre, *_ = bodies[0]
     size = {name: edge * gear.m_n for name, edge in EDGE.items()}
-    rolls = {(side["tooth"], side["side"]): stations(gear, size["flank"]) for side in sides}
+    rolls = {(side["tooth"], side["side"]): stations(gear, size["flank"]) for there in sides for side in there}
     made, held = meshed(case, gear, rolls, size["fillet"], size["near"], size["far"], 0.3 * gear.m_n)
     mesh = made.mesh
     facets = mesh.boundaries["held"]
     mesh = mesh.with_boundaries({"held": facets[np.isin(mesh.nvertices + facets, held)]})
-    load = np.zeros((2 * mesh.doflocs.shape[1], 1))
-    for one in sides:
-        at = one["tooth"], one["side"]
-        unit = line_loads(gear, mesh, made.flank[at], rolls[at], np.array([one["roll"]]), one["side"])
-        turned = posed(unit.reshape(-1, 2).T, 2 * math.pi * one["tooth"] / gear.z, 1)
-        load += one["force"] * np.array(turned).T.reshape(-1, 1)
     solver = Body(mesh, material)
-    u = solver.solve(load)[:, 0]
-    xx, yy, xy = solver.stress(u)
-    zz = material.nu * (xx + yy)
-    mises = np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy**2)
-    place, moved = (np.array(posed(one, angle, 1)) for one in (mesh.doflocs, u.reshape(-1, 2).T))
-    return Shape(place + centre[:, None], moved, solver.nodes, mises)
+    out = []
+    for (*_, angle, _), there in zip(bodies, sides, strict=True):
+        u = solver.solve(sum(_load(gear, made, rolls, side) for side in there))[:, 0]
+        place, moved = (np.array(posed(one, angle, 1)) for one in (mesh.doflocs, u.reshape(-1, 2).T))
+        out.append(Shape(place + centre[:, None], moved, solver.nodes, _mises(*solver.stress(u), material.nu)))
+    return out
+
+
+def _load(gear, made, rolls, side):
+    """Nodal forces ``(2 n, 1)`` of the load of a flank."""
+    at = side["tooth"], side["side"]
+    unit = line_loads(gear, made.mesh, made.flank[at], rolls[at], np.array([side["roll"]]), side["side"])
+    turned = posed(unit.reshape(-1, 2).T, 2 * math.pi * side["tooth"] / gear.z, 1)
+    return side["force"] * np.array(turned).T.reshape(-1, 1)
+
+
+def _mises(xx, yy, xy, nu):
+    """Von Mises stress in plane strain [MPa]."""
+    zz = nu * (xx + yy)
+    return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy**2)

@@ -44,23 +44,23 @@ def assembled(set_: "PlanetarySet", angles: ArrayLike) -> NDArray[np.float64]:
 
     ValueError if teeth do not fit there, or neighbours touch; the message gives the nearest angles that fit.
     """
-    given = numbers("angles", angles, " [rad], one for each planet")
-    if given.ndim != 1 or not given.size or not np.isfinite(given).all():
+    places = numbers("angles", angles, " [rad], one for each planet")
+    if places.ndim != 1 or not places.size or not np.isfinite(places).all():
         raise ValueError(f"angles = {angles!r}, but give a finite angle for each planet [rad]")
     step = 2 * math.pi / (set_.sun.z + set_.ring.z)
-    away = (given - given[0]) / step
+    away = (places - places[0]) / step
     if (np.abs(away - np.round(away)) > FITS).any():
-        fit = np.degrees(given[0] + step * np.round(away)).tolist()
+        fit = np.degrees(places[0] + step * np.round(away)).tolist()
         raise ValueError(
-            f"planets at {', '.join(f'{x:.6g}' for x in np.degrees(given))} degrees cannot be assembled: they stand whole "
+            f"planets at {', '.join(f'{x:.6g}' for x in np.degrees(places))} degrees cannot be assembled: they stand whole "
             f"multiples of 360 / (z_s + z_r) = {math.degrees(step):.6g} degrees apart; nearest: "
             f"{', '.join(f'{x:.6g}' for x in fit)}"
         )
-    around = np.sort(given % (2 * math.pi))
+    around = np.sort(places % (2 * math.pi))
     apart = np.diff(np.append(around, around[0] + 2 * math.pi))
-    if given.size > 1 and 2 * set_.a * math.sin(min(apart.min(), math.pi) / 2) <= 2 * set_.planet.r_a:
+    if places.size > 1 and 2 * set_.a * math.sin(min(apart.min(), math.pi) / 2) <= 2 * set_.planet.r_a:
         raise ValueError(f"planets {math.degrees(apart.min()):.4g} degrees apart touch each other: give fewer, or other angles")
-    return given
+    return places
 
 
 def standing(set_: "PlanetarySet", angles: NDArray[np.float64], position: ArrayLike) -> Standing:
@@ -69,14 +69,14 @@ def standing(set_: "PlanetarySet", angles: NDArray[np.float64], position: ArrayL
     At position 0 planet 0 and the sun are at mesh phase 0, with tooth 0 of both; ring tooth 0 is that of the newest pair of
     planet 0 and the ring.
     """
-    one, two, n = set_.sun_planet, set_.planet_ring, angles.size
+    sun_planet, planet_ring, n = set_.sun_planet, set_.planet_ring, angles.size
     behind = set_.sun.z * (angles - angles[0]) / (2 * math.pi)
     outer = np.atleast_1d(position)[:, None] - behind
     planet = -np.floor(np.round(-behind, DIGITS)).astype(int)
-    turn = _turn_2(one, one.path[0] + (planet - behind) * one.p_bt)  # of the planet's tooth 0, at position 0
-    start = two.gear_1.r_b * (-turn - _turn_1(two, 0.0))
-    inner = (start - two.path[0]) / two.p_bt
-    at_ring = angles - _turn_2(two, start)
+    turn = _turn_2(sun_planet, sun_planet.path[0] + (planet - behind) * sun_planet.p_bt)  # of the planet's tooth 0, at position 0
+    start = planet_ring.gear_1.r_b * (-turn - _turn_1(planet_ring, 0.0))
+    inner = (start - planet_ring.path[0]) / planet_ring.p_bt
+    at_ring = angles - _turn_2(planet_ring, start)
     pitch = 2 * math.pi / set_.ring.z
     newest = np.floor(np.round(inner[0], DIGITS))  # order 0 is the planet's tooth -newest
     ring_0 = at_ring[0] + newest * pitch  # angle of the ring's tooth 0: planet tooth j' has ring tooth D - j'
@@ -101,10 +101,10 @@ def _turn_2(pair, nominal):
 
 def tooth_angles(set_: "PlanetarySet", angles: NDArray[np.float64], stand: Standing) -> tuple[float, NDArray[np.float64], float]:
     """Clockwise angles of tooth 0 of sun, planets ``(planets,)`` and ring [rad] at the first position of `stand`."""
-    one, two = set_.sun_planet, set_.planet_ring
-    sun = angles[0] + _turn_1(one, one.path[0] + stand.outer[0, 0] * one.p_bt)
-    planets = angles + _turn_2(one, one.path[0] + (stand.outer[0] + stand.planet) * one.p_bt)
-    at_ring = angles[0] - _turn_2(two, two.path[0] + stand.inner[0, 0] * two.p_bt)
+    sun_planet, planet_ring = set_.sun_planet, set_.planet_ring
+    sun = angles[0] + _turn_1(sun_planet, sun_planet.path[0] + stand.outer[0, 0] * sun_planet.p_bt)
+    planets = angles + _turn_2(sun_planet, sun_planet.path[0] + (stand.outer[0] + stand.planet) * sun_planet.p_bt)
+    at_ring = angles[0] - _turn_2(planet_ring, planet_ring.path[0] + stand.inner[0, 0] * planet_ring.p_bt)
     return float(sun), planets, float(at_ring - 2 * math.pi / set_.ring.z * stand.ring[0])
 
 
@@ -115,5 +115,5 @@ def directions(set_: "PlanetarySet", angles: NDArray[np.float64]) -> tuple[NDArr
     def turned(x, y):
         return np.array([x * cos + y * sin, y * cos - x * sin])
 
-    one, two = set_.sun_planet.alpha_w, set_.planet_ring.alpha_w
-    return turned(math.cos(one), math.sin(one)), turned(math.cos(two), -math.sin(two))
+    alpha_outer, alpha_inner = set_.sun_planet.alpha_w, set_.planet_ring.alpha_w
+    return turned(math.cos(alpha_outer), math.sin(alpha_outer)), turned(math.cos(alpha_inner), -math.sin(alpha_inner))

@@ -47,8 +47,8 @@ def plane_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility:
     tree = _Tree(arrays)
     near = {tooth: _curve(part) for (tooth,), part in tree.parts("near", 1)}
     far = {key: _surface(part) for key, part in tree.parts("far", 2)}
-    own, basis = {tooth: part.take("b", 2) for (tooth,), part in tree.parts("own", 1)}, _curve(tree.below("basis"))
-    _check(all(values.shape == basis.c.shape[2:] * 2 for values in own.values()), "a tooth's own")
+    within, basis = {tooth: part.take("b", 2) for (tooth,), part in tree.parts("own", 1)}, _curve(tree.below("basis"))
+    _check(all(values.shape == basis.c.shape[2:] * 2 for values in within.values()), "a tooth's own")
     leans = {tooth: part.take("b", 2) for (tooth,), part in tree.parts("leans", 1)}
     _check(all(value.shape == (3, 4) for value in leans.values()), "leaning loads")
     seam = None
@@ -59,10 +59,10 @@ def plane_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility:
         _check(all(spline.c.shape[2:] == (len(influence),) for spline in opening.values()), "faces of cracks")
         seam = SeamFaces(opening, influence, stiffness)
     limits = tuple(tree.take("limits", 1))
-    _check(len(limits) == 2 and limits[0] < limits[1] and near and near.keys() == own.keys(), "teeth")
+    _check(len(limits) == 2 and limits[0] < limits[1] and near and near.keys() == within.keys(), "teeth")
     healthy, fine = tree.healthy(gear, plane_from), float(tree.take("fine", 0))
-    found = Flexibility(gear, near, far, own, limits, fine, tree.whole("dofs"), healthy, seam, basis, leans)
-    return _all_used(found, arrays, plane_arrays)
+    flexible = Flexibility(gear, near, far, within, limits, fine, tree.whole("dofs"), healthy, seam, basis, leans)
+    return _all_used(flexible, arrays, plane_arrays)
 
 
 def solid_arrays(found: Flexibility3D) -> dict[str, NDArray]:
@@ -94,8 +94,8 @@ def solid_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility3D:
     _check(all(value.shape == size for value in (*near.values(), *far.values())), "teeth")
     kernel, edge = (float(tree.take(name, 0)) for name in ("kernel", "edge"))
     healthy = tree.healthy(gear, solid_from)
-    found = Flexibility3D(gear, degree, kernel, near, far, tree.whole("unknowns"), healthy, seam, edge)
-    return _all_used(found, arrays, solid_arrays)
+    flexible = Flexibility3D(gear, degree, kernel, near, far, tree.whole("unknowns"), healthy, seam, edge)
+    return _all_used(flexible, arrays, solid_arrays)
 
 
 def _healthy(found, arrays_of):

@@ -54,17 +54,17 @@ def condense(local, dofs, centre, load, stays, held=(), *, leaf):
     sets = _halved(centre, leaf)
     height = len(sets).bit_length() - 1
     part = np.empty(dofs.shape[0], dtype=np.int64)
-    part[np.concatenate(sets)] = np.repeat(np.arange(len(sets)), [own.size for own in sets])
+    part[np.concatenate(sets)] = np.repeat(np.arange(len(sets)), [elements.size for elements in sets])
     number, first, turns = _numbered(dofs, part, n, stays, held, height)
-    found = n + 1 + columns  # numbers in all: unknowns, loads, and n for those that are held
+    total = n + 1 + columns  # numbers in all: unknowns, loads, and n for those that are held
     by_part = np.argsort(first[load.coords[0]], kind="stable")
     at, column, force = number[load.coords[0]][by_part], n + 1 + load.coords[1][by_part], load.data[by_part]
     ends = np.searchsorted(first[load.coords[0]][by_part], np.arange(len(sets) + 1))
-    place = np.empty(found, dtype=np.int64)
+    place = np.empty(total, dtype=np.int64)
     fronts = []
-    for k, own in enumerate(sets):
+    for k, elements in enumerate(sets):
         brought = slice(ends[k], ends[k + 1])
-        made = _put_together(local[own], number[dofs[own]], (at[brought], column[brought], force[brought]), n, place)
+        made = _put_together(local[elements], number[dofs[elements]], (at[brought], column[brought], force[brought]), n, place)
         fronts.append(_eliminated(*made, turns, k))
     for level in range(1, height + 1):
         pairs = zip(fronts[::2], fronts[1::2], strict=True)
@@ -77,10 +77,10 @@ def _halved(centre, leaf):
     sets = [np.arange(centre.shape[1])]
     for _ in range(max(0, math.floor(math.log2(centre.shape[1] / leaf)))):
         halves = []
-        for own in sets:
-            spread = centre[:, own]
-            ranked = own[np.argsort(spread[np.argmax(spread.max(axis=1) - spread.min(axis=1))], kind="stable")]
-            halves += [ranked[: own.size // 2], ranked[own.size // 2 :]]
+        for elements in sets:
+            spread = centre[:, elements]
+            ranked = elements[np.argsort(spread[np.argmax(spread.max(axis=1) - spread.min(axis=1))], kind="stable")]
+            halves += [ranked[: elements.size // 2], ranked[elements.size // 2 :]]
         sets = halves
     return sets
 
@@ -92,9 +92,9 @@ def _numbered(dofs, part, n, stays, held, height):
     the place of that set on the level.
     """
     first, last = np.full(n, part.max(initial=0) + 1), np.zeros(n, dtype=np.int64)
-    each = np.broadcast_to(part[:, None], dofs.shape)
-    np.minimum.at(first, dofs, each)
-    np.maximum.at(last, dofs, each)
+    part_of = np.broadcast_to(part[:, None], dofs.shape)
+    np.minimum.at(first, dofs, part_of)
+    np.maximum.at(last, dofs, part_of)
     level = np.ceil(np.log2((np.minimum(first, last) ^ last) + 1)).astype(np.int64)
     turn = (level << height) + (first >> level)
     turn[stays] = (height + 1) << height
@@ -109,9 +109,9 @@ def _numbered(dofs, part, n, stays, held, height):
 def _put_together(local, numbers, loads, n, place):
     """Front of a few elements and the loads ``(unknown, load, force)`` on them."""
     at, column, force = loads
-    there = np.zeros(place.size, dtype=bool)
-    there[numbers], there[column], there[n] = True, True, False
-    ids = there.nonzero()[0]
+    present = np.zeros(place.size, dtype=bool)
+    present[numbers], present[column], present[n] = True, True, False
+    ids = present.nonzero()[0]
     size = ids.size + 1  # what is held is put into a last row and column, which are dropped
     place[ids], place[n] = np.arange(ids.size), ids.size
     rows = place[numbers]
@@ -126,11 +126,11 @@ def _joined(one, two):
     ids.sort()
     ids = ids[np.append(True, ids[1:] > ids[:-1])]  # `numpy.unique` takes five times as long on so few
     total = np.zeros((ids.size,) * 2)
-    for own, matrix in (one, two):
-        padded = np.zeros((own.size + 1,) * 2)
+    for numbers, matrix in (one, two):
+        padded = np.zeros((numbers.size + 1,) * 2)
         padded[:-1, :-1] = matrix.T
-        source = np.full(ids.size, own.size)
-        source[np.searchsorted(ids, own)] = np.arange(own.size)
+        source = np.full(ids.size, numbers.size)
+        source[np.searchsorted(ids, numbers)] = np.arange(numbers.size)
         total += padded.take(source, axis=0).take(source, axis=1)
     return ids, total.T
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 FAR = 4.0  # distance along the width, in lengths of the patches across it, from which plain quadrature is used
-PIECES = 20  # of `graded`
+PIECES = 20  # intervals of `graded`
 
 
 def half_space(material):
@@ -62,9 +62,9 @@ def hat_distance(knots, shift, c):
             out[..., near] += (mass_p[:, None] * mass_q)[..., None] * fourth_integral(x, c[near])
     points, weight = hat_points(knots, 4)
     apart = points[:, None, :, None] - points[None, :, None, :]
-    both = weight[:, None, :, None] * weight[None, :, None, :]
+    weights = weight[:, None, :, None] * weight[None, :, None, :]
     for k in np.flatnonzero(far):
-        out[..., k] = (both / np.hypot(apart + shift[..., k, None, None], c[k])).sum(axis=(2, 3))
+        out[..., k] = (weights / np.hypot(apart + shift[..., k, None, None], c[k])).sum(axis=(2, 3))
     return out
 
 
@@ -140,5 +140,5 @@ def pair_slope(ends, i, j, x, other=None):
     (start, stop), (low, high) = ends, other or ends
     least = np.sqrt((x[i] ** 2 + x[j] ** 2) / 2)
     away = (stop[i] - low[j], high[j] - start[i], start[i] - low[j], stop[i] - high[j])
-    one, two, three, four = (np.hypot(apart, least) for apart in away)
-    return (three + four - one - two) / (2 * least**2) / ((stop[i] - start[i]) * (high[j] - low[j]))
+    stop_low, high_start, start_low, stop_high = (np.hypot(apart, least) for apart in away)
+    return (start_low + stop_high - stop_low - high_start) / (2 * least**2) / ((stop[i] - start[i]) * (high[j] - low[j]))

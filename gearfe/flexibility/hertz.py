@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-FAR = 30.0  # hats further apart than so many of their lengths act like forces at their centroids
+FAR = 30.0  # hats further apart than this many of their lengths act like forces at their centroids
 
 
 def half_plane(material, state="plane strain"):
@@ -106,9 +106,9 @@ def weber_line(line_load, materials, radius, depth):
     width = half_width(line_load, radius, contact_modulus(materials))
     secant, tangent = 0.0, 0.0
     for material, h in zip(materials, depth, strict=True):
-        own = half_plane(material)
-        secant = secant + own * (np.log(2 * h / width) - material.nu / (2 * (1 - material.nu)))
-        tangent = tangent - own / 2
+        coefficient = half_plane(material)
+        secant = secant + coefficient * (np.log(2 * h / width) - material.nu / (2 * (1 - material.nu)))
+        tangent = tangent - coefficient / 2
     return secant, secant + tangent
 
 

@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at
 
-NEAREST = 0.001  # to a tip corner that a flexibility is told apart [m_n]
-TILT = 0.2  # of the two loads at each of four places that tell how a tooth yields across the normal [rad]
-BELOW = 0.1  # the tip: the place between both ends of the flank [m_n]
+NEAREST = 0.001  # added to distances from a tip corner before their logarithm is taken [m_n]
+TILT = 0.2  # of the two loads, at each of four places, from which it is found how a tooth yields across its normal [rad]
+BELOW = 0.1  # how far below the tip the third of these places is [m_n]
 
 
 def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike) -> NDArray[np.float64]:
@@ -121,16 +121,18 @@ class Flexibility:
         arc = arc_at(self.gear, np.concatenate(rolls))
         at, depth = np.clip(arc, *self.limits), np.minimum(arc - self.limits[0], 0.0)
         solved = [self if tooth % self.gear.z in self.own else self._whole() for tooth in teeth]
-        rows = {basis: (basis(at), np.outer(depth, basis(self.limits[0], 1))) for basis in {one.basis for one in solved}}
+        rows = {
+            basis: (basis(at), np.outer(depth, basis(self.limits[0], 1))) for basis in {flexible.basis for flexible in solved}
+        }
         out, stop = [], 0
-        for one, roll, tooth in zip(solved, rolls, teeth, strict=True):
-            part, values = slice(stop, stop := stop + roll.size), one.own.get(tooth % self.gear.z, one.own.get(0))
-            here, on = (own[part] for own in rows[one.basis])
-            found = here @ values @ here.T
+        for flexible, roll, tooth in zip(solved, rolls, teeth, strict=True):
+            part, values = slice(stop, stop := stop + roll.size), flexible.own.get(tooth % self.gear.z, flexible.own.get(0))
+            here, on = (row[part] for row in rows[flexible.basis])
+            smooth = here @ values @ here.T
             if depth[part].any():  # in the fillet it goes on straight
                 slope = on @ values @ here.T
-                found = found + slope + slope.T
-            out.append(found)
+                smooth = smooth + slope + slope.T
+            out.append(smooth)
         return out
 
     def yields_across(self, roll: NDArray[np.float64], tooth: int) -> NDArray[np.float64] | None:
@@ -160,16 +162,16 @@ class Flexibility:
         for tooth, on in members.items():
             spline = self.near.get(tooth % z, whole.near.get(0))
             near[spline] = near.get(spline, False) | on
-            for other, theirs in members.items():
+            for other, there in members.items():
                 spline = self.far.get((tooth % z, other % z), whole.far.get((0, other - tooth)))
                 if tooth < other and spline is not None:  # else they are too far apart to have been solved
-                    far[spline] = far.get(spline, False) | on[:, None] & theirs
+                    far[spline] = far.get(spline, False) | on[:, None] & there
         for spline, on in near.items():
-            (own,) = on.nonzero()
-            out[..., own, own] = spline(arc[..., own])
+            (here,) = on.nonzero()
+            out[..., here, here] = spline(arc[..., here])
         for spline, on in far.items():
-            own, theirs = on.nonzero()
-            out[..., own, theirs] = out[..., theirs, own] = spline.ev(arc[..., own], arc[..., theirs])
+            here, there = on.nonzero()
+            out[..., here, there] = out[..., there, here] = spline.ev(arc[..., here], arc[..., there])
         return out
 
 
@@ -178,8 +180,8 @@ def singly(flexible: Any, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[
 
     That of the place half-way, as long as S is straight over a contact.
     """
-    own = (flexible.matrix(roll[:, None], [tooth])[:, 0, 0] for roll, tooth in zip(rolls, teeth, strict=True))
-    return [(values[:, None] + values) / 2 for values in own]
+    diagonals = (flexible.matrix(roll[:, None], [tooth])[:, 0, 0] for roll, tooth in zip(rolls, teeth, strict=True))
+    return [(values[:, None] + values) / 2 for values in diagonals]
 
 
 def towards(

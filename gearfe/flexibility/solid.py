@@ -21,9 +21,10 @@ from .solved import solved_gears
 
 PLACES = 8  # hats on each flank
 HAT = 0.4  # half their width [m_n]
-# To the tip corner that values are read [m_n]; weighed on the limit of plane strain, judged on one spur pair against hexahedra.
+# Least distance from the tip corner at which values are read [m_n]; chosen by the limit of plane strain, checked on a spur pair
+# against hexahedra.
 NEAREST = 0.01
-OFFSET = 0.2  # in the logarithm of the distance to the tip corner [m_n]
+OFFSET = 0.2  # added to the distance to the tip corner before its logarithm is taken [m_n]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,10 +82,10 @@ class Flexibility3D:
         whole = self if self.healthy is None else self.healthy
         if (second - first) % z == 0:
             return self.near.get(first % z, whole.near[0])
-        for one, two, turned in ((first, second, False), (second, first, True)):
-            found = self.far.get((one % z, two % z), whole.far.get((0, (two - one) % z)))
-            if found is not None:
-                return found.T if turned else found
+        for behind, ahead, turned in ((first, second, False), (second, first, True)):
+            block = self.far.get((behind % z, ahead % z), whole.far.get((0, (ahead - behind) % z)))
+            if block is not None:
+                return block.T if turned else block
         return None
 
     def opening(self, tooth, roll, z):
@@ -93,8 +94,8 @@ class Flexibility3D:
         out = np.zeros((self.seam.influence.shape[0], tooth.size))
         for number in np.unique(tooth).tolist():
             if number in self.seam.opening:
-                own = tooth == number
-                out[:, own] = self.seam.opening[number] @ rows[own].T
+                on_tooth = tooth == number
+                out[:, on_tooth] = self.seam.opening[number] @ rows[on_tooth].T
         return out
 
 

@@ -62,7 +62,7 @@ class SolvedGears:
                     return self._kept[key][0]
                 other = self._solving.get(key)
                 if other is None:
-                    own = self._solving[key] = _Solve(threading.get_ident())
+                    started = self._solving[key] = _Solve(threading.get_ident())
                     break
             if other.thread == threading.get_ident():
                 raise RuntimeError(f"the solve of {key!r} asks for its own result")
@@ -70,13 +70,13 @@ class SolvedGears:
             if other.found:
                 return other.found[0]
         try:
-            own.found.append(solve())
-            self._keep(key, own.found[0])
-            return own.found[0]
+            started.found.append(solve())
+            self._keep(key, started.found[0])
+            return started.found[0]
         finally:
             with self._lock:
                 self._solving.pop(key, None)
-            own.ended.set()
+            started.ended.set()
 
     def _keep(self, key, found):
         size = memory(found)

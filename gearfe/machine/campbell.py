@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from .modes import natural_frequencies
 from .tables import Machine
 
-FASTEST = 50.0  # times the speed of the machine: larger numbers are meant in other units
+FASTEST = 50.0  # times the speed of the machine: a larger number is probably meant in rpm
 
 
 class Crossing(NamedTuple):
@@ -68,7 +68,7 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     Raises
     ------
     ValueError
-        If the speeds do not rise or are none of this machine, or an order is not positive.
+        If the speeds do not rise or exceed `FASTEST`, or an order is not positive.
 
     References
     ----------
@@ -80,8 +80,8 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     at half of that:
 
     >>> import gearfe as gf
-    >>> found = campbell(gf.single_mesh(1.0, 1e8, 500.0), [0.5, 4.0], harmonics=2)
-    >>> [(one.order, round(one.speed, 3), round(one.frequency, 1)) for one in found.crossings]
+    >>> diagram = campbell(gf.single_mesh(1.0, 1e8, 500.0), [0.5, 4.0], harmonics=2)
+    >>> [(crossing.order, round(crossing.speed, 3), round(crossing.frequency, 1)) for crossing in diagram.crossings]
     [('2 mesh', 1.592, 1591.5), ('mesh', 3.183, 1591.5)]
     """
     speed = np.asarray(speeds, dtype=float)
@@ -98,7 +98,7 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
         if not (np.isfinite(value) and value > 0):
             raise ValueError(f"order {name} = {value} Hz, but it must be positive")
     if machine.spin or machine.rotors:
-        natural = np.array([natural_frequencies(_at_speed(machine, one))[0] for one in speed])
+        natural = np.array([natural_frequencies(_at_speed(machine, factor))[0] for factor in speed])
     else:
         natural = np.tile(natural_frequencies(machine)[0], (speed.size, 1))
     return Campbell(speed, natural, named, tuple(sorted(_crossings(speed, natural, named))))
@@ -106,22 +106,24 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
 
 def _at_speed(machine, speed):
     """The machine with the gyroscopic terms of a speed over its own."""
-    rotors = {name: speed * one for name, one in machine.rotors.items()}
+    rotors = {name: speed * velocity for name, velocity in machine.rotors.items()}
     return replace(machine, spin=speed * machine.spin, rotors=rotors)
 
 
 def _orders(machine, harmonics):
     """Orders of a machine: by stage if it names stages, of its meshes if not."""
     stages = machine.stages
-    meshes = {one.name: one.mesh for one in stages} or {one.name: abs(one.frequency) for one in machine.meshes if one.frequency}
+    meshes = {source.name: source.mesh for source in stages} or {
+        source.name: abs(source.frequency) for source in machine.meshes if source.frequency
+    }
     single = len(meshes) == 1
     out = {}
     for name, value in meshes.items():
         mesh = "mesh" if single else f"mesh {name}"
         out |= {mesh if k == 1 else f"{k} {mesh}": k * value for k in range(1, harmonics + 1)}
-    for one in stages:
-        told = {"driving gear": one.turning, "damaged tooth": one.fault, "carrier": one.carrier}
-        out |= {name if single else f"{name} {one.name}": value for name, value in told.items() if value}
+    for source in stages:
+        lines = {"driving gear": source.turning, "damaged tooth": source.fault, "carrier": source.carrier}
+        out |= {name if single else f"{name} {source.name}": value for name, value in lines.items() if value}
     unique: dict[float, str] = {}
     for name, value in out.items():  # meshes of one frequency have one line
         unique.setdefault(round(value, 9), name)

@@ -42,9 +42,9 @@ def carrier_speed(pairs, speed):
 
     ``(n_2 - n_c) z_s2 / z_r2 = n_c z_s1 / z_r1`` (both are the ring's speed relative to the carrier).
     """
-    one = pairs["sun1_p"].gear_1.z / pairs["p_ring"].gear_2.z
-    two = pairs["sun2_b"].gear_1.z / pairs["c_ring"].gear_2.z
-    return speed * two / (one + two)
+    ratio_1 = pairs["sun1_p"].gear_1.z / pairs["p_ring"].gear_2.z
+    ratio_2 = pairs["sun2_b"].gear_1.z / pairs["c_ring"].gear_2.z
+    return speed * ratio_2 / (ratio_1 + ratio_2)
 
 
 def branch(pairs):
@@ -82,10 +82,10 @@ def compound_table(pairs, n_planets, rates=(1.0, 1.0)):
         if bodies[1] == "ring":  # its teeth are numbered as branch 1 meets them
             base = next((row[3]["phase"] for row in out.values() if row[0] == kind), phase)
             first = (0, _whole(around(base, pair.gear_2.z, sense, 2 * math.pi * i / n_planets) - phase, kind))
-        one, two = pair.gear_1, pair.gear_2
-        radii = 1e-3 * one.r_b, 1e-3 * two.r_b
-        place = {"angle": angle, "alpha": pair.alpha_w, "radii": radii, "sense": sense, "internal": two.internal}
-        fields = {"frequency": rate, "phase": float(phase), "teeth": (one.z, two.z), "first": first}
+        gear_1, gear_2 = pair.gear_1, pair.gear_2
+        radii = 1e-3 * gear_1.r_b, 1e-3 * gear_2.r_b
+        place = {"angle": angle, "alpha": pair.alpha_w, "radii": radii, "sense": sense, "internal": gear_2.internal}
+        fields = {"frequency": rate, "phase": float(phase), "teeth": (gear_1.z, gear_2.z), "first": first}
         out["_".join(bodies)] = (kind, bodies, place, fields)
 
     for i, angle in enumerate(2 * math.pi * np.arange(n_planets) / n_planets):
@@ -169,10 +169,10 @@ def compound_planetary(
     layout, springs = _bodies(pairs, n_planets, (density, bearing, zeta, hold, drive))
     meshes = []
     for name, (kind, bodies, place, fields) in table.items():
-        hurt = ((body, *(damage or {}).get(own, (0, {}))) for body, own in enumerate(bodies))
-        found = tuple(ToothDamage(body, tooth, curves[kind]) for body, tooth, curves in hurt if kind in curves)
+        hurt = ((body, *(damage or {}).get(member, (0, {}))) for body, member in enumerate(bodies))
+        tooth_damage = tuple(ToothDamage(body, tooth, curves[kind]) for body, tooth, curves in hurt if kind in curves)
         row = layout.mesh(*bodies, **place)
-        meshes.append(GearMesh(name, row, stiffness[kind], damage=found, **({"beta": beta} | fields | mesh)))
+        meshes.append(GearMesh(name, row, stiffness[kind], damage=tooth_damage, **({"beta": beta} | fields | mesh)))
     arms = [1e-3 * g.r_b for g in suns]
     rings = pairs["c_ring"].gear_2.r_b / pairs["p_ring"].gear_2.r_b  # force in stage 1 over that in stage 2
     driven = torque * arms[1] / (arms[1] + rings * arms[0])
@@ -201,8 +201,8 @@ def relative_phases(table):
     for name, (kind, _, _, fields) in table.items():
         first = next(f["phase"] for k, _, _, f in table.values() if k == kind)
         stage = "sun1_p" if kind in KINDS[:2] else "sun2_b"
-        own = [f["phase"] for k, _, _, f in table.values() if k == stage]
-        mate = own[[n for n, row in table.items() if row[0] == kind].index(name)]
+        phases = [f["phase"] for k, _, _, f in table.values() if k == stage]
+        mate = phases[[n for n, row in table.items() if row[0] == kind].index(name)]
         out[name] = tuple(round(float(fields["phase"] - other) % 1.0, 9) % 1.0 for other in (first, mate))
     return out
 
@@ -211,21 +211,21 @@ def _bodies(pairs, n_planets, options):
     """Layout and springs of all bodies."""
     density, bearing, zeta, hold, drive = options
     inner, outer, ahead = branch(pairs)
-    made = {kind: (disc(p.gear_1, density, bearing), disc(p.gear_2, density, bearing)) for kind, p in pairs.items()}
-    one = {
-        "sun1": made["sun1_p"][0],
-        "sun2": made["sun2_b"][0],
-        "p": made["p_ring"][0],
-        "b": made["b_c"][0],
-        "c": made["c_ring"][0],
+    discs = {kind: (disc(p.gear_1, density, bearing), disc(p.gear_2, density, bearing)) for kind, p in pairs.items()}
+    members = {
+        "sun1": discs["sun1_p"][0],
+        "sun2": discs["sun2_b"][0],
+        "p": discs["p_ring"][0],
+        "b": discs["b_c"][0],
+        "c": discs["c_ring"][0],
     }
-    rings = made["p_ring"][1], made["c_ring"][1]
+    rings = discs["p_ring"][1], discs["c_ring"][1]
     radii = {"p": 1e-3 * pairs["sun1_p"].a, "b": 1e-3 * inner, "c": 1e-3 * outer}
-    bodies = [Body(name, one[name].mass, one[name].inertia) for name in ("sun1", "sun2")]
+    bodies = [Body(name, members[name].mass, members[name].inertia) for name in ("sun1", "sun2")]
     bodies.append(Body("ring", sum(r.mass for r in rings), sum(r.inertia for r in rings)))
-    weights = {name: n_planets * one[name].mass for name in radii}
+    weights = {name: n_planets * members[name].mass for name in radii}
     bodies.append(Body("carrier", sum(weights.values()), sum(m * radii[name] ** 2 for name, m in weights.items())))
-    bodies += [Body(f"{name}{i + 1}", one[name].mass, one[name].inertia) for name in radii for i in range(n_planets)]
+    bodies += [Body(f"{name}{i + 1}", members[name].mass, members[name].inertia) for name in radii for i in range(n_planets)]
     layout = Layout(bodies)
     plane, springs = {"x": bearing, "y": bearing}, []
     for name, torsion in (("sun1", hold), ("sun2", drive), ("ring", 0.0), ("carrier", 0.0)):

@@ -9,16 +9,19 @@ import numpy as np
 
 from ..flexibility.hertz import contact_modulus
 from .contact_law import friction_coefficient
-from .gear_mesh import Samples, table
+from .gear_mesh import Samples
+from .phase_table import table
 
 SI = 1e3**1.5  # N/mm^1.5 to N/m^1.5
 
 
 def engaged(pair, phase):
     """Phases of all pairs on the path of contact at `phase` ``(n, pairs)``, nan where there is none."""
-    own = np.asarray(phase, dtype=float)[..., None] + np.arange(-math.ceil(pair.eps_alpha) - 1, math.ceil(pair.eps_alpha) + 2)
-    own = own - np.floor(np.asarray(phase, dtype=float))[..., None]
-    return np.where((own >= 0) & (own < pair.eps_alpha), own, np.nan)
+    pair_phase = np.asarray(phase, dtype=float)[..., None] + np.arange(
+        -math.ceil(pair.eps_alpha) - 1, math.ceil(pair.eps_alpha) + 2
+    )
+    pair_phase = pair_phase - np.floor(np.asarray(phase, dtype=float))[..., None]
+    return np.where((pair_phase >= 0) & (pair_phase < pair.eps_alpha), pair_phase, np.nan)
 
 
 def impact_cycle(pair, materials, *, lost=None, count=256):
@@ -29,18 +32,18 @@ def impact_cycle(pair, materials, *, lost=None, count=256):
     """
     if lost is None:
         phase = (np.arange(count) + 0.5) / count  # between the ends of engagements, which fall on whole phases
-        own = engaged(pair, phase)
-        return Samples(phase, SI * np.nansum(_hertz(pair, own, materials), axis=1))
+        pair_phase = engaged(pair, phase)
+        return Samples(phase, SI * np.nansum(_hertz(pair, pair_phase, materials), axis=1))
     phase = np.arange(-count // 8, math.ceil((pair.eps_alpha + 0.125) * count)) / count + 0.5 / count
-    own = engaged(pair, phase)
-    first = np.abs(own - phase[:, None]) < 1e-9
+    pair_phase = engaged(pair, phase)
+    first = np.abs(pair_phase - phase[:, None]) < 1e-9
     weight = np.where(first, 1.0 - np.asarray(lost(phase))[:, None], 1.0)
-    return Samples(phase, SI * np.nansum(weight * _hertz(pair, own, materials), axis=1))
+    return Samples(phase, SI * np.nansum(weight * _hertz(pair, pair_phase, materials), axis=1))
 
 
 def _hertz(pair, phase, materials):
-    one, two = pair.curvature_radii(phase)
-    return 4 / 3 * np.sqrt(pair.relative_radius(one, two)) * contact_modulus(materials)
+    radius_1, radius_2 = pair.curvature_radii(phase)
+    return 4 / 3 * np.sqrt(pair.relative_radius(radius_1, radius_2)) * contact_modulus(materials)
 
 
 def contact_line(pair, phase, *, width=None):

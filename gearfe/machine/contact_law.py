@@ -62,7 +62,7 @@ def law_of(power: float, full: float) -> Law:
 
 
 def parameters(meshes: Sequence[Any]) -> dict[str, NDArray[Any]]:
-    """Parameters of the contact of meshes by name, ``(m,)`` each; of laws that have none of that name 0.
+    """Parameters of the contact of meshes by name, ``(m,)`` each; 0 for laws that have none of that name.
 
     Besides those of the laws: `kind`, the row of `LAWS`; ``damping, beta, backlash, film``; and `least`, 0 where flanks push and
     never pull, otherwise ``-inf``.
@@ -87,7 +87,7 @@ def touch(x, v, backlash):
 def mesh_force(touch, pushed):
     """Function of compression, its rate, k and parameters that gives the force of a mesh, from `touch` and the law's force.
 
-    Of both as they are, for arrays, or compiled, for numbers.
+    Made of plain functions it takes arrays, made of compiled ones numbers.
     """
 
     def force(x, v, k, law):
@@ -159,12 +159,12 @@ def _each(what, depth, rate, k, c, law):
     kinds = set(law.kind.tolist()) or {0}
     if len(kinds) == 1:
         return getattr(LAWS[kinds.pop()], what)(depth, rate, k, c, law)
-    given = np.broadcast_arrays(depth, rate, k, c)
-    out = np.empty(given[0].shape if what == "force" else (2, *given[0].shape))
+    arguments = np.broadcast_arrays(depth, rate, k, c)
+    out = np.empty(arguments[0].shape if what == "force" else (2, *arguments[0].shape))
     for kind in kinds:
         mine = law.kind == kind
-        some = SimpleNamespace(**{name: values[mine] for name, values in vars(law).items()})
-        out[..., mine] = getattr(LAWS[kind], what)(*(one[..., mine] for one in given), some)
+        selected = SimpleNamespace(**{name: values[mine] for name, values in vars(law).items()})
+        out[..., mine] = getattr(LAWS[kind], what)(*(argument[..., mine] for argument in arguments), selected)
     return out
 
 

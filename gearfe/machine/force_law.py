@@ -22,7 +22,7 @@ from ..stiffness.solve import asked, solve
 
 ROWS, COLUMNS = 1024, 64  # of a law as a table: rows in a mesh cycle, depths
 TINY = 1e-30  # depth [m]: a mesh just touching
-BETWEEN = 7  # phases solved besides between two where a pair comes in or leaves, at any of the loads
+BETWEEN = 7  # extra phases solved between two, where a pair comes in or leaves between them at any of the loads
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +82,7 @@ class Secant:
         return self.deepest * np.linspace(0.0, 1.0, self.k.shape[1]) ** 2
 
     def less(self, healthy: "Secant") -> "Secant":
-        """What it is beyond a `healthy` cycle, zero in two rows beyond either end."""
+        """Its difference from a `healthy` cycle, with two rows of zeros beyond either end."""
         phase = self.start + self.width * np.arange(len(self.k))
         change = self.k - healthy((phase % 1.0)[:, None], self.depths)[0]
         none = np.zeros((2, self.k.shape[1]))
@@ -91,7 +91,7 @@ class Secant:
 
 @dataclass(frozen=True, slots=True)
 class ForceLaw:
-    """Force of a mesh over depth and phase, for `gearfe.machine.gear_mesh.GearMesh` where a stiffness stands otherwise.
+    """Force of a mesh over depth and phase, which `gearfe.machine.gear_mesh.GearMesh` takes instead of a stiffness.
 
     Between two loads solved the force follows a cubic through their values and tangents; where a pair comes in between them, the
     two tangents up to where they meet, which is the place of the kink. Below the smallest load the secant stiffness is that of
@@ -126,7 +126,7 @@ class ForceLaw:
     secant: Secant = field(init=False)
 
     def __post_init__(self) -> None:
-        """Make the table; refuse what is no law."""
+        """Make the table; ValueError if loads, phases or depths do not rise."""
         if self.load.size < 2 or not (np.diff(self.load) > 0).all() or not self.load[0] > 0:
             raise ValueError(f"loads {self.load} N: a law of force needs two or more, each once and above 0")
         if self.phase.size < 2 or not (np.diff(self.phase) > 0).all():
@@ -165,7 +165,7 @@ class ForceLaw:
             raise ValueError(
                 "a law of force needs a list of StiffnessCurve, each with its load: mesh_stiffness(pair, [F1, F2, ...])"
             )
-        curves = sorted(curves, key=lambda one: float(one.meta["force_N"]))
+        curves = sorted(curves, key=lambda loaded: float(loaded.meta["force_N"]))
         if any(curve.phase.shape != curves[0].phase.shape or not np.allclose(curve.phase, curves[0].phase) for curve in curves):
             raise ValueError("the curves of a law of force must have the same phases: solve all loads in one call")
         order = np.argsort(curves[0].phase, kind="stable")
@@ -201,15 +201,15 @@ class ForceLaw:
         k, depths = self.secant.k, self.secant.depths
         depth = np.array([np.interp(force, row * depths, depths) for row in k])
         phase = np.asarray(self.secant.start + self.secant.width * np.arange(len(k)), dtype=np.float64)
-        found = self.secant(phase, depth)[0]
-        return (phase[1:-2], found[1:-2]) if self.periodic else (phase, found)
+        secant = self.secant(phase, depth)[0]
+        return (phase[1:-2], secant[1:-2]) if self.periodic else (phase, secant)
 
 
 def _table(law):
     """`Secant` of a law: at each phase over depth, then over phase by monotone cubics (F. N. Fritsch, J. Butland, 1984)."""
     deepest = float(law.depth.max())
     depth = deepest * np.linspace(0.0, 1.0, COLUMNS) ** 2
-    k = np.array([_secant(*one, law.load, depth) for one in zip(law.depth, law.tangent, law.pairs, strict=True)])
+    k = np.array([_secant(*row, law.load, depth) for row in zip(law.depth, law.tangent, law.pairs, strict=True)])
     phase = law.phase
     if not law.periodic:
         rows = max(3, round((phase[-1] - phase[0]) * ROWS) + 1)
@@ -285,13 +285,13 @@ def force_law(
         raise ValueError(f"span = {span!r}, but a law of force is of a 'cycle', or of the engagement of a damaged 'tooth'")
     case, how = asked("force_law", pair, list(forces), material, options | {"phases": phases, "span": span})
     curves = solve(case, how)
-    own = ForceLaw.of([curve.without_supports() for curve in curves], force)
-    counts = np.concatenate([own.pairs, own.pairs[:1]]) if span == "cycle" else own.pairs
-    ends = np.append(own.phase, own.phase[0] + 1) if span == "cycle" else own.phase
+    law = ForceLaw.of([curve.without_supports() for curve in curves], force)
+    counts = np.concatenate([law.pairs, law.pairs[:1]]) if span == "cycle" else law.pairs
+    ends = np.append(law.phase, law.phase[0] + 1) if span == "cycle" else law.phase
     changing = (np.maximum(counts[:-1], counts[1:]).max(axis=1) != np.minimum(counts[:-1], counts[1:]).min(axis=1)).nonzero()[0]
     if not changing.size:
-        return own
+        return law
     parts = np.arange(1, BETWEEN + 1) / (BETWEEN + 1)
-    more = (ends[changing, None] + np.diff(ends)[changing, None] * parts).ravel()
-    finer = solve(case, replace(how, phases=more, span="cycle"))
+    extra = (ends[changing, None] + np.diff(ends)[changing, None] * parts).ravel()
+    finer = solve(case, replace(how, phases=extra, span="cycle"))
     return ForceLaw.of([joined(both).without_supports() for both in zip(curves, finer, strict=True)], force)

@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .tables import Machine
 
-KINDS = {"receptance": 0, "mobility": 1, "accelerance": 2}  # times derived by time
+KINDS = {"receptance": 0, "mobility": 1, "accelerance": 2}  # derivatives by time
 
 
 def frequency_response(
@@ -83,8 +83,8 @@ def frequency_response(
 def _row(machine, given):
     """Row over the degrees of freedom of a name, or as it is given."""
     if isinstance(given, str):
-        found = [mesh.row for mesh in machine.meshes if mesh.name == given]
-        return found[0] if found else machine.row(given)
+        rows = [mesh.row for mesh in machine.meshes if mesh.name == given]
+        return rows[0] if rows else machine.row(given)
     row = np.asarray(given, dtype=float)
     if row.shape != (len(machine.dofs),) or not np.isfinite(row).all():
         raise ValueError(f"a row of shape {row.shape}: give {len(machine.dofs)} finite numbers, one per degree of freedom")

@@ -52,22 +52,22 @@ def gear_pair(
     **mesh
         Further fields of `GearMesh`.
     """
-    layout, (one, two) = Layout(bodies), bodies
+    layout, (body_1, body_2) = Layout(bodies), bodies
     radii = 1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b
     place: dict[str, Any] = {"angle": 0.0, "alpha": pair.alpha_w, "radii": radii, "internal": pair.gear_2.internal}
-    row = layout.mesh(one.name, two.name, helix=math.tan(abs(pair.gear_1.beta_b)) if helix is None else helix, **place)
+    row = layout.mesh(body_1.name, body_2.name, helix=math.tan(abs(pair.gear_1.beta_b)) if helix is None else helix, **place)
     frequency = abs(speed) * pair.gear_1.z / (2 * math.pi)
     springs = [s for body in bodies for s in layout.springs(body.name, None, support, zeta)]
     for body, k in zip(bodies, torsion, strict=True):
         springs += layout.springs(body.name, None, {"theta": k}, zeta)
-    made = GearMesh("mesh", row, stiffness, frequency, teeth=(pair.gear_1.z, pair.gear_2.z), damage=damage, **mesh)
+    gear_mesh = GearMesh("mesh", row, stiffness, frequency, teeth=(pair.gear_1.z, pair.gear_2.z), damage=damage, **mesh)
     loads = (
-        Load("drive", layout.unit(one.name, "theta"), torque),
-        Load("load", row[layout.place[f"{two.name}.theta"]] / radii[0] * layout.unit(two.name, "theta"), torque),
+        Load("drive", layout.unit(body_1.name, "theta"), torque),
+        Load("load", row[layout.place[f"{body_2.name}.theta"]] / radii[0] * layout.unit(body_2.name, "theta"), torque),
     )
     notes = {
         "mesh frequency [Hz]": frequency,
         "turning frequencies [Hz]": tuple(frequency / g.z for g in (pair.gear_1, pair.gear_2)),
     }
-    stage = Stage("pair", (one.name,), (two.name,), frequency, frequency / pair.gear_1.z)
-    return Machine(layout.dofs, layout.mass, tuple(springs), (made,), loads, notes, (stage,))
+    stage = Stage("pair", (body_1.name,), (body_2.name,), frequency, frequency / pair.gear_1.z)
+    return Machine(layout.dofs, layout.mass, tuple(springs), (gear_mesh,), loads, notes, (stage,))

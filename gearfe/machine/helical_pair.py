@@ -26,7 +26,7 @@ SHAFT = 1e4  # N m/rad, to the motor, assumed
 def scene_pair(scene, case, **options):
     """Machine of a scene with linear contact: the stiffness curves of its pair."""
     chosen = scene.pair()
-    name = next(name for name, one in scene.pairs.items() if one is chosen)
+    name = next(name for name, candidate in scene.pairs.items() if candidate is chosen)
     healthy, hurt = curves(name, chosen, case, options)
     damage = () if hurt is None else (ToothDamage(0, 0, hurt),)
     return gear_pair(
@@ -36,8 +36,8 @@ def scene_pair(scene, case, **options):
 
 
 def _bodies(pair, density):
-    made = {"pinion": disc(pair.gear_1, density, 0.0), "wheel": disc(pair.gear_2, density, 0.0)}
-    return [Body(name, one.mass, one.inertia, "x y z theta") for name, one in made.items()]
+    discs = {"pinion": disc(pair.gear_1, density, 0.0), "wheel": disc(pair.gear_2, density, 0.0)}
+    return [Body(name, member.mass, member.inertia, "x y z theta") for name, member in discs.items()]
 
 
 def pitted_helical(
@@ -87,7 +87,7 @@ def pitted_helical(
     coefficient = hertz_coefficient(float(radii[0]) / helix, float(radii[1]) / helix, materials) / helix**2.5
     damage = tuple(
         ToothDamage(0, tooth, line_cycle(pair, coefficient, lost=lost, width=width))
-        for tooth, lost in ((n, own if callable(own) else ellipse_loss(pair, own, width=width)) for n, own in pits)
+        for tooth, lost in ((n, loss if callable(loss) else ellipse_loss(pair, loss, width=width)) for n, loss in pits)
     )
     return gear_pair(
         pair,

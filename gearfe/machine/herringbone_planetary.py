@@ -92,16 +92,16 @@ def herringbone_planetary(
         kind, i = name[:-1] if n < 10 else name.rstrip("0123456789"), int(name.rpartition(name.rstrip("0123456789"))[2])
         inside = kind == "planet_ring"
         pair = inner if inside else outer
-        found = damages(name, damage)
+        tooth_damage = damages(name, damage)
         for half, hand in HALVES.items():
-            one, two = (f"planet{i}{half}", "ring") if inside else (f"sun{half}", f"planet{i}{half}")
+            body_1, body_2 = (f"planet{i}{half}", "ring") if inside else (f"sun{half}", f"planet{i}{half}")
             place = {"angle": angles[i], "alpha": pair.alpha_w, "radii": (1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b)}
             # a planet's flanks are parallel: what pushes it along the axis in one mesh it passes on in the other
             place |= {"sense": -1 if inside else 1, "internal": inside, "helix": hand * helix}
-            row = layout.mesh(one, two, **place)
+            row = layout.mesh(body_1, body_2, **place)
             if inside:
                 row = row + _offset(layout, row, hand * apart, "ring")
-            options = {"zeta": mesh_zeta} | fields | {"damage": found} | mesh
+            options = {"zeta": mesh_zeta} | fields | {"damage": tooth_damage} | mesh
             meshes.append(GearMesh(f"{name}{half}", row, stiffness[kind], **options))
     loads = [Load(f"sun{half} torque", layout.unit(f"sun{half}", "theta"), torque / 2) for half in HALVES]
     loads.append(Load("carrier torque", layout.unit("carrier", "theta"), -torque * (1 + ring.z / sun.z)))
@@ -125,17 +125,19 @@ def _rotors(layout, stage, speed):
     ``2 J_t`` here: what is left is ``J_p (w - W)``.
     """
     turn = speed / (1 + stage.ring.z / stage.sun.z)
-    own = {"sun": speed - turn, "planet": -(speed - turn) * stage.sun.z / stage.planet.z, "ring": -turn}
-    return {body: own[body.rstrip("LR0123456789")] for body in layout.bodies if body != "carrier"}
+    speeds = {"sun": speed - turn, "planet": -(speed - turn) * stage.sun.z / stage.planet.z, "ring": -turn}
+    return {body: speeds[body.rstrip("LR0123456789")] for body in layout.bodies if body != "carrier"}
 
 
 def scene_herringbone(scene, case, **options):
     """Machine of a scene: the stiffness curves of halves of its pairs, the bodies that it states."""
     halves = {}
-    for name, one in scene.pairs.items():
-        width = (min(one.pair.gear_1.b, one.pair.gear_2.b) - one.groove) / 2
-        gears = (replace(gear, b=width) for gear in (one.pair.gear_1, one.pair.gear_2))
-        halves[name] = replace(one, pair=GearPair(*gears, one.pair.a), force=one.force / 2, face="helical", groove=0.0)
+    for name, scene_pair in scene.pairs.items():
+        width = (min(scene_pair.pair.gear_1.b, scene_pair.pair.gear_2.b) - scene_pair.groove) / 2
+        gears = (replace(gear, b=width) for gear in (scene_pair.pair.gear_1, scene_pair.pair.gear_2))
+        halves[name] = replace(
+            scene_pair, pair=GearPair(*gears, scene_pair.pair.a), force=scene_pair.force / 2, face="helical", groove=0.0
+        )
     half = replace(scene, pairs=halves)
     healthy, hurt = healthy_and_hurt(half, case, options, {"sun_planet": "sun_planet", "planet_ring": "planet_ring"})
     damage, members = {"sun": (0, hurt)} if hurt else None, scene.machine.get("bodies") or None
@@ -146,8 +148,8 @@ def scene_herringbone(scene, case, **options):
 def _solid(stage, density):
     """Masses and inertias of whole bodies from the gears, each of two halves."""
     gears = {"sun": stage.sun, "planet": stage.planet, "ring": stage.ring}
-    made = {name: disc(gear, density, 0.0, width=2 * gear.b) for name, gear in gears.items()}
-    out = {name: (one.mass, one.inertia) for name, one in made.items()}
+    discs = {name: disc(gear, density, 0.0, width=2 * gear.b) for name, gear in gears.items()}
+    out = {name: (member.mass, member.inertia) for name, member in discs.items()}
     together = stage.n_planets * out["planet"][0]
     return out | {"carrier": (together, together * (1e-3 * stage.a) ** 2)}
 

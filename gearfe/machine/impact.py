@@ -15,7 +15,7 @@ from .pitted_planetary import pitted_planetary
 from .scene_curves import speed_of, stage_of
 from .tables import pulses
 
-PULSED = 100.0  # s: for so long the load on the carrier has pulses
+PULSED = 100.0  # s: how long the load on the carrier has pulses
 PLAY = 1e-4  # m
 
 
@@ -39,17 +39,17 @@ def impact_planetary(scene, case):
     chosen = {name: scene.pairs[name] for name in ("sun_planet", "planet_ring")}
     if pits_of(chosen["planet_ring"].damage.get(case, {})):
         raise ValueError("the impact law knows damage of the sun's flanks only: use contact = 'linear'")
-    found = pits_of(chosen["sun_planet"].damage.get(case, {}))
-    materials = {name: one.materials for name, one in chosen.items()}
+    tooth_pits = pits_of(chosen["sun_planet"].damage.get(case, {}))
+    materials = {name: scene_pair.materials for name, scene_pair in chosen.items()}
     stage, machine = stage_of(scene), scene.machine
     options, pair = _options(machine), stage.sun_planet
     stiffness = {"sun_planet": impact_cycle(pair, materials["sun_planet"])}
     stiffness["planet_ring"] = impact_cycle(stage.planet_ring, materials["planet_ring"])
     damage = None
-    if found:
-        loss, width = pits_loss(pair, found), min(pair.gear_1.b, pair.gear_2.b)
+    if tooth_pits:
+        loss, width = pits_loss(pair, tooth_pits), min(pair.gear_1.b, pair.gear_2.b)
         hurt = impact_cycle(pair, materials["sun_planet"], lost=lambda phase: loss(phase) / width)
-        damage = {"sun": (found[0].tooth, {"sun_planet": hurt})}
+        damage = {"sun": (tooth_pits[0].tooth, {"sun_planet": hurt})}
     steady, load = machine["torque_Nm"] * (1 + stage.ring.z / stage.sun.z), None
     if options["pulse_Nm"]:
         period = options["pulse_period_s"]
@@ -67,14 +67,14 @@ def impact_planetary(scene, case):
 def impact_helical(scene, case):
     """Helical pair of a scene under the impact law, healthy or with pits on a tooth of the pinion."""
     chosen, machine = scene.pair(), scene.machine
-    pair, materials, found = chosen.pair, chosen.materials, pits_of(chosen.damage.get(case, {}))
+    pair, materials, tooth_pits = chosen.pair, chosen.materials, pits_of(chosen.damage.get(case, {}))
     options = _options(machine)
     for key in ("friction", "pulse_Nm"):
         if options[key]:
             raise ValueError(f"[machine.impact] {key} = {options[key]}: only the model 'planetary' has it; leave it out")
     radii = (float(r) for r in pair.curvature_radii(pair.pitch_phase))
     law = _law(options, machine, hertz_coefficient(*radii, materials))
-    pits = [(found[0].tooth, pits_loss(pair, found))] if found else []
+    pits = [(tooth_pits[0].tooth, pits_loss(pair, tooth_pits))] if tooth_pits else []
     return pitted_helical(
         pair, materials, pits=pits, speed=speed_of(scene), torque=machine["torque_Nm"],
         **{key: law[key] for key in ("damping", "depth", "backlash")},
@@ -89,10 +89,10 @@ def pits_of(damage):
     ValueError
         If there is other damage.
     """
-    found = list(damage.get("pinion", ()))
-    if damage.get("wheel") or not all(one.removes_contact for one in found) or len({one.tooth for one in found}) > 1:
+    pits = list(damage.get("pinion", ()))
+    if damage.get("wheel") or not all(pit.removes_contact for pit in pits) or len({pit.tooth for pit in pits}) > 1:
         raise ValueError("the impact law knows damage of the flank of one tooth of the pinion (sun) only: use contact = 'linear'")
-    return found
+    return pits
 
 
 def _options(machine):

@@ -36,7 +36,7 @@ def with_errors(
     Raises
     ------
     ValueError
-        If there is no such body or mesh, or an error is none.
+        If there is no such body or mesh, or a profile error has none of these forms.
     """
     names = [mesh.name for mesh in machine.meshes]
     for name in profile if isinstance(profile, Mapping) else ():
@@ -48,8 +48,8 @@ def with_errors(
             raise ValueError(f"no body {name!r}; there are {', '.join(sorted(known))}")
     meshes = []
     for mesh in machine.meshes:
-        own = profile.get(mesh.name, 0.0) if isinstance(profile, Mapping) else profile
-        errors = harmonics(own, mesh.frequency, mesh.phase)
+        mesh_profile = profile.get(mesh.name, 0.0) if isinstance(profile, Mapping) else profile
+        errors = harmonics(mesh_profile, mesh.frequency, mesh.phase)
         for name, (amplitude, frequency, start) in (runout or {}).items():
             dx, dy = (_entry(machine, mesh, f"{name}.{axis}") for axis in "xy")
             size, angle = math.hypot(dx, dy), math.atan2(dy, dx)

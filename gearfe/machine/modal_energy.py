@@ -71,8 +71,8 @@ def modal_energy(machine: Machine, *, x: ArrayLike | None = None) -> ModalEnergy
     Examples
     --------
     >>> import gearfe as gf
-    >>> found = modal_energy(gf.single_mesh(1.0, 1e8, 500.0))
-    >>> {name: part.tolist() for name, part in found.strain.items()}
+    >>> energy = modal_energy(gf.single_mesh(1.0, 1e8, 500.0))
+    >>> {name: part.tolist() for name, part in energy.strain.items()}
     {'mesh': [1.0]}
     """
     frequencies, modes = natural_frequencies(machine, x=x)

@@ -30,7 +30,7 @@ MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it i
     "herringbone_planetary": {"linear": scene_herringbone},
 }
 EVEN = 1e-9  # how far phases may lie from equal distances
-ROUGH = 8  # phases of the curves that tell these forces
+ROUGH = 8  # phases per cycle of the curves from which the forces at rest are computed
 STATED = ("herringbone_planetary",)  # models that take masses and inertias from the scene
 
 
@@ -54,7 +54,8 @@ def build_machine(
         load that the scene states for the pair need not be. One of them makes stiffnesses over the phase that are true of this
         load alone, by default of the meshes' own. Several make laws of force (`gearfe.machine.force_law.ForceLaw`), for loads
         that change and for resonances: ``(1 / 16, 1 / 4, 1 / 2, 1, 2)``. Their mesh forces bend where pairs come in, with
-        harmonics far above the mesh frequency: keep a high rate of output, or they fold into a spectrum.
+        harmonics far above the mesh frequency: `gearfe.simulate` filters them out above half of its rate. Not under the impact
+        law, which has a coefficient.
 
     Returns
     -------
@@ -80,31 +81,35 @@ def build_machine(
         raise ValueError(f"[machine] contact = 'impact': the model {model!r} has linear contact only")
     if scene.machine.get("bodies") and model not in STATED:
         raise ValueError(f"[machine.bodies]: the model {model!r} takes masses and inertias from its gears; leave the table out")
+    if contact == "impact" and tuple(loads) != (1.0,):
+        raise ValueError(
+            f"loads = {tuple(loads)}: the impact law has a coefficient and no curves under loads; take contact = 'linear'"
+        )
     if contact == "impact":
         return with_scene_errors(scene, MACHINES[model][contact](scene, case))
-    if not len(loads) or not all(math.isfinite(one) and one > 0 for one in loads):
+    if not len(loads) or not all(math.isfinite(multiple) and multiple > 0 for multiple in loads):
         raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")
     build, play = MACHINES[model][contact], scene.machine.get("backlash_um")
-    own = own_forces(build(scene, case, phases=ROUGH, method=method, loads=None))
-    several = {name: ([force * one for one in loads], force) for name, force in own.items()}
+    forces = own_forces(build(scene, case, phases=ROUGH, method=method, loads=None))
+    several = {name: ([force * multiple for multiple in loads], force) for name, force in forces.items()}
     out = build(scene, case, phases=phases, method=method, loads=several)
-    stated = {name: pair.force for name, pair in scene.pairs.items() if name in own}
-    out = replace(out, notes=out.notes | {"mesh forces at rest [N]": own, "loads stated for the pairs [N]": stated})
+    stated = {name: pair.force for name, pair in scene.pairs.items() if name in forces}
+    out = replace(out, notes=out.notes | {"mesh forces at rest [N]": forces, "loads stated for the pairs [N]": stated})
     return with_scene_errors(scene, with_flanks(out.with_meshes(backlash=1e-6 * play) if play else out))
 
 
 def with_flanks(machine):
     """The machine with the unloaded transmission error of modified flanks in the meshes whose curves or laws have one."""
-    found = {
+    errors = {
         mesh.name: _unloaded(mesh.stiffness)
         for mesh in machine.meshes
         if isinstance(mesh.stiffness, (StiffnessCurve, ForceLaw)) and mesh.stiffness.unloaded is not None
     }
-    return with_errors(machine, profile=found) if found else machine
+    return with_errors(machine, profile=errors) if errors else machine
 
 
 def _unloaded(curve):
-    """Unloaded error at the phases of a curve; of a law at those equally spaced, without what is solved where pairs come in."""
+    """Unloaded error at the phases of a curve; of a law without the extra phases where pairs come in."""
     phase = curve.phase
     if isinstance(curve, ForceLaw):
         at = phase[0] + np.arange(round(1 / np.diff(phase).max())) * np.diff(phase).max()

@@ -71,14 +71,14 @@ def planetary(
     layout, springs, meshes = Layout(bodies), [], []
     for name, m in central.items():
         springs += layout.springs(name, None, {"x": m.bearing, "y": m.bearing, "theta": m.torsion}, zeta)
-    for i, (name, angle, own) in enumerate(zip(names, angles, planets, strict=True)):
+    for i, (name, angle, member) in enumerate(zip(names, angles, planets, strict=True)):
         arm = carrier.r_b * np.array([math.cos(angle), math.sin(angle)])
-        springs += layout.springs(name, "carrier", {"x": own.bearing, "y": own.bearing}, zeta, arm)
-        for kind, one, two, r, sense, inside in (
-            ("sun_planet", "sun", name, (sun.r_b, own.r_b), 1, False),
-            ("planet_ring", name, "ring", (own.r_b, ring.r_b), -1, True),
+        springs += layout.springs(name, "carrier", {"x": member.bearing, "y": member.bearing}, zeta, arm)
+        for kind, body_1, body_2, r, sense, inside in (
+            ("sun_planet", "sun", name, (sun.r_b, member.r_b), 1, False),
+            ("planet_ring", name, "ring", (member.r_b, ring.r_b), -1, True),
         ):
-            row = layout.mesh(one, two, angle=angle, alpha=alpha[inside], radii=r, sense=sense, internal=inside)
+            row = layout.mesh(body_1, body_2, angle=angle, alpha=alpha[inside], radii=r, sense=sense, internal=inside)
             meshes.append(GearMesh(f"{kind}{i + 1}", row, stiffness[kind], **({} if mesh is None else mesh(kind, i))))
     torques = tuple(Load(f"{name} torque", layout.unit(name, "theta"), value) for name, value in (loads or {}).items())
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), torques, spin=spin)
@@ -133,5 +133,5 @@ def damages(mesh, damage):
     """Damage of a mesh ``sun_planet1`` or ``planet_ring1`` from damage by gear (see `pitted_planetary`)."""
     kind, number = mesh.rstrip("0123456789"), mesh[len(mesh.rstrip("0123456789")) :]
     names = [gear + (number if gear == "planet" else "") for gear in kind.split("_")]
-    found = ((body, *(damage or {}).get(name, (0, {}))) for body, name in enumerate(names))
-    return tuple(ToothDamage(body, tooth, curves[kind]) for body, tooth, curves in found if kind in curves)
+    hurt = ((body, *(damage or {}).get(name, (0, {}))) for body, name in enumerate(names))
+    return tuple(ToothDamage(body, tooth, curves[kind]) for body, tooth, curves in hurt if kind in curves)

@@ -28,10 +28,10 @@ def own_forces(machine):
     x = machine.working()
     x = machine.G @ machine.rest() if x is None else x
     out = {}
-    for mesh, own in zip(machine.meshes, force(x, 0 * x, machine.mean_stiffness(), machine.law), strict=True):
+    for mesh, mesh_force in zip(machine.meshes, force(x, 0 * x, machine.mean_stiffness(), machine.law), strict=True):
         name, stated = (mesh.stiffness.meta[key] for key in ("scene_pair", "force_N"))
-        own = float(abs(own))
-        out[name] = max(out.get(name, 0.0), own if own > IDLE * stated else stated)
+        mesh_force = float(abs(mesh_force))
+        out[name] = max(out.get(name, 0.0), mesh_force if mesh_force > IDLE * stated else stated)
     return out
 
 
@@ -48,15 +48,15 @@ def curves(name, pair, case, options):
     options = {key: value for key, value in options.items() if key != "loads"}
     if options["method"] == "auto":  # one method for both
         options["method"] = Solve().chosen(hurt)[0].name
-    made = []
+    results = []
     for solved, span in ((hurt.healthy, "cycle"), (hurt, "tooth"))[: 1 + hurt.damaged]:
         if loads is None or len(loads[name][0]) == 1:
             solved = solved if loads is None else replace(solved, force=loads[name][0][0])
             curve = solve(solved, Solve(span=span, **options)).without_supports()
-            made.append(replace(curve, meta=curve.meta | {"scene_pair": name}))
+            results.append(replace(curve, meta=curve.meta | {"scene_pair": name}))
         else:
-            made.append(force_law(solved, loads[name][0], force=loads[name][1], span=span, **options))
-    return made[0], made[1] if hurt.damaged else None
+            results.append(force_law(solved, loads[name][0], force=loads[name][1], span=span, **options))
+    return results[0], results[1] if hurt.damaged else None
 
 
 def healthy_and_hurt(scene, case, options, kinds):
@@ -64,7 +64,7 @@ def healthy_and_hurt(scene, case, options, kinds):
     for kind, name in kinds.items():
         if case in scene.pairs[name].damage and not kind.startswith("sun"):
             raise ValueError(f"case {case!r} damages {name}, but in this machine only the sun has damage: use its cases")
-    found = {name: curves(name, scene.pairs[name], case, options) for name in dict.fromkeys(kinds.values())}
-    healthy = {kind: found[name][0] for kind, name in kinds.items()}
-    hurt = {kind: found[name][1] for kind, name in kinds.items() if found[name][1] is not None}
+    pair_curves = {name: curves(name, scene.pairs[name], case, options) for name in dict.fromkeys(kinds.values())}
+    healthy = {kind: pair_curves[name][0] for kind, name in kinds.items()}
+    hurt = {kind: pair_curves[name][1] for kind, name in kinds.items() if pair_curves[name][1] is not None}
     return healthy, hurt

@@ -41,7 +41,7 @@ class Speed:
     knots: NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
-        """Integrate; refuse what is no profile."""
+        """Integrate; ValueError if times do not rise, or factors are negative or all zero."""
         times, factors = np.asarray(self.times, dtype=float), np.asarray(self.factors, dtype=float)
         if times.ndim != 1 or times.shape != factors.shape or not times.size:
             raise ValueError(f"speed: give as many times as factors, got shapes {times.shape} and {factors.shape}")

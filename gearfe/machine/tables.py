@@ -47,15 +47,15 @@ class Load:
     value: History
 
     def __post_init__(self) -> None:
-        """Refuse what is no load."""
-        given: Any = self.value
-        if callable(given):
+        """Raise ValueError if the value is not finite, or the times of a history do not rise."""
+        value: Any = self.value
+        if callable(value):
             return
-        if not isinstance(given, (tuple, list)) and np.ndim(given) == 0:
-            if not math.isfinite(given):
-                raise ValueError(f"load {self.name} = {given}, but it must be finite")
+        if not isinstance(value, (tuple, list)) and np.ndim(value) == 0:
+            if not math.isfinite(value):
+                raise ValueError(f"load {self.name} = {value}, but it must be finite")
             return
-        times, values = (np.asarray(part, dtype=float) for part in given)
+        times, values = (np.asarray(part, dtype=float) for part in value)
         if times.ndim != 1 or times.shape != values.shape or not times.size:
             raise ValueError(f"load {self.name}: give as many times as values, got shapes {times.shape} and {values.shape}")
         if not (np.isfinite(times).all() and np.isfinite(values).all()):
@@ -66,21 +66,21 @@ class Load:
 
     def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
         """Value at times `t`."""
-        given: Any = self.value
-        if callable(given):
-            found = np.broadcast_to(np.asarray(given(t), dtype=float), np.shape(t))
-            if not np.isfinite(found).all():
+        value: Any = self.value
+        if callable(value):
+            values = np.broadcast_to(np.asarray(value(t), dtype=float), np.shape(t))
+            if not np.isfinite(values).all():
                 raise ValueError(f"load {self.name}: its function gives a value that is not finite (nan or inf)")
-            return found
-        if np.ndim(given) == 0:
-            return np.full(np.shape(t), float(given))
-        return np.interp(np.asarray(t, dtype=float), *given)
+            return values
+        if np.ndim(value) == 0:
+            return np.full(np.shape(t), float(value))
+        return np.interp(np.asarray(t, dtype=float), *value)
 
     @property
     def breaks(self) -> NDArray[np.float64]:
         """Times at which the history bends or jumps [s]."""
-        given: Any = self.value
-        return np.unique(given[0]) if not callable(given) and np.ndim(given) else np.empty(0)
+        value: Any = self.value
+        return np.unique(value[0]) if not callable(value) and np.ndim(value) else np.empty(0)
 
 
 def pulses(
@@ -99,7 +99,7 @@ def pulses(
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """One stage of a machine: who drives whom, and what is heard of it.
+    """One stage of a machine: which bodies drive which, and its frequencies.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ class Machine:
     notes : dict
         What had to be assumed, and derived numbers to be printed (phases, frequencies).
     stages : tuple of Stage
-        What spectra and errors of the machine ask for; the last one is the driven one.
+        Their frequencies and bodies are those that spectra and errors of the machine use; the last one is the driven one.
     speed : Speed, optional
         A speed that changes (`gearfe.with_speed`); None: the frequencies stated, for ever.
     spin : float
@@ -185,14 +185,14 @@ class Machine:
     frame: NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
-        """Assemble; refuse masses that are not, rows that do not fit."""
+        """Assemble; ValueError for masses that are not positive, springs that are negative, or rows of another length."""
         n, mass = len(self.dofs), np.asarray(self.mass, dtype=float)
         if mass.shape != (n,) or not (np.isfinite(mass).all() and (mass > 0).all()):
             raise ValueError(f"mass: give {n} positive numbers, one per degree of freedom ({', '.join(self.dofs[:4])}, ...)")
         rows: tuple[Spring | GearMesh | Load, ...] = (*self.springs, *self.meshes, *self.loads)
-        for one in rows:
-            if np.shape(one.row) != (n,) or not np.isfinite(one.row).all():
-                raise ValueError(f"{one.name}: its row needs {n} finite numbers, one per degree of freedom")
+        for element in rows:
+            if np.shape(element.row) != (n,) or not np.isfinite(element.row).all():
+                raise ValueError(f"{element.name}: its row needs {n} finite numbers, one per degree of freedom")
         for s in self.springs:
             if not (math.isfinite(s.k) and math.isfinite(s.c) and s.k >= 0 and s.c >= 0):
                 raise ValueError(f"spring {s.name}: k = {s.k}, c = {s.c}, but they must be finite and not negative")
@@ -212,8 +212,8 @@ class Machine:
         object.__setattr__(self, "law", law | {"damping": law["damping"] + np.array(extra)})
 
     def __repr__(self):
-        """One line: how many of everything."""
-        meshes = ", ".join(one.name for one in self.meshes[:4]) + (", ..." if len(self.meshes) > 4 else "")
+        """One line: numbers of degrees of freedom, springs, meshes and loads."""
+        meshes = ", ".join(mesh.name for mesh in self.meshes[:4]) + (", ..." if len(self.meshes) > 4 else "")
         speeds = ", ".join(f"{stage.mesh:.4g} Hz" for stage in self.stages)
         return (
             f"<Machine: {len(self.dofs)} degrees of freedom, {len(self.springs)} springs, {len(self.meshes)} meshes ({meshes}), "
@@ -284,14 +284,23 @@ class Machine:
 
     def working(self) -> NDArray[np.float64] | None:
         """Compressions of the meshes at rest ``(m,)`` [m], about which their forces are taken as straight; None if they are."""
-        if not self.curved:
+        gaps = np.array([mesh.gap for mesh in self.meshes])
+        if not self.curved and not gaps.any():
             return None
-        x = self.G @ self.rest()
-        return np.where([bool(mesh.secants) for mesh in self.meshes] & (depth(x, self.law) == 0), TOUCH, x)
+        x = self.compressions(self.rest())
+        free = gaps > 0
+        for i in np.flatnonzero((gaps > 0) & (x > 0)):  # these carry, and the flanks before them do not
+            free |= (self.G + self.G[i] == 0).all(axis=1)
+        touching = np.array([bool(mesh.secants) or not self.curved for mesh in self.meshes])
+        return np.where(touching & ~free & (depth(x, self.law) == 0), TOUCH, x)
+
+    def compressions(self, q: NDArray[Any]) -> NDArray[np.float64]:
+        """Compressions of the meshes ``(m,)`` [m] at displacements ``(n,)``, errors disregarded."""
+        return self.G @ q - np.array([mesh.gap for mesh in self.meshes])
 
     def load(self, t: float = 0.0) -> NDArray[np.float64]:
         """Sum of the loads at time `t` ``(n,)``."""
-        return sum((one.row * float(one(t)) for one in self.loads), np.zeros(len(self.dofs)))
+        return sum((load.row * float(load(t)) for load in self.loads), np.zeros(len(self.dofs)))
 
     def rest(self, t: float | None = None) -> NDArray[np.float64]:
         """Displacements ``(n,)`` under the loads of time `t` (0 if None) at the mean mesh stiffnesses, errors disregarded.
@@ -308,7 +317,7 @@ class Machine:
         start = 1e-5 * np.ones(len(self.meshes))
         q = np.linalg.lstsq(self.linear(start)[0], load, rcond=1e-12)[0]
         for _ in range(200):
-            x = self.G @ q
+            x = self.compressions(q)
             mean, bend = self._mean_at(x)
             away = load - self.K @ q - self.G.T @ force(x, zero, mean, self.law)
             tangent = slopes(x, zero, mean, self.law, bend)[0]

@@ -40,7 +40,7 @@ def frame_terms(dofs, mass, springs, spin, rotors=None):
     G. Genta, Dynamics of Rotating Systems (2005), section 2.6: tilting rotors.
     """
     n, bodies, rotors = len(dofs), [name.partition(".")[0] for name in dofs], rotors or {}
-    turn, plane, own = np.zeros((n, n)), np.zeros(n), np.zeros(n)  # `own`: angular momenta of bodies that tilt
+    turn, plane, momenta = np.zeros((n, n)), np.zeros(n), np.zeros(n)  # `momenta`: angular momenta of bodies that tilt
     for body in dict.fromkeys(bodies):
         for one in ("", "tilt_"):
             x, y = (dofs.index(f"{body}.{one}{axis}") if f"{body}.{one}{axis}" in dofs else None for axis in "xy")
@@ -51,14 +51,14 @@ def frame_terms(dofs, mass, springs, spin, rotors=None):
             if x is not None and y is not None:
                 turn[x, y], turn[y, x], plane[x], plane[y] = -1.0, 1.0, 1.0, 1.0
                 if one:
-                    own[[x, y]] = _momentum(dofs, mass, body, rotors, spin)
+                    momenta[[x, y]] = _momentum(dofs, mass, body, rotors, spin)
     unknown = sorted(set(rotors) - {name.partition(".")[0] for name, one in zip(dofs, plane, strict=True) if one})
     if unknown:
         raise ValueError(
             f"rotors: {unknown[0]} is no body that moves in two directions; there are {', '.join(dict.fromkeys(bodies))}"
         )
-    gyroscopic = (2 * spin * mass - own)[:, None] * turn
-    centripetal = np.diag(spin * own - spin**2 * mass * plane)
+    gyroscopic = (2 * spin * mass - momenta)[:, None] * turn
+    centripetal = np.diag(spin * momenta - spin**2 * mass * plane)
     if not spin:
         return gyroscopic, centripetal, np.zeros((n, n))
     held = [s for s in springs if len({bodies[i] for i in np.flatnonzero(s.row)}) == 1]

@@ -67,18 +67,18 @@ def batch(
     if getattr(multiprocessing.current_process(), "_inheriting", False):
         sys.exit(1)  # a worker that imports an unguarded script: the process that started it says what to do
     workers = count_of(workers, cases)
-    own = workers > 1 and _of_script(work, cases)
+    of_script = workers > 1 and _of_script(work, cases)
     started, tally = time.perf_counter(), Tally("cases", len(cases), progress)
     size = max(1, min(16, len(cases) // (4 * workers))) if workers > 1 else 1
     parts = [range(start, min(start + size, len(cases))) for start in range(0, len(cases), size)]
     jobs = [(part, [cases[i] for i in part]) for part in parts]
     rows: list[Any] = [None] * len(cases)
-    for (part, _), found in results(partial(_timed, work), jobs, workers, own=own):
-        if found is None:
+    for (part, _), outcomes in results(partial(_timed, work), jobs, workers, own=of_script):
+        if outcomes is None:
             guard = 'work or cases are defined in this script: write the call under if __name__ == "__main__":; or '
-            told = "a worker process ended before its cases were done: killed, or out of memory"
-            raise RuntimeError(f"{guard if own else ''}{told}")
-        for i, row in zip(part, found, strict=True):
+            reason = "a worker process ended before its cases were done: killed, or out of memory"
+            raise RuntimeError(f"{guard if of_script else ''}{reason}")
+        for i, row in zip(part, outcomes, strict=True):
             rows[i] = row
             tally.add(1)
     return Batch([row[0] for row in rows], [row[1] for row in rows], time.perf_counter() - started, workers)

@@ -184,26 +184,28 @@ def _one(sample, loads, models, phases):
     forces = [load * 1.0 for load in loads]
     case, how = Case(pair, forces, steel), Solve("ritz", phases=(np.arange(phases) + 0.5) / phases, extended=False)
     truth, beyond = solve(case, how), solve(case, replace(how, extended=True))
-    found = {name: solve(case, replace(how, method=name)) for name in HEALTHY}
+    curves = {name: solve(case, replace(how, method=name)) for name in HEALTHY}
     for name, make in models.items():
-        found[name] = [own_curve(name, make(pair, force, steel), pair, curve) for force, curve in zip(forces, truth, strict=True)]
+        curves[name] = [
+            own_curve(name, make(pair, force, steel), pair, curve) for force, curve in zip(forces, truth, strict=True)
+        ]
     rows = [
         sample
         | {"crack": 0.0, "load": load, "extended mean": beyond[i].k.mean() / truth[i].k.mean() - 1}
-        | _errors(truth, found, i)
+        | _errors(truth, curves, i)
         for i, load in enumerate(loads)
     ]
     if sample["crack"]:
         inside = np.linspace(0, pair.eps_alpha, int(phases * pair.eps_alpha) + 1)
         case = replace(case, damage={"pinion": [Crack(level=sample["crack"])]})
         how = replace(how, phases=(inside[1:] + inside[:-1]) / 2)
-        truth, found = solve(case, how), {}
+        truth, curves = solve(case, how), {}
         for name, (method, variants) in CRACKED.items():
             try:
-                found[name] = solve(case, replace(how, method=method, variants=variants))
+                curves[name] = solve(case, replace(how, method=method, variants=variants))
             except ValueError:  # nothing is left of the beam: the model has no value here
                 continue
-        rows += [sample | {"load": load} | _errors(truth, found, i) for i, load in enumerate(loads)]
+        rows += [sample | {"load": load} | _errors(truth, curves, i) for i, load in enumerate(loads)]
     return rows
 
 

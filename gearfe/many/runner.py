@@ -25,7 +25,7 @@ REFRESH = 5.0  # s between two looks at how many workers a scheduler has
 
 @dataclass(slots=True)
 class Tally:
-    """How many of `total` are done, said to whoever listens (`gearfe.steps`) and to `progress`, called with (done, total)."""
+    """Counts how many of `total` are done, and reports it to listeners (`gearfe.steps`) and to ``progress(done, total)``."""
 
     noun: str
     total: int
@@ -33,7 +33,7 @@ class Tally:
     done: int = 0
 
     def add(self, count: int) -> None:
-        """So many more are done."""
+        """Count `count` more as done, and report it."""
         self.done += count
         reached(f"{self.done} of {self.total} {self.noun}", self.done / self.total)
         if self.progress is not None:
@@ -85,7 +85,7 @@ def results(
 
 
 def _until_broken(work, waiting, suspects, workers, own):
-    """Results of the `waiting` jobs; ends early, with those under way in `suspects`, if a process does."""
+    """Results of the `waiting` jobs; if a process dies, the jobs under way are put into `suspects`, and the results end."""
     running = {}
     with processes(workers, own=own) as pool:
         try:
@@ -95,8 +95,8 @@ def _until_broken(work, waiting, suspects, workers, own):
                     waiting.popleft()
                 ended, _ = wait(running, return_when=FIRST_COMPLETED)
                 for future in ended:
-                    found = future.result()
-                    yield running.pop(future), found
+                    result = future.result()
+                    yield running.pop(future), result
         except BrokenProcessPool:
             for future, job in running.items():
                 if future.done() and not future.cancelled() and future.exception() is None:
@@ -145,11 +145,11 @@ def _on_cluster(work, jobs, address):
         for future in ended:
             job = under_way.pop(future.key)
             try:
-                found = future.result()
+                result = future.result()
             except KilledWorker:
-                found = None
+                result = None
             if time.monotonic() - asked > REFRESH:  # workers come and go
                 threads, asked = sum(client.nthreads().values()), time.monotonic()
             for more in send(AHEAD * threads - len(under_way) if threads else 1):
                 ended.add(more)
-            yield job, found
+            yield job, result

@@ -55,8 +55,8 @@ def flatten(machine, times):
 
     meshes = machine.meshes
     cycles = [add(m.cycle) for m in meshes]
-    changes = [(i, z, first, made, *add(made)) for i, m in enumerate(meshes) for z, first, made in m.changes]
-    errors = [(i, a, 2 * math.pi * f, p) for i, m in enumerate(meshes) for a, f, p in m.error]
+    changes = [(i, z, first, change, *add(change)) for i, m in enumerate(meshes) for z, first, change in m.changes]
+    errors = [(i, a, 2 * math.pi * f, p) for i, m in enumerate(meshes) for a, f, p in m.openings]
     rubs = [(i, *add(weight)) for i, m in enumerate(meshes) for _, weight in m.friction]
     knots = [_knots(load, times) for load in machine.loads]
     laws = [m.secants[0] if m.secants else None for m in meshes]
@@ -130,12 +130,12 @@ def stiffness(flat, t):
     for mesh, (z, first, start, width), place, count in zip(
         flat.change_mesh, flat.change, flat.change_place, flat.change_count, strict=True
     ):
-        own = phase[..., mesh] - first - start
-        own = (own - z * np.floor(own / z)) / width
-        inside = own < count
+        tooth_phase = phase[..., mesh] - first - start
+        tooth_phase = (tooth_phase - z * np.floor(tooth_phase / z)) / width
+        inside = tooth_phase < count
         if inside.any():
-            cell = np.minimum(own, count - 1).astype(np.int64)
-            c, u = flat.cells[place + cell], own - cell
+            cell = np.minimum(tooth_phase, count - 1).astype(np.int64)
+            c, u = flat.cells[place + cell], tooth_phase - cell
             change = c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
             k[..., mesh] += np.where(inside, change, 0.0)
     return (np.maximum(k, 0.0) if len(flat.change_mesh) else k), phase
@@ -152,14 +152,14 @@ def stiffness_at(machine, flat, t, x):
             continue
         healthy, *hurt = mesh.secants
         k[..., i], bend[..., i] = healthy(phase[..., i] % 1.0, deep[..., i])
-        for (z, first, _), one in zip(mesh.changes, hurt, strict=True):
-            start, end = one.start + one.width, one.end - one.width
-            own = phase[..., i] - first - start
-            own = own - z * np.floor(own / z) + start
-            more = one(own, deep[..., i])
-            inside = own < end
-            k[..., i] += np.where(inside, more[0], 0.0)
-            bend[..., i] += np.where(inside, more[1], 0.0)
+        for (z, first, _), change in zip(mesh.changes, hurt, strict=True):
+            start, end = change.start + change.width, change.end - change.width
+            tooth_phase = phase[..., i] - first - start
+            tooth_phase = tooth_phase - z * np.floor(tooth_phase / z) + start
+            beyond = change(tooth_phase, deep[..., i])
+            inside = tooth_phase < end
+            k[..., i] += np.where(inside, beyond[0], 0.0)
+            bend[..., i] += np.where(inside, beyond[1], 0.0)
     return np.maximum(k, 0.0), np.where(k > 0, bend, 0.0), phase
 
 

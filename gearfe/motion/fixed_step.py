@@ -65,29 +65,29 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
 
 
 def _filtered(run, machine, flat, plan, z, steps, start, counts):
-    """States kept, statistics, and channels filtered, piece by piece: of the whole run only what is kept stays in memory."""
+    """Kept states, statistics and filtered channels, made piece by piece: only what is kept stays in memory."""
     total, every, n, m = {"steps": 0, "rejected": 0, "losses": 0}, math.prod(counts), len(machine.dofs), len(machine.meshes)
     kept, channels = np.empty((1 + steps // every, 2 * n)), np.empty((1 + steps // every, 3 * n + 3 * m))
     width = excitation.changing(machine, flat)[0].size + (2 * m if flat.error_mesh.size else m)
 
     def pieces():
-        now = z
+        state = z
         for first in range(0, steps, PIECE):
             count = min(PIECE, steps - first)
             acting = np.empty((count + 1, width))
-            states, stats = run(now, count, 1, start=start + plan.h * first, acting=acting)
-            now, new = states[-1].copy(), slice(1 if first else 0, None)
+            states, stats = run(state, count, 1, start=start + plan.h * first, acting=acting)
+            state, new = states[-1].copy(), slice(1 if first else 0, None)
             for name in total:
                 total[name] += stats[name]
-            some = states[-first % every :: every]
+            sampled = states[-first % every :: every]
             at = -(-first // every)
-            kept[at : at + len(some)] = some
+            kept[at : at + len(sampled)] = sampled
             yield np.concatenate([states[new], acting[new]], axis=1)
 
     done, whole = 0, _channels(machine, flat, plan)
-    for told in thinned_pieces(pieces(), counts):
-        channels[done : done + len(told)] = whole(told)
-        done += len(told)
+    for piece in thinned_pieces(pieces(), counts):
+        channels[done : done + len(piece)] = whole(piece)
+        done += len(piece)
     return kept, total, channels
 
 

@@ -73,10 +73,10 @@ def housing_signal(
     in Fault Diagnosis and Detection, InTech, 2017, doi 10.5772/67529, on windows for the path.
     """
     machine = response.machine
-    named = [(one.name, re.fullmatch(re.escape(kind) + r"(\d+)[LR]?", one.name)) for one in machine.meshes]
-    heard = [(name, int(found[1]) - 1) for name, found in named if found]
+    named = [(mesh.name, re.fullmatch(re.escape(kind) + r"(\d+)[LR]?", mesh.name)) for mesh in machine.meshes]
+    heard = [(name, int(match[1]) - 1) for name, match in named if match]
     if not heard:
-        raise ValueError(f"no mesh is called {kind!r} and a number; there are {', '.join(one.name for one in machine.meshes)}")
+        raise ValueError(f"no mesh is called {kind!r} and a number; there are {', '.join(mesh.name for mesh in machine.meshes)}")
     if carrier is None:
         if "carrier frequency [Hz]" not in machine.notes:
             raise ValueError("the machine's notes have no 'carrier frequency [Hz]': give carrier")
@@ -109,8 +109,8 @@ def _answer(force, rate, frequency, zeta, mass):
         )
     omega = 2 * np.pi * frequency
     inner = np.array([[0.0, 1.0], [-(omega**2), -2 * zeta * omega]])
-    made = cont2discrete((inner, np.array([[0.0], [1 / mass]]), inner[1:], np.array([[1 / mass]])), 1 / rate, method="foh")
-    above, below = ss2tf(*made[:4])
+    discrete = cont2discrete((inner, np.array([[0.0], [1 / mass]]), inner[1:], np.array([[1 / mass]])), 1 / rate, method="foh")
+    above, below = ss2tf(*discrete[:4])
     return lfilter(above[0], below, force - force[0])
 
 

@@ -16,8 +16,8 @@ from .exponential import UNSTABLE
 from .loop_forces import changed, forces, loads, losses, note, records
 from .loop_parts import compiled, kept, lookup, stage
 
-GROW = 0.05  # of what is allowed: below it the next step is twice as long (the estimate grows as its fourth power)
-TINY = 1e-300  # N: a mesh that never carries anything
+GROW = 0.05  # part of the allowed estimate below which the next step is twice as long (the estimate grows as its fourth power)
+TINY = 1e-300  # N: least scale of the estimate, for meshes that never carry anything
 CHUNK = 64  # steps whose stiffnesses are looked up at once
 
 
@@ -58,8 +58,8 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0, acting=None):
     bends = [flat.knots[low:high] for low, high in zip(flat.knot_place[:-1], flat.knot_place[1:], strict=True) if high > low + 1]
     flat = flat._replace(knots=np.concatenate(bends) if bends else np.zeros((1, 2)), knot_place=np.cumsum([0, *map(len, bends)]))
     m, rubs = len(machine.meshes), len(flat.rub_mesh)
-    more = {"k_linear": plan.k, "c_linear": plan.c, "total": plan.k, "stiff": plan.k, "lawful": flat.shape[:m, 1] > 0}
-    laws = records(**machine.law, **more, affine=np.full(m, plan.affine), rubs=np.full(m, rubs))
+    extra = {"k_linear": plan.k, "c_linear": plan.c, "total": plan.k, "stiff": plan.k, "lawful": flat.shape[:m, 1] > 0}
+    laws = records(**machine.law, **extra, affine=np.full(m, plan.affine), rubs=np.full(m, rubs))
     _, rows, columns, per_depth = np.insert(flat.shape, [m] * rubs, 0.0, axis=0).T
     mesh = np.concatenate([np.arange(m), flat.rub_mesh, flat.change_mesh])
     parts = records(mesh=mesh, rows=rows, columns=columns, per_depth=per_depth)
@@ -82,18 +82,20 @@ def _matrices(plan, kept, still):
         return matrix[:, index.ravel()].T
 
     parts = []
-    for (E, Y, S, T, F), told in zip(plan.levels, plan.told, strict=True):
+    for (E, Y, S, T, F), estimate in zip(plan.levels, plan.told, strict=True):
         PF = np.concatenate([F, plan.P @ F])
         add = np.concatenate([S @ still, T @ np.concatenate([still, still])])
         push = PF @ np.concatenate([still, 2 * still, still])
-        parts.append((E, Y.T, columns(S), columns(T), columns(PF), add, push, columns(told)))
-    E, Y, S, T, PF, add, push, W = (np.stack([np.ascontiguousarray(part) for part in one]) for one in zip(*parts, strict=True))
+        parts.append((E, Y.T, columns(S), columns(T), columns(PF), add, push, columns(estimate)))
+    E, Y, S, T, PF, add, push, W = (
+        np.stack([np.ascontiguousarray(part) for part in by_level]) for by_level in zip(*parts, strict=True)
+    )
     return Matrices(E, Y, S, T, PF, add.ravel(), push.ravel(), W, plan.P)
 
 
 @compiled
 def _largest(out, none, W, level, apart, size):
-    """Largest of the mesh forces that forces `apart` at the end of a step make; `size` if that is larger."""
+    """Largest mesh force that the forces `apart` at the end of a step cause, or `size` if that is larger."""
     stage(out, none, np.int64(0), W, level, apart, np.int64(0))
     for i in range(out.size):
         size = max(size, abs(out[i]))
@@ -128,13 +130,13 @@ def _propagate(new, E, level, z):
 
 @compiled
 def _copy(out, values, first):
-    """``out = values[first:]``, as many as there is room for and values."""
+    """``out = values[first:]``, as many numbers as both have."""
     for i in range(min(out.size, values.size - first)):
         out[i] = values[first + i]
 
 
 @compiled
-def _write(states, row, z):  # written out: numba takes 2 s to compile what it says of arrays that do not fit
+def _write(states, row, z):  # written out: numba takes 2 s to compile its message on arrays that do not fit
     for i in range(z.size):
         states[row, i] = z[i]
 
@@ -180,24 +182,27 @@ def _edge(edges, edge, t):
 @compiled
 def _of_part(flat, now, follows, start, h, low, high):
     """Look up what acts in a part of a step, in the last three rows; `follows`: it starts where the part before ended."""
-    own = now.shape[0] - 3
+    begin = now.shape[0] - 3
     if follows:
         for i in range(now.shape[1]):
-            now[own, i] = now[own + 2, i]
+            now[begin, i] = now[begin + 2, i]
     else:
-        lookup(flat, now, own, own + 1, start, h, low, 0.0)
-    lookup(flat, now, own + 1, own + 3, start, h, (low + high) / 2, (high - low) / 2)
+        lookup(flat, now, begin, begin + 1, start, h, low, 0.0)
+    lookup(flat, now, begin + 1, begin + 3, start, h, (low + high) / 2, (high - low) / 2)
 
 
 @kept
 def _run(given, z, clock, states, counts, acting):
-    """Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic."""
+    """Take the steps, filling `states`, `counts` and `acting`; returns how many were done while the state was finite.
+
+    Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic.
+    """
     matrices, laws, parts, flat, edges = given
     E, Y, S, T, PF, add, push, W, P = matrices
     start, h, every, allowed, scale = clock
     m, p, f, n, last, rubs, table = laws.size, P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub_mesh.size, flat.secant
-    whole, opens, own, held = 1 << last, last > 0, 2 * CHUNK + 1, allowed < np.inf  # row `own` of `now`: parts of a step begin
-    now = np.zeros((own + 3, 2 * m + f + (2 * len(flat.shape) if table.size > 0 else 0)))
+    whole, opens, begin, held = 1 << last, last > 0, 2 * CHUNK + 1, allowed < np.inf  # `begin`: row of `now` for a part of a step
+    now = np.zeros((begin + 3, 2 * m + f + (2 * len(flat.shape) if table.size > 0 else 0)))
     g, apart = np.zeros(5 * f), np.zeros(f)  # forces of the stages 1, 3, 4, 2, and at the end; these less those of stage 4
     none, doubt, fresh = np.zeros(m), np.zeros(m), False  # `fresh`: the first forces are those of the end before
     y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
@@ -223,7 +228,7 @@ def _run(given, z, clock, states, counts, acting):
                 level += 1
                 counts[1] += 1
                 continue
-            row = own if level > 0 else 2 * (step % CHUNK)
+            row = begin if level > 0 else 2 * (step % CHUNK)
             if level > 0:
                 _of_part(flat, now, known == at, start, h, low, high)
                 known = at + part

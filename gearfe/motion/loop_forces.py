@@ -16,15 +16,15 @@ def records(**columns):
 
 
 def _chain(first):
-    """Force of the law of a row of `LAWS` from row `first` on."""
-    own = compiled(LAWS[first].force)
+    """Function of the force by the law that ``law.kind`` names: a row of `LAWS`, from row `first` on."""
+    force = compiled(LAWS[first].force)
     if first + 1 == len(LAWS):
-        return own
+        return force
     others = _chain(first + 1)
 
     def pushed(depth, rate, k, c, law):
         if law.kind == first:
-            return own(depth, rate, k, c, law)
+            return force(depth, rate, k, c, law)
         return others(depth, rate, k, c, law)
 
     return compiled(pushed)
@@ -57,9 +57,9 @@ def forces(g, first, x, now, row, laws, parts, table):
             deep = max(x[i] - e, 0.0) + max(-law.backlash - (x[i] - e), 0.0)
             k = secant(table, parts[i], now[row, at + 2 * i], now[row, at + 2 * i + 1], deep)
             for j in range(m + rubs, parts.size):
-                own = at + 2 * (j - rubs)
-                if parts[j].mesh == i and now[row, own] >= 0:
-                    k += secant(table, parts[j], now[row, own], now[row, own + 1], deep)
+                column = at + 2 * (j - rubs)
+                if parts[j].mesh == i and now[row, column] >= 0:
+                    k += secant(table, parts[j], now[row, column], now[row, column + 1], deep)
             k = max(k, 0.0)
         whole = _force(x[i] - e, v - rate, k, law)
         g[first + i] = whole - law.k_linear * x[i] - law.c_linear * v

@@ -16,14 +16,14 @@ compiled = njit(error_model="numpy")  # at the first call
 def kept(function):
     """Compile at the first call; the result is kept on the disk where numba finds a folder in which it may write.
 
-    It holds what the function calls, in other files and laws of contact too: any edit of these makes it anew.
+    The result contains the functions it calls, in other files and contact laws too: any edit of these files compiles it anew.
     """
     try:
-        made = njit(cache=True, error_model="numpy")(function)
+        dispatcher = njit(cache=True, error_model="numpy")(function)
     except RuntimeError:  # no such folder: it is compiled by each process
         return compiled(function)
-    made._cache._cache_file._source_stamp = _stamp()  # numba itself looks at the function's own file alone
-    return made
+    dispatcher._cache._cache_file._source_stamp = _stamp()  # numba itself looks at the function's own file alone
+    return dispatcher
 
 
 @cache
@@ -35,7 +35,7 @@ def _stamp():
 
 
 class _Announcer(event.Listener):
-    """Tells once that something is being compiled."""
+    """Reports once that something is being compiled."""
 
     def __init__(self, tell):
         self.tell = tell
@@ -94,14 +94,14 @@ def _paced(pace, t):
             low = middle
         else:
             high = middle
-    own = t - pace[low, 0]
-    now = pace[low, 1] + own * (pace[high, 1] - pace[low, 1]) / (pace[high, 0] - pace[low, 0])
-    return pace[low, 2] + own * (pace[low, 1] + now) / 2, now
+    elapsed = t - pace[low, 0]
+    factor = pace[low, 1] + elapsed * (pace[high, 1] - pace[low, 1]) / (pace[high, 0] - pace[low, 0])
+    return pace[low, 2] + elapsed * (pace[low, 1] + factor) / 2, factor
 
 
 @compiled
 def _row(now, row, at, shape, which, place, inside):
-    """Write into two places from `at` on where the row `place` of the table `which` is, how far beyond its middle; or -1."""
+    """Write into ``now[row, at:at + 2]`` the row at `place` of table `which`, and the place in that row; -1 if not `inside`."""
     if not inside:
         now[row, at] = -1.0
         return
@@ -158,12 +158,12 @@ def lookup(flat, now, first, last, origin, h, low, share):
                     _row(now, row, at + 2 * i, shape, i, 1 + (phase - np.floor(phase)) * (shape[i, 1] - 3), shape[i, 1] > 0)
         for j in range(changes):
             i = change_mesh[j]
-            z, own = change[j, 0], phases[i] + frequency[i] * turned - change[j, 1] - change[j, 2]
-            own = (own - z * np.floor(own / z)) / change[j, 3]
-            if twin[i] == i and own < change_count[j]:
-                now[row, i] += _cubic(cells, change_place[j], change_count[j], own)
+            z, tooth_phase = change[j, 0], phases[i] + frequency[i] * turned - change[j, 1] - change[j, 2]
+            tooth_phase = (tooth_phase - z * np.floor(tooth_phase / z)) / change[j, 3]
+            if twin[i] == i and tooth_phase < change_count[j]:
+                now[row, i] += _cubic(cells, change_place[j], change_count[j], tooth_phase)
             if lawful:
-                _row(now, row, at + 2 * (m + j), shape, m + j, own + 1, own < shape[m + j, 1] - 3)
+                _row(now, row, at + 2 * (m + j), shape, m + j, tooth_phase + 1, tooth_phase < shape[m + j, 1] - 3)
         for i in range(m):
             now[row, i] = now[row, twin[i]]
             if lawful:

@@ -9,8 +9,8 @@ from scipy.linalg import eig
 from ..machine.contact_law import closed
 from ..machine.modes import modal, natural_frequencies
 
-LEVELS, DEEPER = 6, 8  # a step is halved at most so often: about changes of contact; and where it is adapted
-LOCAL = 1e-5  # of the largest mesh force, at the default step: what `Plan.allowed` is there
+LEVELS, DEEPER = 6, 8  # most halvings of a step: about changes of contact; where the step is adapted
+LOCAL = 1e-5  # `Plan.allowed` at the default step, as a part of the largest mesh force
 STEPS = 80  # per mesh cycle, at first
 SHARE = 0.35  # of the period of the stiffest mesh, at first
 CONDITION = 1e8  # of the eigenvectors: above it the linear part is kept full
@@ -44,9 +44,9 @@ class Plan:
         off their straight lines within the step, times the forces, that of Simpson's rule to the trapezoidal one. The larger of
         both is the estimate of the step.
     allowed : float
-        How large that may be, part of the largest mesh force so far; inf: it is not asked.
+        Largest estimate of a step that is taken, as a part of the largest mesh force so far; inf: none is made.
     scale : float
-        That force at first, at rest [N].
+        The largest mesh force at rest, to start with [N].
     """
 
     basis: np.ndarray
@@ -121,8 +121,8 @@ def default_step(machine):
     """
     highest = machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0)
     x = machine.working()
-    own = machine.linear(x)[2] * (machine.G**2 / machine.mass).sum(axis=1)
-    top = math.sqrt(own.max()) / (2 * math.pi) if own.size else natural_frequencies(machine)[0][-1]
+    squared = machine.linear(x)[2] * (machine.G**2 / machine.mass).sum(axis=1)
+    top = math.sqrt(squared.max()) / (2 * math.pi) if squared.size else natural_frequencies(machine)[0][-1]
     return 1 / max(STEPS * highest, top / SHARE)
 
 
@@ -164,9 +164,9 @@ def _matrices(A, B, P, h):
     def before(blocks):  # P times the blocks
         return np.einsum("pis,ist->pit", P.reshape(-1, count, size), blocks).reshape(P.shape)
 
-    half, one, _, _ = _phi(A * (h / 2))
+    half, phi_1, _, _ = _phi(A * (h / 2))
     E, *phi = _phi(A * h)
-    Q = h / 2 * on(one, B)
+    Q = h / 2 * on(phi_1, B)
     phi = [h * on(each, B) for each in phi]
     F = phi[0] - 3 * phi[1] + 4 * phi[2], 2 * phi[1] - 4 * phi[2], 4 * phi[2] - phi[1]
     S, R = P @ Q, P @ on(half, Q)
@@ -181,17 +181,17 @@ def _phi(Z):
     """
     size = np.abs(Z).sum(axis=-1).max(axis=-1)
     halved = np.maximum(np.ceil(np.log2(np.maximum(size, 1e-300) / 0.5)), 0).astype(int)
-    Z, one = Z / 2.0 ** halved[:, None, None], np.eye(Z.shape[-1])
+    Z, identity = Z / 2.0 ** halved[:, None, None], np.eye(Z.shape[-1])
     third = np.zeros_like(Z)
     for i in range(14, -1, -1):
-        third = Z @ third + one / math.factorial(i + 3)
-    second = Z @ third + one / 2
-    first = Z @ second + one
-    E = Z @ first + one
+        third = Z @ third + identity / math.factorial(i + 3)
+    second = Z @ third + identity / 2
+    first = Z @ second + identity
+    E = Z @ first + identity
     for done in range(halved.max(initial=0)):
-        more = (done < halved)[:, None, None]
-        third = np.where(more, (E @ third + first / 2 + second + third) / 8, third)
-        second = np.where(more, (E @ second + first + second) / 4, second)
-        first = np.where(more, (E @ first + first) / 2, first)
-        E = np.where(more, E @ E, E)
+        doubled = (done < halved)[:, None, None]
+        third = np.where(doubled, (E @ third + first / 2 + second + third) / 8, third)
+        second = np.where(doubled, (E @ second + first + second) / 4, second)
+        first = np.where(doubled, (E @ first + first) / 2, first)
+        E = np.where(doubled, E @ E, E)
     return E, first, second, third

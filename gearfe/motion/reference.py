@@ -12,7 +12,7 @@ from . import excitation
 from .response import Response, acceleration
 
 SOLVERS = ("RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA")
-EVENTS = 100_000  # in one run
+EVENTS = 100_000  # most changes of contact in one run
 LOOKS = np.concatenate([[0.0], 2.0 ** np.arange(-20, -4), np.arange(2, 17) / 16])  # parts of a step: a flight may be as short
 TOGETHER = 1e-12  # of a run: changes of contact closer in time than this are one
 
@@ -34,7 +34,7 @@ def reference(machine, duration, count, state, method, rtol, start=0.0):
     method : str
         One of `SOLVERS`.
     rtol : float
-        Its atol is a thousandth of that of the largest value at rest.
+        Relative tolerance; the absolute one is a thousandth of it, times the largest value at rest.
 
     Returns
     -------
@@ -52,8 +52,8 @@ def reference(machine, duration, count, state, method, rtol, start=0.0):
     at = start + np.linspace(0.0, duration, count + 1)
     y, states = run.scale * state, [state[None]]
     for low, high in zip(edges[:-1], edges[1:], strict=True):
-        y, found = run.between(low, high, y, at[(at > low) & (at <= high)])
-        states += found
+        y, passed = run.between(low, high, y, at[(at > low) & (at <= high)])
+        states += passed
     stats = {"method": method, "rtol": rtol, "calls": run.calls, "events": run.events, "losses": run.losses}
     stats |= {"seconds": time.perf_counter() - started, "dofs": len(machine.dofs)}
     return Response(machine, at, np.concatenate(states), np.eye(2 * len(machine.dofs)), stats)
@@ -77,7 +77,7 @@ class _Run:
         self.side = sides(self.compression(start, scale * state), self.law)
 
     def compression(self, t, y):
-        """Of all meshes ``(m,)`` [m], or at many times ``(m, t)``."""
+        """Compressions of all meshes ``(m,)`` [m], or at many times ``(m, t)``."""
         return self.machine.G @ (y.T / self.scale).T[: self.n] - excitation.errors(self.flat, np.asarray(t))[0].T
 
     def rate(self, t, y):
@@ -87,37 +87,40 @@ class _Run:
 
     def between(self, low, high, y, inside):
         """State at `high`, and the states at the times `inside`, where no load bends."""
-        found = []
+        states = []
         while low < high:
             solver = getattr(scipy.integrate, self.method)(self.rate, low, y, high, **self.options)
-            low, hit = self._smooth(solver, inside, found)
+            low, hit = self._smooth(solver, inside, states)
             y = solver.y if hit is None else solver.dense_output()(low)
             self.calls += solver.nfev
             if hit is not None:
                 self._change(low, y, hit)
-        return y, found
+        return y, states
 
     def _smooth(self, solver, inside, found):
-        """Step until a contact changes or the end; its time and the flanks then touched. States at `inside` go to `found`."""
+        """Step until a contact changes, or to the end: that time, and the flanks touched from then on (None at the end).
+
+        States at the times `inside` are appended to `found`.
+        """
         while True:
             message = solver.step()
             if solver.status == "failed" or not np.isfinite(solver.y).all():
                 raise RuntimeError(f"{self.method} gave up at t = {solver.t:.4g} s: {message or 'values that are not finite'}")
-            wanted, end, hit = inside[(inside > solver.t_old) & (inside <= solver.t)], solver.t, None
-            if self.opens.size or wanted.size:
+            times, end, hit = inside[(inside > solver.t_old) & (inside <= solver.t)], solver.t, None
+            if self.opens.size or times.size:
                 path = solver.dense_output()
             if self.opens.size:
                 end, hit = self._first_exit(path, solver.t_old, solver.t)
-                wanted = wanted[wanted <= end]
-            if wanted.size:
-                found.append((path(wanted) / self.scale[:, None]).T)
+                times = times[times <= end]
+            if times.size:
+                found.append((path(times) / self.scale[:, None]).T)
             if hit is not None or solver.status == "finished":
                 return end, hit
 
     def _first_exit(self, path, low, high):
         """First time in a step at which a contact ends, and the flanks then touched by mesh; its end and None without one."""
         first = high, None
-        exits = [(i, *one) for i in self.opens for one in self._exits(i)]
+        exits = [(i, *leaving) for i in self.opens for leaving in self._exits(i)]
         at, x = self._looks(path, low, high, {i for i, *_ in exits})
         for i, place, direction, side in exits:
             past = direction * (x[i] - place) > 0
@@ -136,16 +139,16 @@ class _Run:
         """
         at = low + (high - low) * LOOKS
         x = self.compression(at, path(at))
-        more = []
+        turns = []
         for i in meshes:
-            one, two = np.diff(x[i])[:-1], np.diff(x[i])[1:]
-            for j in np.flatnonzero(one * two < 0):
+            before, after = np.diff(x[i])[:-1], np.diff(x[i])[1:]
+            for j in np.flatnonzero(before * after < 0):
                 (left, middle), rise = np.diff(at[j : j + 3]), np.diff(x[i, j : j + 3])
                 slopes = rise / (left, middle)
-                more.append(at[j] + left / 2 - slopes[0] * (left + middle) / 2 / (slopes[1] - slopes[0]))
-        if not more:
+                turns.append(at[j] + left / 2 - slopes[0] * (left + middle) / 2 / (slopes[1] - slopes[0]))
+        if not turns:
             return at, x
-        at = np.unique(np.concatenate([at, more]))
+        at = np.unique(np.concatenate([at, turns]))
         return at, self.compression(at, path(at))
 
     def _beyond(self, path, i, place):

@@ -54,7 +54,7 @@ class Response:
     filtered: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
-        """Refuse times, states and filtered channels of different lengths."""
+        """Raise ValueError for times, states and filtered channels of different lengths."""
         counts = {len(self.time), len(self.states), len(self.time if self.filtered is None else self.filtered)}
         if len(counts) > 1:
             raise ValueError("a response needs as many times as states and filtered channels: cut it by part")
@@ -87,8 +87,8 @@ class Response:
     def names(self) -> list[str]:
         """Names of all channels."""
         dofs = self.machine.dofs
-        own = [*dofs, *(f"{name} {kind}" for kind in KINDS for name in dofs)]
-        return [*own, *(f"{kind} {mesh.name}" for kind in MESH for mesh in self.machine.meshes)]
+        motions = [*dofs, *(f"{name} {kind}" for kind in KINDS for name in dofs)]
+        return [*motions, *(f"{kind} {mesh.name}" for kind in MESH for mesh in self.machine.meshes)]
 
     def unit(self, name: str) -> str:
         """Unit of a channel."""
@@ -152,7 +152,7 @@ class Response:
         save_as(suffix, path, self._content(names))
 
     def to_csv(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
-        """Write a table of repr-exact numbers under comment lines with the solver's statistics (JSON)."""
+        """Write a table of numbers with all their digits under comment lines with the solver's statistics (JSON)."""
         save_as(".csv", path, self._content(names))
 
     def to_npz(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
@@ -164,13 +164,13 @@ class Response:
         save_as(".mat", path, self._content(names))
 
     def _content(self, names):
-        found = self._columns(names)
-        units = [self.unit(name) for name in found]
-        columns = {"time [s]": self.time} | {f"{name} [{u}]": v for (name, v), u in zip(found.items(), units, strict=True)}
-        values = np.array(list(found.values())).T
-        arrays = {"time": self.time, "values": values, "names": np.array(list(found)), "units": np.array(units)}
-        told = {"time": "s", "values": "by row of units", "names": "-", "units": "-"}
-        return Content("gearfe response, version 1", columns, arrays, self.stats, told)
+        channels = self._columns(names)
+        units = [self.unit(name) for name in channels]
+        columns = {"time [s]": self.time} | {f"{name} [{u}]": v for (name, v), u in zip(channels.items(), units, strict=True)}
+        values = np.array(list(channels.values())).T
+        arrays = {"time": self.time, "values": values, "names": np.array(list(channels)), "units": np.array(units)}
+        array_units = {"time": "s", "values": "by row of units", "names": "-", "units": "-"}
+        return Content("gearfe response, version 1", columns, arrays, self.stats, array_units)
 
     def _columns(self, names):
         names = [*self.machine.dofs, *(f"force {m}" for m in self._meshes)] if names is None else list(names)

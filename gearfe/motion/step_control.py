@@ -1,8 +1,8 @@
 """The step of the fast path: what two runs of different steps differ by, and a step for which that is small.
 
 The error of a step is set by the mesh cycles, by the modes the meshes excite, by how steep the stiffness curves are and by the
-damaged tooth; no frequency alone tells it. So a short stretch of the motion is run at a step and at half of it, and the step
-changed until both agree.
+damaged tooth: no frequency alone determines it. So a short stretch of the motion is run at a step and at half of it, and the
+step changed until both agree.
 """
 
 import math
@@ -13,9 +13,9 @@ import numpy as np
 from .fixed_step import fixed_steps
 from .propagator import default_step, is_bent, plan
 
-WANTED, WANTED_OPEN = 7e-4, 5e-3  # of the range, while the meshes stay closed and where contact is lost
+WANTED, WANTED_OPEN = 7e-4, 5e-3  # largest error, as a part of the range, while the meshes stay closed and where contact is lost
 CYCLES = 3.5  # of the slowest mesh, in a stretch
-SPREAD = 4  # stretches of a run under a law of contact that is not linear; a run as short as they are is told on whole
+SPREAD = 4  # stretches on which a run under a law of contact that is not linear is repeated; all of it if it is no longer
 HALVINGS = 6
 SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to a shorter step: of order four, and where local halving rules
 SEEN = 3e-3  # of the spread of a load that is a function: how well it must be known between the samples of a run
@@ -60,7 +60,7 @@ def unseen(machine, start, duration, h):
     A run knows them at quarters of its steps and draws straight lines between. Asked at times by chance over the whole run, not
     on a stretch: a burst, or a tone far above the meshes, shows.
     """
-    functions = [one for one in machine.loads if callable(one.value)]
+    functions = [applied for applied in machine.loads if callable(applied.value)]
     if not functions:
         return 0.0
     t = start + duration * np.random.default_rng(0).random(PROBES)
@@ -86,7 +86,7 @@ def longest_seen(machine, start, duration):
 
 
 def stretch(machine, duration, begin=0.0):
-    """Start and length [s] of a stretch of a run from time `begin` on to tell the error on.
+    """Start and length [s] of the stretch of a run from time `begin` on, on which its error is estimated.
 
     `CYCLES` mesh cycles, with the worst damaged tooth among them; of a speed that changes: where it is fastest.
     """
@@ -132,32 +132,33 @@ def chosen_step(machine, duration, initial=None, *, begin=0.0, adapt=False, watc
     -------
     dt : float
         [s]
-    found : Estimate
+    assessed : Estimate
+        Of that step.
     """
 
     def error(h):
         try:
-            found = estimate(machine, duration, h, initial, begin=begin, adapt=adapt)
+            assessed = estimate(machine, duration, h, initial, begin=begin, adapt=adapt)
         except RuntimeError:
             if h < 0.9 * low:
                 raise
             return Estimate(math.inf, False, length, 0.0, math.inf)
         if watch is not None:
-            watch(found.cost)
-        return found
+            watch(assessed.cost)
+        return assessed
 
     length = stretch(machine, duration, begin)[1]
     h = min(default_step(machine), length, longest)
     low = h / 2**HALVINGS
-    found = error(h)
-    while found.error > (WANTED_OPEN if found.lost else WANTED) and h > low:
-        h *= max(0.25, min(0.8, 0.9 * (WANTED / found.error) ** 0.25)) if not found.lost else 0.5
-        found = error(h)
-    return h, found
+    assessed = error(h)
+    while assessed.error > (WANTED_OPEN if assessed.lost else WANTED) and h > low:
+        h *= max(0.25, min(0.8, 0.9 * (WANTED / assessed.error) ** 0.25)) if not assessed.lost else 0.5
+        assessed = error(h)
+    return h, assessed
 
 
 class Estimate(NamedTuple):
-    """What a run at a step and one at half of it say on a stretch.
+    """Error and cost of a step, from a run with it and one with half of it on a stretch.
 
     Attributes
     ----------
@@ -168,7 +169,7 @@ class Estimate(NamedTuple):
     length : float
         Of the stretch [s].
     cost : float
-        Seconds for a simulated second at this step, from what the run at half of it took longer.
+        Wall time for a simulated second at this step [s], from how much longer the run at half of it took.
     acceleration : float
         Error of the accelerations, likewise.
     """
@@ -178,6 +179,11 @@ class Estimate(NamedTuple):
     length: float
     cost: float
     acceleration: float
+
+
+def is_rough(machine):
+    """Whether the error of a step hangs on where the steps lie: flanks meet under a law that is not straight, or one of force."""
+    return is_bent(machine) or any(mesh.secants for mesh in machine.meshes)
 
 
 def estimate(machine, duration, h, initial=None, *, begin=0.0, adapt=False, at=None):
@@ -191,24 +197,24 @@ def estimate(machine, duration, h, initial=None, *, begin=0.0, adapt=False, at=N
         initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     steps = math.ceil(length / h * (1 - 1e-12))
     options = {"start": start, "adapt": adapt}
-    rough = adapt and is_bent(machine)
+    rough = adapt and is_rough(machine)
     runs = [fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in ((1, 2, 3) if rough else (1, 2))]
     one, two = (run.stats["seconds"] for run in runs[:2])
     if one >= two:  # the first waited for the compiler, or for the processor
         one = fixed_steps(machine, length, steps, initial, **options).stats["seconds"]
-    cost = max(two - one, 0.0) / length
+    cost = max(two - one, two / 4) / length  # half of `two` but for noise, which may make it nothing
     *coarse, fine = runs
-    more = ROUGH if rough else SMOOTH
-    error = more * max(max(difference(one, fine)) for one in coarse)
-    acceleration = more * max(acceleration_difference(one, fine) for one in coarse)
+    margin = ROUGH if rough else SMOOTH
+    error = margin * max(max(difference(one, fine)) for one in coarse)
+    acceleration = margin * max(acceleration_difference(one, fine) for one in coarse)
     return Estimate(error, runs[1].stats["losses"] > 0, length, cost, acceleration)
 
 
 def estimate_along(response, found):
-    """`Estimate` of a run whose flanks meet under a law of contact that is not linear, from what it went through.
+    """`Estimate` of a run under laws for which `is_rough`, from what it went through.
 
     Its error depends on where its own steps happen to lie when pairs come in, so that one stretch says too little: the whole of
-    a run as short as `SPREAD` stretches is run again, of a longer one so many stretches spread over it, each from the state
+    a run as short as `SPREAD` stretches is run again, of a longer one `SPREAD` stretches spread over it, each from the state
     that the run had there. What those cannot know is what was wrong before: errors of stretches one after the other add up
     as independent ones do, until the least damped vibration forgets them.
 
@@ -229,7 +235,7 @@ def estimate_along(response, found):
         left = np.abs(values[values.imag > 0]).max(initial=0.0) ** (2 * length / h)  # of a squared error, after a stretch
         grown = math.sqrt(sum(left**i for i in range(math.ceil(duration / length))))
     state = np.concatenate([response.q, response.v], axis=1)
-    told = [estimate(machine, duration, h, state[i], adapt=True, at=(float(time[i]), one)) for i, one in places]
-    error, acceleration = (max(getattr(one, key) for one in (found, *told)) * grown for key in ("error", "acceleration"))
-    lost = any(one.lost for one in (found, *told))
-    return Estimate(error, lost, sum(one.length for one in told), found.cost, acceleration)
+    estimates = [estimate(machine, duration, h, state[i], adapt=True, at=(float(time[i]), span)) for i, span in places]
+    error, acceleration = (max(getattr(span, key) for span in (found, *estimates)) * grown for key in ("error", "acceleration"))
+    lost = any(span.lost for span in (found, *estimates))
+    return Estimate(error, lost, sum(span.length for span in estimates), found.cost, acceleration)

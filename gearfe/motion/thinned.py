@@ -90,8 +90,8 @@ def _filtered(pieces, count, reach, passed):
     def ended(rows):
         """Rows near the beginning or the end."""
         near = [min(row, len(waiting) - 1 - row, whole) // count for row in rows]
-        parts = (waiting[row - own * count : row + own * count + 1] for row, own in zip(rows, near, strict=True))
-        return [_weights(count, own, passed) @ part for own, part in zip(near, parts, strict=True)]
+        parts = (waiting[row - side * count : row + side * count + 1] for row, side in zip(rows, near, strict=True))
+        return [_weights(count, side, passed) @ part for side, part in zip(near, parts, strict=True)]
 
     for piece in pieces:
         waiting = piece if waiting is None else np.concatenate([waiting, piece])

@@ -36,7 +36,7 @@ def plot_campbell(
         axes.annotate(name, (found.speed[-1], min(value * found.speed[-1], end)), fontsize=8, xytext=(3, 0),
                       textcoords="offset points", va="center", annotation_clip=False)  # fmt: skip
     met = [crossing for crossing in found.crossings if crossing.frequency <= end]
-    axes.plot([one.speed for one in met], [one.frequency for one in met], "o", color=COLOURS[1], markersize=4)
+    axes.plot([point.speed for point in met], [point.frequency for point in met], "o", color=COLOURS[1], markersize=4)
     axes.set(xlabel="speed over that of the machine", ylabel="frequency [Hz]")
     axes.set(ylim=(0, end), xlim=(found.speed[0], found.speed[-1]))
     return save_figure(figure, path, dpi)

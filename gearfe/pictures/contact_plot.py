@@ -53,7 +53,7 @@ def plot_contact(
     offset = (pair.gear_1.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
     for pit in pits:
         z, radius = flank_edge(pair.gear_1, pit)
-        nouns = " and ".join(dict.fromkeys(one.nouns[1] for one in pits))
+        nouns = " and ".join(dict.fromkeys(hollow.nouns[1] for hollow in pits))
         label = {"label": f"{nouns}, on pair {pit.tooth:+d} only"} if pit is pits[0] else {}
         top.fill(z - offset, radius, facecolor="0.85", edgecolor="black", linewidth=0.9, zorder=1, **label)
     for limit, name in ((pair.gear_1.r_form, "form circle"), (pair.gear_1.r_a, "tip circle")):
@@ -61,10 +61,10 @@ def plot_contact(
         top.annotate(name, (0.005, limit), xycoords=("axes fraction", "data"), fontsize=7, color="gray", va="bottom")
     top.set_ylabel("contact radius on the pinion [mm]")
     force = contact.load[shown[0]].sum()
-    what = (
+    subject = (
         f"contact pattern of {len(contact.cells)} phases" if phase is None else f"contact lines, phase {contact.phase[phase]:.3g}"
     )
-    where = f"{what}, {force:.0f} N in the transverse plane"
+    where = f"{subject}, {force:.0f} N in the transverse plane"
     top.set_title(f"{title}: {where}" if title else where, fontsize=10)
     figure.colorbar(drawn, ax=top, label="Hertz pressure [MPa]")
     if phase is None:
@@ -111,7 +111,7 @@ def _draw_lines(axes, pair, shown):
 
 def _draw_loads(axes, cells):
     colours = [f"C{k}" for k in range(10)]
-    for at in (one for one in _lines_of(cells) if cells.load[one].any()):
+    for at in (line for line in _lines_of(cells) if cells.load[line].any()):
         order = int(cells.order[at[0]])
         z, load = _stairs(cells.z[at], cells.width[at], cells.load[at] / cells.width[at])
         named = f"pair {order:+d}" if f"pair {order:+d}" not in axes.get_legend_handles_labels()[1] else None

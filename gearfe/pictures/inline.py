@@ -22,12 +22,12 @@ def line_svg(x, y, x_name, y_name, *, largest=800):
         (wide - right, tall - bottom + 12, "end", f"{np.nanmax(x):.3g}"),
         ((left + wide - right) / 2, tall - 4, "middle", f"{y_name} over {x_name}"),
     ]
-    words = "".join(f'<text x="{a:.0f}" y="{b:.0f}" text-anchor="{where}">{escape(text)}</text>' for a, b, where, text in texts)
+    labels = "".join(f'<text x="{a:.0f}" y="{b:.0f}" text-anchor="{where}">{escape(text)}</text>' for a, b, where, text in texts)
     box = f'x="{left}" y="{top}" width="{wide - left - right}" height="{tall - top - bottom}" fill="none" stroke="#999"'
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide}" height="{tall}" role="img" aria-label="{escape(y_name)}" '
         f'font-size="10" font-family="sans-serif"><rect width="{wide}" height="{tall}" fill="white"/><rect {box}/>'
-        f'<polyline points="{points}" fill="none" stroke="#0072b2" stroke-width="1.5"/>{words}</svg>'
+        f'<polyline points="{points}" fill="none" stroke="#0072b2" stroke-width="1.5"/>{labels}</svg>'
     )
 
 

@@ -60,39 +60,39 @@ def plot_pair(
     """
     if isinstance(pair, Case):
         damage, pair = pair.damage if damage is None else damage, pair.pair
-    hurt = by_side(damage)
-    tooth = next((one.tooth for own in hurt for one in own), 0)
+    by_gear = by_side(damage)
+    tooth = next((hurt.tooth for damages in by_gear for hurt in damages), 0)
     pitch = pair.gear_1.r_b * math.tan(pair.alpha_w)  # roll length at the pitch point
     turns = [float(turn) for turn in pair.turn(pitch - tooth * pair.p_bt)]
-    figure, both = blank((10, 5.2), 1, 2)
+    figure, views = blank((10, 5.2), 1, 2)
     for i, gear in enumerate((pair.gear_1, pair.gear_2)):
         frame = _turned(turns[i]) * [(1, pair.outward)[i], 1]  # a ring's own frame is mirrored in place
         centre = [[0.0], [(0.0, pair.centre_2)[i]]]
         shapes = [frame @ points + centre for points in (outline_points(gear, points=24), _edge(gear))]
         ahead = (1, -1)[i] * 2 * math.pi / gear.z  # from a tooth to that of the pair ahead
-        marks = [frame @ _turned(ahead * one.tooth) @ one.outline(gear) + centre for one in hurt[i]]
-        for axes in both:
+        marks = [frame @ _turned(ahead * hurt.tooth) @ hurt.outline(gear) + centre for hurt in by_gear[i]]
+        for axes in views:
             _fill(axes, shapes, GEARS[i])
             for line in marks:
                 axes.plot(*line, color=HURT, linewidth=2.5, solid_capstyle="round", zorder=4)
     along = np.array(pair.path) - pitch
     line = np.array([along * math.cos(pair.alpha_w), pair.pitch_radius_1 + along * math.sin(pair.alpha_w)])
-    both[1].plot(*line, color="#222222", linestyle="--", linewidth=1.2, zorder=3, label="path of contact")
-    for noun in sorted({one.nouns[0] for own in hurt for one in own}):
-        both[1].plot([], [], color=HURT, linewidth=2.5, label=noun)
+    views[1].plot(*line, color="#222222", linestyle="--", linewidth=1.2, zorder=3, label="path of contact")
+    for noun in sorted({hurt.nouns[0] for damages in by_gear for hurt in damages}):
+        views[1].plot([], [], color=HURT, linewidth=2.5, label=noun)
     half = NEAR * pair.gear_1.m_n
-    both[1].set(xlim=(-1.15 * half, 1.15 * half), ylim=(pair.pitch_radius_1 - half, pair.pitch_radius_1 + half))
-    both[1].legend(loc="lower right")
-    for axes in both:
+    views[1].set(xlim=(-1.15 * half, 1.15 * half), ylim=(pair.pitch_radius_1 - half, pair.pitch_radius_1 + half))
+    views[1].legend(loc="lower right")
+    for axes in views:
         axes.set(aspect="equal", xlabel="[mm]", ylabel="[mm]")
         axes.grid(visible=False)
     rim = pair.gear_2.r_rim
     second = pair.centre_2 - (0.0 if rim is None else 0.5 * (pair.gear_2.r_f + rim))
     for name, height in (("pinion", 0.0), ("wheel" if rim is None else "ring", second)):
-        both[0].text(0.0, height, name, ha="center", va="center", fontsize=9)
-    both[0].set_title(f"{pair.gear_1.z} and {pair.gear_2.z} teeth, {pair.a:.5g} mm apart")
+        views[0].text(0.0, height, name, ha="center", va="center", fontsize=9)
+    views[0].set_title(f"{pair.gear_1.z} and {pair.gear_2.z} teeth, {pair.a:.5g} mm apart")
     seen = ", transverse section" if pair.gear_1.beta else ""
-    both[1].set_title(f"the teeth in mesh{seen}; contact ratio {pair.eps_alpha:.2f}")
+    views[1].set_title(f"the teeth in mesh{seen}; contact ratio {pair.eps_alpha:.2f}")
     figure.suptitle(title)
     return save_figure(figure, path, dpi=110)
 

@@ -34,12 +34,12 @@ def draw_set(
     times = magnified or 10 ** math.floor(math.log10(LARGEST * radius / largest)) * 2
     figure, axes = blank((8, 8))
     top = max(float(np.percentile(shape.stress, BRIGHT)) for shape in shapes)
-    for one in shapes:
-        x, y = one.place + times * one.moved
-        corners = np.concatenate([one.triangles[[0, 3, 5]], one.triangles[[3, 1, 4]], one.triangles[[5, 4, 2]],
-                                  one.triangles[[3, 4, 5]]], axis=1)  # fmt: skip
+    for body in shapes:
+        x, y = body.place + times * body.moved
+        corners = np.concatenate([body.triangles[[0, 3, 5]], body.triangles[[3, 1, 4]], body.triangles[[5, 4, 2]],
+                                  body.triangles[[3, 4, 5]]], axis=1)  # fmt: skip
         mesh = Triangulation(x, y, corners.T)
-        drawn = axes.tripcolor(mesh, one.stress, cmap="viridis", vmin=0, vmax=top, shading="gouraud", rasterized=True)
+        drawn = axes.tripcolor(mesh, body.stress, cmap="viridis", vmin=0, vmax=top, shading="gouraud", rasterized=True)
     if supports is not None:
         axes.plot(*supports, "^", color=COLOURS[1], markersize=9, label="held")
         axes.legend(loc="upper right", fontsize=9)

@@ -51,7 +51,7 @@ def told(curve, *, load=True):
     parts = []
     if "gear_1" in meta and "gear_2" in meta:
         parts.append(f"z = {meta['gear_1']['z']} / {meta['gear_2']['z']}")
-    hurt = {side: len(found) for side, found in meta.get("damage", {}).items() if found}
+    hurt = {side: len(damages) for side, damages in meta.get("damage", {}).items() if damages}
     parts += [f"{number} damage{'s' if number > 1 else ''} of the {side}" for side, number in hurt.items()]
     if "force_N" in meta and "width_mm" in meta:
         parts.append(f"{meta['force_N']:g} N on {meta['width_mm']:g} mm" if load else f"{meta['width_mm']:g} mm wide")
@@ -108,9 +108,9 @@ def plot_map(found, formulations, x, y, zone, path=None, bins=8):
         table = np.full((len(names_y), len(names_x)), np.nan)
         for i in range(len(names_y)):
             for j in range(len(names_x)):
-                here = error[(place_x == j) & (place_y == i) & np.isfinite(error)]
-                table[i, j] = np.median(here) if here.size else np.nan
-                if here.size:
+                cell = error[(place_x == j) & (place_y == i) & np.isfinite(error)]
+                table[i, j] = np.median(cell) if cell.size else np.nan
+                if cell.size:
                     color = "white" if abs(table[i, j]) > 20 else "black"
                     axes.text(j, i, f"{table[i, j]:+.0f}", ha="center", va="center", fontsize=7, color=color)
         image = axes.imshow(table, cmap="RdBu_r", vmin=-30, vmax=30, origin="lower", aspect="auto")

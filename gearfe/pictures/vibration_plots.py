@@ -46,23 +46,23 @@ def plot_spectra(
     """
     figure, rows = blank((9, 1 + 2 * len(spectra)), len(spectra), 1, sharex=True, sharey=True, squeeze=False)
     rows = rows[:, 0]
-    largest = max(one.values.max() for one in spectra.values())
-    for axes, (name, found) in zip(rows, spectra.items(), strict=True):
-        axes.semilogy(found.frequency, found.values, linewidth=0.8, color=COLOURS[0])
+    largest = max(curve.values.max() for curve in spectra.values())
+    for axes, (name, spectrum) in zip(rows, spectra.items(), strict=True):
+        axes.semilogy(spectrum.frequency, spectrum.values, linewidth=0.8, color=COLOURS[0])
         axes.set_ylim(1e-6 * largest, 2 * largest)  # common axes: the first would decide for all
-        axes.set_ylabel(f"{name} [{found.unit}]")
+        axes.set_ylabel(f"{name} [{spectrum.unit}]")
         for value in (lines or {}).values():
             axes.axvline(value, linestyle=":", linewidth=0.7, color="gray", zorder=0)
     if title:
         figure.suptitle(title, fontsize=10)
     end = 1.2 * max(lines.values()) if lines and top is None else top
-    end = found.frequency[-1] if end is None else end
+    end = spectrum.frequency[-1] if end is None else end
     rows[-1].set_xlim(0, end)
     for name, place in _apart({name: value for name, value in (lines or {}).items() if value <= end}, LETTER * end).items():
         rows[0].annotate(
             name, (place, 1.02), xycoords=("data", "axes fraction"), rotation=90, fontsize=7, ha="center", va="bottom"
         )
-    rows[-1].set_xlabel("order" if found.axis == "order" else f"frequency [{found.axis}]")
+    rows[-1].set_xlabel("order" if spectrum.axis == "order" else f"frequency [{spectrum.axis}]")
     return save_figure(figure, path, dpi=dpi)
 
 
@@ -70,12 +70,12 @@ def _apart(places, least):
     """Places of labels by name, each at least `least` from the one before it, as near to where they belong as that allows."""
     names = sorted(places, key=places.get)
     wanted = np.array([places[name] for name in names], dtype=float)
-    found = wanted.copy()
+    shifted = wanted.copy()
     for _ in range(len(names)):
-        gaps = least - np.diff(found)
+        gaps = least - np.diff(shifted)
         push = np.where(gaps > 0, gaps / 2, 0.0)
-        found += np.append(0.0, push) - np.append(push, 0.0)
-    return dict(zip(names, found.tolist(), strict=True))
+        shifted += np.append(0.0, push) - np.append(push, 0.0)
+    return dict(zip(names, shifted.tolist(), strict=True))
 
 
 def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
@@ -87,9 +87,9 @@ def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None =
     top = kurtogram.kurtosis.max()
     low = kurtogram.centre - kurtogram.bandwidth / 2
     for row, level in enumerate(levels):
-        own = kurtogram.level == level
-        shades = colormaps["viridis"](np.clip(kurtogram.kurtosis[own] / max(top, 1e-300), 0, 1))
-        axes.barh(row, kurtogram.bandwidth[own], 1.0, left=low[own], color=shades, align="center")
+        in_row = kurtogram.level == level
+        shades = colormaps["viridis"](np.clip(kurtogram.kurtosis[in_row] / max(top, 1e-300), 0, 1))
+        axes.barh(row, kurtogram.bandwidth[in_row], 1.0, left=low[in_row], color=shades, align="center")
     scale = cm.ScalarMappable(colors.Normalize(0, max(top, 1e-300)), "viridis")
     figure.colorbar(scale, ax=axes, label="spectral kurtosis [-] (0: noise; below it as 0)")
     best = kurtogram.best
@@ -98,8 +98,8 @@ def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None =
     axes.set_yticks(range(levels.size), [f"{level:.3g}" for level in levels])
     axes.invert_yaxis()
     axes.set(xlabel="frequency [Hz]", ylabel="level")
-    found = f"kurtosis up to {top:.3g}, in {kurtogram.band[0]:.0f} to {kurtogram.band[1]:.0f} Hz"
-    axes.set_title(f"{title}: {found}" if title else found, fontsize=9)
+    best_band = f"kurtosis up to {top:.3g}, in {kurtogram.band[0]:.0f} to {kurtogram.band[1]:.0f} Hz"
+    axes.set_title(f"{title}: {best_band}" if title else best_band, fontsize=9)
     return save_figure(figure, path, dpi=120)
 
 

@@ -15,8 +15,8 @@ LOOK = {
     "legend": {"orientation": "h", "y": -0.22, "x": 0},
     "hovermode": "x unified",
 }
-CLEAR = "rgba(0,0,0,0)"  # the page's own ground, dark or light
-POINTS = 4000  # of a spectrum that is drawn
+CLEAR = "rgba(0,0,0,0)"  # transparent: the page's own background, dark or light
+POINTS = 4000  # most points drawn of a spectrum
 K = "mesh stiffness k [N/µm]"
 
 
@@ -80,21 +80,21 @@ def spectra_figure(found):
     """Spectra of an `Analysis` by case, its expected lines marked and named."""
     figure = blank("frequency [Hz]", height=485, hovermode="closest", margin=LOOK["margin"] | {"t": 95})
     end = 1.15 * max(found.lines.values()) if found.lines else None
-    for number, (name, one) in enumerate(found.spectra.items()):
-        last = one.frequency.size if end is None else int(np.searchsorted(one.frequency, end)) + 1
+    for number, (name, spectrum) in enumerate(found.spectra.items()):
+        last = spectrum.frequency.size if end is None else int(np.searchsorted(spectrum.frequency, end)) + 1
         rows = slice(1, min(last, POINTS))
         figure.add_scatter(
-            x=one.frequency[rows], y=one.values[rows], name=name, line=style(number) | {"width": 1.3},
-            hovertemplate="%{x:.2f} Hz: %{y:.3g} " + one.unit,
+            x=spectrum.frequency[rows], y=spectrum.values[rows], name=name, line=style(number) | {"width": 1.3},
+            hovertemplate="%{x:.2f} Hz: %{y:.3g} " + spectrum.unit,
         )  # fmt: skip
     names = {}
     for name, value in found.lines.items():
         names.setdefault(round(value, 3), []).append(name)
     for value, together in names.items():
         figure.add_vline(x=value, line={"color": "#777777", "dash": "dot", "width": 1})
-        told = {"text": ", ".join(together), "textangle": -90, "font": {"size": 10}, "showarrow": False}
-        figure.add_annotation(x=value, y=1, yref="paper", yanchor="bottom", **told)
-    largest = max(one.values[1:].max() for one in found.spectra.values())
+        label = {"text": ", ".join(together), "textangle": -90, "font": {"size": 10}, "showarrow": False}
+        figure.add_annotation(x=value, y=1, yref="paper", yanchor="bottom", **label)
+    largest = max(spectrum.values[1:].max() for spectrum in found.spectra.values())
     figure.update_yaxes(title=f"amplitude [{found.unit}]", type="log", range=[np.log10(largest) - 5, np.log10(largest) + 0.2])
     figure.update_xaxes(range=None if end is None else [0, end])
     return figure

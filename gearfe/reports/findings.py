@@ -10,6 +10,7 @@ from ..stress.holed import pressed_tooth, tooth_field
 from ..studies.by_zone import compare
 from ..studies.vibration import Analysis, analysis, check_run, responses
 from ..threads import own_warnings
+from .whole_set import find_set
 
 
 @dataclass(slots=True)
@@ -22,6 +23,7 @@ class Findings:
     tooth: tuple | None = None  # (name of the pair, `Pressed`, `Field`): the tooth in three dimensions
     vibration: Analysis | None = None
     responses: dict = field(default_factory=dict)  # `Response` by case
+    sets: dict = field(default_factory=dict)  # `SetCurves` of the scene's planetary set by case
     notes: list = field(default_factory=list)  # warnings, and what could not be shown and why
     seconds: dict = field(default_factory=dict)  # wall time by part
 
@@ -30,8 +32,8 @@ class Findings:
         """The answer in one sentence, that of the pair of `hurt_pair`, which is named if there are others."""
         name = self.hurt_pair
         case = self.case if self.case in self.scene.pairs[name].damage else None
-        said = self.comparisons[name, case].headline
-        return f"{name}: {said}" if len(self.scene.pairs) > 1 else said[:1].upper() + said[1:]
+        sentence = self.comparisons[name, case].headline
+        return f"{name}: {sentence}" if len(self.scene.pairs) > 1 else sentence[:1].upper() + sentence[1:]
 
     @property
     def hurt_pair(self):
@@ -40,43 +42,47 @@ class Findings:
 
 
 def find(scene, case=None, *, duration=0.2, phases=64):
-    """Compute all `Findings` that a report shows; what is given is that of `gearfe.report`."""
+    """Compute all `Findings` that a report shows; arguments are those of `gearfe.report`."""
     if duration != 0:
         check_run(duration)
     scene = load_scene(scene) if not hasattr(scene, "pairs") else scene
     cases = list(dict.fromkeys(name for pair in scene.pairs.values() for name in pair.damage))
     if case is not None and case not in cases:
         raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(cases) or 'none'}")
-    found = Findings(scene, case or (cases[0] if cases else None))
-    wanted = [(name, None) for name in scene.pairs]
-    wanted += [(name, found.case) for name, pair in scene.pairs.items() if found.case in pair.damage]
+    findings = Findings(scene, case or (cases[0] if cases else None))
+    compared = [(name, None) for name in scene.pairs]
+    compared += [(name, findings.case) for name, pair in scene.pairs.items() if findings.case in pair.damage]
     moves = bool(scene.machine and duration)
     done = 0.8 if moves else 1.0  # vibration takes the rest
     with part("", 0.0, 0.7 * done):
-        for name, which in steps(wanted, lambda key: f"{key[0]}, {key[1] or 'healthy'}"):
-            with _counted(found, f"stiffness of {name}, {which or 'healthy'}"):
-                found.comparisons[name, which] = compare(scene, name, case=which, phases=phases)
-    with part("loaded tooth", 0.7 * done, done), _counted(found, "tooth in three dimensions"):
-        found.tooth = _tooth(found)
+        for name, which in steps(compared, lambda key: f"{key[0]}, {key[1] or 'healthy'}"):
+            with _counted(findings, f"stiffness of {name}, {which or 'healthy'}"):
+                findings.comparisons[name, which] = compare(scene, name, case=which, phases=phases)
+    with part("loaded tooth", 0.7 * done, done), _counted(findings, "tooth in three dimensions"):
+        findings.tooth = _tooth(findings)
+    if scene.set is not None:
+        with _counted(findings, "planetary set"):
+            findings.sets, notes = find_set(scene, findings.case)
+        findings.notes += notes
     if moves:
-        with part("vibration", done, 1.0), _counted(found, "vibration of the machine"):
-            made = responses(scene, found.case, duration=duration)
+        with part("vibration", done, 1.0), _counted(findings, "vibration of the machine"):
+            motions = responses(scene, findings.case, duration=duration)
             try:
-                found.vibration, found.responses = analysis(made), made
+                findings.vibration, findings.responses = analysis(motions), motions
             except ValueError as error:  # too short to tell its lines apart; all else of the page stands
-                found.notes.append(f"no vibration of {duration:g} s is shown: {error}")
-    found.notes = list(dict.fromkeys(found.notes))
-    return found
+                findings.notes.append(f"no vibration of {duration:g} s is shown: {error}")
+    findings.notes = list(dict.fromkeys(findings.notes))
+    return findings
 
 
 @contextlib.contextmanager
 def _counted(found, name):
     """Seconds of a part, and its warnings, into the findings."""
     started = time.perf_counter()
-    with own_warnings() as told:
+    with own_warnings() as caught:
         yield
     found.seconds[name] = time.perf_counter() - started
-    found.notes += [f"{name}: {one.message}" for one in told]
+    found.notes += [f"{name}: {warning.message}" for warning in caught]
 
 
 def _tooth(found):

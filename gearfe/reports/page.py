@@ -17,6 +17,7 @@ from ..studies.told_scene import told_details, told_load, told_supports
 from .figures import cases_figure, curves_figure, part_of_page, share_figure, spectra_figure, tooth_figure
 from .findings import find
 from .template import page_maker
+from .whole_set import set_section
 
 PICTURE, REFINE = (1120, 840), 0.7  # of stress [px], and of its mesh
 
@@ -58,11 +59,12 @@ def report(
     with part("stress pictures", 0.85, 1.0):
         drawing = time.perf_counter()
         pictures = _pictures(found)
+        sets = [one | {"table": _table(one["table"])} for one in set_section(found.sets)]
         found.seconds["stress pictures"] = time.perf_counter() - drawing
     figures = _Figures()
     return write(
         found=found, headline=found.headline, scene=found.scene, command=_command(found), case=found.case,
-        pairs=_pairs(found, figures), pictures=pictures,
+        pairs=_pairs(found, figures), pictures=pictures, sets=sets,
         tooth=_tooth(found, figures), vibration=_vibration(found, figures), methods=_methods(found),
         versions=versions(), duration=duration, seconds=found.seconds, total=time.perf_counter() - started,
         turning=(resources.files("gearfe.reports") / "page.js").read_text(encoding="utf-8"),

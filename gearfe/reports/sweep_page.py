@@ -12,7 +12,12 @@ from .figures import BAND, blank, part_of_page, style
 from .template import page_maker
 
 SIZE = {"height": 420, "hovermode": "closest"}
-SHOWN = {"stiffness": ("k_mean", "k"), "transmission error": ("te_peak_to_peak", "te"), "vibration": ("rms", None)}
+SHOWN = {  # by kind of study: the output whose effects are drawn, and the curve whose bands are
+    "stiffness": ("k_mean", "k"),
+    "transmission error": ("te_peak_to_peak", "te"),
+    "set": ("k_planet_ring", None),
+    "vibration": ("rms", None),
+}
 
 
 def sweep_report(runs: Runs | str | os.PathLike[str], path: str | os.PathLike[str]) -> Path:
@@ -50,10 +55,10 @@ def _varied(table, runs):
     """Inputs with their values."""
     rows = [["input", "distinct values", "from", "to"]]
     for name in runs.inputs:
-        own = table[name]
-        plain = own.dtype.kind in "if"
-        ends = (f"{own.min():.6g}", f"{own.max():.6g}") if plain else (str(own.iloc[0]), str(own.iloc[-1]))
-        rows.append([name, own.nunique(), *ends])
+        column = table[name]
+        plain = column.dtype.kind in "if"
+        ends = (f"{column.min():.6g}", f"{column.max():.6g}") if plain else (str(column.iloc[0]), str(column.iloc[-1]))
+        rows.append([name, column.nunique(), *ends])
     return rows
 
 
@@ -62,9 +67,9 @@ def _numbers(table, runs):
     rows = [["output", "unit", "least", "5 %", "middle", "95 %", "largest"]]
     skipped = {*runs.inputs, "point", "draw", "seconds"}
     for name, field in runs.fields.items():
-        own = table[name].dropna() if name in table and field.kind == "number" and name not in skipped else ()
-        if len(own):
-            rows.append([name, field.unit, *(f"{value:.5g}" for value in np.percentile(own, (0, 5, 50, 95, 100)))])
+        column = table[name].dropna() if name in table and field.kind == "number" and name not in skipped else ()
+        if len(column):
+            rows.append([name, field.unit, *(f"{value:.5g}" for value in np.percentile(column, (0, 5, 50, 95, 100)))])
     return rows
 
 
@@ -77,10 +82,10 @@ def _failed(table):
 def _effects(runs, output):
     """Main effects, each input over its own range."""
     figure = blank("place of the value in its range", f"mean {output} [{runs.units[output]}]", **SIZE)
-    for i, (name, own) in enumerate(main_effects(runs, output).groupby("input", sort=False)):
-        said = [str(value) if isinstance(value, str) else f"{value:.5g}" for value in own["value"]]
+    for i, (name, effects) in enumerate(main_effects(runs, output).groupby("input", sort=False)):
+        texts = [str(value) if isinstance(value, str) else f"{value:.5g}" for value in effects["value"]]
         figure.add_scatter(
-            x=np.linspace(0, 1, len(own)), y=own["mean"], name=name, mode="lines+markers", text=said,
+            x=np.linspace(0, 1, len(effects)), y=effects["mean"], name=name, mode="lines+markers", text=texts,
             line=style(i) | {"width": 2},
             hovertemplate="%{text}: %{y:.5g}",
         )  # fmt: skip
@@ -92,12 +97,12 @@ def _bands(runs, curve):
     if curve is None:
         return ""
     try:
-        found = curve_bands(runs, curve)
+        bands = curve_bands(runs, curve)
     except ValueError:  # other phases in other cases
         return ""
-    phase, (low, middle, high) = found["phase"].to_numpy(), found[curve].to_numpy()
+    phase, (low, middle, high) = bands["phase"].to_numpy(), bands[curve].to_numpy()
     figure = blank("mesh phase", f"{curve} [{runs.units[curve]}]", **SIZE)
-    both = {"x": np.concatenate([phase, phase[::-1]]), "y": np.concatenate([high, low[::-1]]), "mode": "lines"}
-    figure.add_scatter(**both, **BAND, name="5 to 95 %")
+    band = {"x": np.concatenate([phase, phase[::-1]]), "y": np.concatenate([high, low[::-1]]), "mode": "lines"}
+    figure.add_scatter(**band, **BAND, name="5 to 95 %")
     figure.add_scatter(x=phase, y=middle, mode="lines", line={"color": "#0072b2"}, name="middle")
     return part_of_page(figure, "figure-bands")

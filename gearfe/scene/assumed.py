@@ -10,8 +10,8 @@ An ``[[assumption]]`` may list the values it speaks of, and ``[given]`` those th
     why = "the article gives none"
     holds = { "gear.sun.b_mm" = 20.0 }
 
-In a copy in which the face width is another one, that assumption is no longer told; where a value of the source was changed, its
-printed results are no longer compared with.
+In a copy with another face width that assumption is no longer listed; where a value of the source was changed, the results that
+the source prints are no longer compared.
 """
 
 import re
@@ -30,20 +30,22 @@ def split(file, assumptions, given, tables):
     ValueError if a key names no value of the scene.
     """
     kept, changed = [], {}
-    for i, one in enumerate(assumptions):
-        away = _away(file, f"assumption {i + 1}", one["holds"], tables)
-        changed |= {key: f"{key} = {found!r} (assumed in the original: {shown(value)})" for key, (found, value) in away.items()}
+    for i, assumption in enumerate(assumptions):
+        away = _away(file, f"assumption {i + 1}", assumption["holds"], tables)
+        changed |= {
+            key: f"{key} = {present!r} (assumed in the original: {shown(value)})" for key, (present, value) in away.items()
+        }
         if not away:
-            kept.append({name: one[name] for name in ("what", "why", "depends")})
+            kept.append({name: assumption[name] for name in ("what", "why", "depends")})
     away = _away(file, "given", given, tables)
-    changed |= {key: f"{key} = {found!r} (its source: {shown(value)})" for key, (found, value) in away.items()}
+    changed |= {key: f"{key} = {present!r} (its source: {shown(value)})" for key, (present, value) in away.items()}
     return tuple(kept), tuple(changed.values()), bool(away)
 
 
 def _away(file, where, values, tables):
-    """Values that differ: key to (found, wanted)."""
-    found = {key: known_path(file, where, key, tables) for key in values}
-    return {key: (found[key], value) for key, value in values.items() if found[key] != value}
+    """Values that differ, by key: (the present one, that of `values`)."""
+    present = {key: known_path(file, where, key, tables) for key in values}
+    return {key: (present[key], value) for key, value in values.items() if present[key] != value}
 
 
 def of_stiffness(assumptions):

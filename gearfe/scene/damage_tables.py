@@ -143,8 +143,8 @@ def pits_of(row, made, which, pair):
             raise ValueError(
                 "first_mm and last_mm are of pits along the axis: for others give middle_mm with pitch_mm or span_mm"
             )
-        found = pit_row(row["count"], first, first if last is None else last, **numbers)
-        return found + (in_both_halves((made.gear_1, made.gear_2)[which], found, face) if row["both_halves"] else [])
+        pits = pit_row(row["count"], first, first if last is None else last, **numbers)
+        return pits + (in_both_halves((made.gear_1, made.gear_2)[which], pits, face) if row["both_halves"] else [])
     if last is not None:
         raise ValueError("last_mm goes with first_mm: about middle_mm give pitch_mm or span_mm")
     if row["count"] > 1 and (pitch is None) == (span is None):
@@ -159,8 +159,8 @@ def pits_of(row, made, which, pair):
 def spall_of(row, made, which, pair):
     """The spall of a checked row of `SPALL`, and its mirror image in the other half of a herringbone gear if asked for."""
     lengths = {key: row[f"{key}_mm"] for key in ("radius", "z", "sides", "depth", "corner")}
-    found, face = [Spall(**lengths, tooth=row["tooth"])], pair["face"] or ("helical" if made.gear_1.beta else "spur")
-    return found + (in_both_halves((made.gear_1, made.gear_2)[which], found, face) if row["both_halves"] else [])
+    spalls, face = [Spall(**lengths, tooth=row["tooth"])], pair["face"] or ("helical" if made.gear_1.beta else "spur")
+    return spalls + (in_both_halves((made.gear_1, made.gear_2)[which], spalls, face) if row["both_halves"] else [])
 
 
 TABLES = {

@@ -112,18 +112,18 @@ def misalignment_of(file, where, pair, row):
     amounts = {name: row[f"{name}_um"] * 1e-3 for name in ("F_beta", "f_sigma_beta", "f_sigma_delta")}
     if not any(amounts.values()):
         return None
-    made = placed(file, where, lambda: Misalignment(**amounts, length=row["bearing_span_mm"]))
-    placed(file, where, lambda: tilt_of(pair, made))
-    return made
+    misalignment = placed(file, where, lambda: Misalignment(**amounts, length=row["bearing_span_mm"]))
+    placed(file, where, lambda: tilt_of(pair, misalignment))
+    return misalignment
 
 
 def _flank(row, gear):
-    given = {name: row[f"{name}_um"] * 1e-3 for name in ("crowning", "slope", "lead_crowning", "lead_slope", "twist")}
-    given |= {"end_relief": tuple(value * 1e-3 for value in row["end_relief_um"]), "end_exponent": row["end_exponent"]}
-    given["end_length"] = tuple(row["end_length_mm"])
+    fields = {name: row[f"{name}_um"] * 1e-3 for name in ("crowning", "slope", "lead_crowning", "lead_slope", "twist")}
+    fields |= {"end_relief": tuple(value * 1e-3 for value in row["end_relief_um"]), "end_exponent": row["end_exponent"]}
+    fields["end_length"] = tuple(row["end_length_mm"])
     for end in ("tip", "root"):
-        given |= {f"{end}_relief": row[f"{end}_relief_um"] * 1e-3, f"{end}_exponent": row[f"{end}_exponent"]}
-        given |= {f"{end}_start_{how}": row[f"{end}_start_{how}_mm"] for how in ("diameter", "roll")}
+        fields |= {f"{end}_relief": row[f"{end}_relief_um"] * 1e-3, f"{end}_exponent": row[f"{end}_exponent"]}
+        fields |= {f"{end}_start_{how}": row[f"{end}_start_{how}_mm"] for how in ("diameter", "roll")}
         length = row[f"{end}_start_length_mm"]
         if length is not None:
             if row[f"{end}_start_roll_mm"] is not None:
@@ -134,17 +134,17 @@ def _flank(row, gear):
                     f"{end}_start_length_mm = {length}, but the flank is {whole:.4g} mm of roll long: give a part of it"
                 )
             down = gear.outward * length
-            given[f"{end}_start_roll"] = gear.roll_a - down if end == "tip" else gear.roll_f + down
+            fields[f"{end}_start_roll"] = gear.roll_a - down if end == "tip" else gear.roll_f + down
         angle = row[f"{end}_start_angle_deg"]
-        given[f"{end}_start_angle"] = None if angle is None else math.radians(angle)
+        fields[f"{end}_start_angle"] = None if angle is None else math.radians(angle)
     for name, roll, amount in (("table", "table_roll_mm", "table_removed_um"), ("wear", "wear_roll_mm", "wear_um")):
         if (row[roll] is None) != (row[amount] is None):
             raise ValueError(f"give {roll} and {amount} together")
         if row[roll] is not None:
-            given[name] = row[roll], [value * 1e-3 for value in row[amount]]
-    given |= {f"tip_{edge}": row[f"tip_{edge}_mm"] for edge in ("rounding", "chamfer")}
-    given |= {"tooth_scale": row["tooth_scale"], "eccentricity": row["eccentricity_um"] * 1e-3}
-    given["eccentric_tooth"] = row["eccentric_tooth"]
+            fields[name] = row[roll], [value * 1e-3 for value in row[amount]]
+    fields |= {f"tip_{edge}": row[f"tip_{edge}_mm"] for edge in ("rounding", "chamfer")}
+    fields |= {"tooth_scale": row["tooth_scale"], "eccentricity": row["eccentricity_um"] * 1e-3}
+    fields["eccentric_tooth"] = row["eccentric_tooth"]
     if row["pitch_um"] is not None:
-        given["pitch"] = [value * 1e-3 for value in row["pitch_um"]]
-    return Flank(**given)
+        fields["pitch"] = [value * 1e-3 for value in row["pitch_um"]]
+    return Flank(**fields)

@@ -22,6 +22,7 @@ from .damage_tables import DAMAGE
 from .flank_table import FLANK, MISALIGNMENT, flanks_of, misalignment_of
 from .machine_table import checked_machine
 from .references import Reference, read_references
+from .set_table import NAMES, SceneSet, checked_set, set_of
 from .strict import NUMBER, REQUIRED, TEXT, TEXTS, VALUES, WHOLE, checked, known, placed, sides
 from .support_table import SUPPORTS, supports_of
 from .toml_file import read_toml
@@ -103,6 +104,7 @@ class Scene:
     machine: dict[str, Any] = field(default_factory=dict)
     references: tuple[Reference, ...] = ()
     changed: tuple[str, ...] = ()
+    set: SceneSet | None = None  # a whole planetary set, `gearfe.epicyclic.of_scene.build_set` gives its case
 
     def pair(self, name: str | None = None) -> ScenePair:
         """The pair called `name`; the first one if None. ValueError if there is no such pair."""
@@ -155,7 +157,8 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     damage = {kind: data.pop(kind, []) for kind in DAMAGE}
     run = checked_machine(file, data.pop("machine")) if "machine" in data else {}
     printed = data.pop("reference", [])
-    top = checked(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "machine", "assumption", "given", "reference"))
+    whole = checked_set(file, {name: data.pop(name) for name in NAMES if name in data})
+    top = checked(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, *NAMES, "machine", "assumption", "given", "reference"))
     for kind, named in tables.items():
         strict.named_tables(file, kind, named)
         if not named and kind in ("gear", "pair", "material"):
@@ -177,12 +180,15 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     pairs = {name: _pair(file, name, rows, damage, gears, materials) for name in rows["pair"]}
     notes = [checked(file, f"assumption {i + 1}", note, ASSUMPTION) for i, note in enumerate(told)]
     cases = {kind: _by_case(checked(file, kind, table, DAMAGE[kind]) for table in listed) for kind, listed in damage.items()}
-    kept, changed, own = assumed.split(file, notes, given, rows | cases | {"machine": run})
+    kept, changed, own = assumed.split(file, notes, given, rows | cases | {"machine": run} | whole)
     title, source = top["title"], top["source"]
     if own:
         title, source = f"{title}, changed", f"own scene; changed from: {source}"
     references = () if own else read_references(file, printed, pairs)
-    return Scene(file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(top["later"]), run, references, changed)
+    made = set_of(file, whole, pairs, rows["pair"])
+    return Scene(
+        file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(top["later"]), run, references, changed, made
+    )
 
 
 def _pair(file, name, rows, damage, gears, materials):

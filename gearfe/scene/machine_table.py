@@ -47,7 +47,7 @@ IMPACT = {
     "pulse_width_s": (NUMBER, 0.05),
 }
 BODY = {"mass_kg": (NUMBER, REQUIRED), "inertia_kgm2": (NUMBER, REQUIRED)}
-LIMITS = {  # smallest and largest value of a machine that can be; a length in um reaches 100 mm
+LIMITS = {  # smallest and largest value that a machine may have; a length in um reaches 100 mm
     "speed_rpm": (1e-3, 1e6),
     "torque_Nm": (0.0, 1e9),
     "n_planets": (1, 100),
@@ -71,8 +71,8 @@ def checked_machine(file, table):
 def checked_bodies(file, tables):
     """Masses [kg] and inertias [kg m2] by body, of none or of all."""
     if not isinstance(tables, dict) or (tables and set(tables) != set(BODIES)):
-        told = f"{', '.join(tables)}" if isinstance(tables, dict) else shown(tables)
-        raise ValueError(f"{file} [machine.bodies]: {told}, but give a table for each of {', '.join(BODIES)}, or none")
+        names = f"{', '.join(tables)}" if isinstance(tables, dict) else shown(tables)
+        raise ValueError(f"{file} [machine.bodies]: {names}, but give a table for each of {', '.join(BODIES)}, or none")
     rows = {name: checked(file, f"machine.bodies.{name}", table, BODY) for name, table in tables.items()}
     for name, row in rows.items():
         if not min(row.values()) > 0:

@@ -115,7 +115,7 @@ def new_scene(
     Raises
     ------
     ValueError
-        If the file exists or cannot be written, or if such a pair cannot be.
+        If the file exists or cannot be written, or if such a pair is impossible.
     """
     path = Path(path)
     if path.suffix != ".toml":
@@ -156,8 +156,8 @@ def _force(pinion, width, torque):
     if torque is not None and not 0 < torque < math.inf:
         raise ValueError(f"torque = {torque} N m: a mesh is pressed together; give a positive torque on the pinion")
     force = round(100.0 * width, 1) if torque is None else round(1e3 * torque / pinion.r_b, 3)
-    told = f"{force * pinion.r_b * 1e-3:.4g} N m over the base radius, {pinion.r_b:.5g} mm"
-    return force, f"force_N = {force}  # along the transverse line of action: {told}"
+    torque_text = f"{force * pinion.r_b * 1e-3:.4g} N m over the base radius, {pinion.r_b:.5g} mm"
+    return force, f"force_N = {force}  # along the transverse line of action: {torque_text}"
 
 
 def _crack(pinion, given):

@@ -46,7 +46,7 @@ class Printed:
 
     `kind` is ``"input"``: ours was put in, or found from this very value; ``"arithmetic"``: follows from printed numbers without
     a model of the machine; ``"model"``: a result that could have come out otherwise. `set_by` names an assumption of the scene,
-    or choice of ours, that sets our value: agreement is then none, and is called so.
+    or choice of ours, that sets our value: agreement then proves nothing, and the verdict says so.
     """
 
     case: str
@@ -94,7 +94,7 @@ def read_references(file, tables, pairs):
     """References of the [[reference]] tables of a scene file; ValueErrors name file, table and key."""
     listed_tables(file, "reference", tables)
     out = tuple(_reference(file, f"reference {i + 1}", table, pairs) for i, table in enumerate(tables))
-    names = [one.id for one in out]
+    names = [reference.id for reference in out]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise ValueError(f"{file}: reference id {twice[0]!r} is used twice; give each its own")
@@ -111,8 +111,8 @@ def _reference(file, where, table, pairs):
         raise ValueError(f"{file} [{where}]: a tolerance of {size} is negative; give 0 for exact values")
     if not row["rows"]:
         raise ValueError(f"{file} [{where}]: rows = [], but a reference prints something; give a row for each case")
-    rows = tuple(_row(file, where, one, row, pairs) for one in row["rows"])
-    places = [(one.case, one.pair) for one in rows]
+    rows = tuple(_row(file, where, printed, row, pairs) for printed in row["rows"])
+    places = [(printed.case, printed.pair) for printed in rows]
     twice = [place for place in places if places.count(place) > 1]
     if twice:
         raise ValueError(f"{file} [{where}]: two rows of case {twice[0][0]!r} and pair {twice[0][1]!r}; give each its own case")
@@ -121,24 +121,24 @@ def _reference(file, where, table, pairs):
 
 
 def _row(file, where, table, reference, pairs):
-    one = checked(file, where, table, ROW)
-    if one["pair"] is not None:
-        known(file, where, "pair", one["pair"], pairs, "pair")
-    if one["printed"] is not None and one["claim"] is not None:
+    row = checked(file, where, table, ROW)
+    if row["pair"] is not None:
+        known(file, where, "pair", row["pair"], pairs, "pair")
+    if row["printed"] is not None and row["claim"] is not None:
         raise ValueError(f"{file} [{where}]: printed and claim in one row; a row is a number or a statement")
-    if (reference["unit"] == "statement") != (one["claim"] is not None):
+    if (reference["unit"] == "statement") != (row["claim"] is not None):
         raise ValueError(f"{file} [{where}]: rows of unit 'statement' have claim = true or false, others printed = a number")
-    if one["corrected"] is not None and not (one["correction"] or reference["correction"]):
-        raise ValueError(f"{file} [{where}]: corrected = {one['corrected']}, but no correction that says what was changed")
-    value = float("nan") if one["printed"] is None else float(one["printed"])
-    value = value if one["claim"] is None else float(one["claim"])
-    corrected = None if one["corrected"] is None else float(one["corrected"])
-    reason, correction = one["reason"] or reference["reason"], one["correction"]
+    if row["corrected"] is not None and not (row["correction"] or reference["correction"]):
+        raise ValueError(f"{file} [{where}]: corrected = {row['corrected']}, but no correction that says what was changed")
+    value = float("nan") if row["printed"] is None else float(row["printed"])
+    value = value if row["claim"] is None else float(row["claim"])
+    corrected = None if row["corrected"] is None else float(row["corrected"])
+    reason, correction = row["reason"] or reference["reason"], row["correction"]
     if corrected is not None:
         correction = correction or reference["correction"]
-    kind = one["kind"] or reference["kind"]
+    kind = row["kind"] or reference["kind"]
     one_of(f"{file} [{where}]: kind", kind, KINDS)
-    return Printed(one["case"], one["pair"], value, corrected, correction, reason, kind, one["set_by"] or reference["set_by"])
+    return Printed(row["case"], row["pair"], value, corrected, correction, reason, kind, row["set_by"] or reference["set_by"])
 
 
 def printed_stiffness(scene, pair, case=None):
@@ -148,6 +148,6 @@ def printed_stiffness(scene, pair, case=None):
         for row in reference.rows if reference.unit == "N/m" else ():
             if row.pair == pair and (row.case == case if case else row.case not in damaged):
                 value, corrected = (None if k is None else f"{k / NEWTON_PER_UM:.4g} N/um" for k in (row.value, row.corrected))
-                more = "" if corrected is None else f"; {corrected} after a correction: {row.correction}"
-                out.append(f"printed, {reference.quantity}: {value} ({reference.source}){more}")
+                note = "" if corrected is None else f"; {corrected} after a correction: {row.correction}"
+                out.append(f"printed, {reference.quantity}: {value} ({reference.source}){note}")
     return out

@@ -19,13 +19,13 @@ def fingerprint(case):
 
 def _plain(value):
     if is_dataclass(value):
-        said = {f.name: getattr(value, f.name) for f in fields(value) if f.init}
+        stated = {f.name: getattr(value, f.name) for f in fields(value) if f.init}
         defaults = {f.name: f.default for f in fields(value) if f.default is not MISSING}
-        return f"{type(value).__name__}({_plain({n: v for n, v in said.items() if n not in defaults or v != defaults[n]})})"
+        return f"{type(value).__name__}({_plain({n: v for n, v in stated.items() if n not in defaults or v != defaults[n]})})"
     if isinstance(value, dict):
         return "{" + ",".join(f"{name}:{_plain(value[name])}" for name in sorted(value)) + "}"
     if isinstance(value, (list, tuple)):
-        return "[" + ",".join(_plain(one) for one in value) + "]"
+        return "[" + ",".join(_plain(item) for item in value) + "]"
     return f"{value:.9g}" if isinstance(value, float) else repr(value)
 
 
@@ -47,9 +47,9 @@ def read_curves(scene, file=None):
     for pair, case in dict.fromkeys((row["pair"], row["case"]) for row in rows):
         name = case if case != "healthy" else None
         known = pair in scene.pairs and (name is None or name in scene.pairs[pair].damage)
-        own = [row for row in rows if (row["pair"], row["case"]) == (pair, case)]
-        if known and own[0]["print"] == fingerprint(scene.case(pair, name)):
-            numbers = np.array([[float(row[column]) for column in COLUMNS[3:]] for row in own])
+        case_rows = [row for row in rows if (row["pair"], row["case"]) == (pair, case)]
+        if known and case_rows[0]["print"] == fingerprint(scene.case(pair, name)):
+            numbers = np.array([[float(row[column]) for column in COLUMNS[3:]] for row in case_rows])
             out[pair, name] = (*numbers[:, :3].T, *numbers[0, 3:].tolist())
     return out
 

@@ -5,7 +5,7 @@ NUMBER, TEXT, WHOLE, TEXTS = "a number", "a text", "a whole number", "a list of 
 TWO, TRUTH, TABLES, VALUES = "two numbers", "true or false", "a list of tables", "a table of values by dotted key"
 NUMBERS = "a list of numbers"
 PLAIN = {TEXT: str, TRUTH: bool, VALUES: dict}
-LISTS = {TWO: NUMBER, NUMBERS: NUMBER, TEXTS: TEXT, TABLES: VALUES}  # of what
+LISTS = {TWO: NUMBER, NUMBERS: NUMBER, TEXTS: TEXT, TABLES: VALUES}  # kind of list: kind of its entries
 LARGEST, MOST = 1e30, 2**63  # no length, force or stiffness is larger, in any unit; whole numbers that arrays can hold
 SHOWN = 60  # characters of a value in a message
 
@@ -40,15 +40,15 @@ def checked(file, where, table, keys, extra=()):
 
 
 def named_tables(file, kind, tables):
-    """Refuse what is no table of tables by name, as ``[flank.NAME]`` writes them."""
-    if isinstance(tables, list) and all(isinstance(one, dict) for one in tables):
+    """Refuse anything but a table of named tables, as ``[flank.NAME]`` writes them."""
+    if isinstance(tables, list) and all(isinstance(table, dict) for table in tables):
         raise ValueError(f"{file}: [[{kind}]] is a list of tables, but they have names: write [{kind}.NAME]")
     if not isinstance(tables, dict):
         raise ValueError(f"{file}: {kind} = {shown(tables)}, but give tables with names: [{kind}.NAME]")
 
 
 def listed_tables(file, kind, tables):
-    """Refuse what is no list of tables, as ``[[crack]]`` writes them."""
+    """Refuse anything but a list of tables, as ``[[crack]]`` writes them."""
     if isinstance(tables, dict):
         raise ValueError(f"{file}: [{kind}] is one table, but there may be several: write [[{kind}]]")
     if not isinstance(tables, list):
@@ -65,7 +65,7 @@ def _unit(key):
 
 
 def _limits(value):
-    """What else is said of a number that is too large to be one."""
+    """Part of the message on a value: the largest number allowed, if it is a number that is too large."""
     return f", below {LARGEST:g}" if isinstance(value, (int, float)) and abs(value) >= MOST else ""
 
 
@@ -99,7 +99,7 @@ def sides(file, where, row, name, pairs, gears, noun="gear"):
 
 
 def placed(file, where, make):
-    """What `make` gives, with the place in front of its ValueErrors."""
+    """Result of `make`, with file and table in front of its ValueErrors."""
     try:
         return make()
     except ValueError as error:
@@ -113,9 +113,9 @@ def known_path(file, where, key, tables):
     """
     value = tables
     for part in key.split("."):
-        if isinstance(value, list) and all(isinstance(one, dict) and part in one for one in value):
-            found = [one[part] for one in value]
-            value = found[0] if all(one == found[0] for one in found) else found
+        if isinstance(value, list) and all(isinstance(entry, dict) and part in entry for entry in value):
+            values = [entry[part] for entry in value]
+            value = values[0] if all(entry == values[0] for entry in values) else values
         elif isinstance(value, dict) and part in value:
             value = value[part]
         else:

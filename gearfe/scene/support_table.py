@@ -47,18 +47,18 @@ def supports_of(file, rows, name, pairs, materials):
             if kind == "shaft":
                 known(file, where, "material", row["material"], materials, "material")
             make = {"support": _support, "shaft": _shaft}[kind]
-            made = placed(file, where, lambda r=row, make=make: make(r, materials))
+            support = placed(file, where, lambda r=row, make=make: make(r, materials))
             for side in stands:
                 if side in out:
                     raise ValueError(f"{file} [{where}]: gear {row['gear']!r} is held in pair {name!r} already; give one of both")
-                out[side] = made
+                out[side] = support
     return {side: out[side] for side in ("pinion", "wheel") if side in out}
 
 
 def _support(row, materials):
     springs = {"radial_N_per_um": PER_UM, "tilt_Nm_per_mrad": PER_MRAD, "torsion_Nm_per_mrad": PER_MRAD, "axial_N_per_um": PER_UM}
-    given = {key.partition("_")[0]: math.inf if row[key] is None else row[key] * unit for key, unit in springs.items()}
-    return Support(**given, coupling=row["coupling_urad_per_kN"] / KN)
+    stiffnesses = {key.partition("_")[0]: math.inf if row[key] is None else row[key] * unit for key, unit in springs.items()}
+    return Support(**stiffnesses, coupling=row["coupling_urad_per_kN"] / KN)
 
 
 def _shaft(row, materials):

@@ -33,7 +33,7 @@ def given_tables(given: str | os.PathLike[str] | Mapping[str, Any], what: str) -
 def _plain(value):
     """Numbers and arrays of numpy, and tuples, as TOML would give them."""
     if isinstance(value, Mapping):
-        return {str(name): _plain(one) for name, one in value.items()}
+        return {str(name): _plain(item) for name, item in value.items()}
     if isinstance(value, (list, tuple, np.ndarray)):
-        return [_plain(one) for one in value]
+        return [_plain(item) for item in value]
     return value.item() if isinstance(value, np.generic) else value

@@ -9,7 +9,7 @@ from ..units import NEWTON_PER_UM
 REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
 NOT, NEVER, FORMULA = "not reproduced", "not reproducible", "no number printed"
 ASSUMED = "set by an assumption"  # within the tolerance, or in order, but by a value of ours
-DISTINCT = 1e-3  # two of our values closer than this part of each other have no order
+DISTINCT = 1e-3  # two of our values whose relative difference is smaller have no order
 SHOWN_AS = {"N/m": "N/um"}  # units of the sources that are shown in ours
 COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
 
@@ -97,13 +97,13 @@ def _rounded(value):
 
 def reason(reference, row):
     """Why a row has its verdict: the correction, or why it cannot be reproduced."""
-    printed = next(one for one in reference.rows if (one.case, one.pair or "") == (row.case, row.pair))
+    printed = next(entry for entry in reference.rows if (entry.case, entry.pair or "") == (row.case, row.pair))
     if row.verdict == CORRECTED:
         return printed.correction
     if row.verdict == ASSUMED:
         return printed.set_by
     if printed.corrected is not None and row.verdict in (TREND, NOT):
-        return "; ".join(one for one in (f"judged by the corrected value ({printed.correction})", printed.reason) if one)
+        return "; ".join(entry for entry in (f"judged by the corrected value ({printed.correction})", printed.reason) if entry)
     return printed.reason if row.verdict in (TREND, NOT, NEVER) else ""
 
 
@@ -125,8 +125,8 @@ def _count(rows, noun):
 
 
 def _words(rows):
-    words = (REPRODUCED, CORRECTED, TREND, ASSUMED, NOT, NEVER)
-    many = {word: sum(row.verdict == word for row in rows) for word in words}
+    verdicts = (REPRODUCED, CORRECTED, TREND, ASSUMED, NOT, NEVER)
+    many = {word: sum(row.verdict == word for row in rows) for word in verdicts}
     return ", ".join(f"{n} {word}" for word, n in many.items() if n)
 
 
@@ -137,12 +137,12 @@ def text(references, rows):
     notes = []
     for reference in references:
         mark = ""
-        own = [row for row in rows if row.id == reference.id]
-        told = _told(reference, own)
-        if told:
-            notes.append(told)
+        judged = [row for row in rows if row.id == reference.id]
+        note = _told(reference, judged)
+        if note:
+            notes.append(note)
             mark = f" [{len(notes)}]"
-        for i, row in enumerate(own):
+        for i, row in enumerate(judged):
             name = f"{reference.quantity}{_unit(reference)}{mark}" if i == 0 else ""
             case = f"{row.case}, {row.pair}" if row.pair else row.case
             printed = _shown(reference, row.printed)
@@ -151,7 +151,7 @@ def text(references, rows):
             verdict = f"**{row.verdict}**" if row.verdict in (NOT, NEVER) else row.verdict
             cells = (name, case, row.kind, printed, _shown(reference, row.ours), _away(reference, row), verdict)
             lines.append(table_row(cells))
-    return "\n".join([*lines, "", "Sources, tolerances, reasons:", "", *(f"{i}. {one}" for i, one in enumerate(notes, 1))])
+    return "\n".join([*lines, "", "Sources, tolerances, reasons:", "", *(f"{i}. {line}" for i, line in enumerate(notes, 1))])
 
 
 def _told(reference, rows):
@@ -159,12 +159,12 @@ def _told(reference, rows):
     size = "" if silent else f" {_tolerance(reference)} ({reference.tolerance})."
     parts = [f"{reference.source}.{size}"]
     parts += [_sentence(reference.note)] if reference.note else []
-    found = {}
+    by_reason = {}
     for row in rows:
         why = reason(reference, row)
         if why:
-            found.setdefault((row.verdict, why), []).append(f"{row.case}, {row.pair}" if row.pair else row.case)
-    for (word, why), cases in found.items():
+            by_reason.setdefault((row.verdict, why), []).append(f"{row.case}, {row.pair}" if row.pair else row.case)
+    for (word, why), cases in by_reason.items():
         which = "" if len(cases) == len(rows) else f" ({'; '.join(cases)})"
         parts.append(f"{_sentence(word)[:-1]}{which}: {why}.")
     return " ".join(parts)

@@ -64,6 +64,9 @@ MACHINE = """\
 # Of the model "planetary" only: friction = [0.08, 0.05], static and dynamic, at slips of friction_speeds_mm_per_s = [0.1, 10.0];
 # pulses of the load on the carrier: pulse_Nm = 250.0, pulse_period_s = 0.5, pulse_width_s = 0.05.
 # Of "herringbone_planetary": [machine.bodies.sun], planet, ring, carrier with mass_kg and inertia_kgm2; else from the gears.
+
+# A whole planetary set, for `gearfe set`, needs pairs of sun and planet and of planet and ring; then: [set], [ring.support],
+# [pin.NAME]. See the how-to page on planetary sets.
 """
 
 
@@ -91,8 +94,8 @@ def vocabulary(pair: GearPair, force: float, relief: tuple[float, float] | None 
 
 def _relieved(words, amount, length):
     """The commented lines with those of a tip relief in force, of both gears."""
-    given = f"tip_relief_um = {amount:g}", f"tip_start_length_mm = {length:g}"
+    keys = f"tip_relief_um = {amount:g}", f"tip_start_length_mm = {length:g}"
     words = re.sub(r"^#(\[flank\.\w+\].*)\n#(gear = )", r"\1\n\2", words, flags=re.M)
-    for line in given:
+    for line in keys:
         words = re.sub(rf"^#{line.split(' ')[0]} = [\d.]+", line, words, flags=re.M)
     return words

@@ -12,7 +12,7 @@ from ..matlab_file import MOST_PACKED, Unread
 from .found import ANGLES, TIMES, Found, numeric, plain
 
 PARTS = 64  # entries of a cell array or a struct array, and columns of a matrix, that are taken for channels
-LONGER = 2  # a matrix must have so many times more samples than channels, so that it is plain which is which
+LONGER = 2  # least ratio of samples to channels in a matrix, so that it is plain which are which
 MATLAB_CLASS = "MATLAB_class"
 HDF = b"\x89HDF\r\n\x1a\n"
 
@@ -28,11 +28,11 @@ def array_file(path: str | os.PathLike[str]) -> Found:
         return hdf_file(path)
     arrays = read(path, "signal")
     arrays, units = _response(arrays)
-    found = Found({}, units, nested="." if any(_opens(value) for value in arrays.values()) else "")
+    recording = Found({}, units, nested="." if any(_opens(value) for value in arrays.values()) else "")
     for name, value in arrays.items():
-        _take(found, name, value)
-    _axes(found)
-    return found
+        _take(recording, name, value)
+    _axes(recording)
+    return recording
 
 
 def is_hdf(path: str | os.PathLike[str]) -> bool:
@@ -49,39 +49,39 @@ def hdf_file(path: str | os.PathLike[str]) -> Found:
     """Channels of an HDF5 file, MATLAB's version 7.3 among them; attributes ``unit`` and ``rate`` are read."""
     with needing("h5py"):
         import h5py
-    found = Found({})
+    recording = Found({})
     try:
         with h5py.File(path, "r") as file:
             _check_links(file, h5py)
             if None in file.values():
                 raise OSError("a part of it cannot be opened")
-            matlab = any(MATLAB_CLASS in one.attrs for one in file.values())
-            found.nested = "." if matlab else "/"
+            matlab = any(MATLAB_CLASS in entry.attrs for entry in file.values())
+            recording.nested = "." if matlab else "/"
             for key, value in file.attrs.items():
-                found.state(str(key), _text(value))
-            file.visititems(lambda name, item: _hdf_item(found, name, item, h5py, matlab))
+                recording.state(str(key), _text(value))
+            file.visititems(lambda name, item: _hdf_item(recording, name, item, h5py, matlab))
     except (OSError, RuntimeError, KeyError, ValueError, TypeError, MemoryError, OverflowError) as error:
-        told = str(getattr(error, "strerror", None) or error).splitlines()[0]
-        raise ValueError(f"{path} is not a whole HDF5 file: {told}") from error
-    _axes(found)
-    return found
+        reason = str(getattr(error, "strerror", None) or error).splitlines()[0]
+        raise ValueError(f"{path} is not a whole HDF5 file: {reason}") from error
+    _axes(recording)
+    return recording
 
 
 def _check_links(file, h5py):
-    """ValueError if a name stands for something in another file."""
+    """ValueError if a name is a link to another file."""
 
     def first(name, link):
         return f"{name!r} is a link to another file, {link.filename}" if isinstance(link, h5py.ExternalLink) else None
 
-    told = file.visititems_links(first)
-    if told:
-        raise ValueError(f"{told}; copy what it means into this one")
+    external = file.visititems_links(first)
+    if external:
+        raise ValueError(f"{external}; copy what it means into this one")
 
 
 def _hdf_values(item):
     """Values of a dataset that stands in the file itself.
 
-    ValueError if it is read from other files, or says it is larger than what is stored of it can be.
+    ValueError if it is read from other files, or announces more values than the bytes stored can hold.
     """
     if item.external or item.is_virtual:
         kind = "in other files" if item.external else "put together from datasets, maybe of other files"
@@ -106,10 +106,10 @@ def _hdf_item(found, name, item, h5py, matlab):
     if not isinstance(item, h5py.Dataset):
         return
     if attributes.get(MATLAB_CLASS) == "cell":
-        whole = [item.file[one] for one in np.ravel(_hdf_values(item))[:PARTS] if one]
-        for i, one in enumerate(whole, 1):
-            if isinstance(one, h5py.Dataset):
-                _take(found, f"{name}{{{i}}}", _matlab(one))
+        whole = [item.file[cell] for cell in np.ravel(_hdf_values(item))[:PARTS] if cell]
+        for i, cell in enumerate(whole, 1):
+            if isinstance(cell, h5py.Dataset):
+                _take(found, f"{name}{{{i}}}", _matlab(cell))
         return
     _take(found, name, _matlab(item) if matlab else _hdf_values(item))
 
@@ -171,14 +171,14 @@ def _open(found: Found, name: str, value: NDArray[Any]) -> None:
     if value.size > PARTS:
         found.other.append(f"{name!r} ({value.size} {'structs' if names else 'cells'}: more than {PARTS})")
         return
-    for i, one in enumerate(value.reshape(-1), 1):
-        own = name if value.size == 1 else f"{name}({i})" if names else f"{name}{{{i}}}"
-        for key, part in [(f"{own}.{key}", one[key]) for key in names] if names else [(own, one)]:
+    for i, entry in enumerate(value.reshape(-1), 1):
+        full_name = name if value.size == 1 else f"{name}({i})" if names else f"{name}{{{i}}}"
+        for key, part in [(f"{full_name}.{key}", entry[key]) for key in names] if names else [(full_name, entry)]:
             _take(found, key, part)
 
 
 def _axes(found: Found) -> None:
-    """Times are in s and angles in rad where a file of arrays says nothing else."""
+    """Times are in s and angles in rad where the file states no other unit."""
     for kind, unit in ((TIMES, "s"), (ANGLES, "rad")):
         found.units |= {name: found.units.get(name) or unit for name in found.axes(kind)}
 
@@ -187,7 +187,7 @@ def _response(arrays):
     """Columns of ``values`` as vectors by ``names``, and their ``units``: a response as `gearfe.Response.save` writes it."""
     if not {"values", "names", "units"} <= arrays.keys() or np.ndim(arrays["values"]) != 2:
         return arrays, {}
-    names, units = ([str(np.ravel(one)[0]).strip() for one in arrays[key].reshape(-1)] for key in ("names", "units"))
+    names, units = ([str(np.ravel(text)[0]).strip() for text in arrays[key].reshape(-1)] for key in ("names", "units"))
     if not len(names) == len(units) == arrays["values"].shape[1]:
         return arrays, {}
     columns = dict(zip(names, arrays["values"].T, strict=True))

@@ -26,7 +26,7 @@ def bearing_lines(
     turns : float
         Turns of the inner ring per second [Hz].
     rollers : int
-        How many balls or rollers.
+        Number of balls or rollers.
     roller, pitch : float
         Diameter d of a roller and of the circle of their centres D, in one unit.
     contact_angle : float
@@ -44,7 +44,7 @@ def bearing_lines(
     Raises
     ------
     ValueError
-        If sizes or angles can be of no bearing, or both rings turn alike.
+        If sizes or angles are impossible for a bearing, or both rings turn at the same speed.
 
     References
     ----------
@@ -66,11 +66,11 @@ def bearing_lines(
     if not 0 <= contact_angle < math.pi / 2:
         raise ValueError(f"contact_angle = {contact_angle} rad, but it lies from 0 to below pi / 2")
     c, apart = roller * math.cos(contact_angle) / pitch, abs(turns - outer)
-    own = {
+    fundamental = {
         "cage": abs(turns * (1 - c) + outer * (1 + c)) / 2,
         "outer": rollers * apart * (1 - c) / 2,
         "inner": rollers * apart * (1 + c) / 2,
         "roller": apart * (1 - c**2) * pitch / (2 * roller),
     }
     many = range(1, whole("count", count, 1) + 1)
-    return {name if k == 1 else f"{k} {name}": k * value for k in many for name, value in own.items()}
+    return {name if k == 1 else f"{k} {name}": k * value for k in many for name, value in fundamental.items()}

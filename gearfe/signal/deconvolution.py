@@ -1,4 +1,4 @@
-"""Deconvolution: the filter that makes a signal most impulsive, so that pulses of a fault stand out of the way they came."""
+"""Deconvolution: the filter that makes a signal most impulsive, so that pulses of a fault smeared on their way stand out."""
 
 from dataclasses import replace
 
@@ -17,14 +17,16 @@ RIDGE = 1e-9  # of the signal's power, added to it: keeps the normal equations r
 def deconvolve(
     signal: Signal, frequency: float | None = None, *, length: int = 100, shifts: int = 1, iterations: int = 30
 ) -> tuple[Signal, NDArray[np.float64]]:
-    """The signal through the filter, of all of a length, that makes it most impulsive.
+    """The signal through that filter of a given length which makes it most impulsive.
 
-    Without a `frequency` that of the largest kurtosis (minimum entropy deconvolution), ``sum(y**4) / sum(y**2)**2``: of any
-    pulses, also of a single one. With the frequency of a fault that of the largest correlated kurtosis::
+    Without a `frequency` the filter is the one whose output y has the largest kurtosis (minimum entropy deconvolution),
+    ``sum(y**4) / sum(y**2)**2``, which brings out any pulses, also a single one. With the frequency of a fault it is the one with
+    the largest correlated kurtosis::
 
         CK = sum_n (y[n] y[n - T] ... y[n - M T])**2 / sum_n (y[n]**2)**(M + 1),   T = rate / frequency, M = shifts
 
-    of pulses that come T apart. Both by fixed-point steps from a filter that takes differences; the best of them is kept.
+    which brings out pulses that come T apart. Both are found by fixed-point steps from a filter that takes differences; the best
+    step is kept.
 
     Parameters
     ----------
@@ -91,13 +93,13 @@ def deconvolve(
 
 
 def _impulsive(y, apart):
-    """What is made large, kurtosis or correlated kurtosis, and its slope by y where the power of y is held."""
+    """Kurtosis of y, or correlated kurtosis over shifts `apart` [samples]; its slope by y at constant power, up to a factor."""
     if len(apart) == 1:
         return float((y**4).sum() / (y**2).sum() ** 2), y**3
     late = np.array([np.concatenate([np.zeros(m), y[: y.size - m]]) for m in apart])
     product = late.prod(axis=0)
     slope = np.zeros_like(y)
     for i, m in enumerate(apart):
-        own = product * np.delete(late, i, axis=0).prod(axis=0)
-        slope += np.concatenate([own[m:], np.zeros(m)])
+        partial = product * np.delete(late, i, axis=0).prod(axis=0)
+        slope += np.concatenate([partial[m:], np.zeros(m)])
     return float((product**2).sum() / (y**2).sum() ** len(apart)), slope

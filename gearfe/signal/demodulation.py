@@ -29,12 +29,12 @@ class Demodulated:
         low, high = self.kurtogram.band
         top = self.kurtogram.kurtosis[self.kurtogram.best]
         over = self.background > 0
-        found = ", ".join(
+        lines = ", ".join(
             f"{name} {f:.2f} Hz {a / self.background:.3g} x" if over else f"{name} {f:.2f} Hz {a:.3g} {self.spectrum.unit}"
             for name, (f, a) in self.lines.items()
         )
-        told = "squared envelope there" + (", over its median" if over else " (zero between the lines)")
-        return f"kurtogram: {low:.0f} to {high:.0f} Hz, kurtosis {top:.3g}; {told}: {found}"
+        heading = "squared envelope there" + (", over its median" if over else " (zero between the lines)")
+        return f"kurtogram: {low:.0f} to {high:.0f} Hz, kurtosis {top:.3g}; {heading}: {lines}"
 
 
 def demodulate(

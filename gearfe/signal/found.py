@@ -20,8 +20,8 @@ class Found:
     stated: dict[str, Any] = field(default_factory=dict)  # what is said under the names of `KEYS`, by full name
     rates: dict[str, float] = field(default_factory=dict)  # [Hz] of single channels, in formats that state them there
     nested: str = ""  # what parts a group from the names in it: "." in MATLAB structs, "/" in HDF5 and TDMS; empty: no groups
-    other: list[str] = field(default_factory=list)  # what else the file holds, for the answer to who finds no channel in it
-    hint: str = ""  # of a file whose columns have no names: what to do
+    other: list[str] = field(default_factory=list)  # what else the file holds, named in messages
+    hint: str = ""  # what to do about a file whose columns have no names
     parts: bool = False  # whether the values are parts of a full scale that the file does not say
 
     def state(self, name: str, value: Any) -> None:
@@ -61,8 +61,8 @@ class Found:
 
     def told(self) -> str:
         """Channels with their units, and what else there is, in words."""
-        found = [f"{name!r}{f' [{self.units[name]}]' if self.units.get(name) else ''}" for name in self.channels()]
-        return ", ".join(found + self.other) or "nothing"
+        channels = [f"{name!r}{f' [{self.units[name]}]' if self.units.get(name) else ''}" for name in self.channels()]
+        return ", ".join(channels + self.other) or "nothing"
 
 
 def plain(name: str) -> str:

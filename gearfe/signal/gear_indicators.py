@@ -27,7 +27,7 @@ GEAR_SOURCES = {
     "energy ratio": "rms of the difference signal over rms of the regular signal; Vecer 2005",
     "sideband level factor": "sum of the first sidebands' amplitudes f_m +- f_shaft over the rms of the average; Vecer 2005",
 }
-EMPTY = 1e-9  # of the average: a rest that small is rounding
+EMPTY = 1e-9  # part of the average below which a remainder is rounding
 
 
 def gear_indicators(
@@ -85,8 +85,8 @@ def gear_indicators(
     if not isinstance(before, (list, tuple)):
         raise ValueError(f"before is {type(before).__name__}, but give a list of earlier averages")
     history = [x, *map(_turn, before)]
-    residuals = [residual_signal(one, teeth, shaft_orders=shaft_orders) for one in history]
-    envelopes = [_band_envelope(one, teeth) for one in history]
+    residuals = [residual_signal(turn, teeth, shaft_orders=shaft_orders) for turn in history]
+    envelopes = [_band_envelope(turn, teeth) for turn in history]
     floor = EMPTY * _rms(x)
     return {
         "FM0": float(np.ptp(x) / mesh),
@@ -118,10 +118,10 @@ def gear_indicator_table(
     dict of str to dict of str to float
         ``table[record][indicator]``; NA4 and NB4 over this and all earlier records.
     """
-    averages = {name: synchronous_average(one, samples_per_turn)[0] for name, one in signals.items()}
-    if len({one.size for one in averages.values()}) > 1:
-        most = max(one.size for one in averages.values())
-        averages = {name: synchronous_average(one, most)[0] for name, one in signals.items()}
+    averages = {name: synchronous_average(record, samples_per_turn)[0] for name, record in signals.items()}
+    if len({record.size for record in averages.values()}) > 1:
+        most = max(record.size for record in averages.values())
+        averages = {name: synchronous_average(record, most)[0] for name, record in signals.items()}
     done: list[NDArray[np.float64]] = []
     out = {}
     for name, average in averages.items():
@@ -148,14 +148,14 @@ def _rms(x):
 
 
 def _moment(x, power, floor):
-    """Even moment over that power of the root mean square: the kurtosis for 4; nan of rounding."""
+    """Even moment over the same power of the root mean square, for 4 the kurtosis; nan if x is below `floor`, rounding."""
     spread = _rms(x)
     return float(np.mean((x / spread) ** power)) if spread > floor else math.nan
 
 
 def _against_history(parts, floor):
     """Fourth moment of the first part over the square of the mean variance of all."""
-    mean = float(np.mean([np.mean(np.square(one)) for one in parts]))
+    mean = float(np.mean([np.mean(np.square(part)) for part in parts]))
     return float(np.mean(parts[0] ** 4)) / mean**2 if mean > floor**2 else math.nan
 
 

@@ -7,14 +7,14 @@ from numpy.typing import NDArray
 
 from ..checks import is_number
 
-SMALLEST, LARGEST = 1e-30, 1e30  # of what is measured, in any unit: eighth powers of it stay numbers
+SMALLEST, LARGEST = 1e-30, 1e30  # of the largest value of a record, in any unit: eighth powers neither vanish nor overflow
 HERTZ = (1e-12, 1e15)  # frequencies that clocks have
 
 
 def samples(name: str, values: Any) -> NDArray[np.float64]:
     """A row of real, finite numbers, copied.
 
-    ValueError if it is no row, has fewer than two samples, or one of them is not finite or no number that is measured.
+    ValueError if they are not a row of two or more finite numbers, or the largest is not between `SMALLEST` and `LARGEST`.
     """
     try:
         values = np.array(values)
@@ -43,7 +43,7 @@ def oscillation(values: NDArray[np.float64], told: str) -> NDArray[np.float64]:
 
 
 def hertz(name: str, value: Any) -> None:
-    """Raise ValueError unless it is a frequency: a positive number of Hz, of those that clocks have."""
+    """Raise ValueError unless `value` is a frequency [Hz] within `HERTZ`."""
     if not (is_number(value) and HERTZ[0] <= value <= HERTZ[1]):
         raise ValueError(f"{name} = {value!r}, but give a positive number of Hz")
 
@@ -51,12 +51,12 @@ def hertz(name: str, value: Any) -> None:
 def band_of(band: Any, rate: float, name: str) -> tuple[float, float]:
     """The ends (low, high) [Hz] of a band within half the rate; of all of it if None.
 
-    ValueError if they are no two numbers, or not ``0 <= low < high <= rate / 2``.
+    ValueError if `band` is not two numbers with ``0 <= low < high <= rate / 2``.
     """
     if band is None:
         return 0.0, rate / 2
-    two = band if isinstance(band, (tuple, list, np.ndarray)) else ()
-    fine = len(two) == 2 and all(map(is_number, two))
-    if not fine or not 0 <= two[0] < two[1] <= rate / 2 * (1 + 1e-12):
+    ends = band if isinstance(band, (tuple, list, np.ndarray)) else ()
+    fine = len(ends) == 2 and all(map(is_number, ends))
+    if not fine or not 0 <= ends[0] < ends[1] <= rate / 2 * (1 + 1e-12):
         raise ValueError(f"band = {band!r} Hz, but {name} has 0 to {rate / 2:g} Hz: give (low, high) with low < high inside")
-    return float(two[0]), float(two[1])
+    return float(ends[0]), float(ends[1])

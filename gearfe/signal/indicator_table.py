@@ -16,8 +16,8 @@ LABELS = {  # in tables: words; rms may be larger than the peak, of a signal wit
     "SC (S0)": "centre of the sidebands' energy, Hz (article S0)",
     "SC (S1)": "mean amplitude around the mesh frequency (article S1)",
 }
-TENFOLD = 900.0  # percent: from here on growth is told as a factor
-GREAT = 1e8  # percent: beyond, there was nothing to grow from
+TENFOLD = 900.0  # percent: growth from here on is printed as a factor
+GREAT = 1e8  # percent: growth beyond it means that the healthy value is rounding
 
 
 def increment(value, healthy):
@@ -60,21 +60,21 @@ def indicator_table(
                 f"{case}: {signal.values.size} samples at {signal.rate:g} Hz in {signal.unit}, but {healthy} has "
                 f"{first.values.size} at {first.rate:g} Hz in {first.unit}: compare like with like"
             )
-    found = {case: signal.indicators(mesh_frequency, fault_frequency, **options) for case, signal in signals.items()}
-    reference = found[healthy]
+    indicators = {case: signal.indicators(mesh_frequency, fault_frequency, **options) for case, signal in signals.items()}
+    reference = indicators[healthy]
     return {
         case: {name: (value, increment(value, reference[name]) if reference[name] else math.nan) for name, value in row.items()}
-        for case, row in found.items()
+        for case, row in indicators.items()
     }
 
 
 def table_text(table):
     """`indicator_table` as Markdown: a row for each indicator, a column for each case, increments over healthy in brackets.
 
-    What is a millionth or less in the healthy signal is taken for none there.
+    A healthy value that is a millionth or less of the faulty one is printed as none.
     """
     names = list(next(iter(table.values())))
-    grown = {case for case, row in table.items() if any(more and not math.isnan(more) for _, more in row.values())}
+    grown = {case for case, row in table.items() if any(growth and not math.isnan(growth) for _, growth in row.values())}
     lines = [["indicator", *table], ["---"] * (len(table) + 1)]
     lines += [[LABELS.get(name, name), *(_cell(*row[name], case in grown) for case, row in table.items())] for name in names]
     return "\n".join(map(table_row, lines))

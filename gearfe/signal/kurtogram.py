@@ -15,8 +15,8 @@ from .time_frequency import whole_frames
 
 HALF_TAPS, THIRD_TAPS = 33, 49  # of the filters that halve a band and cut it in three; both lose 16 samples at their ends
 ANALYTIC_TAPS = 1025  # at most, and at most an eighth of the record: what the filter loses at its ends
-WIDER = 1.3  # than its band a filter is at half amplitude; at the edge of the band it still passes 0.96
-EMPTY = 1e-14  # of the power of the signal
+WIDER = 1.3  # width of a filter at half amplitude over that of its band; at the edge of the band it still passes 0.96
+EMPTY = 1e-14  # part of the power of the signal below which a band holds only rounding
 FEWEST = 128  # samples at the deepest level, before the ends are cut
 
 
@@ -174,12 +174,12 @@ def _split_antoni(x, parts):
     if parts == 3:
         return [upfirdn(first * np.exp(2j * np.pi * i * k / 6), x, down=1)[2 : x.size : 3] for i in range(3)]
     high = first[-2::-1] * (-1.0) ** k[1:]
-    low, upper = (upfirdn(one, x, down=1)[1 : x.size : 2] for one in (first, high))
+    low, upper = (upfirdn(kernel, x, down=1)[1 : x.size : 2] for kernel in (first, high))
     return [low, upper * (-1.0) ** (1 + np.arange(upper.size))]
 
 
 def _judged_antoni(bands, parts):
-    """What the kurtosis is taken of: without what the filter takes from before the record, and without the mean."""
+    """Bands without the samples that the filter takes from before the record, and without their mean."""
     cut = [x[15 if parts == 2 and i % 2 else 16 :] for i, x in enumerate(bands)]
     return [x - x.mean() for x in cut]
 
@@ -197,6 +197,6 @@ def _excess(x, gaussian, floor):
 
 
 def _oscillation(signal):
-    """Values without their mean, the largest 1."""
+    """Values without their mean, scaled so that the largest is 1."""
     x = oscillation(signal.values, f"{signal.name} is constant: it has no kurtosis")
     return x / np.abs(x).max()

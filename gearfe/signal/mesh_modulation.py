@@ -9,11 +9,11 @@ from scipy.fft import fft, ifft
 from ..checks import whole
 from .given import samples
 
-EMPTY = 1e-9  # of the average: a mesh line that small is rounding
+EMPTY = 1e-9  # part of the average below which a mesh line is rounding
 
 
 class Modulation(NamedTuple):
-    """Of a mesh line, at equal angles over a turn.
+    """Modulation of a mesh line, at equal angles over a turn.
 
     Attributes
     ----------
@@ -58,8 +58,8 @@ def mesh_modulation(average: ArrayLike, teeth: int, *, harmonic: int = 1, sideba
     Examples
     --------
     >>> turn = 2 * np.pi * np.arange(1024) / 1024
-    >>> found = mesh_modulation((1 + 0.2 * np.cos(turn)) * np.cos(24 * turn + 0.1 * np.sin(2 * turn)), 24)
-    >>> found.amplitude[[0, 512]].round(6).tolist(), found.phase[[0, 128]].round(6).tolist()
+    >>> line = mesh_modulation((1 + 0.2 * np.cos(turn)) * np.cos(24 * turn + 0.1 * np.sin(2 * turn)), 24)
+    >>> line.amplitude[[0, 512]].round(6).tolist(), line.phase[[0, 128]].round(6).tolist()
     ([1.2, 0.8], [0.0, 0.1])
     """
     x = samples("average", average)

@@ -12,7 +12,7 @@ from ..checks import whole
 from .given import hertz
 from .series import Signal
 
-WIDTH = 4  # bins of a line with Hann's window: how far a line may move from one window to the next half
+WIDTH = 4  # bins of a line with Hann's window, and how far it may move between windows that overlap by half
 FINE = 4  # speeds tried for each bin of the highest harmonic
 ROUNDS = 3  # of phase demodulation
 
@@ -47,7 +47,7 @@ def with_own_speed(
     Raises
     ------
     ValueError
-        If the range is none, or the line lies above half of the rate there, or the record is too short.
+        If the range is empty, the line lies above half of the rate in it, or the record is too short.
 
     References
     ----------
@@ -86,13 +86,13 @@ def _path(signal, order, speeds, count, size):
     tried = np.linspace(*speeds, max(8, math.ceil(FINE * count * order * (speeds[1] - speeds[0]) / bin_)))
     power = np.abs(lines) + 1e-6 * np.abs(lines).max() + 1e-300
     level = np.log(power / np.median(power, axis=1, keepdims=True))
-    score = sum(np.array([np.interp(k * order * tried, frequency, one) for one in level.T]) for k in range(1, count + 1))
+    score = sum(np.array([np.interp(k * order * tried, frequency, frame) for frame in level.T]) for k in range(1, count + 1))
     step = max(1, math.ceil(WIDTH * bin_ / (count * order) / (tried[1] - tried[0])))
     total, came = score[0], []
-    for one in score[1:]:
+    for frame in score[1:]:
         reach = maximum_filter1d(total, 2 * step + 1, mode="constant", cval=-np.inf)
         came.append((total, reach))
-        total = reach + one
+        total = reach + frame
     at, path = int(np.argmax(total)), []
     for before, reach in reversed(came):
         path.append(at)

@@ -28,17 +28,17 @@ def wav_file(path: str | os.PathLike[str]) -> Found:
     from scipy.io import wavfile
 
     try:
-        with own_warnings(wavfile.WavFileWarning) as said:
+        with own_warnings(wavfile.WavFileWarning) as caught:
             rate, data = wavfile.read(path)
-        for one in said:
+        for one in caught:
             if "not understood" not in str(one.message):  # chunks of other programs
                 raise one.message
     except DAMAGE as error:
         raise _damaged(path, "WAV", error) from error
     values = _full_scale(np.atleast_2d(data.T))
-    found = Found({f"channel {i}": one for i, one in enumerate(values, 1)}, parts=data.dtype.kind != "f")
-    found.rates = dict.fromkeys(found.vectors, float(rate))
-    return found
+    recording = Found({f"channel {i}": one for i, one in enumerate(values, 1)}, parts=data.dtype.kind != "f")
+    recording.rates = dict.fromkeys(recording.vectors, float(rate))
+    return recording
 
 
 def _full_scale(data):
@@ -65,10 +65,10 @@ def uff_file(path: str | os.PathLike[str]) -> Found:
             sets = pyuff.UFF(os.fspath(path)).read_sets()
     except Exception as error:  # pyuff itself raises just Exception
         raise _damaged(path, "universal file (UFF)", error) from error
-    found = Found({})
-    for one in sets if isinstance(sets, list) else [sets]:
-        _uff_set(found, one)
-    return found
+    recording = Found({})
+    for data_set in sets if isinstance(sets, list) else [sets]:
+        _uff_set(recording, data_set)
+    return recording
 
 
 def _uff_set(found: Found, one: dict[str, Any]) -> None:
@@ -78,9 +78,9 @@ def _uff_set(found: Found, one: dict[str, Any]) -> None:
         text = f"function type {one.get('func_type')}" if kind == 58 else f"of type {kind}"
         found.other.append(f"a data set {text} (no response over time)")
         return
-    said = [str(one.get(key, "")).strip() for key in ("id1", "rsp_ent_name")]
-    told = next((text for text in said if text.lower() not in SAID_NOTHING), "channel")
-    name = f"{told} {one['rsp_node']}{DIRECTIONS.get(one['rsp_dir'], '')}"
+    labels = [str(one.get(key, "")).strip() for key in ("id1", "rsp_ent_name")]
+    label = next((text for text in labels if text.lower() not in SAID_NOTHING), "channel")
+    name = f"{label} {one['rsp_node']}{DIRECTIONS.get(one['rsp_dir'], '')}"
     name = _free(found, name)
     unit = str(one.get("ordinate_axis_units_lab", "")).strip()
     found.vectors[name], found.units[name] = np.asarray(data), "" if unit.lower() in SAID_NOTHING else unit
@@ -89,7 +89,7 @@ def _uff_set(found: Found, one: dict[str, Any]) -> None:
 
 
 def _free(found, name):
-    """Name, with a number behind it if it is taken."""
+    """Name, with a number appended if it is already used."""
     taken = [vector for vector in found.vectors if vector == name or vector.startswith(f"{name} (")]
     return f"{name} ({len(taken) + 1})" if taken else name
 
@@ -105,24 +105,24 @@ def tdms_file(path: str | os.PathLike[str]) -> Found:
         with _quiet:
             file = TdmsFile.read(path)
         groups = file.groups()
-        values = {(group.name, one.name): one[:] for group in groups for one in group.channels()}
+        values = {(group.name, series.name): series[:] for group in groups for series in group.channels()}
         status = file.file_status
     except DAMAGE as error:
         raise _damaged(path, "TDMS", error) from error
     if status.incomplete_final_segment:
         raise ValueError(f"{path} is not a whole TDMS file: its last segment is cut; record or copy it again")
-    found = Found({}, nested="/" if len(groups) > 1 else "")
+    recording = Found({}, nested="/" if len(groups) > 1 else "")
     for key, value in file.properties.items():
-        found.state(str(key), value)
+        recording.state(str(key), value)
     for (group, channel), data in values.items():
-        name = f"{group}/{channel}" if found.nested else channel
-        _tdms_channel(found, name, np.asarray(data), file[group][channel].properties)
-    return found
+        name = f"{group}/{channel}" if recording.nested else channel
+        _tdms_channel(recording, name, np.asarray(data), file[group][channel].properties)
+    return recording
 
 
 @contextmanager
 def _no_log():
-    """Without what the library logs about damage, which is told otherwise."""
+    """Silence the log of the library about damage, which is raised as an error instead."""
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:
@@ -155,21 +155,21 @@ def parquet_file(path: str | os.PathLike[str]) -> Found:
         table = pq.ParquetFile(path).read()
     except (OSError, pa.ArrowException, ValueError) as error:
         raise _damaged(path, "Parquet", error) from error
-    found = Found({})
+    recording = Found({})
     for key, value in (table.schema.metadata or {}).items():
-        found.state(key.decode("utf-8", "replace"), value.decode("utf-8", "replace"))
+        recording.state(key.decode("utf-8", "replace"), value.decode("utf-8", "replace"))
     for field, column in zip(table.schema, table.columns, strict=True):
         name, unit = named(field.name)
         if pa.types.is_timestamp(field.type) or pa.types.is_duration(field.type):
-            _clock(path, found, name, column, pa)
+            _clock(path, recording, name, column, pa)
             continue
         if not (pa.types.is_integer(field.type) or pa.types.is_floating(field.type)):
-            found.other.append(f"{field.name!r} ({field.type})")
+            recording.other.append(f"{field.name!r} ({field.type})")
             continue
-        told = (field.metadata or {}).get(b"unit", b"").decode("utf-8", "replace")
-        name = _free(found, name)
-        found.vectors[name], found.units[name] = column.to_numpy(), unit or told
-    return found
+        field_unit = (field.metadata or {}).get(b"unit", b"").decode("utf-8", "replace")
+        name = _free(recording, name)
+        recording.vectors[name], recording.units[name] = column.to_numpy(), unit or field_unit
+    return recording
 
 
 def _clock(path, found, name, column, pa):
@@ -190,7 +190,7 @@ def _damaged(path, kind, error):
     """Return what to raise for a file that its library cannot read, in one line."""
     if isinstance(error, OSError) and error.strerror:
         return ValueError(f"cannot read {path}: {error.strerror}")
-    told = " ".join(str(error).split()) or type(error).__name__
+    reason = " ".join(str(error).split()) or type(error).__name__
     if isinstance(error, RecursionError):
-        told = "something in it, such as the source of a scale, refers to itself"
-    return ValueError(f"{path} is not a whole {kind} file: {told}")
+        reason = "something in it, such as the source of a scale, refers to itself"
+    return ValueError(f"{path} is not a whole {kind} file: {reason}")

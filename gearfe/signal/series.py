@@ -114,8 +114,8 @@ class Signal:
         out = of_values(self.values, self.name)
         if not both_given(mesh_frequency, fault_frequency):
             return out
-        found = amplitudes(self.values, self.rate, window, self.unit, self.name, "Hz")
-        return out | of_lines(found, mesh_frequency, fault_frequency, tolerance=tolerance, harmonics=harmonics)
+        lines = amplitudes(self.values, self.rate, window, self.unit, self.name, "Hz")
+        return out | of_lines(lines, mesh_frequency, fault_frequency, tolerance=tolerance, harmonics=harmonics)
 
 
 def decimate(signal: Signal, rate: float) -> Signal:

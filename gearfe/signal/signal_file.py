@@ -24,7 +24,7 @@ TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
 TURN = {"rad": 1.0, "deg": math.pi / 180}
 HERTZ = {"": 1.0, "hz": 1.0, "khz": 1e3}
 LONGEST = 60  # characters of a unit
-AGREE = 1e-3  # between a stated rate and the time column
+AGREE = 1e-3  # largest relative difference between a stated rate and the time column
 SAME = {"m/s²": "m/s^2", "m/s2": "m/s^2", "m/s**2": "m/s^2", "m/s/s": "m/s^2", "µm": "um", "μm": "um"}  # spellings of a unit
 READERS = {
     ".npz": array_file, ".mat": array_file, ".h5": hdf_file, ".hdf5": hdf_file, ".wav": wav_file, ".uff": uff_file,
@@ -89,9 +89,9 @@ def read_signal(
     RuntimeError
         If the library that reads the format is missing.
     """
-    found = channels(path, header)
-    name = _choose(path, found, column)
-    return _signal(path, found, name, rate=rate, unit=unit, shaft_frequency=shaft_frequency, scale=scale)
+    recording = channels(path, header)
+    name = _choose(path, recording, column)
+    return _signal(path, recording, name, rate=rate, unit=unit, shaft_frequency=shaft_frequency, scale=scale)
 
 
 def read_signals(
@@ -115,7 +115,7 @@ def read_signals(
         Of all channels, or by channel; where the file states none.
     tachometer : str, optional
         Channel of pulses of the shaft, from which all others get their `angle`: see `gearfe.with_tachometer`. If its unit is
-        ``rpm`` or ``1/min`` it is taken for the speed of the shaft, which is told; its integral is the angle.
+        ``rpm`` or ``1/min`` it is taken for the speed of the shaft, with a warning, and its integral for the angle.
     pulses : int
         Of the tachometer, in a turn.
     level : float, optional
@@ -123,46 +123,46 @@ def read_signals(
     **stated
         ``rate``, ``header``, ``scale`` of `read_signal`.
     """
-    found = channels(path, stated.pop("header", None))
-    pulse = None if tachometer is None else _choose(path, found, tachometer)
-    names = [one for one in found.channels() if one != pulse]
+    recording = channels(path, stated.pop("header", None))
+    pulse = None if tachometer is None else _choose(path, recording, tachometer)
+    names = [channel for channel in recording.channels() if channel != pulse]
     if columns is not None:
-        names = [_choose(path, found, column) for column in columns]
+        names = [_choose(path, recording, column) for column in columns]
     if not names:
-        _choose(path, found, None)
-    given = units if isinstance(units, Mapping) else dict.fromkeys(names, units)
-    unknown = [name for name in given if name not in found.vectors and given[name] is not None]
+        _choose(path, recording, None)
+    channel_units = units if isinstance(units, Mapping) else dict.fromkeys(names, units)
+    unknown = [name for name in channel_units if name not in recording.vectors and channel_units[name] is not None]
     if unknown:
-        raise ValueError(f"{path}: units for {', '.join(map(repr, unknown))}, but it has {found.told()}")
-    out = {name: _signal(path, found, name, unit=given.get(name), **stated) for name in names}
+        raise ValueError(f"{path}: units for {', '.join(map(repr, unknown))}, but it has {recording.told()}")
+    out = {name: _signal(path, recording, name, unit=channel_units.get(name), **stated) for name in names}
     if pulse is None:
         return out
-    clock = _signal(path, found, pulse, unit=None if found.units.get(pulse) else "1", rate=stated.get("rate"))
+    clock = _signal(path, recording, pulse, unit=None if recording.units.get(pulse) else "1", rate=stated.get("rate"))
     if clock.unit in SPEEDS:
-        told = "taken for the shaft's speed, its integral for the angle"
-        warnings.warn(f"{path}: {pulse!r} is in {clock.unit}: {told}", stacklevel=3)
-        return {name: with_speed_record(one, clock) for name, one in out.items()}
-    return {name: with_tachometer(one, clock, pulses, level=level) for name, one in out.items()}
+        meaning = "taken for the shaft's speed, its integral for the angle"
+        warnings.warn(f"{path}: {pulse!r} is in {clock.unit}: {meaning}", stacklevel=3)
+        return {name: with_speed_record(channel, clock) for name, channel in out.items()}
+    return {name: with_tachometer(channel, clock, pulses, level=level) for name, channel in out.items()}
 
 
 def channels(path: str | os.PathLike[str], header: str | None = None) -> Found:
     """What a file holds: its channels, their units and rates.
 
-    ValueError if its suffix is of no format, it cannot be read or is damaged, or holds no channel.
+    ValueError if its suffix is unknown, or if it cannot be read, is damaged, or holds no channel.
     """
     suffix = suffix_of(path, "signal", reading=True)
     if header is not None and suffix in READERS:
         raise ValueError(f"{path}: header = {header!r}, but only text tables can lack names; leave it out")
     try:
-        found = READERS[suffix](path) if suffix in READERS else text_table(path, read(path, "signal"), header)
+        recording = READERS[suffix](path) if suffix in READERS else text_table(path, read(path, "signal"), header)
     except OSError as error:
         raise ValueError(f"cannot read {path}: {error.strerror or error}") from error
-    if not found.vectors:
-        raise ValueError(f"{path}: no vector of real numbers; it has {found.told()}")
-    strange = [name for name, unit in found.units.items() if not unit.isprintable() or len(unit) > LONGEST]
+    if not recording.vectors:
+        raise ValueError(f"{path}: no vector of real numbers; it has {recording.told()}")
+    strange = [name for name, unit in recording.units.items() if not unit.isprintable() or len(unit) > LONGEST]
     if strange:
         raise ValueError(f"{path}: the unit of {strange[0]!r} is no text one can read: the file is damaged")
-    return found
+    return recording
 
 
 def _signal(path, found, name, *, rate=None, unit=None, shaft_frequency=None, scale=1.0):
@@ -174,16 +174,16 @@ def _signal(path, found, name, *, rate=None, unit=None, shaft_frequency=None, sc
     values = found.vectors[name]
     _whole(path, name, values)
     if found.parts and scale == 1 and unit and unit != "1":
-        told = f"full scale is taken for 1 {unit}; give what it is as scale="
-        warnings.warn(f"{path}: the values are parts of full scale, and {told}", stacklevel=4)
+        meaning = f"full scale is taken for 1 {unit}; give what it is as scale="
+        warnings.warn(f"{path}: the values are parts of full scale, and {meaning}", stacklevel=4)
     values = values if scale == 1 else scale * np.asarray(values, dtype=float)
     stated = {"rate": _rate(path, found, name, rate, time), "unit": _unit(path, found, name, unit, scale)}
     return Signal(values, **stated, name=f"{Path(path).stem} {name}", angle=angle, shaft_frequency=turning)
 
 
 def _unit(path, found, name, given, scale):
-    said = [found.units.get(name, ""), *map(str, found.nearest(found.stated, name, ("unit",)))]
-    stated = {SAME.get(text.strip(), text.strip()) for text in said if text.strip()}
+    spellings = [found.units.get(name, ""), *map(str, found.nearest(found.stated, name, ("unit",)))]
+    stated = {SAME.get(text.strip(), text.strip()) for text in spellings if text.strip()}
     asked = SAME.get((given or "").strip(), (given or "").strip())
     if asked and scale != 1:
         return asked
@@ -244,8 +244,8 @@ def _one(path, name, values, where=""):
     if values[0] is not None and any(abs(number / numbers[0] - 1) < 1e-9 for number in numbers[1:]):
         return numbers[0]
     if max(numbers) > min(numbers) * (1 + 1e-9):
-        told = f"{' and '.join(f'{number:g}' for number in numbers)} Hz{f' ({where})' if where else ''}"
-        raise ValueError(f"{path}: {name} is given as {told}; say which holds by {name}=")
+        listed = f"{' and '.join(f'{number:g}' for number in numbers)} Hz{f' ({where})' if where else ''}"
+        raise ValueError(f"{path}: {name} is given as {listed}; say which holds by {name}=")
     return numbers[0]
 
 
@@ -269,15 +269,15 @@ def _rate(path, found, name, given, time):
             others = found.channels() if len(found.channels()) > 1 else []
             rising = [other for other in others if np.all(np.diff(found.vectors[other]) > 0)]
             clock = f"; if {rising[0]!r}, which rises all along, is the time, name it so by header=" if rising else ""
-            told = "add a column 'time [s]', write 'rate = ... Hz' into it, or give rate="
-            raise ValueError(f"{path} states no sampling rate: {told}{clock}")
+            remedy = "add a column 'time [s]', write 'rate = ... Hz' into it, or give rate="
+            raise ValueError(f"{path} states no sampling rate: {remedy}{clock}")
         return rate
     if time.size != samples or samples < 2:
         raise ValueError(f"{path}: {time.size} times for {samples} samples")
     step = step_of(path, np.asarray(time, dtype=float), rate)
     if rate is not None and abs(rate * step - 1) > AGREE:
-        told = "leave rate= out, or mend the times" if given is not None else "mend one of them in the file"
-        raise ValueError(f"{path}: rate = {rate:g} Hz, but its times are {1 / step:g} Hz; {told}")
+        remedy = "leave rate= out, or mend the times" if given is not None else "mend one of them in the file"
+        raise ValueError(f"{path}: rate = {rate:g} Hz, but its times are {1 / step:g} Hz; {remedy}")
     return 1 / step if rate is None else rate
 
 

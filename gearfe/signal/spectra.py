@@ -38,8 +38,8 @@ def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spect
     --------
     >>> from gearfe.signal.series import Signal
     >>> t = np.arange(1000) / 1000
-    >>> found = spectrum(Signal(2 + 3 * np.sin(2 * np.pi * 50 * t), 1000.0, "N"))
-    >>> found.values[[0, 50]].round(6).tolist(), found.resolution, found.bandwidth
+    >>> sine = spectrum(Signal(2 + 3 * np.sin(2 * np.pi * 50 * t), 1000.0, "N"))
+    >>> sine.values[[0, 50]].round(6).tolist(), sine.resolution, sine.bandwidth
     ([2.0, 3.0], 1.0, 1.5)
     """
     return amplitudes(signal.values, signal.rate, window, signal.unit, signal.name, "Hz")

@@ -50,8 +50,8 @@ def expected_lines(
     >>> expected_lines(280.0, 40.0, count=1)
     {'f_m': 280.0, 'f_m - f_fault': 240.0, 'f_m + f_fault': 320.0, 'f_fault': 40.0}
     """
-    given = {"f_fault": fault_frequency, "f_carrier": carrier_frequency}
-    spacings = {name: value for name, value in given.items() if value is not None}
+    frequencies = {"f_fault": fault_frequency, "f_carrier": carrier_frequency}
+    spacings = {name: value for name, value in frequencies.items() if value is not None}
     for name, value in {"f_m": mesh_frequency, **spacings}.items():
         hertz(name, value)
     if count < 0 or harmonics < 1:

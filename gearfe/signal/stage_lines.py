@@ -71,15 +71,15 @@ def stage_lines(
     mesh, planet = ring * carrier, round((ring - sun) / 2)
     turn = {"sun": mesh / sun, "planet": mesh / planet}.get(damaged or "", 0.0)
     reach, spread = (turns, window) if turn else (0, turns * n_planets if damaged == "ring" else window)
-    found: dict[str, float] = {}
+    lines: dict[str, float] = {}
     rows = [(n, q, j) for n in range(harmonics + 1) for q in range(-reach, reach + 1) for j in range(-spread, spread + 1)]
     for n, q, j in sorted(rows, key=lambda row: (sum(map(bool, row)), sum(map(abs, row)))):
         agree = (n * ring - (q if damaged == "sun" else 0) + j) % n_planets == 0
         free = damaged == "planet" or (not equal and (damaged == "sun" or not q))
         value = n * mesh + q * turn + j * carrier
-        if value > 1e-9 * mesh and (agree or free) and not any(math.isclose(value, other) for other in found.values()):
-            found[_named(n, q, j)] = value
-    return dict(sorted(found.items(), key=lambda item: item[1]))
+        if value > 1e-9 * mesh and (agree or free) and not any(math.isclose(value, other) for other in lines.values()):
+            lines[_named(n, q, j)] = value
+    return dict(sorted(lines.items(), key=lambda item: item[1]))
 
 
 def _check(sun, ring, n_planets, carrier, damaged):

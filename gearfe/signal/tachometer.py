@@ -12,7 +12,7 @@ from .series import Signal
 SPEEDS = {"rpm": 1 / 60, "1/min": 1 / 60, "min^-1": 1 / 60, "U/min": 1 / 60, "tr/min": 1 / 60}  # turns per second, by unit
 FEWEST = 4  # pulses
 QUIET = 0.25  # of the height of the pulses: how far below the level a signal must fall before it can rise again
-MISSED = 1.7  # times the intervals before and after it: one that long hides a pulse that was lost
+MISSED = 1.7  # an interval this many times those before and after it hides a lost pulse
 
 
 def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool = False) -> NDArray[np.float64]:
@@ -41,7 +41,7 @@ def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool
 def tachometer_angle(
     tachometer: Signal, pulses: int = 1, *, level: float | None = None, falling: bool = False
 ) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Angle of the shaft [rad] ``(m,)`` at the samples between the first and the last pulse, 0 at the first; which these are.
+    """Angle of the shaft [rad] ``(m,)`` at the samples between the first and last pulse, 0 at the first; and their numbers.
 
     Each pulse is ``2 pi / pulses`` further; through their times a cubic spline is laid, exact for a speed that changes evenly. A
     pulse that lies between two samples is placed by a straight line between them, to a small part of a sample. `pulses`, `level`

@@ -19,14 +19,14 @@ DAY = 86400.0  # s
 
 
 def cells_of(line, separator, count=None):
-    """Cells of a row: of a known `count`, also the empty ones at its end; else separators at the end part nothing."""
+    """Cells of a row: with a known `count` also the empty ones at its end, otherwise separators at the end are dropped."""
     whole = line if separator is None else line.rstrip(f"{separator} ")
-    if separator is not None and '"' in line:  # a separator between quotes parts nothing
+    if separator is not None and '"' in line:  # a separator between quotes ends no cell
         cells = [cell.strip() for cell in next(csv.reader([whole], delimiter=separator))]
     else:
         cells = [cell.strip().strip('"').strip() for cell in whole.split(separator)]
-    more = 0 if count is None or separator is None else min(count - len(cells), line[len(whole) :].count(separator))
-    return cells + [""] * more
+    empty = 0 if count is None or separator is None else min(count - len(cells), line[len(whole) :].count(separator))
+    return cells + [""] * empty
 
 
 def plain_number(cell, mark, group=""):
@@ -47,13 +47,13 @@ def is_number(cell, mark, group=""):
 
 def numbers(line, separator, mark, group=""):
     """Count of the cells of a row if they are numbers, or numbers beside dates and times of a clock; else 0."""
-    found = cells_of(line, separator)
-    rest = [cell for cell in found if not is_number(cell, mark, group)]
-    return len(found) if len(rest) < len(found) and all(CLOCK.fullmatch(cell) or DATE.fullmatch(cell) for cell in rest) else 0
+    cells = cells_of(line, separator)
+    rest = [cell for cell in cells if not is_number(cell, mark, group)]
+    return len(cells) if len(rest) < len(cells) and all(CLOCK.fullmatch(cell) or DATE.fullmatch(cell) for cell in rest) else 0
 
 
 def value(cell, mark, group=""):
-    r"""What a cell says: a number, of a clock the seconds of its day, nan if it is empty or a date; None if it is something else.
+    r"""Value of a cell: its number, the seconds of the day of a clock time, nan if it is empty or a date; None for anything else.
 
     >>> value("1.234,5", ",", r"\."), value("10:00:01,5", ",")
     (1234.5, 36001.5)

@@ -12,7 +12,7 @@ from .found import KEYS, TIMES, Found, plain
 from .text_cells import CLOCK, DATE, GROUPS, cells_of, is_number, numbers, plain_number, since_start, value
 
 SEPARATORS = (";", "\t", ",", None)  # of cells; None: blanks
-LOOKED = 200  # rows at the end of a table by which its way of writing numbers is told
+LOOKED = 200  # rows at the end of a table from which its way of writing numbers is found
 UNITS = re.compile(
     r"-|%|V|mV|pC|g|s|ms|us|rad|deg|°|k?Hz|rpm|1/min|[munkM]?(m|N|Nm|Pa|W|A)|[mu]?m/s(\^?2|²|\*\*2)?|°C|K|bar|hh:mm:ss\S*|\[.*\]|\(.*\)"
 )
@@ -41,23 +41,23 @@ def text_table(path: str | os.PathLike[str], lines: list[str], header: str | Non
     numbered = [(i, line.strip()) for i, line in enumerate(lines, 1) if line.strip()]
     comments = [line.lstrip("#% ") for _, line in numbered if line[0] in "#%"]
     rows = [(i, line) for i, line in numbered if line[0] not in "#%"]
-    given = None if header is None else re.split(r"[,;\t]", header)
-    way = _way(rows, given)
+    columns = None if header is None else re.split(r"[,;\t]", header)
+    way = _way(rows, columns)
     if way is None:
         first = f"; its first line is {numbered[0][1][:60]!r}" if numbered else ": it is empty"
         raise ValueError(f"{path}: no rows of numbers{first}")
     titles = [line for _, line in rows[: way.above]]
-    found = Found({})
-    names = given or _names(titles, comments, way, found)
+    recording = Found({})
+    names = columns or _names(titles, comments, way, recording)
     pairs = [named(cell) for cell in names]
     if len({name for name, _ in pairs}) < len(pairs):
         raise ValueError(f"{path}: two columns have the same name ({', '.join(name for name, _ in pairs)})")
     table = _table(path, rows[way.above :], way, len(names))
-    found.vectors, found.units = dict(zip([name for name, _ in pairs], table.T, strict=True)), dict(pairs)
-    _clocks(path, found, cells_of(rows[way.above][1], way.separator, len(names)))
+    recording.vectors, recording.units = dict(zip([name for name, _ in pairs], table.T, strict=True)), dict(pairs)
+    _clocks(path, recording, cells_of(rows[way.above][1], way.separator, len(names)))
     for line in (*titles, *comments):
-        _state(path, found, line, way.mark)
-    return found
+        _state(path, recording, line, way.mark)
+    return recording
 
 
 def named(cell: str) -> tuple[str, str]:
@@ -67,15 +67,15 @@ def named(cell: str) -> tuple[str, str]:
 
 
 def _way(rows, given):
-    """The way in which most rows are numbers; of several one that fits the names of the columns. None if there is none."""
+    """`Way` in which the most rows are numbers; of several, one that fits the names of the columns. None if no row is numbers."""
     best, most = _ways(rows, [(mark, "") for mark in ".,"], 0)
     fitting = _fitting(rows, best, given)
-    if most < len(rows[-LOOKED:]) or not fitting:  # some rows are no numbers, unless thousands are parted
-        grouped, more = _ways(rows, [(mark, group) for mark in GROUPS for group in GROUPS[mark]], most)
-        found = _fitting(rows, grouped, given)
-        if more > most:
-            best, fitting = grouped, found
-        fitting = fitting or found
+    if most < len(rows[-LOOKED:]) or not fitting:  # some rows are no numbers, unless they have marks between thousands
+        grouped, grouped_most = _ways(rows, [(mark, group) for mark in GROUPS for group in GROUPS[mark]], most)
+        grouped_fitting = _fitting(rows, grouped, given)
+        if grouped_most > most:
+            best, fitting = grouped, grouped_fitting
+        fitting = fitting or grouped_fitting
     return next(iter(fitting or best), None)
 
 
@@ -85,11 +85,11 @@ def _fitting(rows, ways, given):
 
 
 def _ways(rows, marks, most):
-    """Ways in which most rows, and at least so many, are numbers; and how many those are."""
+    """Ways of writing in which the most rows, and at least `most`, are numbers; and how many rows that is."""
     best = []
     for mark, group in marks:
         for separator in SEPARATORS:
-            if group and separator in (None, mark):  # thousands parted like cells would be cells
+            if group and separator in (None, mark):  # a mark between thousands that is the separator ends a cell
                 continue
             counts = Counter(n for _, line in rows[-LOOKED:] if (n := numbers(line, separator, mark, group)))
             score, count = sum(counts.values()), counts.most_common(1)[0][0] if counts else 0
@@ -101,7 +101,7 @@ def _ways(rows, marks, most):
 
 
 def _fits(rows, way):
-    """Whether the row above the numbers has as many cells as they, and is none of numbers in another way."""
+    """Whether the row above the numbers has as many cells as they have, and is not itself numbers written in another way."""
     if not way.above:
         return False
     line = rows[way.above - 1][1]
@@ -116,7 +116,7 @@ def _names(titles, comments, way, found):
     if titles and len(cells_of(titles[-1], way.separator)) == way.columns:
         return rows[-1]
     if titles and not rows and len(cells := cells_of(titles[-1], way.separator)) > 1:
-        return cells  # a header whose count does not fit is told with the first row
+        return cells  # a header whose count does not fit is reported with the first row
     rows = [cells for line in comments if len(cells := cells_of(line, way.separator)) == way.columns]
     rows = [cells for cells in rows if len(cells) > 1 or re.fullmatch(r"[^:=]+\[.+\]", cells[0])] or rows[:0]
     if rows:
@@ -144,7 +144,7 @@ def _table(path, rows, way, count):
 
 
 def _by_cell(path, rows, way, count):
-    """The same, cell by cell: with thousands that are parted, commas between quotes, empty cells; which is told."""
+    """As `_table`, cell by cell: with marks between thousands, commas between quotes and empty cells, of which it warns."""
     cells = [cells_of(line, way.separator, count) for _, line in rows]
     table = [[value(cell, way.mark, way.group) for cell in row] for row in cells]
     wrong = next((i for i, row in enumerate(table) if len(row) != count or None in row), None)
@@ -153,9 +153,9 @@ def _by_cell(path, rows, way, count):
         shown = line if len(line) <= 80 else f"{line[:80]}..."
         raise ValueError(f"{path}, line {rows[wrong][0]}: {shown!r} is not a row of {count} numbers")
     if way.group:
-        one = next((cell for row in cells for cell in row if GROUPS[way.mark][way.group].fullmatch(cell)), cells[0][0])
-        told = f"thousands are taken to be parted: {one!r} is {plain_number(one, way.mark, way.group)}"
-        warnings.warn(f"{path}: {told}", stacklevel=6)
+        example = next((cell for row in cells for cell in row if GROUPS[way.mark][way.group].fullmatch(cell)), cells[0][0])
+        meaning = f"thousands are taken to be parted: {example!r} is {plain_number(example, way.mark, way.group)}"
+        warnings.warn(f"{path}: {meaning}", stacklevel=6)
     empty = [i for (i, _), row in zip(rows, cells, strict=True) if "" in row]
     if empty:
         warnings.warn(f"{path}: {len(empty)} rows have empty cells, the first in line {empty[0]}: read as missing", stacklevel=6)
@@ -163,7 +163,7 @@ def _by_cell(path, rows, way, count):
 
 
 def _clocks(path, found, first):
-    """Make a column of clock times, of whose cells `first` are the first row, the time; take dates away."""
+    """Turn a column of clock times into the time, and drop dates; `first` are the cells of the first row."""
     for name, cell in zip(list(found.vectors), first, strict=True):
         if DATE.fullmatch(cell):
             found.other.append(f"{name!r} (dates)")

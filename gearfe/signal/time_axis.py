@@ -7,21 +7,20 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-UNEVEN = 0.1  # of a step: what clocks wander; a lost sample is more
+UNEVEN = 0.1  # part of a step by which clocks may wander; a lost sample is more
 DECIMALS, DIGITS = range(-3, 13), range(3, 10)  # of printed times
-CLOSE = 1e-2  # of a rounding: what binary numbers and the linear program leave
+CLOSE = 1e-2  # part of a rounding: tolerance for binary numbers and the linear program
 ROUNDS = 60  # of the fit, each of which adds the time it misses most
-BLURRED = 1e-3  # of the whole record: times that are rounded more say no rate
+BLURRED = 1e-3  # part of the whole record: times rounded more coarsely determine no rate
 
 
 def step_of(path: Any, time: NDArray[np.float64], rate: float | None = None) -> float:
     """Step [s] of times that rise in equal steps.
 
-    Where they do not to a tenth of a step, because they were printed with so many decimals or significant digits, a line is
-    looked for that is nowhere further from them than half of the last digit printed; of a known `rate` [Hz] one of just its step.
-    There is none if a sample is lost, unless that is within so few samples of the ends that rounding hides it. ValueError if they
-    fall, have a gap, are rounded too much to say a rate, or one is not finite. Warns of times that are rounded: to what, and what
-    rate is assumed.
+    Times that are off by more than a tenth of a step because they were printed with few digits are fitted by a line that is
+    nowhere further from them than half of the last digit printed; with a known `rate` [Hz] its step is given. There is no such
+    line if a sample is lost, unless it is lost so near the ends that rounding hides it. ValueError if the times fall, have a gap,
+    are rounded too much to determine a rate, or one is not finite. Warns of rounded times, with the rate assumed.
     """
     bad = np.flatnonzero(~np.isfinite(time))
     if bad.size:
@@ -32,26 +31,28 @@ def step_of(path: Any, time: NDArray[np.float64], rate: float | None = None) -> 
         return step
     printed = rounding(time)
     coarse, i = float(printed.max()), int(np.argmax(off)) if step > 0 else time.size - 1
-    told = f"{path}: times must rise in equal steps, but sample {i} at {time[i]:.9g} s does not fit a step of {step:.6g} s: "
+    problem = f"{path}: times must rise in equal steps, but sample {i} at {time[i]:.9g} s does not fit a step of {step:.6g} s: "
     if not step > 0 or coarse < UNEVEN * step or (np.diff(time) < 0).any():
         gap = _gap(time)
-        raise ValueError(f"{path}: {gap}" if gap else f"{told}a gap, or a varying rate; resample first")
+        raise ValueError(f"{path}: {gap}" if gap else f"{problem}a gap, or a varying rate; resample first")
     if rate is None and coarse > BLURRED * (time[-1] - time[0]):
-        raise ValueError(f"{told}they are rounded to {coarse:g} s; print them with more digits, or give rate= too")
-    found, miss = _fitted(time, step, printed / 2) if rate is None else (1 / rate, _missed(time, 1 / rate, printed / 2))
+        raise ValueError(f"{problem}they are rounded to {coarse:g} s; print them with more digits, or give rate= too")
+    fitted, miss = _fitted(time, step, printed / 2) if rate is None else (1 / rate, _missed(time, 1 / rate, printed / 2))
     if miss > 1 + CLOSE:
-        more = "" if rate is None else f", or another rate than {rate:g} Hz"
-        raise ValueError(f"{told}more than their rounding to {coarse:g} s: a gap, or a varying rate{more}; resample first")
+        other_rate = "" if rate is None else f", or another rate than {rate:g} Hz"
+        raise ValueError(
+            f"{problem}more than their rounding to {coarse:g} s: a gap, or a varying rate{other_rate}; resample first"
+        )
     warnings.warn(
-        f"{path}: times are rounded to {coarse:g} s; all of them fit {1 / found:.6g} Hz, which is assumed (a sample lost near an "
-        "end would not be seen)",
+        f"{path}: times are rounded to {coarse:g} s; all of them fit {1 / fitted:.6g} Hz, which is assumed (a sample lost near "
+        "an end would not be seen)",
         stacklevel=6,
     )
-    return found
+    return fitted
 
 
 def _gap(time):
-    """What to do where times that else rise evenly leap; empty if they do not."""
+    """Advice on a gap in times that rise evenly elsewhere; empty if there is none."""
     steps = np.diff(time)
     usual = float(np.median(steps))
     leaps = np.flatnonzero(steps > 1.5 * usual)
@@ -59,13 +60,13 @@ def _gap(time):
         return ""
     worst = int(leaps[np.argmax(steps[leaps])])
     lost = round(steps[worst] / usual) - 1
-    more = f", the widest of {leaps.size} gaps" if leaps.size > 1 else ""
+    widest = f", the widest of {leaps.size} gaps" if leaps.size > 1 else ""
     between = f"between {time[worst]:.9g} and {time[worst + 1]:.9g} s"
-    return f"{lost} samples are missing {between}{more}; cut the file there, or fill the gap"
+    return f"{lost} samples are missing {between}{widest}; cut the file there, or fill the gap"
 
 
 def rounding(time: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Last digit printed of each time [s]: of so many decimals, or so many significant digits, the coarser; 0 if not rounded."""
+    """Last printed digit of each time [s], by decimals or by significant digits, whichever is coarser; 0 if not rounded."""
     fixed = next((10.0**-k for k in DECIMALS if _multiples(time, 10.0**-k)), 0.0)
     size = np.abs(time)
     power = np.floor(np.log10(np.where(size > 0, size, 1.0)) + 1e-12)

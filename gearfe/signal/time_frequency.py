@@ -67,7 +67,7 @@ def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[
 def whole_frames(signal, x, window, size, most):
     """Frequencies [Hz], middles [s] and short-time Fourier transform of `x`, of whole frames that overlap by three quarters.
 
-    The last that is given are the weights of the window. ValueError if a frame is shorter than 8 samples or longer than `most`.
+    Returned last are the weights of the window. ValueError if a frame is shorter than 8 samples or longer than `most`.
     """
     if not 8 <= size <= most:
         raise ValueError(f"size = {size} samples, but {signal.name} has {x.size}: give 8 to {most}")

@@ -69,8 +69,8 @@ def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options)
 
     def solve():
         healthy = solved_solid(gear, material, cache=kept, tell=tell, **options) if cracks else None
-        own = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
-        return solid_flexibility(WholeGear(gear, cracks, **options), material, **own)
+        keywords = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
+        return solid_flexibility(WholeGear(gear, cracks, **options), material, **keywords)
 
     return _kept("solid", gear, _solid_case(material, cracks, options), solve, kept)
 
@@ -80,7 +80,7 @@ def _solid_case(material, cracks, options):
 
 
 def unsolved(gear, material, cracks=(), *, cache=True, **options):
-    """What `solved_solid` of the same would solve: `gearfe.elements.solver.Plan` by key, nothing that is kept or on the disk.
+    """`gearfe.elements.solver.Plan` by key of what `solved_solid` would solve now, without what is kept or on the disk.
 
     RuntimeError, with the numbers, if one of them does not fit into memory.
     """

@@ -104,10 +104,10 @@ class StiffnessCurve:
             import xarray
         except ImportError as error:
             raise missing("xarray", error) from error
-        made = content(self)
-        names = [name for name in made.arrays if name not in ("phase", "order")]
+        table = content(self)
+        names = [name for name in table.arrays if name not in ("phase", "order")]
         axes = {1: ("phase",), 2: ("phase", "order")}
-        values = {n: (axes[made.arrays[n].ndim], made.arrays[n], {"units": made.units[n]}) for n in names}
+        values = {n: (axes[table.arrays[n].ndim], table.arrays[n], {"units": table.units[n]}) for n in names}
         return xarray.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
 
     def __call__(self, phase: ArrayLike) -> NDArray:
@@ -116,20 +116,20 @@ class StiffnessCurve:
         Phases that go round a mesh cycle are continued periodically. Those of a damaged tooth's engagement (``span="tooth"``) are
         not: what comes before and after it is another tooth, and a ValueError says that the curve has no value there.
         """
-        wanted = np.asarray(phase)
-        if wanted.dtype.kind not in "iuf" or not np.isfinite(wanted).all():
+        phases = np.asarray(phase)
+        if phases.dtype.kind not in "iuf" or not np.isfinite(phases).all():
             raise ValueError(f"phase = {phase!r}, but give finite numbers")
         order = np.argsort(self.phase)
-        own, k = self.phase[order], self.k[order]
-        steps = np.diff(own)
-        if own.size > 1 and 0 < own[0] + 1 - own[-1] <= 1.5 * steps.max():
-            return np.interp(wanted, own, k, period=1.0)
-        if wanted.size and (wanted.min() < own[0] or wanted.max() > own[-1]):
+        known, k = self.phase[order], self.k[order]
+        steps = np.diff(known)
+        if known.size > 1 and 0 < known[0] + 1 - known[-1] <= 1.5 * steps.max():
+            return np.interp(phases, known, k, period=1.0)
+        if phases.size and (phases.min() < known[0] or phases.max() > known[-1]):
             raise ValueError(
-                f"phase from {wanted.min():g} to {wanted.max():g}, but it is known from {own[0]:g} to {own[-1]:g} and goes "
+                f"phase from {phases.min():g} to {phases.max():g}, but it is known from {known[0]:g} to {known[-1]:g} and goes "
                 "round no cycle: compute one with span='cycle' for a healthy pair"
             )
-        return np.interp(wanted, own, k)
+        return np.interp(phases, known, k)
 
     @property
     def te(self) -> NDArray[np.float64]:
@@ -207,8 +207,8 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
 
     def rows(name: str) -> NDArray[np.float64]:
         out = [np.zeros((curve.phase.size, order.size)) for curve in curves]
-        for part, one in zip(out, curves, strict=True):
-            part[:, np.searchsorted(order, one.order)] = getattr(one, name)
+        for part, source in zip(out, curves, strict=True):
+            part[:, np.searchsorted(order, source.order)] = getattr(source, name)
         return np.concatenate(out)
 
     def row(name: str) -> NDArray[np.float64] | None:
@@ -229,6 +229,6 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
 
 
 def _meta_of(curves: Sequence[StiffnessCurve]) -> dict[str, Any]:
-    """What is said of the first, and of the phases of all of them."""
+    """`meta` of the first curve, with the marked phases of all of them."""
     marked = [name for name in MARKS if any(name in curve.meta for curve in curves)]
     return curves[0].meta | {name: [at for curve in curves for at in curve.meta.get(name, ())] for name in marked}

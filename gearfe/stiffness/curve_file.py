@@ -40,8 +40,8 @@ def read_fields(path):
     header = lines[2].split(",")
     data = _columns(path, header, table)
     order = np.array([int(name.split()[1]) for name in header if name.startswith("force ")])
-    wanted = [f"{name} {k} [{unit}]" for k in order for name, unit in PER_PAIR.items()]
-    missing = [name for name in wanted if name not in data]
+    expected = [f"{name} {k} [{unit}]" for k in order for name, unit in PER_PAIR.items()]
+    missing = [name for name in expected if name not in data]
     if missing or not isinstance(meta, dict) or order.size == 0:
         raise ValueError(f"{path}: damaged table: {'no column ' + repr(missing[0]) if missing else 'no pairs or no meta data'}")
     per_pair = {name: np.array([data[f"{name} {k} [{unit}]"] for k in order]).T for name, unit in PER_PAIR.items()}

@@ -43,13 +43,13 @@ def estimate(phase, periodic, k, coarse, finer=()):
     """
     away = np.abs(k - np.array(coarse))
     total, mean = away.sum(axis=0), away[0, phase.size :]
-    here = total[: phase.size] + sum(np.abs(k - other)[: phase.size] for other in finer)
+    at_phase = total[: phase.size] + sum(np.abs(k - other)[: phase.size] for other in finer)
     apart = np.abs(phase[:, None] - fixed_phases(phase, periodic))
     if periodic:
         apart = np.abs((apart + 0.5) % 1 - 0.5)
     largest = np.where(apart <= WINDOW + 1e-9, total[phase.size :], 0.0).max(axis=1)
     within = apart <= MEAN + 1e-9
-    return np.maximum(largest, here) + (within * mean).sum(axis=1) / within.sum(axis=1)
+    return np.maximum(largest, at_phase) + (within * mean).sum(axis=1) / within.sum(axis=1)
 
 
 def coarser(refine, order=None):

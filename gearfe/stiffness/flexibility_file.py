@@ -52,11 +52,11 @@ def read_flexibility(path: Path, key: str, made_from: Callable[[dict[str, NDArra
 
 def _members(archive, size):
     """Members of an archive by array; ValueError if one is compressed, encrypted, there twice, or longer than the file."""
-    found = {member.filename.removesuffix(".npy"): member for member in archive.infolist()}
-    plain = all(m.compress_type == zipfile.ZIP_STORED and not m.flag_bits & 1 for m in found.values())
-    if not plain or len(found) < len(archive.infolist()) or sum(m.file_size for m in found.values()) > size:
+    members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()}
+    plain = all(m.compress_type == zipfile.ZIP_STORED and not m.flag_bits & 1 for m in members.values())
+    if not plain or len(members) < len(archive.infolist()) or sum(m.file_size for m in members.values()) > size:
         raise ValueError("not an archive of plain arrays")
-    return found
+    return members
 
 
 def _array(archive, member):

@@ -26,9 +26,9 @@ def check_count(phases: Any) -> int:
 
 
 def check_range(phases: NDArray, pairs: float) -> None:
-    """Refuse phases too far away for their rounding, or over so many cycles at once that the contacts fill the memory.
+    """ValueError for phases so large that rounding moves contacts, or over so many cycles that the contacts fill the memory.
 
-    `phases` ``(n,)``; `pairs` is the contact ratio: so many pairs are in contact at each of them.
+    `phases` ``(n,)``; `pairs` is the contact ratio, the mean number of pairs in contact.
     """
     far = float(np.abs(phases).max())
     if far > FURTHEST:
@@ -58,7 +58,7 @@ def check_section(refine: float) -> None:
 
 
 def check_teeth(teeth: Any, most: int) -> None:
-    """Refuse a number of teeth that is none, or more than the larger gear has."""
+    """ValueError unless `teeth` is None or a whole number from 1 to `most`, the teeth of the larger gear."""
     if teeth is None:
         return
     if isinstance(teeth, bool) or not (isinstance(teeth, Integral) and int(teeth) >= 1):

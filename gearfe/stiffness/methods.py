@@ -115,8 +115,8 @@ def _loaded(home):
     """What ``module:name`` names, or the module."""
     module, _, name = home.partition(":")
     with loading:
-        found = import_module(module)
-    return getattr(found, name) if name else found
+        loaded = import_module(module)
+    return getattr(loaded, name) if name else loaded
 
 
 ROWS = (
@@ -172,8 +172,8 @@ def described():
 
 def having(what, kind=None):
     """Names of the methods that have `what`, an attribute of `Method`, as text: 'ritz, fe or fe3d'."""
-    found = [row.name for row in ROWS if getattr(row, what) and kind in (None, row.kind)]
-    return " or ".join([", ".join(found[:-1]), found[-1]] if len(found) > 1 else found)
+    names = [row.name for row in ROWS if getattr(row, what) and kind in (None, row.kind)]
+    return " or ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
 
 
 def fitted(method, case):

@@ -82,11 +82,11 @@ class OwnFlexibility:
     ...     bending = 4 * arm**3 / (material.E * thickness**3)
     ...     return np.diag(bending + 1.2 * arm / (material.shear_modulus * thickness))
     >>> run = dict(pair=pair, force=2000.0, material=gf.Material(E=207e3, nu=0.3), phases=16, extended=False)
-    >>> own, both, ritz = (
+    >>> bars, mixed, ritz = (
     ...     gf.mesh_stiffness(**run, method=method).k.mean() / 20e6
     ...     for method in (gf.OwnFlexibility(bar), gf.OwnFlexibility(bar, "ritz"), "ritz")
     ... )
-    >>> print(f"bars {own:.1f}, a pinion of bars on a real wheel {both:.1f}, two real gears {ritz:.1f}")
+    >>> print(f"bars {bars:.1f}, a pinion of bars on a real wheel {mixed:.1f}, two real gears {ritz:.1f}")
     bars 28.9, a pinion of bars on a real wheel 20.3, two real gears 15.6
     """
 
@@ -96,7 +96,7 @@ class OwnFlexibility:
     name: str | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what has no flexibility; name the model."""
+        """Check that the models of both gears have a flexibility, and name the model."""
         one_of("given", self.given, GIVEN)
         if self.wheel is None:
             object.__setattr__(self, "wheel", self.pinion)
@@ -118,13 +118,13 @@ class OwnFlexibility:
         return self.pinion, self.wheel
 
     def told(self) -> dict[str, Any]:
-        """What `meta` says of it."""
+        """Entries of `meta`: the names of both gears' models, and what their values hold."""
         names = [gear if isinstance(gear, str) else getattr(gear, "__name__", type(gear).__name__) for gear in self.gears]
         return {"flexibility": names, "given": self.given}
 
 
 def _check(side: str, one: object) -> None:
-    """Refuse what cannot say how a gear gives."""
+    """ValueError unless `one` is a function, a Flexibility, or the name of a method that has one."""
     sections = having("name", "section")
     home = getattr(one, "__name__", None) if isinstance(one, ModuleType) else getattr(one, "__module__", None)
     for name in SUMS:
@@ -143,7 +143,7 @@ def _unknown(gear: Any, roll: NDArray, tooth: int) -> None:
 
 @dataclass(frozen=True, slots=True)
 class OwnGear:
-    """A user's function, as in `OwnFlexibility`, as what `gearfe.contact.pair_contact.PairContact` reads of a gear."""
+    """A user's function, as in `OwnFlexibility`, with all that `gearfe.contact.pair_contact.PairContact` asks of a gear."""
 
     function: Callable
     gear: Gear
@@ -164,9 +164,9 @@ class OwnGear:
         (roll, on), teeth = _on_flank(self.gear, roll), np.asarray(teeth)
         out = np.zeros((*roll.shape, teeth.size))
         for place in np.ndindex(roll.shape[:-1]):
-            own = np.flatnonzero(on[place])
-            if own.size:
-                out[(*place, own[:, None], own)] = self._among(roll[place][own], teeth[own])
+            contacts = np.flatnonzero(on[place])
+            if contacts.size:
+                out[(*place, contacts[:, None], contacts)] = self._among(roll[place][contacts], teeth[contacts])
         return out
 
     def _among(self, roll, teeth):
@@ -185,7 +185,7 @@ class OwnGear:
 
 @dataclass(frozen=True, slots=True)
 class OwnMatrix:
-    """A user's object that has ``matrix(roll, teeth)`` and nothing else, as what contact reads of a gear; its values checked."""
+    """A user's object that has just ``matrix(roll, teeth)``, with all that contact asks of a gear; its values are checked."""
 
     made: Any
     gear: Gear
@@ -215,16 +215,16 @@ def _on_flank(gear: Gear, roll: NDArray) -> tuple[NDArray[np.float64], NDArray[n
 def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> NDArray[np.float64]:
     """What a user's function gives, if it is real, finite and symmetric and has the shape; else a ValueError that names it."""
     try:
-        given = work()
+        returned = work()
     except Exception as error:  # it may raise whatever it likes
         raise ValueError(f"{where}: it failed with {type(error).__name__}: {error}") from error
-    if isinstance(given, Components):
+    if isinstance(returned, Components):
         raise ValueError(
             f"{where}: it gives Components of a tooth, but no matrix; teeth that do not move each other have numpy.diag "
             "of their `total`"
         )
     try:
-        values = np.asarray(given)
+        values = np.asarray(returned)
     except ValueError as error:  # rows of different lengths
         raise ValueError(f"{where}: it gives rows that make no array, but give a matrix of numbers [mm per N/mm]") from error
     if values.dtype.kind not in "fiu":
@@ -244,14 +244,14 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> NDA
 
 def flexibility_of(own: OwnFlexibility, side: int, gear: Gear, material: Material, state: str, named: Callable) -> Any:
     """What contact reads of one gear (side 0: pinion, 1: wheel); ``named(row, gear, material)`` gives that of a method."""
-    one = own.gears[side]
-    if isinstance(one, str):
-        return named(METHODS[one], gear, material)
-    if callable(getattr(one, "matrix", None)):
-        if getattr(one, "gear", gear) != gear:
+    model = own.gears[side]
+    if isinstance(model, str):
+        return named(METHODS[model], gear, material)
+    if callable(getattr(model, "matrix", None)):
+        if getattr(model, "gear", gear) != gear:
             raise ValueError(
-                f"a Flexibility of z = {one.gear.z} was given for z = {gear.z}: it holds for the very gear it was made of; give "
-                "those of pinion and wheel"
+                f"a Flexibility of z = {model.gear.z} was given for z = {gear.z}: it holds for the very gear it was made of; "
+                "give those of pinion and wheel"
             )
-        return one if hasattr(one, "seam") else OwnMatrix(one, gear)
-    return OwnGear(one, gear, material, state, own.given)
+        return model if hasattr(model, "seam") else OwnMatrix(model, gear)
+    return OwnGear(model, gear, material, state, own.given)

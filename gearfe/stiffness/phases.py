@@ -17,7 +17,7 @@ LONG = SPANS[2:]  # of many cycles
 
 
 def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0) -> NDArray[np.float64]:
-    """Phases spelled out; an engagement lasts as long as profile and overlap ratio together."""
+    """Phases ``(n,)`` of a number of them over a `span`, or those given; an engagement lasts ``eps_alpha + overlap`` cycles."""
     one_of("span", span, SPANS)
     if np.ndim(phases) == 0:
         phases = check_count(phases)

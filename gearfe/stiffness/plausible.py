@@ -26,7 +26,7 @@ DENTED = 0.035  # largest pressure, of the contact modulus E*
 
 
 def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Material, Material]) -> None:
-    """Refuse or warn of a curve beyond small strains, and refuse numbers that are none.
+    """Reject NaN and non-positive stiffness; reject, or warn of, a curve beyond small strains.
 
     ValueError if the gears approach by more than `REFUSE` modules, or k is not positive and finite. UserWarning if they approach
     by more than `WARN` modules at the median phase, or the pressure is larger than `DENTED` E* there.
@@ -35,16 +35,16 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
     if not (np.isfinite(curve.k).all() and (curve.k > 0).all()):
         bad = curve.phase[~(np.isfinite(curve.k) & (curve.k > 0))][0]
         raise ValueError(f"k at phase {bad:.6g} is not positive and finite: no model holds for these gears at {force:g} N")
-    own = curve.lte if curve.lte_supports is None else curve.lte - curve.lte_supports  # of the teeth, that shafts carry along
-    ratio = float(np.median(own)) * 1e3 / module
-    told = f"under {force:g} N the gears approach by {1e3 * ratio * module:.3g} um, {100 * ratio:.3g} % of the module"
+    lte = curve.lte if curve.lte_supports is None else curve.lte - curve.lte_supports  # of the teeth alone, without their shafts
+    ratio = float(np.median(lte)) * 1e3 / module
+    message = f"under {force:g} N the gears approach by {1e3 * ratio * module:.3g} um, {100 * ratio:.3g} % of the module"
     if ratio > REFUSE:
         raise ValueError(
-            f"force = {force:g} N: {told}, but teeth that bend so far (limit {100 * REFUSE:g} %) are beyond small strains and "
+            f"force = {force:g} N: {message}, but teeth that bend so far (limit {100 * REFUSE:g} %) are beyond small strains and "
             "break: give a smaller force, a wider face or a larger module, forces in N, lengths in mm, E in MPa"
         )
     if ratio > WARN:
-        warnings.warn(f"{told}: more than teeth bear ({100 * WARN:g} %); k is that of linear elasticity", stacklevel=4)
+        warnings.warn(f"{message}: more than teeth bear ({100 * WARN:g} %); k is that of linear elasticity", stacklevel=4)
     most, limit = _pressure(curve), DENTED * contact_modulus(materials)
     if most > limit:
         warnings.warn(

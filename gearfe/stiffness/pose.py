@@ -9,9 +9,9 @@ from geometry.pair.modified import flank_contacts
 from ..flexibility.section_contact import MARKS
 
 SHIFT = {"mean": 0.0, "pinion": 0.5, "wheel": -0.5}  # of the phase, in approaches over the base pitch
-SETTLED, PART = 1e-7, 1e-3  # last change of a phase, and the same in the shift by what a light load closes
-LEAST = 1e-13  # the same at the least, above the rounding of a phase
-MOST = 20
+SETTLED, PART = 1e-7, 1e-3  # largest last change of a phase, and as a part of the shift by the elastic approach (light loads)
+LEAST = 1e-13  # smallest change that is asked for, above the rounding of a phase
+MOST = 20  # solves
 
 
 def in_pose(curve_at, phase, pair, pose, flanks=None):
@@ -43,12 +43,12 @@ def in_pose(curve_at, phase, pair, pose, flanks=None):
 
 
 def _settled(solve, phase, pose, moved, enough=lambda found: LEAST):
-    """Phases at which what is solved is as far from `phase` as `moved` says, to `enough`, and what is solved there."""
+    """Phases ``at = phase + moved(solve(at))``, until they change by less than `enough` of that result, and ``solve(at)``."""
     at = phase
     for _ in range(MOST):
         found = solve(at)
-        wanted = phase + moved(found)
-        if (np.abs(wanted - at) < enough(found)).all():
+        target = phase + moved(found)
+        if (np.abs(target - at) < enough(found)).all():
             return at, found
-        at = wanted
+        at = target
     raise RuntimeError(f"the pose {pose!r} did not settle in {MOST} solves; lower the force, or use pose = 'mean'")

@@ -14,13 +14,13 @@ def provenance(case, method, options):
     pair = case.pair
     gears = {name: asdict(gear) for name, gear in (("gear_1", pair.gear_1), ("gear_2", pair.gear_2))}
     on_supports = case.held is not None
-    said = {"damage": damage_of(case)} if case.damaged else {}
+    extras = {"damage": damage_of(case)} if case.damaged else {}
     if case.forms and case.flanks:
-        said["flanks"] = {name: asdict(flank) for name, flank in case.flanks.items() if flank}
+        extras["flanks"] = {name: asdict(flank) for name, flank in case.flanks.items() if flank}
     if case.misalignment is not None:
-        said["misalignment"] = asdict(case.misalignment)
+        extras["misalignment"] = asdict(case.misalignment)
     if on_supports:
-        said["supports"] = {name: asdict(held) for name, held in case.supports.items() if held}
+        extras["supports"] = {name: asdict(held) for name, held in case.supports.items() if held}
     return {
         "method": method,
         "width_mm": min(pair.gear_1.b, pair.gear_2.b),
@@ -31,7 +31,7 @@ def provenance(case, method, options):
         "stiffness": "secant F / (loaded - unloaded transmission error), along the line of action, "
         + ("hubs on supports" if on_supports else "bores held"),
         **options,
-        **said,
+        **extras,
         "versions": versions(),
     }
 
@@ -44,7 +44,7 @@ def versions():
 def damage_of(case):
     """Cracks and pits of pinion and wheel as tables, numbered by pair."""
     return {
-        name: [asdict(replace(d, tooth=sense * d.tooth)) for found in (case.cracks, case.pits) for d in found[i]]
+        name: [asdict(replace(hurt, tooth=sense * hurt.tooth)) for damages in (case.cracks, case.pits) for hurt in damages[i]]
         for i, (name, sense) in enumerate(SIDES)
     }
 

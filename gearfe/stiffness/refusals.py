@@ -23,11 +23,11 @@ def refuses(row, case, how):
     memory.
     """
     method = f"method = {row.name!r}"
-    of_case = (told for group in (_teeth, _damage, _flanks) for told in group(row, case, method))
-    for told in chain(of_case, _options(row, how, method)):
-        raise ValueError(told)
+    of_case = (refusal for group in (_teeth, _damage, _flanks) for refusal in group(row, case, method))
+    for refusal in chain(of_case, _options(row, how, method)):
+        raise ValueError(refusal)
     if row.cracks != "any":
-        check_through([crack for own in case.cracks for crack in own], method)
+        check_through([crack for cracks in case.cracks for crack in cracks], method)
     check_teeth(how.teeth, max(case.pair.gear_1.z, case.pair.gear_2.z))
     _check_variants(row, case, how, method)
     check_integral(case, row.name)
@@ -59,7 +59,7 @@ def _damage(row, case, method):
     if any(case.cracks) and not row.cracks:
         yield f"cracks with {method}, which has none: use {having('cracks')}"
     if any(case.pits) and not row.pits:
-        nouns = next(one for own in case.pits for one in own).nouns[1]
+        nouns = next(pit for pits in case.pits for pit in pits).nouns[1]
         yield f"{nouns} with {method}, a transverse section: use {having('pits')}"
 
 
@@ -74,7 +74,7 @@ def _flanks(row, case, method):
 
 
 def _options(row, how, method):
-    """Options that a method has not: none is ignored in silence."""
+    """Options that the method does not have: refused, not ignored."""
     if how.teeth is not None and not row.teeth:
         yield f"teeth = {how.teeth} with {method}: only {having('teeth')!r} can leave teeth out"
     if how.variants and not row.variants:

@@ -19,7 +19,7 @@ from .own_flexibility import flexibility_of
 from .provenance import provenance
 from .supported import yielding
 
-# of k: what the section's contact was off the pressed whole outlines where no mesh is to blame, in nine of ten phases
+# error of the section's contact against pressed whole outlines where no mesh is to blame, as a part of k, in nine of ten phases
 MODEL = 1e-3
 
 
@@ -27,9 +27,9 @@ def sum_curves(row, case, how, phase):
     """Curves of a plain sum of tooth pairs, one for each load."""
     variants = how.variants or {}
     solve, details = plain_sum(case, phase, row.load(), **variants)
-    said = variants | {"face": case.face or "spur", "groove": case.groove}
-    said |= {"outside": [asdict(place) for place in details["outside"]]}
-    meta = provenance(case, row.name, said)
+    options = variants | {"face": case.face or "spur", "groove": case.groove}
+    options |= {"outside": [asdict(place) for place in details["outside"]]}
+    meta = provenance(case, row.name, options)
     return [curve(case, phase, force, yielding(solve, case), meta) for force in case.forces]
 
 
@@ -46,14 +46,14 @@ def section_curves(row, case, how, phase):
 
 
 def section_solver(row, case, how, phase, hats=1.0, **coarser):
-    """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.pair_contact.Solved`), and what `meta` says of it.
+    """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.pair_contact.Solved`), and its entries of `meta`.
 
     At phases ``(n,)``; hats at corners are `hats` times as long as those of the method. `coarser` are ``refine`` and ``order`` of
     an estimate, instead of those of `how`.
     """
     started = time.perf_counter()
-    own, pair, numeric = row.own, case.pair, _numeric(row, how) | coarser
-    extended = how.extended and (own or row).extended
+    model, pair, numeric = row.own, case.pair, _numeric(row, how) | coarser
+    extended = how.extended and (model or row).extended
     neighbours = math.ceil(pair.eps_alpha) + sum(near_pitches(pair)) - 2
 
     def named(row, gear, material, cracks=()):
@@ -62,14 +62,14 @@ def section_solver(row, case, how, phase, hats=1.0, **coarser):
         return row.load()(gear, material, *((cracks,) if row.cracks else ()), **options)
 
     gears = list(zip((pair.gear_1, pair.gear_2), case.materials, case.cracks, strict=True))
-    if own is None:
+    if model is None:
         flexible = [named(row, *gear) for gear in steps(gears)]
     else:
-        flexible = [flexibility_of(own, i, gear, material, how.state, named) for i, (gear, material, _) in enumerate(gears)]
+        flexible = [flexibility_of(model, i, gear, material, how.state, named) for i, (gear, material, _) in enumerate(gears)]
     if hats != 1:
         flexible = [replace(body, fine=hats * body.fine) for body in flexible]
     contact = PairContact(pair, case.materials, flexible, phase, extended=extended, state=how.state, flanks=case.forms)
-    details = {"state": how.state, "extended": extended, **numeric, **(own.told() if own else {})}
+    details = {"state": how.state, "extended": extended, **numeric, **(model.told() if model else {})}
     if row.converged:
         details |= {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
     return yielding(contact.solve, case), details
@@ -120,21 +120,21 @@ def with_error(row, curves, case, how):
     periodic = not (any(case.cracks) or any(form.differs for form in case.forms or ()))
     phase = curves[0].phase
     where = np.append(phase, fixed_phases(phase, periodic))
-    solvers = [section_solver(row, case, how, where, **other)[0] for other in steps(({}, *less, *hats))]
+    solvers = [section_solver(row, case, how, where, **options)[0] for options in steps(({}, *less, *hats))]
     out = []
     width = min(case.pair.gear_1.b, case.pair.gear_2.b)
-    for found in curves:
-        solved = [solve(found.meta["force_N"] / width) for solve in solvers]
-        k, *others = (found.meta["force_N"] / (1e-3 * each.closing) for each in solved)
+    for fine in curves:
+        solved = [solve(fine.meta["force_N"] / width) for solve in solvers]
+        k, *others = (fine.meta["force_N"] / (1e-3 * contact.closing) for contact in solved)
         doubt = estimate(phase, periodic, k, others[: len(less)], others[len(less) :])
-        out.append(replace(found, error=doubt + found.k * (MODEL + solved[0].left_out[: phase.size])))
+        out.append(replace(fine, error=doubt + fine.k * (MODEL + solved[0].left_out[: phase.size])))
     return out
 
 
 def _warn_if_unseen(case, order):
     """Warn if no damaged tooth is in contact at any of the phases."""
     gears = zip((case.pair.gear_1, case.pair.gear_2), SIDES, case.cracks, case.pits, strict=True)
-    if not any(sense * one.tooth % gear.z in order % gear.z for gear, (_, sense), *found in gears for one in sum(found, ())):
+    if not any(sense * hurt.tooth % gear.z in order % gear.z for gear, (_, sense), *kinds in gears for hurt in sum(kinds, ())):
         warnings.warn(
             "no cracked tooth is in contact at these phases: tooth k is at phases from -k; use span='tooth' for tooth 0",
             stacklevel=4,

@@ -108,8 +108,8 @@ class Solve:
 
     def __post_init__(self) -> None:
         """Check what can be said without a case."""
-        own = isinstance(self.method, OwnFlexibility)
-        if not own and not (isinstance(self.method, str) and self.method in METHOD_NAMES):
+        custom = isinstance(self.method, OwnFlexibility)
+        if not custom and not (isinstance(self.method, str) and self.method in METHOD_NAMES):
             raise ValueError(f"method = {self.method!r}, but it must be one of {', '.join(METHOD_NAMES)}, or an OwnFlexibility")
         for name in ("error", "extended"):
             object.__setattr__(self, name, truth(name, getattr(self, name)))
@@ -128,8 +128,10 @@ class Solve:
     def chosen(self, case: Case) -> tuple[Method, str]:
         """The method's row of the table, of ``auto`` that which fits the case, and why it was chosen."""
         if isinstance(self.method, OwnFlexibility):
-            own = self.method
-            row = Method(str(own.name), "a model of one's own", "section", "", "", extended=own.extended, flanks=True, own=own)
+            model = self.method
+            row = Method(
+                str(model.name), "a model of one's own", "section", "", "", extended=model.extended, flanks=True, own=model
+            )
             return row, "asked for"
         if self.method != "auto":
             return METHODS[self.method], "asked for"
@@ -191,7 +193,9 @@ def _curves(row, case, how):
         if how.pose == "mean":
             return of_loads(at)
         alone = [replace(case, force=force) for force in case.forces]
-        return [in_pose(lambda phase, one=one: of_loads(phase, one)[0], at, pair, how.pose, case.forms) for one in alone]
+        return [
+            in_pose(lambda phase, single=single: of_loads(phase, single)[0], at, pair, how.pose, case.forms) for single in alone
+        ]
 
     phase = phase_array(how.phases, how.span, pair, case.overlap(case.runs if row.kind == "solid" else case.face or "spur"))
     if how.span not in LONG:
@@ -260,6 +264,6 @@ def asked(function, pair, force, material, options):
     unknown = sorted(set(options) - {*NAMES, *OPTIONS})
     if unknown:
         raise TypeError(f"{function}() has no argument {unknown[0]!r}; it has {', '.join((*NAMES, *OPTIONS))}")
-    given = {name: value for name, value in options.items() if name in NAMES}
+    of_case = {name: value for name, value in options.items() if name in NAMES}
     how = Solve(**{name: value for name, value in options.items() if name in OPTIONS})
-    return case_of(pair, force, material, **given), how
+    return case_of(pair, force, material, **of_case), how

@@ -48,8 +48,8 @@ def yielding(solve, case):
     yields *= min(pair.gear_1.b, pair.gear_2.b)
 
     def with_supports(line_load):
-        found = solve(line_load)
-        way = np.full(found.closing.shape, yields * line_load)
-        return replace(found, closing=found.closing + way, tangent=1 / (1 / found.tangent + yields), supports=way)
+        rigid = solve(line_load)
+        way = np.full(rigid.closing.shape, yields * line_load)
+        return replace(rigid, closing=rigid.closing + way, tangent=1 / (1 / rigid.tangent + yields), supports=way)
 
     return with_supports

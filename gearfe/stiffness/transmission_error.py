@@ -65,8 +65,8 @@ class TransmissionError:
         """Peak-to-peak and the first harmonics by load, as text [um]."""
         lines = ["   force [N]  peak-to-peak      mean  harmonics 1 to 3 [um]"]
         for force, te, span, parts in zip(self.force, self.te, self.peak_to_peak, self.harmonics(3), strict=True):
-            told = "  ".join(f"{1e6 * part:7.3f}" for part in parts)
-            lines.append(f"{force:12.6g}  {1e6 * span:12.3f}  {1e6 * te.mean():8.3f}  {told}")
+            amplitudes = "  ".join(f"{1e6 * part:7.3f}" for part in parts)
+            lines.append(f"{force:12.6g}  {1e6 * span:12.3f}  {1e6 * te.mean():8.3f}  {amplitudes}")
         return "\n".join([*lines, f"    unloaded  {1e6 * np.ptp(self.unloaded):12.3f}  {1e6 * self.unloaded.mean():8.3f}"])
 
     def plot(self, path: str | Path | None = None, title: str | None = None) -> Any:
@@ -113,8 +113,8 @@ def transmission_error(
     ...     for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2))
     ... }
     >>> for given in (None, flanks):
-    ...     found = gf.transmission_error(pair, [1000.0, 3000.0], steel, flanks=given, phases=32)
-    ...     print([round(1e6 * float(span), 1) for span in found.peak_to_peak])
+    ...     error = gf.transmission_error(pair, [1000.0, 3000.0], steel, flanks=given, phases=32)
+    ...     print([round(1e6 * float(span), 1) for span in error.peak_to_peak])
     [1.3, 3.6]
     [2.6, 0.4]
     """

@@ -14,8 +14,8 @@ MOST = 2e7  # values of forces by phase and tooth pair that a curve may hold: 16
 
 def cycles_in(pair, span):
     """Mesh cycles of a `span`: a revolution of the pinion, or until the same teeth meet again."""
-    one, two = pair.gear_1.z, pair.gear_2.z
-    return {"revolution": one, "hunting": math.lcm(one, two)}.get(span, 1)
+    z_1, z_2 = pair.gear_1.z, pair.gear_2.z
+    return {"revolution": z_1, "hunting": math.lcm(z_1, z_2)}.get(span, 1)
 
 
 def check_length(pair, span, phases):
@@ -43,12 +43,12 @@ def over_turns(solve, phase, pair, span, differs):
     parts = np.split(phase, cycles_in(pair, span))
     alike = math.lcm(*(gear.z for gear, apart in zip((pair.gear_1, pair.gear_2), differs, strict=True) if apart))
     solved = [solve(part) for part in parts[:alike]]
-    turns = [[_later(one, part, c // alike * alike) for one in solved[c % alike]] for c, part in enumerate(parts)]
+    turns = [[_later(curve, part, c // alike * alike) for curve in solved[c % alike]] for c, part in enumerate(parts)]
     return [joined(curves) for curves in zip(*turns, strict=True)]
 
 
 def _later(curve, phase, cycles):
-    """The same curve so many cycles later: its tooth pairs are those so many behind."""
+    """The same curve a number of mesh `cycles` later; the numbers of its tooth pairs are as many lower."""
     if not cycles:
         return curve
     meta = curve.meta | {name: [at + cycles for at in curve.meta[name]] for name in MARKS if name in curve.meta}

@@ -17,9 +17,9 @@ from .provenance import provenance
 
 # resolutions of the layers for the error estimate of finite elements, against the curve's; the first that carries the patches
 COARSER = (0.7, 0.76, 0.83)
-LESS = 2  # axial degrees less in it
-# of the errors of finite elements in the edge length, at least: layers are regular; the quads of a section are not, and from one
-# resolution to the next those at a hat may stay as they are
+LESS = 2  # axial degrees less in that estimate
+# least order of convergence of finite elements in the edge length: layers are regular; the quads of a section are not, and from
+# one resolution to the next those at a hat may stay as they are
 ORDER = {"layers": 2, "section": 1}
 # P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 where two meshes are compared (layers), 1.25 where the order was seen (of
 # sections on three resolutions: tests/elements/test_section_error.py)
@@ -47,16 +47,18 @@ def solid_curves(row, case, how, phase):
     bodies = _bodies(how) if row.brute else energy_bodies(order, refine=how.refine, cache=how.cache)
     options = {"bodies": bodies, "extended": how.extended, "cache": how.cache}
     with part(row.name, 0.0, 1.0), part("contact", 0.0, 0.6 if how.error else 1.0):
-        found = pair_stiffness3d(replace(case, force=case.forces), phase, error=how.error, **options)
-    own = {"dofs": list(found[0].dofs), "seconds_contact": time.perf_counter() - started}
-    curves = [_curve(one, meta | {"force_N": force} | own, case) for force, one in zip(case.forces, found, strict=True)]
+        contacts = pair_stiffness3d(replace(case, force=case.forces), phase, error=how.error, **options)
+    costs = {"dofs": list(contacts[0].dofs), "seconds_contact": time.perf_counter() - started}
+    curves = [
+        _curve(contact, meta | {"force_N": force} | costs, case) for force, contact in zip(case.forces, contacts, strict=True)
+    ]
     if not how.error:
         return curves
     with part("estimate of the error", 0.6, 1.0):
-        for i, one in enumerate(steps(found)):
-            doubt, ratio = _doubt(replace(case, force=case.forces[i]), phase, one, options, how if row.brute else None)
-            more = {"error_refine": ratio * how.refine} if row.brute else {}
-            curves[i] = replace(curves[i], error=doubt, meta=curves[i].meta | more)
+        for i, contact in enumerate(steps(contacts)):
+            doubt, ratio = _doubt(replace(case, force=case.forces[i]), phase, contact, options, how if row.brute else None)
+            resolution = {"error_refine": ratio * how.refine} if row.brute else {}
+            curves[i] = replace(curves[i], error=doubt, meta=curves[i].meta | resolution)
     return curves
 
 
@@ -69,9 +71,9 @@ def _curve(found, meta, case):
     pressure = np.zeros(found.load.shape)
     for i, cells in enumerate(found.cells):
         for k, order in enumerate(found.order):
-            own = cells.pressure[(cells.order == order) & (cells.load > 0)]
-            flat = own[np.isfinite(own)]
-            pressure[i, k] = flat.max(initial=0.0) if flat.size or not own.size else np.nan
+            of_pair = cells.pressure[(cells.order == order) & (cells.load > 0)]
+            flat = of_pair[np.isfinite(of_pair)]
+            pressure[i, k] = flat.max(initial=0.0) if flat.size or not of_pair.size else np.nan
     used = found.load.max(axis=0) > 0
     return StiffnessCurve(
         phase=found.phase,
@@ -95,19 +97,19 @@ def _doubt(case, phase, found, options, brute):
     healthy = not (case.damaged or any(form.differs for form in case.forms or ()))
     fixed = fixed_phases(phase, healthy)
     further = fixed[np.abs(fixed[:, None] - phase).min(axis=1) > 1e-9]
-    every = np.append(phase, further)
-    more = pair_stiffness3d(case, further, error=True, **options) if further.size else None
+    phases = np.append(phase, further)
+    further_contact = pair_stiffness3d(case, further, error=True, **options) if further.size else None
     ratio, away = 1.0, found.error
-    if more is not None:
-        away = np.append(away, more.error)
+    if further_contact is not None:
+        away = np.append(away, further_contact.error)
     if brute:
-        ratio, coarse = _coarser(case, every, options, brute)
-        k = found.k if more is None else np.append(found.k, more.k)
-        finer = pair_stiffness3d(case, every, **(options | {"bodies": Bodies(partial(_finer_section, brute))})).k
+        ratio, coarse = _coarser(case, phases, options, brute)
+        k = found.k if further_contact is None else np.append(found.k, further_contact.k)
+        finer = pair_stiffness3d(case, phases, **(options | {"bodies": Bodies(partial(_finer_section, brute))})).k
         along, across = ratio ** -ORDER["layers"], FINER ** ORDER["section"]
         lost, lacking = np.abs(coarse - k) / (along - 1), np.abs(finer - k) * across / (across - 1)
         away = away + SAFETY["layers"] * lost + SAFETY["section"] * lacking
-    at_fixed = away[np.abs(fixed[:, None] - every).argmin(axis=1)]
+    at_fixed = away[np.abs(fixed[:, None] - phases).argmin(axis=1)]
     apart = np.abs(phase[:, None] - fixed)
     within = (np.abs((apart + 0.5) % 1 - 0.5) if healthy else apart) <= MEAN + 1e-9
     return np.maximum(away[: phase.size], (within * at_fixed).sum(axis=1) / within.sum(axis=1)), ratio
@@ -119,12 +121,12 @@ def _bodies(how):
 
 
 def _foretold(how, bodies, *, neighbours):
-    """Refuse what does not fit before the first body is solved; tell what all take, the coarser ones of an estimate too."""
+    """RuntimeError if a body does not fit, before the first is solved; tell the cost of all, coarser ones of an estimate too."""
     levels = [{"refine": how.refine}, {"refine": COARSER[0] * how.refine, "section": how.refine, "less": LESS}][: 1 + how.error]
     plans = {}
     for level in levels:
-        for given, held in bodies:
-            plans |= unsolved(*given, cache=how.cache, neighbours=neighbours, **level, **held)
+        for body, held in bodies:
+            plans |= unsolved(*body, cache=how.cache, neighbours=neighbours, **level, **held)
     if how.tell and len(plans) > 1:
         seconds = float(f"{sum(plan.seconds for plan in plans.values()):.2g}")
         how.tell(f"{len(plans)} solves, about {seconds:g} s in all")
@@ -144,5 +146,5 @@ def _coarser(case, phase, options, how):
 
 def _finer_section(how, gear, material, cracks=(), **options):
     """A gear whose section is finer."""
-    found = solved_solid(gear, material, cracks, refine=how.refine, cache=how.cache, tell=how.tell, **options)
-    return finer_section(found, material, cracks, refine=how.refine, cache=how.cache)
+    flexibility = solved_solid(gear, material, cracks, refine=how.refine, cache=how.cache, tell=how.tell, **options)
+    return finer_section(flexibility, material, cracks, refine=how.refine, cache=how.cache)

@@ -22,10 +22,10 @@ from .front_integral import front_intensity
 # edge lengths in modules, see `geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.2, "root": 0.4, "near": 0.7, "far": 2.0, "crack": 0.25}
 LAYER, LAYERS, END_LAYER = 0.5, 12, 0.25  # height of the layers [m_n], least number of them, height at the ends against that
-SHALLOW = 0.25  # in the largest depth, below which a front that runs out has no room for the tubes
+SHALLOW = 0.25  # part of the largest depth below which a front that runs out has no room for the tubes
 LEAST = 0.15, 0.8  # depth and width of a crack [m_n]: edges of its section, one tube to either side
-TUBE = 0.4, 0.5  # radius of the wider tube of the integral [m_n], and at most in the least depth
-TIPS = 1 / 13, 1 / 15, 1 / 11  # edges at the front in that radius, the first that no quad folds by; finer if `refine` > 1
+TUBE = 0.4, 0.5  # radius of the wider tube of the integral [m_n], and the largest part of the least depth that it may be
+TIPS = 1 / 13, 1 / 15, 1 / 11  # edge lengths at the front over that radius, tried until no quad folds; finer if `refine` > 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,8 +113,8 @@ def stress_intensity_along_front(
     length = math.dist(mouth, tip)
     front, ahead, normal = _axes(gear, mouth, tip, z, part)
     tube = _tube(gear, crack, least)
-    one, two, three = front_intensity(mesh.points, mesh.cells, moved.T, material, front, ahead, normal, tube)
-    return FrontIntensity(z, part[0] * length, one, two, three, unknowns)
+    k_1, k_2, k_3 = front_intensity(mesh.points, mesh.cells, moved.T, material, front, ahead, normal, tube)
+    return FrontIntensity(z, part[0] * length, k_1, k_2, k_3, unknowns)
 
 
 def _mesh(gear, crack, refine, **options):
@@ -129,7 +129,7 @@ def _mesh(gear, crack, refine, **options):
 
 
 def _check_room(gear, crack):
-    """ValueError if the crack has no room for the tubes of the integral, or they none beside each other along its front."""
+    """ValueError if the crack is too shallow or too narrow for the tubes of the integral around its front."""
     depth = deepest(crack) * math.dist(*meshed_path(gear, whole(crack)).T)
     low, high = crack.width or (0.0, gear.b)
     if depth < LEAST[0] * gear.m_n or high - low < LEAST[1] * gear.m_n * (1 - 1e-9):
@@ -145,7 +145,10 @@ def _tube(gear, crack, least):
 
 
 def _followed(mesh, crack):
-    """Heights of the layers at which the mesh follows the front, depth there in the deepest with its slope, and the least."""
+    """Layers at which the mesh follows the front: heights ``(n,)`` [mm], depth and its slope ``(2, n)``, and the least depth.
+
+    Depths are parts of the largest depth, slopes per mm.
+    """
     low, high = crack.width or (0.0, mesh.gear.b)
     slack = 1e-9 * mesh.gear.b
     z = mesh.levels[(mesh.levels >= low - slack) & (mesh.levels <= high + slack)]

@@ -121,7 +121,7 @@ def tip_intensity(body, moved, faces):
 
 
 def _ring_radius(mesh, place, faces):
-    """Largest ring that sees a straight crack and no other boundary."""
+    """Radius [mm] of the largest ring around the tip within which the crack is straight and there is no other boundary."""
     on_line = np.abs(place[1, faces[0]]) < 1e-6 * np.abs(place[0, faces[0]]).max()
     straight = np.abs(place[0, faces[0][on_line]]).max()
     rim = np.unique(np.concatenate([mesh.facets[:, edges].ravel() for edges in mesh.boundaries.values()]))

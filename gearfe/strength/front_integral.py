@@ -50,11 +50,11 @@ def front_intensity(points, cells, moved, material, front, ahead, normal, radius
     value, slope = shapes(local)
     total = np.zeros((3, len(front)))
     for start in range(0, used.size, BLOCK):
-        own = cells[:, used[start : start + BLOCK]]
-        grads, size = slopes_at(points[:, own], slope)
-        x = np.einsum("dnm,nq->dmq", points[:, own], value)
-        du = np.einsum("inm,mnjq->ijmq", moved[:, own], grads)
-        dq = np.einsum("knm,mnjq->kjmq", q[:, own], grads)
+        block = cells[:, used[start : start + BLOCK]]
+        grads, size = slopes_at(points[:, block], slope)
+        x = np.einsum("dnm,nq->dmq", points[:, block], value)
+        du = np.einsum("inm,mnjq->ijmq", moved[:, block], grads)
+        dq = np.einsum("knm,mnjq->kjmq", q[:, block], grads)
         _, frame, r, angle = _local(x.reshape(3, -1), *curve)
         turn = frame.reshape(3, 3, *size.shape)  # rows: axes 1, 2, 3
         du = np.einsum("aimq,ijmq,bjmq->abmq", turn, du, turn)
@@ -76,16 +76,16 @@ def _flows(du, r, angle, material):
     body, root = SimpleNamespace(material=material, state="plane strain"), np.sqrt(2 * np.pi * r)
     out = []
     for mode in (1, 2, 3):
-        other, slope = np.zeros(du.shape), np.zeros(du.shape[1:])
+        aux_stress, aux_slope = np.zeros(du.shape), np.zeros(du.shape[1:])
         if mode == 3:
-            slope[2] = -np.sin(angle / 2) / (mu * root)
-            other[0, 2] = other[2, 0] = -np.sin(angle / 2) / root
-            other[1, 2] = other[2, 1] = np.cos(angle / 2) / root
+            aux_slope[2] = -np.sin(angle / 2) / (mu * root)
+            aux_stress[0, 2] = aux_stress[2, 0] = -np.sin(angle / 2) / root
+            aux_stress[1, 2] = aux_stress[2, 1] = np.cos(angle / 2) / root
         else:
-            other[:2, :2], slope[:2] = _singular(mode, r, angle, body)
-            other[2, 2] = material.nu * (other[0, 0] + other[1, 1])
-        flow = np.einsum("ij...,i...->j...", stress, slope) + np.einsum("ij...,i...->j...", other, du[:, 0])
-        flow[0] -= np.einsum("ij...,ij...->...", other, du)
+            aux_stress[:2, :2], aux_slope[:2] = _singular(mode, r, angle, body)
+            aux_stress[2, 2] = material.nu * (aux_stress[0, 0] + aux_stress[1, 1])
+        flow = np.einsum("ij...,i...->j...", stress, aux_slope) + np.einsum("ij...,i...->j...", aux_stress, du[:, 0])
+        flow[0] -= np.einsum("ij...,ij...->...", aux_stress, du)
         out.append(flow)
     return np.array(out)
 
@@ -103,9 +103,9 @@ def _local(points, front, ahead, normal):
     for k, (start, stop) in enumerate(zip(front[:-1], front[1:], strict=True)):
         arm = stop - start
         part = np.clip(arm @ (points - start[:, None]) / (arm @ arm), 0.0, 1.0)
-        found = np.linalg.norm(points - start[:, None] - arm[:, None] * part, axis=0)
-        nearer = found < away
-        away[nearer], place[nearer] = found[nearer], k + part[nearer]
+        distance = np.linalg.norm(points - start[:, None] - arm[:, None] * part, axis=0)
+        nearer = distance < away
+        away[nearer], place[nearer] = distance[nearer], k + part[nearer]
     low = np.minimum(place.astype(int), len(front) - 2)
     part = place - low
 

@@ -72,8 +72,8 @@ def root_stress_of_contact(
         material = pair.materials[gear == "wheel"] if material is None else material
         pair = pair.pair
     if not isinstance(pair, GearPair) or not isinstance(contact, Contact3D):
-        given = f"pair of type {type(pair).__name__}, contact of type {type(contact).__name__}"
-        raise ValueError(f"{given}: give a GearPair, and what gearfe.contact_pattern gives for it")
+        types = f"pair of type {type(pair).__name__}, contact of type {type(contact).__name__}"
+        raise ValueError(f"{types}: give a GearPair, and what gearfe.contact_pattern gives for it")
     check_one(pair.gear_1, material, refine)
     if gear not in ("pinion", "wheel"):
         raise ValueError(f"gear = {gear!r}, but it must be 'pinion' or 'wheel'")
@@ -82,18 +82,18 @@ def root_stress_of_contact(
     cells = contact.cells[index]
     if (cells.half != 0).any():
         raise ValueError("a herringbone pair: root stress is that of one body; give the contact of one half as a helical pair")
-    own = np.flatnonzero((cells.order == order) & (cells.load > 0))
-    if not own.size:
+    loaded = np.flatnonzero((cells.order == order) & (cells.load > 0))
+    if not loaded.size:
         raise ValueError(
             f"order = {order}: this tooth pair carries nothing at that phase; {sorted(set(cells.order.tolist()))} may"
         )
     number = 0 if gear == "pinion" else 1
     body, offset = seen_gears(pair, "helical", 0.0)[number]
-    own = own[np.argsort(cells.depth[own])]
-    z, rolls = cells.depth[own] + offset, (cells.roll_1, cells.roll_2)[number][own]
+    loaded = loaded[np.argsort(cells.depth[loaded])]
+    z, rolls = cells.depth[loaded] + offset, (cells.roll_1, cells.roll_2)[number][loaded]
     _check_own(body, z, rolls)
-    load = _along(z, cells.width[own], cells.load[own], body.b)
-    slope = np.polyfit(z, rolls, 1, w=cells.load[own]) if own.size > 1 else (0.0, rolls[0])
+    load = _along(z, cells.width[loaded], cells.load[loaded], body.b)
+    slope = np.polyfit(z, rolls, 1, w=cells.load[loaded]) if loaded.size > 1 else (0.0, rolls[0])
     spread = check_spread(body, half_width)
     return stress_under_line(body, lambda at: np.polyval(slope, at), load, material, spread=spread, refine=refine)
 
@@ -112,8 +112,8 @@ def _check_own(gear, z, rolls):
 def _along(z, width, load, b):
     """Load per width at heights as a function, from cells: straight from middle to middle, 0 beyond, with the cells' sum."""
     ends = np.concatenate([[z[0] - width[0] / 2], z, [z[-1] + width[-1] / 2]])
-    each = load / width
-    each = np.concatenate([each[:1], each, each[-1:]])
+    per_width = load / width
+    per_width = np.concatenate([per_width[:1], per_width, per_width[-1:]])
     at = np.linspace(0.0, b, SAMPLES)
-    scale = load.sum() / np.trapezoid(np.interp(at, ends, each, left=0.0, right=0.0), at)
-    return lambda place: scale * np.interp(place, ends, each, left=0.0, right=0.0)
+    scale = load.sum() / np.trapezoid(np.interp(at, ends, per_width, left=0.0, right=0.0), at)
+    return lambda place: scale * np.interp(place, ends, per_width, left=0.0, right=0.0)

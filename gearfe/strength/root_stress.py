@@ -128,13 +128,13 @@ def _fillet(mesh: Solid):
     radius, angle = np.hypot(x, y), np.arctan2(x, y)
     low, high = sorted((gear.r_f, gear.r_form))
     slack = 1e-6 * gear.m_n
-    own = (radius > low - slack) & (radius < high + slack) & (angle > 0) & (angle < math.pi / gear.z)
-    a, b = ends[:, outer][:, own]
+    on_fillet = (radius > low - slack) & (radius < high + slack) & (angle > 0) & (angle < math.pi / gear.z)
+    a, b = ends[:, outer][:, on_fillet]
     first = np.hypot(*section.points[:, a]) * gear.outward
     last = np.hypot(*section.points[:, b]) * gear.outward
     same, turned = np.isclose(first, last, atol=0), np.arctan2(*section.points[:, a]) > np.arctan2(*section.points[:, b])
     flip = np.where(same, turned, first < last)
-    edges = np.array([np.where(flip, b, a), middles[outer][own], np.where(flip, a, b)])
+    edges = np.array([np.where(flip, b, a), middles[outer][on_fillet], np.where(flip, a, b)])
     return edges[:, np.argsort(np.arctan2(*section.points[:, edges[1]]))]
 
 
@@ -143,7 +143,7 @@ def _along(mesh: Solid, moved, material, unknowns):
     edges, levels = _fillet(mesh), mesh.levels
     count, corners = mesh.section.points.shape[1], mesh.section.corners
     a, m, b = edges
-    found, heights, places = [], [], []
+    peaks, heights, places = [], [], []
     for k in range(levels.size - 1):
         low, high, half = k * count, (k + 1) * count, levels.size * count + k * corners
         nodes = np.array([a + low, b + low, b + high, a + high, m + low, b + half, m + high, a + half])
@@ -152,9 +152,9 @@ def _along(mesh: Solid, moved, material, unknowns):
             heights.append(levels[k] + (1 + y) / 2 * (levels[k + 1] - levels[k]))
             along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(place, axis=1), axis=0))])
             top = int(stress.argmax())
-            found.append(_peak(along, stress) if 0 < top < stress.size - 1 else stress[top])
+            peaks.append(_peak(along, stress) if 0 < top < stress.size - 1 else stress[top])
             places.append(float(np.hypot(*place[:2, top])))
-    return RootStress(np.array(heights), np.array(found), np.array(places), unknowns)
+    return RootStress(np.array(heights), np.array(peaks), np.array(places), unknowns)
 
 
 def _surface_stress(points, moved, y, material):
@@ -170,7 +170,7 @@ def _surface_stress(points, moved, y, material):
     first = tangent[0] / np.linalg.norm(tangent[0], axis=0)
     second = tangent[1] - (first * tangent[1]).sum(axis=0) * first
     second /= np.linalg.norm(second, axis=0)
-    frame = np.array([[(own * one).sum(axis=0) for one in tangent] for own in (first, second)]).transpose(2, 0, 1)
+    frame = np.array([[(axis * vector).sum(axis=0) for vector in tangent] for axis in (first, second)]).transpose(2, 0, 1)
     strain = np.array([[(t * u).sum(axis=0) for u in change] for t in tangent]).transpose(2, 0, 1)
     inverse = np.linalg.inv(frame)
     strain = inverse.transpose(0, 2, 1) @ ((strain + strain.transpose(0, 2, 1)) / 2) @ inverse

@@ -81,21 +81,21 @@ def stressed_gears(case, phase=0.0, refine=1.0):
     if any(case.pits):
         raise ValueError(f"{why_wide([*case.pits[0], *case.pits[1]])}: a transverse section cannot show them")
     curve = solve(replace(case, supports=None), Solve("ritz", [phase]))  # supports of a section share no load
-    found = contacts(pair, [phase])
+    candidates = contacts(pair, [phase])
     forces = dict(zip(curve.order.tolist(), curve.force[0] / curve.meta["width_mm"], strict=True))
-    carrying = [(i, k) for i, k in enumerate(found.order.tolist()) if forces.get(k, 0.0) > 0]
-    nominal = found.nominal[0, carrying[0][0]] - carrying[0][1] * pair.p_bt
+    carrying = [(i, k) for i, k in enumerate(candidates.order.tolist()) if forces.get(k, 0.0) > 0]
+    nominal = candidates.nominal[0, carrying[0][0]] - carrying[0][1] * pair.p_bt
     modulus = contact_modulus(materials)
     out = []
-    rolls = found.roll_1[0], found.roll_2[0]
+    rolls = candidates.roll_1[0], candidates.roll_2[0]
     mirrors, centres = (1, pair.outward), (0.0, pair.centre_2)
     gears = (pair.gear_1, pair.gear_2), materials, case.cracks, rolls, pair.turn(nominal), centres, mirrors, (1, -1)
-    for gear, material, own, roll, turn, centre, mirror, ahead in steps(zip(*gears, strict=True)):
+    for gear, material, cracks, roll, turn, centre, mirror, ahead in steps(zip(*gears, strict=True)):
         loads = {}
         for i, k in carrying:
-            radius = pair.relative_radius(found.roll_1[0, i], found.roll_2[0, i])
+            radius = pair.relative_radius(candidates.roll_1[0, i], candidates.roll_2[0, i])
             loads[ahead * k] = (roll[i], forces[k], float(half_width(forces[k], radius, modulus)))
-        mesh, moved, stress = _loaded_gear(gear, material, loads, refine, own)
+        mesh, moved, stress = _loaded_gear(gear, material, loads, refine, cracks)
         out.append(_placed(mesh, moved.reshape(-1, 2).T, stress, material, turn, centre, mirror))
     return out
 

@@ -76,14 +76,14 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, size
     order = (1, -1)[side] * tooth
     with part("contact", 0.0, 0.2):
         contact = contact_of(case, phases, order, extended=False)
-    lines = [_lines(pair, found, side, tooth, half) for found in contact.cells]
+    lines = [_lines(pair, of_phase, side, tooth, half) for of_phase in contact.cells]
     spread *= gear.m_n
     strips = () if strip is None else _strips(gear, lines, strip * gear.m_n / refine, spread)
     with part("mesh", 0.2, 0.5):
         sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes, strips=strips)
     nodes, cells, number = second_order(sector.points, sector.cells)
     kept = cells[:, sector.plug < 0]
-    loads = np.column_stack([_pressure(sector, nodes, number, found, spread) for found in lines])
+    loads = np.column_stack([_pressure(sector, nodes, number, of_phase, spread) for of_phase in lines])
     held = nodes_of(np.hstack([sector.faces["held"], sector.faces["sides"]]), number)
     with part("stress", 0.5, 1.0):
         moved, unknowns = _moved(nodes, kept, materials[side], held, loads)
@@ -94,7 +94,7 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, size
         halves = 2 if len(own_pits) < len(pits[side]) else 1  # the same pits in the other half do as much
         extra = halves * work / (case.forces[0] * contact.approach)
     moved = moved.reshape(-1, 3, len(lines)).transpose(2, 1, 0)
-    load = np.array([sum(one[3].sum() for one in found.get(0, ())) for found in lines])
+    load = np.array([sum(one[3].sum() for one in of_phase.get(0, ())) for of_phase in lines])
     stress = np.array([nodal_stress(nodes, kept, one, materials[side]) for one in moved])
     return Pressed(sector, nodes, kept, contact, ("pinion", "wheel")[side], load, moved, stress, extra, unknowns)
 
@@ -102,14 +102,14 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, size
 def tooth_field(pressed, phase=0):
     """`gearfe.stress.fields.Field` of the gear with holes at one of its phases, without the nodes inside of the pits."""
     sector = pressed.sector
-    there, cells = np.unique(pressed.cells, return_inverse=True)
+    used, cells = np.unique(pressed.cells, return_inverse=True)
     cells = cells.reshape(pressed.cells.shape)
     place = np.full(pressed.nodes.shape[1], -1)
-    place[there] = np.arange(there.size)
-    points, moved = pressed.nodes[:, there], pressed.moved[phase][:, there]
+    place[used] = np.arange(used.size)
+    points, moved = pressed.nodes[:, used], pressed.moved[phase][:, used]
     body, tooth = (place[sector.faces.get(f"crack {name}", np.zeros((3, 0), dtype=int))] for name in ("body", "tooth"))
     opening = np.linalg.norm(moved[:, tooth] - moved[:, body], axis=0).max(initial=0.0)
-    made = points, "tetra10", cells, moved, pressed.stress[phase][:, there], _edges(points, cells)
+    made = points, "tetra10", cells, moved, pressed.stress[phase][:, used], _edges(points, cells)
     field = Field(*made, 0.0, float(opening))
     return replace(field, root=float(field.mises[place[sector.faces["fillets 0"]]].max()))
 
@@ -132,7 +132,7 @@ def _edges(points, cells):
 
 
 def _own(pair, side, face, groove, pits):
-    """The gear as it is drawn, the half of it that is (0 or 1), and its pits there; half 1 is seen in the mirror."""
+    """The gear as it is drawn, which half of it that is (0 or 1), and its pits there; half 1 is drawn as its mirror image."""
     gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
     if face != "herringbone":
         return replace(gear, beta=sense * pair.gear_1.beta), 0, pits
@@ -164,37 +164,37 @@ def contact_of(case, phases, order, *, extended=True):
     check_integral(case, "ritz3d")
     given = phases is not None
     at = phases if given else -order + (case.pair.eps_alpha + case.overlap()) * (np.arange(16) + 0.5) / 16
-    found = pair_stiffness3d(case, at, extended=extended)
+    contact = pair_stiffness3d(case, at, extended=extended)
     if given:
-        return found
-    carried = found.load[:, found.order == order].sum(axis=1)
+        return contact
+    carried = contact.load[:, contact.order == order].sum(axis=1)
     alike = np.flatnonzero(carried > (1 - 1e-9) * carried.max())  # a pair that is alone carries the same at several phases
     best = int(alike[alike.size // 2])
-    numbers = {name: getattr(found, name)[[best]] for name in ("phase", "k", "approach", "load", "unloaded")}
-    return replace(found, cells=(found.cells[best],), **numbers)
+    numbers = {name: getattr(contact, name)[[best]] for name in ("phase", "k", "approach", "load", "unloaded")}
+    return replace(contact, cells=(contact.cells[best],), **numbers)
 
 
 def _lines(pair, cells, side, tooth, half):
-    """Contact lines by tooth of the sector: lists of (z, width, roll, load)."""
+    """Contact lines by tooth of the sector: lists of (z [mm], width [mm], roll length [mm], load [N]) of their cells."""
     gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
     offset = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
     out = {}
     for order in np.unique(cells.order):
-        own = np.flatnonzero((cells.order == order) & (cells.half == half))
-        z = cells.z[own] + offset
+        line = np.flatnonzero((cells.order == order) & (cells.half == half))
+        z = cells.z[line] + offset
         z = gear.b - z if half else z
-        own, z = own[np.argsort(z)], np.sort(z)
+        line, z = line[np.argsort(z)], np.sort(z)
         place = (sense * int(order) - tooth + gear.z // 2) % gear.z - gear.z // 2
-        roll = (cells.roll_1, cells.roll_2)[side][own]
-        out.setdefault(place, []).append((z, cells.width[own], roll, cells.load[own]))
+        roll = (cells.roll_1, cells.roll_2)[side][line]
+        out.setdefault(place, []).append((z, cells.width[line], roll, cells.load[line]))
     return out
 
 
 def _strips(gear, lines, edge, spread):
     """Loaded contact lines of tooth 0 in the frame that turns with the helix, for a mesh with edges of a length [mm] there."""
     out = []
-    for found in lines:
-        for z, _, roll, load in found.get(0, ()):
+    for of_phase in lines:
+        for z, _, roll, load in of_phase.get(0, ()):
             if (load > 0).sum() > 1:
                 radius, angle = flank(gear, roll[load > 0])
                 out.append((np.array([*cartesian(radius, angle), z[load > 0]]), 1.5 * spread, edge))
@@ -203,13 +203,13 @@ def _strips(gear, lines, edge, spread):
 
 def _moved(nodes, cells, material, held, loads):
     """Displacements ``(3 nodes, phases)`` [mm], nan where there is no cell, and the number of unknowns."""
-    there = np.unique(cells)
-    free = np.setdiff1d(there, held)
-    made = plan(3 * free.size)
+    used = np.unique(cells)
+    free = np.setdiff1d(used, held)
+    cost = plan(3 * free.size)
     rows = (3 * free[:, None] + np.arange(3)).ravel()
-    solve = factor(assemble(nodes, cells, material, free, tet_stiffness), made)
+    solve = factor(assemble(nodes, cells, material, free, tet_stiffness), cost)
     moved = np.full(loads.shape, np.nan)
-    moved[(3 * there[:, None] + np.arange(3)).ravel()] = 0.0
+    moved[(3 * used[:, None] + np.arange(3)).ravel()] = 0.0
     moved[rows] = solve(loads[rows])
     if not np.isfinite(moved[rows]).all():
         raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
@@ -227,7 +227,7 @@ def _pressure(sector, nodes, number, lines, spread):
     force = np.zeros((nodes.shape[1], 3))
     bary = _thirds()
     shape = np.vstack([bary * (2 * bary - 1), 4 * bary[[0, 1, 0]] * bary[[1, 2, 2]]])
-    for tooth, found in lines.items():
+    for tooth, on_tooth in lines.items():
         faces = sector.faces.get(f"flank {tooth}")
         if faces is None or not faces.size:
             continue
@@ -237,7 +237,7 @@ def _pressure(sector, nodes, number, lines, spread):
         area = np.linalg.norm(np.cross((nodes[:, b] - nodes[:, a]).T, (nodes[:, c] - nodes[:, a]).T), axis=1)
         roll = np.sqrt(np.maximum(np.hypot(x, y) ** 2 - gear.r_b**2, 0.0))
         normal = _normal(gear, roll, 2 * math.pi * tooth / gear.z + rate * z)
-        for heights, width, rolls, load in found:
+        for heights, width, rolls, load in on_tooth:
             if load.sum() <= 0:
                 continue
             cell = np.clip(np.searchsorted(heights + width / 2, z), 0, heights.size - 1)

@@ -116,11 +116,11 @@ def _at_crack(points):
 def _surface(part):
     """Outer faces by their corners, without those of pits."""
     corners = np.array(FACES[len(part.cells)])
-    every = part.cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1)
-    pits = part.faces.get("pits", every[:, :0])
-    both = np.sort(np.hstack([every, pits]), axis=0)  # a pit's face is there twice then
-    _, first, count = np.unique(both, axis=1, return_index=True, return_counts=True)
-    return _faces(part, every[:, first[count == 1]])
+    sides = part.cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1)
+    pits = part.faces.get("pits", sides[:, :0])
+    doubled = np.sort(np.hstack([sides, pits]), axis=0)  # a pit's face is there twice then
+    _, first, count = np.unique(doubled, axis=1, return_index=True, return_counts=True)
+    return _faces(part, sides[:, first[count == 1]])
 
 
 def _faces(part, faces):

@@ -102,16 +102,16 @@ def render_contact(case, path, *, phase=None, title=""):
     (the largest of Hertz's) [MPa], and whether a ``corner`` touches: at a tip corner the pressure is unbounded, and the largest
     is that of the rest; nan if nothing else touches.
     """
-    found = contact_of(case, None if phase is None else [phase], case.first_tooth or 0)
-    plot_contact(case.pair, found, path=path, pits=case.pits[0], title=title)
-    pressure = found.cells[0].pressure
+    contact = contact_of(case, None if phase is None else [phase], case.first_tooth or 0)
+    plot_contact(case.pair, contact, path=path, pits=case.pits[0], title=title)
+    pressure = contact.cells[0].pressure
     corner = np.isnan(pressure)
     largest = math.nan if corner.all() else float(pressure[~corner].max())
-    return {"phase": float(found.phase[0]), "k": float(found.k[0]), "pressure": largest, "corner": bool(corner.any())}
+    return {"phase": float(contact.phase[0]), "k": float(contact.k[0]), "pressure": largest, "corner": bool(corner.any())}
 
 
 def _check_size(wide, refine):
-    """Refuse a picture whose solve does not fit into memory, before it is meshed; a tooth in 3-D by a low guess."""
+    """Refuse a picture whose solve does not fit into memory, before it is meshed; of a tooth in 3-D by a low estimate."""
     if not wide:
         check_section(refine)
     elif refine > 1:
@@ -126,10 +126,15 @@ def _gears(case, phase, refine):
 
 
 def _tooth(case, phase, refine):
-    made = pressed_tooth(case, phases=None if phase is None else [phase], refine=refine, sizes=FINE, strip=STRIP)
-    field = tooth_field(made)
-    told = {"phase": float(made.contact.phase[0]), "load": float(made.load[0]), "where": "on this tooth", "sector": made.sector}
-    return [field], told | {"enlarged": enlarged(field.opening, made.sector.gear.m_n)}
+    pressed = pressed_tooth(case, phases=None if phase is None else [phase], refine=refine, sizes=FINE, strip=STRIP)
+    field = tooth_field(pressed)
+    told = {
+        "phase": float(pressed.contact.phase[0]),
+        "load": float(pressed.load[0]),
+        "where": "on this tooth",
+        "sector": pressed.sector,
+    }
+    return [field], told | {"enlarged": enlarged(field.opening, pressed.sector.gear.m_n)}
 
 
 def enlarged(opening, module):
@@ -160,11 +165,11 @@ def _picture(path, size, text, top):
         place = {"vertical": True, "position_x": 0.89, "position_y": 0.2, "width": 0.06, "height": 0.6, "n_labels": 6}
         plotter.add_scalar_bar(title="MPa", mapper=mapper, **fonts, **place)
         plotter.add_text(f"von Mises stress\n{text}", position=(0.012, 0.985), viewport=True, color="black", font_size=1)
-        words = plotter.actors[next(reversed(plotter.actors))].prop
-        words.SetFontSize(round(28 * scale))
-        words.SetVerticalJustificationToTop()
-        words.SetBackgroundColor(1.0, 1.0, 1.0)
-        words.SetBackgroundOpacity(0.8)
+        text_style = plotter.actors[next(reversed(plotter.actors))].prop
+        text_style.SetFontSize(round(28 * scale))
+        text_style.SetVerticalJustificationToTop()
+        text_style.SetBackgroundColor(1.0, 1.0, 1.0)
+        text_style.SetBackgroundOpacity(0.8)
         plotter.enable_anti_aliasing("ssaa")
         with written(path) as name:
             plotter.screenshot(name)
@@ -212,10 +217,10 @@ def _length_scale(plotter, size, up, view):
     plotter.add_mesh(sheet, color="white", lighting=False)
     plotter.add_mesh(pyvista.Line(start, start + length * right), color="black", line_width=6, lighting=False)
     plotter.add_text(f"{length:g} mm", position=(0.028, 0.045), viewport=True, color="black", font_size=1)
-    words = plotter.actors[next(reversed(plotter.actors))].prop
-    words.SetFontSize(round(24 * (size[0] / 1400) ** 0.7))
-    words.SetBackgroundColor(1.0, 1.0, 1.0)
-    words.SetBackgroundOpacity(0.8)
+    text_style = plotter.actors[next(reversed(plotter.actors))].prop
+    text_style.SetFontSize(round(24 * (size[0] / 1400) ** 0.7))
+    text_style.SetBackgroundColor(1.0, 1.0, 1.0)
+    text_style.SetBackgroundOpacity(0.8)
 
 
 def _draw_gears(pair, fields, told, path, size):

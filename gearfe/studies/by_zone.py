@@ -96,8 +96,8 @@ class Comparison:
 
     def losses(self) -> dict[str, dict[str, float]]:
         """What damage takes of the stiffness [-] by method and zone, and at the phase where it takes most; empty if healthy."""
-        two = {name: (healthy, self.curves[name]) for name, healthy in self.healthy.items()}
-        return {name: loss(*(within(curve, self.cycle) for curve in curves)) for name, curves in two.items()}
+        compared = {name: (healthy, self.curves[name]) for name, healthy in self.healthy.items()}
+        return {name: loss(*(within(curve, self.cycle) for curve in curves)) for name, curves in compared.items()}
 
     @property
     def headline(self) -> str:
@@ -120,7 +120,7 @@ class Comparison:
     def reasons(self) -> dict[str, str]:
         """Methods without a curve by why they have none: names with commas."""
         whys = dict.fromkeys(self.left_out.values())
-        return {why: ", ".join(name for name, own in self.left_out.items() if own == why) for why in whys}
+        return {why: ", ".join(name for name, reason in self.left_out.items() if reason == why) for why in whys}
 
     def table(self) -> str:
         """Markdown table: per zone the reference [N/um] and every formulation with its error; last row the seconds."""
@@ -143,15 +143,17 @@ class Comparison:
         """
         if not self.healthy:
             return ""
-        found, name = self.losses(), next(iter(self.healthy))
+        losses, name = self.losses(), next(iter(self.healthy))
         zones = [zone for zone, *_ in self.rows()]
-        before, after = (within(one[name], self.cycle).zones() for one in (self.healthy, self.curves))
+        before, after = (within(by_name[name], self.cycle).zones() for by_name in (self.healthy, self.curves))
         head = ["zone", f"healthy {name} [N/um]", f"{self.kind} {name} [N/um]", f"loss by {name}"]
-        lines = [table_row([*head, *(f"by {other}" for other in list(found)[1:])]), "|---" * (3 + len(found)) + "|"]
-        for zone in (*zones, *(set(found[name]) - set(zones))):
-            two = [in_newton_per_um(one[zone]) if zone in one else "" for one in (before, after)]
-            others = [f"{100 * found[other][zone]:.1f} %" for other in list(found)[1:]]
-            lines.append(table_row([zone, *two, percent_with_doubt(found[name][zone], self.doubt.get(zone, math.nan)), *others]))
+        lines = [table_row([*head, *(f"by {other}" for other in list(losses)[1:])]), "|---" * (3 + len(losses)) + "|"]
+        for zone in (*zones, *(set(losses[name]) - set(zones))):
+            cells = [in_newton_per_um(by_name[zone]) if zone in by_name else "" for by_name in (before, after)]
+            others = [f"{100 * losses[other][zone]:.1f} %" for other in list(losses)[1:]]
+            lines.append(
+                table_row([zone, *cells, percent_with_doubt(losses[name][zone], self.doubt.get(zone, math.nan)), *others])
+            )
         return "\n".join(lines)
 
 
@@ -206,7 +208,7 @@ def compare(
     """
     chosen, pair_name = _chosen(scene, pair, case, given)
     methods, left_out = _methods(chosen, reference)
-    own = own_models(models, taken=(REFERENCE, *FORMULATIONS))
+    named = own_models(models, taken=(REFERENCE, *FORMULATIONS))
     cycle = None
     if chosen.damaged and np.ndim(phases) == 0:
         count = check_count(phases)
@@ -237,12 +239,12 @@ def compare(
             left_out[method] = str(error)
             continue
         seconds[method] = time.perf_counter() - started
-    for name, model in own.items():
+    for name, model in named.items():
         started = time.perf_counter()
         curves[name] = own_curve(name, model, chosen.pair, curves[methods[0]])
         seconds[name] = time.perf_counter() - started
-    said = (told_damage(chosen.pair, chosen.damage), kind_of(chosen.damage)) if chosen.damaged else ("", "")
-    return Comparison(pair_name, curves, seconds, healthy, doubt, *said, left_out, cycle)
+    damage_and_kind = (told_damage(chosen.pair, chosen.damage), kind_of(chosen.damage)) if chosen.damaged else ("", "")
+    return Comparison(pair_name, curves, seconds, healthy, doubt, *damage_and_kind, left_out, cycle)
 
 
 def _healthy(chosen, curves, reference, cycle):
@@ -253,8 +255,8 @@ def _healthy(chosen, curves, reference, cycle):
         how = replace(reference, method=method, variants=variants)
         how = replace(how, error=method == "fe3d") if method == reference.method else replace(how, refine=1.0)
         out[method] = solve(known, how)
-    two = (within(one[reference.method], cycle) for one in (out, curves))
-    return out, loss_errors(*two, chosen, reference if cycle is None else replace(reference, phases=cycle))
+    beside = (within(by_method[reference.method], cycle) for by_method in (out, curves))
+    return out, loss_errors(*beside, chosen, reference if cycle is None else replace(reference, phases=cycle))
 
 
 def _chosen(scene, pair, case, given):
@@ -283,10 +285,10 @@ def _own(pair, given):
         raise ValueError(
             "a pair of your own needs its load and material: force= [N] or torque= [N m], and material=Material(...)"
         )
-    made = case_of(pair, **given)
-    if len(made.forces) > 1:
+    case = case_of(pair, **given)
+    if len(case.forces) > 1:
         raise ValueError(f"force = {load[0]!r}, torque = {load[1]!r}, but one load is compared at a time")
-    return replace(made, force=made.forces[0]), f"{made.pair.gear_1.z}/{made.pair.gear_2.z}"
+    return replace(case, force=case.forces[0]), f"{case.pair.gear_1.z}/{case.pair.gear_2.z}"
 
 
 def _methods(case, reference):

@@ -60,8 +60,8 @@ class CaseTable:
 
     def errors(self, pair, case, method):
         """Relative errors of a method against the reference: of the mean, of the maximum, and the largest at one phase."""
-        truth, found = (self.curves[pair, case, name] for name in (self.reference, method))
-        return found.mean / truth.mean - 1, found.largest / truth.largest - 1, float(np.abs(found.k / truth.k - 1).max())
+        truth, curve = (self.curves[pair, case, name] for name in (self.reference, method))
+        return curve.mean / truth.mean - 1, curve.largest / truth.largest - 1, float(np.abs(curve.k / truth.k - 1).max())
 
     def drops(self, pair, case, method):
         """What damage takes of the stiffness [-]: largest over the cycle, of the mean, and of the damaged tooth's own pair.
@@ -89,7 +89,7 @@ class CaseTable:
             head = [pair, case or "healthy", in_newton_per_um(truth.mean, 5), in_newton_per_um(truth.largest, 5)]
             lines.append(table_row([*head, *cells]))
         total = [sum(self.curves[pair, case, name].seconds for pair, case in self.cases()) for name in self.methods]
-        return "\n".join([*lines, f"| seconds |  | {' | '.join(f'{one:.1f} | ' for one in total)} |"])
+        return "\n".join([*lines, f"| seconds |  | {' | '.join(f'{seconds:.1f} | ' for seconds in total)} |"])
 
     @property
     def headline(self):
@@ -122,11 +122,13 @@ def printed_beside(scene, published, reference, drops):
     stiffnesses. Empty without such rows.
     """
     ids = {"stiffness_analytical": published, "stiffness_fe": reference, "stiffness_reduction": drops}
-    said = {one.id: {(row.case, row.pair): row.target for row in one.rows} for one in scene.references}
-    if not all(name in said for name in (*ids, "stiffness_error")):
+    targets = {entry.id: {(row.case, row.pair): row.target for row in entry.rows} for entry in scene.references}
+    if not all(name in targets for name in (*ids, "stiffness_error")):
         return {}
-    own, other = said["stiffness_analytical"], said["stiffness_fe"]
-    return ids | {"stiffness_error": {key: round(100 * abs(own[key] - other[key]) / own[key], 2) for key in own}}
+    analytical, by_fe = targets["stiffness_analytical"], targets["stiffness_fe"]
+    return ids | {
+        "stiffness_error": {key: round(100 * abs(analytical[key] - by_fe[key]) / analytical[key], 2) for key in analytical}
+    }
 
 
 def printed_cases(scene):
@@ -143,8 +145,8 @@ def printed_text(scene, table):
     }
     drops = {(case, pair): 100 * table.drops(pair, case, table.reference)[0] for pair, case in table.cases() if case}
     ours = printed_beside(scene, means["published"], means[table.reference], drops)
-    asked = [reference for reference in scene.references if reference.id in ours]
-    return text(asked, [row for one in asked for row in judge(one, ours[one.id])]) if asked else ""
+    printed = [reference for reference in scene.references if reference.id in ours]
+    return text(printed, [row for entry in printed for row in judge(entry, ours[entry.id])]) if printed else ""
 
 
 def damage_cycle(chosen):
@@ -164,8 +166,8 @@ def case_curve(case, method, phase, **options):
     started = time.perf_counter()
     curve = solve(known, Solve(**{"method": method, "phases": phase, "variants": variants} | options))
     seconds = time.perf_counter() - started
-    own = np.flatnonzero(curve.order == (known.first_tooth or 0))
-    tooth = curve.force[:, own].sum(axis=1) / curve.lte
+    columns = np.flatnonzero(curve.order == (known.first_tooth or 0))
+    tooth = curve.force[:, columns].sum(axis=1) / curve.lte
     doubt = float("nan") if curve.error is None else float((curve.error / curve.k).mean())
     return CaseCurve(curve.k, tooth, seconds, doubt)
 

@@ -13,11 +13,11 @@ def harris(case: Case, **options: Any) -> tuple[TransmissionError, TransmissionE
 
     Of a case under several loads; `options` as of `gearfe.Solve`.
     """
-    found = transmission_error(case, **options)
+    error = transmission_error(case, **options)
     if not case.flanks:
-        return found, None
-    options["method"] = found.curves[0].meta["method"]
-    return found, transmission_error(case, flanks=None, **options)
+        return error, None
+    options["method"] = error.curves[0].meta["method"]
+    return error, transmission_error(case, flanks=None, **options)
 
 
 def harris_table(found: TransmissionError, plain: TransmissionError | None, r_b: float) -> str:
@@ -31,8 +31,8 @@ def harris_table(found: TransmissionError, plain: TransmissionError | None, r_b:
     for i, parts in enumerate(found.harmonics(3)):
         other = "" if plain is None else f"  {1e6 * beside[i]:12.3f}"
         load = f"{found.force[i]:12.6g}  {1e-3 * found.force[i] * r_b:12.4g}"
-        told = "  ".join(f"{1e6 * part:7.3f}" for part in parts)
-        lines.append(f"{load}  {1e6 * found.peak_to_peak[i]:12.3f}{other}  {1e6 * found.te[i].mean():8.3f}  {told}")
+        amplitudes = "  ".join(f"{1e6 * part:7.3f}" for part in parts)
+        lines.append(f"{load}  {1e6 * found.peak_to_peak[i]:12.3f}{other}  {1e6 * found.te[i].mean():8.3f}  {amplitudes}")
     other = "" if plain is None else f"  {1e6 * np.ptp(plain.unloaded):12.3f}"
     mean = round(1e6 * float(found.unloaded.mean()), 3) + 0.0  # no -0.000
     return "\n".join([*lines, f"    unloaded  {'':12}  {1e6 * np.ptp(found.unloaded):12.3f}{other}  {mean:8.3f}"])

@@ -58,8 +58,8 @@ def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
         return curve
     rows = np.flatnonzero(np.abs(curve.phase[:, None] - phases).min(axis=1) < 1e-9)
     names = ("phase", "k", "k_tangent", "lte", "force", "pressure", "error", "unloaded", "lte_supports")
-    given = {name: value for name in names if (value := getattr(curve, name)) is not None}
-    return replace(curve, **{name: value[rows] for name, value in given.items()})
+    arrays = {name: value for name in names if (value := getattr(curve, name)) is not None}
+    return replace(curve, **{name: value[rows] for name, value in arrays.items()})
 
 
 def told_cycle(phases: NDArray, kind: str = "") -> str:
@@ -86,13 +86,13 @@ def beside_health(curve: StiffnessCurve, case: Case, how: Solve) -> str:
     cycle = damage_phases(case, cast(int, how.phases))
     healthy = solve(case.healthy, replace(how, phases=cycle, span="cycle", error=False))
     hurt, kind = within(curve, cycle), kind_of(case.damage)
-    found, doubt, before, after = loss(healthy, hurt), hurt.zone_errors(), healthy.zones(), hurt.zones()
+    losses, doubt, before, after = loss(healthy, hurt), hurt.zone_errors(), healthy.zones(), hurt.zones()
     head = ["zone", "healthy [N/um]", f"{kind} [N/um]", *(["error at most about"] if doubt else []), "loss"]
     lines = [table_row(head), "|---" * len(head) + "|"]
-    for zone, lost in found.items():
-        two = [in_newton_per_um(one[zone]) if zone in one else "" for one in (before, after)]
+    for zone, lost in losses.items():
+        cells = [in_newton_per_um(by_zone[zone]) if zone in by_zone else "" for by_zone in (before, after)]
         about = [f"{100 * doubt[zone]:.2f} %" if zone in doubt else ""] if doubt else []
-        lines.append(table_row([zone, *two, *about, f"{100 * lost:.1f} %"]))
+        lines.append(table_row([zone, *cells, *about, f"{100 * lost:.1f} %"]))
     return f"{told_damage(case.pair, case.damage)}; {told_cycle(cycle, kind)}\n" + aligned("\n".join(lines))
 
 
@@ -108,18 +108,18 @@ def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: 
     The differences from all coarser solves that an estimate of k looks at are added; empty if there are none so coarse. Of finite
     elements in three dimensions, which take minutes, the relative errors of both stiffnesses are added: a much wider bound.
     """
-    found, method = loss(healthy, hurt), str(how.method)
+    losses, method = loss(healthy, hurt), str(how.method)
     if method == "fe3d":
         before, after = healthy.zone_errors(), hurt.zone_errors()
-        widest = {zone: (1 - found[zone]) * (before[zone] + after[zone]) for zone in before.keys() & after.keys()}
+        widest = {zone: (1 - losses[zone]) * (before[zone] + after[zone]) for zone in before.keys() & after.keys()}
         return widest | {LARGEST: max(widest.values(), default=math.nan)}
-    away = dict.fromkeys(found, 0.0)
+    away = dict.fromkeys(losses, 0.0)
     rougher = coarser(how.refine, METHODS[method].order)
     if any(options["refine"] < COARSEST for options in rougher):
         return {}
     for options in rougher:
-        rough = loss(*(solve(one, replace(how, **options)) for one in (case.healthy, case)))
-        away = {zone: away[zone] + abs(found[zone] - rough[zone]) for zone in away}
+        rough = loss(*(solve(each_case, replace(how, **options)) for each_case in (case.healthy, case)))
+        away = {zone: away[zone] + abs(losses[zone] - rough[zone]) for zone in away}
     return away
 
 
@@ -138,7 +138,7 @@ def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Damage]] | None) -
 
 def kind_of(damage: Mapping[str, Iterable[Damage]] | None) -> str:
     """What a tooth with such damage is called: `geometry.damage.kinds.called`."""
-    return called(one for own in (damage or {}).values() for one in own)
+    return called(hurt for damages in (damage or {}).values() for hurt in damages)
 
 
 def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[str, float]) -> str:

@@ -72,26 +72,26 @@ class ModelFile:
         out = np.empty(asked.shape)
         for low, high in ((-1.0, leaves), (leaves, 1.0)):
             row = (rows > low + SNAP) & (rows <= high + SNAP)
-            here = (asked > low + EXACT) & (asked <= high + EXACT)
-            if here.any() and not row.any():
+            inside = (asked > low + EXACT) & (asked <= high + EXACT)
+            if inside.any() and not row.any():
                 raise ValueError(
                     f"{self.path}: no row from phase {max(low, 0):.4g} to {high:.4g}, where another number of pairs is in "
                     "contact; give rows there"
                 )
             order = np.argsort(rows[row])
-            if here.any():
-                out[here] = np.interp(asked[here], rows[row][order], self.k[once][row][order])
+            if inside.any():
+                out[inside] = np.interp(asked[inside], rows[row][order], self.k[once][row][order])
         return out
 
     def _check_cycle(self, x, cycle):
         span, step = x[-1] - x[0], np.diff(x).max()
         unit, scale = (" deg", 180 / math.pi) if self.abscissa == "angle" else ("", 1.0)
         start, stop, whole = scale * self.x[0], scale * self.x[-1], scale * cycle
-        given = f"{self.path}: {self.abscissa}s {start:.6g} to {stop:.6g}{unit} cover {span:.4g} mesh cycles"
+        coverage = f"{self.path}: {self.abscissa}s {start:.6g} to {stop:.6g}{unit} cover {span:.4g} mesh cycles"
         if span + step < 1 - SNAP:
-            raise ValueError(f"{given}, but one is needed: {start:.6g} to {start + whole:.6g}{unit}")
+            raise ValueError(f"{coverage}, but one is needed: {start:.6g} to {start + whole:.6g}{unit}")
         if span > 1 + step + SNAP:
-            raise ValueError(f"{given}: keep the rows of one, for example {start:.6g} to {start + whole:.6g}{unit}")
+            raise ValueError(f"{coverage}: keep the rows of one, for example {start:.6g} to {start + whole:.6g}{unit}")
         if step > COARSEST + SNAP:
             finer = f"sample every {COARSEST * cycle * scale:.4g}{unit} or finer"
             raise ValueError(f"{self.path}: rows are up to {step:.4g} of a mesh cycle apart; {finer}")
@@ -223,10 +223,10 @@ def _abscissa(path, cell):
 
 
 def _stiffness(path, cell):
-    found = _stiffness_unit(cell)
-    if not found:
+    unit = _stiffness_unit(cell)
+    if not unit:
         raise ValueError(f"{path}: second column {cell!r} states no known unit of stiffness; use k [unit] with {UNITS}")
-    return found
+    return unit
 
 
 def _stiffness_unit(cell):
@@ -260,8 +260,8 @@ def _numbers(path, rows):
 
 
 def _offset(path, comments, given):
-    found = [match[1] for c in comments if (match := re.fullmatch(r"(?:phase[ _])?offset\s*[:=](.*)", c, re.I))]
-    values = [*found, *([given] if given is not None else [])]
+    stated = [match[1] for c in comments if (match := re.fullmatch(r"(?:phase[ _])?offset\s*[:=](.*)", c, re.I))]
+    values = [*stated, *([given] if given is not None else [])]
     if len(values) > 1:
         raise ValueError(f"{path}: phase_offset is given {len(values)} times ({', '.join(map(str, values))}); give it once")
     return _finite(path, values[0]) if values else None

@@ -39,7 +39,7 @@ class PairModel:
     function: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be called."""
+        """Raise ValueError for what is not a function."""
         if not callable(self.function):
             raise ValueError(f"PairModel({self.function!r}): give a function f(radius_1, radius_2) -> k [N/m]")
 
@@ -62,16 +62,16 @@ def own_models(models, taken=()):
     out = {}
     for name, model in items:
         if isinstance(model, (str, os.PathLike)):
-            found = re.fullmatch(r"(.+\.py)(?::(.*))?", str(model), re.DOTALL)
-            model = _in_file(*found.groups()) if found else read_model(model)
+            match = re.fullmatch(r"(.+\.py)(?::(.*))?", str(model), re.DOTALL)
+            model = _in_file(*match.groups()) if match else read_model(model)
         elif not callable(model) and not isinstance(model, (PairModel, OwnFlexibility, ModelFile)):
             raise ValueError(
                 f"model {name!r} is {type(model).__name__}, but give f(phase) -> k [N/m], PairModel(f), OwnFlexibility(f), "
                 "or the path of a file"
             )
         if name in taken or name in out:
-            what = "is a formulation of gearfe" if name in taken else "stands for two models"
-            raise ValueError(f"the name {name!r} {what}; rename the file or function, or give models={{'another name': ...}}")
+            clash = "is a formulation of gearfe" if name in taken else "stands for two models"
+            raise ValueError(f"the name {name!r} {clash}; rename the file or function, or give models={{'another name': ...}}")
         out[name] = model
     return out
 
@@ -81,17 +81,21 @@ def _in_file(path, name):
     if not Path(path).is_file():
         raise ValueError(f"{path}: no such file")
     spec = importlib.util.spec_from_file_location(Path(path).stem, path)
-    made = importlib.util.module_from_spec(spec)
+    module = importlib.util.module_from_spec(spec)
     try:
-        spec.loader.exec_module(made)
+        spec.loader.exec_module(module)
     except Exception as error:  # a file of the user's may raise whatever it likes
         raise ValueError(f"{path} failed with {type(error).__name__}: {error}") from error
     kinds = (PairModel, OwnFlexibility)
-    has = [key for key, one in vars(made).items() if isinstance(one, kinds) or getattr(one, "__module__", "") == made.__name__]
+    has = [
+        key
+        for key, value in vars(module).items()
+        if isinstance(value, kinds) or getattr(value, "__module__", "") == module.__name__
+    ]
     if name not in has:
-        told = f"it has {', '.join(has)}" if has else "it has no function"
-        raise ValueError(f"{path}: no model {name or ''!r}; {told}: give {path}:NAME, of a function f(phase) -> k [N/m]")
-    return getattr(made, name)
+        known = f"it has {', '.join(has)}" if has else "it has no function"
+        raise ValueError(f"{path}: no model {name or ''!r}; {known}: give {path}:NAME, of a function f(phase) -> k [N/m]")
+    return getattr(module, name)
 
 
 def _name(model, number):
@@ -115,7 +119,7 @@ def own_curve(name, model, pair, reference):
     not finite and positive; if a file does not cover what is asked.
     """
     if isinstance(model, OwnFlexibility):
-        materials = tuple(Material(**one) for one in reference.meta["materials"])
+        materials = tuple(Material(**constants) for constants in reference.meta["materials"])
         curve = mesh_stiffness(pair, reference.meta["force_N"], materials, method=model, phases=reference.phase)
         _hint(name, model, curve.k, reference)
         return replace(curve, meta=curve.meta | {"method": name})
@@ -123,10 +127,10 @@ def own_curve(name, model, pair, reference):
     touching = np.isfinite(touch.gap)
     meta = {key: reference.meta[key] for key in SHARED_META} | {"method": name, "model": _kind(model)}
     if isinstance(model, PairModel) or getattr(model, "abscissa", None) == "radius":
-        each = np.zeros(touching.shape)
-        each[touching] = _single(name, model, pair, touch.roll_1[touching], touch.roll_2[touching], meta["width_mm"])
-        k = each.sum(axis=1)
-        force = meta["force_N"] * each / k[:, None]
+        of_pair = np.zeros(touching.shape)
+        of_pair[touching] = _single(name, model, pair, touch.roll_1[touching], touch.roll_2[touching], meta["width_mm"])
+        k = of_pair.sum(axis=1)
+        force = meta["force_N"] * of_pair / k[:, None]
     else:
         k = _total(name, model, pair, reference.phase, meta["width_mm"])
         force = np.where(touching, np.nan, 0.0)

@@ -52,7 +52,7 @@ def pattern_of(case: Case, phases: int = 24) -> Pattern:
     """Contact pattern of a case, with its damaged tooth in the middle of its engagement if it has one."""
     contact = contact_pattern(case, phases=damage_phases(case, phases) if case.damaged else phases)
     pressures = [np.where(np.isnan(cells.pressure), -math.inf, cells.pressure) for cells in contact.cells]
-    most = int(np.argmax([own.max() for own in pressures]))
+    most = int(np.argmax([of_phase.max() for of_phase in pressures]))
     cells, at = contact.cells[most], int(np.argmax(pressures[most]))
     corners = sum(bool(((cell.corner > 0) & (cell.load > 0)).any()) for cell in contact.cells)
     load = face_load(contact)[1]
@@ -64,9 +64,9 @@ def pattern_of(case: Case, phases: int = 24) -> Pattern:
 
 def render_pattern(case: Case, path: str | os.PathLike[str], *, title: str = "") -> Pattern:
     """Picture of a case's contact pattern (`gearfe.plot_contact`); gives what `pattern_of` does."""
-    found = pattern_of(case)
-    plot_contact(case.pair, found.contact, None, path, case.pits[0], title)
-    return found
+    pattern = pattern_of(case)
+    plot_contact(case.pair, pattern.contact, None, path, case.pits[0], title)
+    return pattern
 
 
 def face_load(contact: Contact3D) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -92,8 +92,8 @@ def face_load(contact: Contact3D) -> tuple[NDArray[np.float64], NDArray[np.float
     >>> pair = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack), gf.Gear(z=30, r_bore=18.0, **rack))
     >>> for askew in (0.0, 0.02):  # mm, wider open at z = b than at z = 0
     ...     shape = gf.Misalignment(F_beta=askew)
-    ...     found = gf.contact_pattern(pair, 2000.0, gf.Material(E=207e3, nu=0.3), misalignment=shape, phases=4)
-    ...     z, load = gf.face_load(found)
+    ...     contact = gf.contact_pattern(pair, 2000.0, gf.Material(E=207e3, nu=0.3), misalignment=shape, phases=4)
+    ...     z, load = gf.face_load(contact)
     ...     print(f"{load.mean():.0f} N/mm, face load factor {load.max() / load.mean():.2f}")
     167 N/mm, face load factor 1.02
     167 N/mm, face load factor 3.04
@@ -103,6 +103,6 @@ def face_load(contact: Contact3D) -> tuple[NDArray[np.float64], NDArray[np.float
     edge = np.linspace(low.min(), high.max(), PLACES + 1)
     z = (edge[1:] + edge[:-1]) / 2
     over = [(low <= at) & (high > at) for at in z]
-    covered = np.array([one.any() for one in over])  # not the groove of a herringbone pair
-    load = np.array([float(line[one].sum()) for one in over]) / len(contact.cells)
+    covered = np.array([mask.any() for mask in over])  # not the groove of a herringbone pair
+    load = np.array([float(line[mask].sum()) for mask in over]) / len(contact.cells)
     return z[covered], load[covered]

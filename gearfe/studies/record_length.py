@@ -26,11 +26,11 @@ def resolving_seconds(fault, turning=None, carrier=None):
     if not line:
         return 0.0
     apart = [_beside(line, comb) for comb in (turning, carrier) if comb]
-    return max([2 * LOBES / (turning or line), *(LOBES / one for one in apart)])
+    return max([2 * LOBES / (turning or line), *(LOBES / distance for distance in apart)])
 
 
 def too_short(seconds, needed):
-    """What to do about a record of so many seconds where so many are needed; empty if it is long enough.
+    """What to do about a record of `seconds` where `needed` seconds resolve the lines; empty if it is long enough.
 
     >>> too_short(0.3, 1.2001)
     '0.3 s are too short to part the lines of the fault from those beside them: record 1.21 s or longer'

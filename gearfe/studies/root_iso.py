@@ -57,8 +57,8 @@ def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRo
     >>> import math, gearfe as gf
     >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), b=20.0)
     >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=9.2, **rack), gf.Gear(z=31, r_bore=14.2, **rack))
-    >>> found = gf.iso_root_stress(pair, 2000.0)
-    >>> print(f"{found.stress:.1f} MPa, Y_F {found.Y_F:.3f}, Y_S {found.Y_S:.3f}")
+    >>> nominal = gf.iso_root_stress(pair, 2000.0)
+    >>> print(f"{nominal.stress:.1f} MPa, Y_F {nominal.Y_F:.3f}, Y_S {nominal.Y_S:.3f}")
     136.6 MPa, Y_F 1.599, Y_S 1.818
     """
     if side not in ("pinion", "wheel"):
@@ -99,7 +99,7 @@ def told_root(case: Case) -> list[str]:
     lines = ["root stress of one tooth under the whole force at its outer point of single contact, as ISO 6336-3 has it:"]
     for i, side in enumerate(("pinion", "wheel")):
         gear, norm = (case.pair.gear_1, case.pair.gear_2)[i], iso_root_stress(case.pair, case.forces[0], side)
-        found = cast(float, root_stress(gear, norm.radius, case.forces[0] / width, case.materials[i]))
-        away, factors = 100 * (norm.stress / found - 1), f"Y_F {norm.Y_F:.3f}, Y_S {norm.Y_S:.3f}"
-        lines.append(f"  {side} {found:.1f} MPa; method B of the standard {norm.stress:.1f} MPa ({away:+.1f} %; {factors})")
+        stress = cast(float, root_stress(gear, norm.radius, case.forces[0] / width, case.materials[i]))
+        away, factors = 100 * (norm.stress / stress - 1), f"Y_F {norm.Y_F:.3f}, Y_S {norm.Y_S:.3f}"
+        lines.append(f"  {side} {stress:.1f} MPa; method B of the standard {norm.stress:.1f} MPa ({away:+.1f} %; {factors})")
     return lines

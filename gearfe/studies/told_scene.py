@@ -7,6 +7,7 @@ from dataclasses import fields
 from geometry.tooth.gear import Gear
 from geometry.tooth.modified import Flank
 
+from ..epicyclic.of_scene import build_set
 from ..scene.load import Scene, ScenePair
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.solve import Solve
@@ -14,6 +15,7 @@ from ..supports.shaft import Shaft
 from ..supports.support import Support
 from ..units import in_newton_per_um
 from .losses import told_damage
+from .told_set import told_set
 
 SIDES = ("pinion", "wheel")
 WORDS = {  # for amounts of a flank, in um, whose names do not say enough
@@ -33,7 +35,7 @@ def told(scene: Scene) -> list[str]:
         lines += ["", f"gear {name}: {told_gear(gear)}"]
     for name, chosen in scene.pairs.items():
         lines += ["", *_pair(name, chosen)]
-    lines += ["", _machine(scene)]
+    lines += ["", _machine(scene), *_set(scene)]
     lines += [f"assumed: {note['what']}" for note in scene.assumptions]
     return lines + [f"changed: {text}" for text in scene.changed]
 
@@ -66,9 +68,9 @@ def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
         yield f"  herringbone teeth{groove}; the overlap ratio is that of one half"
     yield from (f"  {text}" for text in told_details(chosen))
     for which in (None, *chosen.damage):
-        what = "healthy" if which is None else f"case {which}: {', '.join(_where(chosen, chosen.damage[which]))}"
+        heading = "healthy" if which is None else f"case {which}: {', '.join(_where(chosen, chosen.damage[which]))}"
         row, why = Solve().chosen(chosen.case(which))
-        yield f"  {what}; solved by {row.name}: {why}"
+        yield f"  {heading}; solved by {row.name}: {why}"
     yield from (f"  {note}" for note in pair.notes)
 
 
@@ -84,7 +86,7 @@ def told_details(chosen: ScenePair) -> Iterator[str]:
     for side, gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
         if side in bent:
             yield f"flank of the {side}: {told_flank(bent[side], gear)}"
-    if not pair.gear_1.beta and 1 < pair.eps_alpha < 2 and any(one.tip_relief or one.root_relief for one in bent.values()):
+    if not pair.gear_1.beta and 1 < pair.eps_alpha < 2 and any(flank.tip_relief or flank.root_relief for flank in bent.values()):
         shared = (pair.eps_alpha - 1) * pair.p_bt
         yield f"two pairs of teeth share the load over the first and the last {shared:.3g} mm of roll, one carries in between"
     if chosen.misalignment:
@@ -96,21 +98,21 @@ def told_details(chosen: ScenePair) -> Iterator[str]:
 
 def told_flank(flank: Flank, gear: Gear) -> str:
     """A gear's flank in words, its reliefs with the diameter where they start."""
-    said = []
+    parts = []
     for end, roll in (("tip", gear.roll_a), ("root", gear.roll_f)):
         relief = 1e3 * getattr(flank, f"{end}_relief")
         if relief:
             start = _start(flank, end, gear)
             shape = {1.0: "linear", 2.0: "parabolic"}.get(exponent := getattr(flank, f"{end}_exponent"), f"power {exponent:g}")
             at = f"from a diameter of {2 * math.hypot(gear.r_b, start):.5g} mm on, over {abs(roll - start):.3g} mm of roll"
-            said.append(f"{end} relief {relief:.4g} um, {shape}, {at}")
+            parts.append(f"{end} relief {relief:.4g} um, {shape}, {at}")
     amounts = {name: 1e3 * getattr(flank, name) for name in AMOUNTS}
-    said += [f"{WORDS.get(name, name)} {value:.4g} um" for name, value in amounts.items() if value]
+    parts += [f"{WORDS.get(name, name)} {value:.4g} um" for name, value in amounts.items() if value]
     if any(flank.end_relief if isinstance(flank.end_relief, tuple) else (flank.end_relief,)):
-        said.append("end relief")
-    said += [f"tip {edge} {value:g} mm" for edge in ("rounding", "chamfer") if (value := getattr(flank, f"tip_{edge}"))]
-    said += [word for name, word in OTHERS.items() if (value := getattr(flank, name)) is not None and len(value)]
-    return "; ".join(said) or "involute"
+        parts.append("end relief")
+    parts += [f"tip {edge} {value:g} mm" for edge in ("rounding", "chamfer") if (value := getattr(flank, f"tip_{edge}"))]
+    parts += [word for name, word in OTHERS.items() if (value := getattr(flank, name)) is not None and len(value)]
+    return "; ".join(parts) or "involute"
 
 
 def _start(flank: Flank, end: str, gear: Gear) -> float:
@@ -125,7 +127,9 @@ def _held(held: Support | Shaft) -> str:
     if isinstance(held, Shaft):
         parts = ", ".join(f"{segment.length:g} mm of {segment.diameter:g} mm" for segment in held.segments)
         places = " and ".join(f"{at:g}" for at in held.bearings)
-        stiff = " and ".join("rigid" if math.isinf(one) else f"{1e-3 * one:g} N/um" for one in held.bearing_stiffness)
+        stiff = " and ".join(
+            "rigid" if math.isinf(stiffness) else f"{1e-3 * stiffness:g} N/um" for stiffness in held.bearing_stiffness
+        )
         whole = ", one piece" if held.integral else ""
         return f"a shaft of {parts}, bearings at {places} mm ({stiff}), gear at {held.gear:g} mm{whole}"
     units = {"radial": ("N/um", 1e3), "axial": ("N/um", 1e3), "tilt": ("Nm/mrad", 1e6), "torsion": ("Nm/mrad", 1e6)}
@@ -135,9 +139,9 @@ def _held(held: Support | Shaft) -> str:
 
 
 def _where(chosen: ScenePair, damage: dict) -> Iterator[str]:
-    for side, own in damage.items():
-        teeth = sorted({one.tooth for one in own})
-        yield f"{told_damage(chosen.pair, {side: own})} in the {side}'s tooth {' and '.join(map(str, teeth))}"
+    for side, damages in damage.items():
+        teeth = sorted({hurt.tooth for hurt in damages})
+        yield f"{told_damage(chosen.pair, {side: damages})} in the {side}'s tooth {' and '.join(map(str, teeth))}"
 
 
 def _machine(scene: Scene) -> str:
@@ -148,12 +152,22 @@ def _machine(scene: Scene) -> str:
     return f"machine: {run['model']}, {run['speed_rpm']:g} rpm, {run['torque_Nm']:g} N m, contact by {law}"
 
 
+def _set(scene: Scene) -> Iterator[str]:
+    """The set of a scene, or why it cannot be solved."""
+    if scene.set is None:
+        return
+    try:
+        yield f"set: {told_set(build_set(scene))}"
+    except ValueError as error:
+        yield f"set that cannot be solved: {error}"
+
+
 def told_supports(curve: StiffnessCurve) -> str:
     """How much of the deflection is that of shafts and springs, in words; empty if the hubs are held rigidly."""
     if curve.lte_supports is None:
         return ""
-    part, own = float(curve.lte_supports.mean() / curve.lte.mean()), curve.without_supports().k.mean()
+    part, k_teeth = float(curve.lte_supports.mean() / curve.lte.mean()), curve.without_supports().k.mean()
     return (
         f"shafts and springs take {100 * part:.0f} % of the deflection, and are in k; "
-        f"teeth and bodies alone have {in_newton_per_um(own)} N/um in the mean"
+        f"teeth and bodies alone have {in_newton_per_um(k_teeth)} N/um in the mean"
     )

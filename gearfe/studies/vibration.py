@@ -72,7 +72,7 @@ class Analysis:
 
     def _stands(self, name):
         healthy, *others = self.spectra
-        floors = {case: FLOOR * _floor(one, self.lines[name]) for case, one in self.spectra.items()}
+        floors = {case: FLOOR * _floor(of_case, self.lines[name]) for case, of_case in self.spectra.items()}
         least = {case: max(floor, RANGE * float(self.signals[case].values.std())) for case, floor in floors.items()}
         if not others:
             return self.amplitudes[healthy][name] > least[healthy]
@@ -89,25 +89,25 @@ class Analysis:
         hidden = [f"{in_words(name)} ({value:.2f} Hz)" for name, value in self.lines.items() if name not in shown]
         against = f" or {RISE:g} times the healthy one" if len(self.spectra) > 1 else ""
         least = f"{FLOOR:g} times the noise around it, {RANGE:g} of the record's rms{against}"
-        told = f"\n\nno more than {least}: {', '.join(hidden)}" if hidden else ""
+        note = f"\n\nno more than {least}: {', '.join(hidden)}" if hidden else ""
         if hidden and self.too_short:
-            told += f"\n\n{self.too_short}"
-        return "\n".join(map(table_row, rows)) + told
+            note += f"\n\n{self.too_short}"
+        return "\n".join(map(table_row, rows)) + note
 
     def envelope(self):
         """`Demodulated` of the last case at the fault frequency, and in a sentence the lines that stand out of its envelope.
 
         They are told if `PULSES` of them do.
         """
-        found, told, compared = self._demodulated()
-        low, high = found.kurtogram.band
+        demodulated, risen, compared = self._demodulated()
+        low, high = demodulated.kurtogram.band
         none = f"fewer than {PULSES} lines of the fault have {FLOOR:g} times their noise floor" + (
             f" and {RISE:g} times healthy" if compared else ""
         )
         none += f"; {self.too_short}" if self.too_short else ""
         name = list(self.signals)[-1]
-        return found, f"{name}: squared envelope from {low:.0f} to {high:.0f} Hz, its most impulsive band: " + (
-            "; ".join(told.values()) or none
+        return demodulated, f"{name}: squared envelope from {low:.0f} to {high:.0f} Hz, its most impulsive band: " + (
+            "; ".join(risen.values()) or none
         )
 
     def alarms(self):
@@ -119,10 +119,10 @@ class Analysis:
         """`Demodulated` of the last case, the lines that stand out of it in words, and whether a healthy case is beside it."""
         healthy, *others = self.signals.values()
         last = others[-1] if others else healthy
-        found = demodulate(last, self.fault)
-        before = demodulate(healthy, self.fault, band=found.kurtogram.band).lines if others else {}
-        told = {name: text for name in found.lines if (text := _risen(found, name, before.get(name)))}
-        return found, told if len(told) >= PULSES else {}, bool(before)
+        demodulated = demodulate(last, self.fault)
+        before = demodulate(healthy, self.fault, band=demodulated.kurtogram.band).lines if others else {}
+        risen = {name: text for name in demodulated.lines if (text := _risen(demodulated, name, before.get(name)))}
+        return demodulated, risen if len(risen) >= PULSES else {}, bool(before)
 
     def indicators_text(self):
         """Indicators as Markdown, increments against healthy in brackets."""
@@ -141,7 +141,7 @@ def in_words(line):
     >>> in_words("2 f_m - f_fault")
     '2 x mesh frequency - fault frequency'
     """
-    return re.sub(r"\bf_\w+", lambda found: WORDS.get(found[0], found[0]), re.sub(r"(\d+) (?=f_)", r"\1 x ", line))
+    return re.sub(r"\bf_\w+", lambda match: WORDS.get(match[0], match[0]), re.sub(r"(\d+) (?=f_)", r"\1 x ", line))
 
 
 def _floor(found, frequency):
@@ -164,30 +164,30 @@ def _risen(found: Demodulated, name, before):
     return f"{in_words(name)} at {frequency:.2f} Hz, {over}{healthy}"
 
 
-def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progress=None):
+def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, loads=(1.0,), progress=None):
     """`Response` of a scene's machine by case: ``"healthy"`` and, if asked for, a case of damage.
 
     `duration` [s] is kept, from when the free vibrations have fallen to a thousandth (`recorded`); `phases` are those of the
-    stiffness curves, per mesh cycle; `method` and `progress` as of `gearfe.simulate`.
+    stiffness curves, per mesh cycle; `loads` as of `gearfe.build_machine`, `method` and `progress` as of `gearfe.simulate`.
     """
     check_run(duration, method)
     cases = {name for pair in scene.pairs.values() for name in pair.damage}
     if case is not None and case not in cases:
         raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(sorted(cases)) or 'none'}")
-    found = [one for pair in scene.pairs.values() for own in pair.damage.get(case, {}).values() for one in own]
-    damage = [] if scene.machine.get("contact") == "impact" else found
+    in_case = [one for pair in scene.pairs.values() for damages in pair.damage.get(case, {}).values() for one in damages]
+    damage = [] if scene.machine.get("contact") == "impact" else in_case
     along = not all(hurt.through for hurt in damage)
     curves = "ritz3d" if along else "auto"  # one method for what is compared
     names = ("healthy", *([case] if case else []))
     with part("", 0.0, 0.5):
-        made = {
-            name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
+        machines = {
+            name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves, loads=loads)
             for name in steps(names, lambda name: f"stiffness curves, {name}")
         }
-    rate = math.ceil(duration / min(default_step(one) for one in made.values())) / duration
+    rate = math.ceil(duration / min(default_step(one) for one in machines.values())) / duration
     with part("", 0.5, 1.0):
         return {
-            name: recorded(made[name], duration, rate, method=method, progress=progress)
+            name: recorded(machines[name], duration, rate, method=method, progress=progress)
             for name in steps(names, lambda name: f"motion, {name}")
         }
 
@@ -262,26 +262,31 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
     for name, value in {"mesh": mesh, "fault": fault, "turning": turning, "carrier": carrier}.items():
         if value is not None and not (isinstance(value, Real) and 0 < value < math.inf):
             raise ValueError(f"{name} = {value!r} Hz, but a frequency is positive and finite")
-    spectra = {case: spectrum(replace(one, values=one.values - one.values.mean())) for case, one in signals.items()}
+    spectra = {
+        case: spectrum(replace(of_case, values=of_case.values - of_case.values.mean())) for case, of_case in signals.items()
+    }
     first = next(iter(spectra.values()))
     if mesh is not None and mesh >= first.frequency[-1]:
         raise ValueError(f"mesh = {mesh:g} Hz, but {channel} shows what lies below {first.frequency[-1]:g} Hz, half of its rate")
     lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
     lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
-    placed = {case: find_lines(one, lines, between=True) for case, one in spectra.items()}
-    amplitudes = {case: {name: two[1] for name, two in one.items()} for case, one in placed.items()}
-    both = (mesh, fault or turning) if mesh and (fault or turning) else (None, None)
-    table = indicator_table(signals, *both, healthy=next(iter(signals)))
+    placed = {case: find_lines(of_case, lines, between=True) for case, of_case in spectra.items()}
+    amplitudes = {case: {name: line[1] for name, line in of_case.items()} for case, of_case in placed.items()}
+    frequencies = (mesh, fault or turning) if mesh and (fault or turning) else (None, None)
+    table = indicator_table(signals, *frequencies, healthy=next(iter(signals)))
     resolving = resolving_seconds(fault, turning, carrier)
     return Analysis(channel, signals, fault or turning, lines, spectra, amplitudes, table, resolving)
 
 
 def _lines(mesh, fault, turning, carrier, resolution):
-    """Lines of the fault twice with two mesh harmonics, of the gear's turning (alone: as of the fault), of the carrier."""
+    """Frequencies of lines by name [Hz]: of the fault, of the turning gear and of the carrier.
+
+    The fault has two harmonics, and two sidebands at two mesh harmonics; the turning gear one of each, or two without a fault.
+    """
     lines = expected_lines(mesh, fault, count=2, harmonics=2)
     if turning is not None:
-        own = expected_lines(mesh, turning, count=1 if fault else 2, harmonics=1 if fault else 2)
-        lines |= {name.replace("f_fault", "f_r"): value for name, value in own.items()}
+        turns = expected_lines(mesh, turning, count=1 if fault else 2, harmonics=1 if fault else 2)
+        lines |= {name.replace("f_fault", "f_r"): value for name, value in turns.items()}
     apart = min((abs(other - carrier) for other in (fault, turning) if other), default=math.inf) if carrier else 0.0
     if carrier and carrier > LOBES * resolution and apart > LOBES / 2 * resolution:
         lines |= expected_lines(mesh, None, carrier, count=1)

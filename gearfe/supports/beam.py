@@ -70,13 +70,13 @@ def beam_element(length, section, material):
     """Stiffness ``(4, 4)`` of a piece between displacement and slope of its left and its right end."""
     bending = material.E * section.second_moment
     phi = 12 * bending / (section.shear_factor(material.nu) * material.shear_modulus * section.area * length**2)
-    own, cross = (4 + phi) * length**2, (2 - phi) * length**2
+    direct, cross = (4 + phi) * length**2, (2 - phi) * length**2
     part = np.array(
         [
             [12, 6 * length, -12, 6 * length],
-            [6 * length, own, -6 * length, cross],
+            [6 * length, direct, -6 * length, cross],
             [-12, -6 * length, 12, -6 * length],
-            [6 * length, cross, -6 * length, own],
+            [6 * length, cross, -6 * length, direct],
         ]
     )
     return bending / (length**3 * (1 + phi)) * part
@@ -95,7 +95,7 @@ def twist_flexibility(sections, material, held, at):
 
 def pieces_between(sections, places):
     """Positions of steps and places in rising order, and the piece between each and the next: its length and section."""
-    ends = np.cumsum([0.0, *(one.length for one in sections)])
+    ends = np.cumsum([0.0, *(section.length for section in sections)])
     nodes = np.unique(np.concatenate([ends, np.clip(places, 0.0, ends[-1])]))
     nodes = nodes[np.append(True, np.diff(nodes) > 1e-9 * ends[-1])]
     which = np.clip(np.searchsorted(ends, (nodes[1:] + nodes[:-1]) / 2) - 1, 0, len(sections) - 1)
@@ -111,5 +111,5 @@ def _flexibility(total, free, wanted):
     inverse = np.zeros(total.shape)
     at = np.flatnonzero(free)
     inverse[np.ix_(at, at)] = np.linalg.inv(total[np.ix_(at, at)])
-    found = inverse[np.ix_(wanted, wanted)]
-    return (found + found.T) / 2
+    flexibility = inverse[np.ix_(wanted, wanted)]
+    return (flexibility + flexibility.T) / 2

@@ -11,13 +11,13 @@ from .support import UNITS, Support
 
 TWIST = 0.1  # largest twist [rad]: round steel at 300 N/mm2 twists so far over 13 diameters of its length
 REFUSE = 0.25  # largest approach, of the module, see `gearfe.stiffness.plausible`
-FITS = 0.01  # of a bore, by which a shaft may be thicker: a press fit, and rounded numbers
+FITS = 0.01  # by this part of the bore a shaft may be thicker: a press fit, and rounded numbers
 
 
 def supports_of(pair, supports, forces=(), face=None):
     """What holds the hubs of pinion and wheel, None where rigid; None if both are.
 
-    ValueError if it is something else, a shaft does not carry its gear, or a hub gives way so far under one of the `forces`
+    ValueError if something else is given, a shaft does not carry its gear, or a hub gives way so far under one of the `forces`
     [N] that the teeth leave each other.
     """
     if supports is None:
@@ -65,17 +65,17 @@ def _check_way(name, gear, held, force, beta_b):
         "tilt": force * (cross * (arm + gear.b / 2) + tilt * arm * gear.b / 2),
         "axial": axial * hub.axial,
     }
-    worst, twist, limit = max(ways, key=lambda what: ways[what]), force * gear.r_b * hub.torsion, REFUSE * gear.m_n
+    worst, twist, limit = max(ways, key=lambda way: ways[way]), force * gear.r_b * hub.torsion, REFUSE * gear.m_n
     if ways["radial"] + ways["tilt"] > limit or ways["axial"] > limit:
-        told = (
+        problem = (
             f"its teeth give way by {ways[worst]:.3g} mm, but beyond {limit:g} mm, {100 * REFUSE:g} % of the module, they leave"
         )
         raise ValueError(
-            f"the {name}'s {_springs(held, worst)}: under {force:g} N {told} those of the other gear: {_units(held, worst)}"
+            f"the {name}'s {_springs(held, worst)}: under {force:g} N {problem} those of the other gear: {_units(held, worst)}"
         )
     if twist > TWIST:
-        told = f"it twists by {twist:.3g} rad, but shafts twist by less than {TWIST:g} rad"
-        raise ValueError(f"the {name}'s {_springs(held, 'torsion')}: under {force:g} N {told}: {_units(held, 'torsion')}")
+        problem = f"it twists by {twist:.3g} rad, but shafts twist by less than {TWIST:g} rad"
+        raise ValueError(f"the {name}'s {_springs(held, 'torsion')}: under {force:g} N {problem}: {_units(held, 'torsion')}")
 
 
 def _springs(held, what):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..material import Material
 
 THICKEST = 100  # largest diameter of a shaft over its smallest: more is a slip, and too much for the rounding of the solve
-NONE = 1e-10  # of the largest coupling possible: rounding
+NONE = 1e-10  # of the largest coupling possible: a smaller one is rounding
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +70,8 @@ class Shaft:
     integral: bool = False
 
     def __post_init__(self) -> None:
-        """Bring all into one form, and refuse what is no shaft."""
-        object.__setattr__(self, "segments", tuple(_segment(i, one) for i, one in enumerate(_rows(self.segments))))
+        """Bring all numbers into one form, and reject a shaft that cannot be."""
+        object.__setattr__(self, "segments", tuple(_segment(i, row) for i, row in enumerate(_rows(self.segments))))
         thick, thin = (pick(segment.diameter for segment in self.segments) for pick in (max, min))
         if thick > THICKEST * thin:
             raise ValueError(
@@ -80,8 +80,8 @@ class Shaft:
             )
         object.__setattr__(self, "bearings", _two("bearings", self.bearings, "positions [mm]"))
         stiff = self.bearing_stiffness
-        both = (stiff, stiff) if isinstance(stiff, Real) else stiff
-        object.__setattr__(self, "bearing_stiffness", _two("bearing_stiffness", both, "stiffnesses [N/mm]", least=0.0))
+        stiffnesses = (stiff, stiff) if isinstance(stiff, Real) else stiff
+        object.__setattr__(self, "bearing_stiffness", _two("bearing_stiffness", stiffnesses, "stiffnesses [N/mm]", least=0.0))
         if not hasattr(self.material, "shear_modulus"):
             raise ValueError(f"shaft: material = {self.material!r}, but give a Material")
         at = {"gear": self.gear, "bearings": self.bearings[0], "bearings ": self.bearings[1]}
@@ -130,7 +130,7 @@ class Shaft:
         )
 
     def untilted(self) -> Support:
-        """Its springs, of which a force only moves the gear and tilts it no more."""
+        """Its springs without their coupling: a force moves the gear, but does not tilt it."""
         return self.support().untilted()
 
     def support(self) -> Support:
@@ -181,9 +181,9 @@ def _segment(i, row):
 
 def _two(name, values, what, least=-math.inf):
     try:
-        found = tuple(float(value) for value in values)
+        numbers = tuple(float(value) for value in values)
     except (TypeError, ValueError):
-        found = ()
-    if len(found) != 2 or any(math.isnan(value) or not value > least for value in found):
+        numbers = ()
+    if len(numbers) != 2 or any(math.isnan(value) or not value > least for value in numbers):
         raise ValueError(f"shaft: {name} = {values!r}, but give two {what}{' > 0' if least == 0 else ''}")
-    return found
+    return numbers

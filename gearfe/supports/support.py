@@ -55,7 +55,7 @@ class Support:
     coupling: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse springs that do not hold."""
+        """Reject stiffnesses that are not positive, and a coupling that is too large for them."""
         for name in self.__slots__:
             object.__setattr__(self, name, number(f"support: {name}", getattr(self, name)))
         for name, unit in UNITS.items():
@@ -72,7 +72,7 @@ class Support:
 
     @property
     def integral(self) -> bool:
-        """Whether the gear is one piece with what holds it: never of springs."""
+        """Whether the gear is one piece with what holds it: never on springs."""
         return False
 
     @property
@@ -81,7 +81,7 @@ class Support:
         return self.coupling != 0
 
     def untilted(self) -> "Support":
-        """The same without coupling: a force moves the gear, and tilts it no more."""
+        """The same springs without coupling: a force moves the gear, but does not tilt it."""
         return replace(self, coupling=0.0)
 
     def hub(self) -> Hub:

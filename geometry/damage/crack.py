@@ -16,7 +16,7 @@ from ..tooth.profile import cartesian, fillet, fillet_length, form_point, root_c
 from .given import finite, tooth_and_side
 
 STARTS = ("30deg", "root", "middle")
-SLACK = 1e-9  # of the open part of a crack
+SLACK = 1e-9  # rounding of the open part of a crack
 SHORTEST = 1e-4  # length of a crack in modules; k falls by 1e-5 by it, and meshes cannot be that small
 
 
@@ -78,7 +78,7 @@ class Crack:
     removes_contact: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        """Refuse contradictory descriptions."""
+        """Reject contradictory descriptions."""
         for name in ("level", "length", "angle"):
             value = getattr(self, name)
             if value is not None:
@@ -165,8 +165,8 @@ def _numbers(name, values, counts):
     except TypeError:
         values = (values,)
     if len(values) not in counts or not all(map(is_finite, values)):
-        more = ", or three with the one half-way" if 3 in counts else ""
-        raise ValueError(f"{name} = {values!r}, but give two finite numbers, one for each end{more}")
+        third = ", or three with the one half-way" if 3 in counts else ""
+        raise ValueError(f"{name} = {values!r}, but give two finite numbers, one for each end{third}")
     return tuple(float(value) for value in values)
 
 

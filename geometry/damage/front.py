@@ -12,10 +12,10 @@ from scipy.optimize import brentq
 
 from .crack import SLACK, Crack, deepest, extremes, front
 
-# Down to where a mesh follows a front that runs out, in the largest depth: the first at which it does not fold.
+# Depths, in parts of the largest, down to which a mesh follows a front that runs out: the first at which it does not fold.
 LEAST = 0.1, 0.15, 0.2, 0.25
-# A front that runs out ends at that part of the least depth: what is lost beyond, int depth**2 dz to the first order, is added
-# before if the front is straight there.
+# A front that runs out ends at this part of the least depth: then as much of int depth**2 dz is added before as is lost beyond,
+# if the front is straight there.
 END = 2 / 3
 STEEP = 3.0  # how many times deeper a front gets, at most, over the height of a layer of elements where it is shallowest
 SAMPLES = 801  # heights at which a front is looked at first
@@ -107,8 +107,8 @@ class Front:
         """Parts of the width where the crack is open: ``((low, high), ...)`` [mm]."""
         places = [self.ends[0], *self.crossings(END * self.least), self.ends[1]]
         middles = (np.array(places[1:]) + places[:-1]) / 2
-        there = front(self.crack, self.width, middles)[0] > END * self.least * deepest(self.crack)
-        return tuple((a, b) for a, b, inside in zip(places[:-1], places[1:], there, strict=True) if inside)
+        deep = front(self.crack, self.width, middles)[0] > END * self.least * deepest(self.crack)
+        return tuple((a, b) for a, b, inside in zip(places[:-1], places[1:], deep, strict=True) if inside)
 
     def runs_out(self, end):
         """Whether the crack becomes shallow towards the height `end` of one of its parts, instead of ending deep."""

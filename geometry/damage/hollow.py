@@ -27,7 +27,7 @@ def on_line(gear, hollow, roll, z):
     """A straight contact line beside a hollow: roll lengths and heights [mm] at its ends, t = 0 and t = 1.
 
     Returns the coefficients of its place u(v) [mm], quadratic in ``v = (z - hollow.z) / hollow.reach[1]``, which is between -1
-    and 1 in the hollow whatever the line's length; and what makes ranges of t of ranges of v, those of some length.
+    and 1 in the hollow whatever the line's length; and a function that turns ranges of v into ranges of t and drops empty ones.
     """
     slope, reach = z[1] - z[0], hollow.reach[1]
     change = (roll[1] - roll[0]) / slope
@@ -126,8 +126,8 @@ def intervals(gear, hollows, arc):
     """
     arc = np.asarray(arc, dtype=float)
     low, high = np.zeros((2, len(hollows), *arc.shape))
-    for k, one in enumerate(hollows):
-        low[k], high[k] = (np.clip(end, 0, gear.b) for end in one.span(arc - centre_arc(gear, one)))
+    for k, hollow in enumerate(hollows):
+        low[k], high[k] = (np.clip(end, 0, gear.b) for end in hollow.span(arc - centre_arc(gear, hollow)))
     return low, high
 
 

@@ -35,7 +35,7 @@ def removed_volume(gear, hollows):
     z, and ``dV = (1 - t / roll) ds dt dz`` (on a ring ``1 + t / roll``). Along t a hollow is an interval, because its
     outline is convex; over s and z the lengths are summed on a fine grid.
     """
-    return sum(_taken(gear, one, hollows[:k]) for k, one in enumerate(hollows))
+    return sum(_taken(gear, hollow, hollows[:k]) for k, hollow in enumerate(hollows))
 
 
 def _taken(gear, one, before):

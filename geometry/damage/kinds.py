@@ -22,7 +22,7 @@ NAMES = [kind.__name__ for kind in get_args(Damage)]
 
 def are(given: object, kind: type | UnionType = Damage) -> bool:
     """Whether it is a list or tuple of damage, or of one `kind` of it."""
-    return isinstance(given, (list, tuple)) and all(isinstance(one, kind) for one in given)
+    return isinstance(given, (list, tuple)) and all(isinstance(defect, kind) for defect in given)
 
 
 def check_crack(crack: object) -> None:
@@ -45,37 +45,37 @@ def _listed(damage, side):
         return [damage]
     if damage and not isinstance(damage, (list, tuple)):
         raise ValueError(f"damage of the {side}: {damage!r}, but give a {', a '.join(NAMES)} or a list of them")
-    for each in damage or ():
-        if not isinstance(each, Damage):
-            raise ValueError(f"damage of the {side}: {each!r} is neither a {' nor a '.join(NAMES)}")
+    for defect in damage or ():
+        if not isinstance(defect, Damage):
+            raise ValueError(f"damage of the {side}: {defect!r} is neither a {' nor a '.join(NAMES)}")
     return list(damage or ())
 
 
 def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     """What weakens the body, and what takes contact away: two tuples."""
     damage = tuple(damage)
-    weakens, removes = (tuple(hurt for hurt in damage if hurt.removes_contact is there) for there in (False, True))
+    weakens, removes = (tuple(defect for defect in damage if defect.removes_contact is removing) for removing in (False, True))
     return weakens, removes
 
 
 def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> str:
     """Damage of gears in words: one of a kind says its size, of several there is the number."""
-    found: dict[str, list[str]] = {}
-    for side, own in damage.items():
-        for one in own:
-            found.setdefault(one.nouns[1], []).append(one.told(gears[side]))
-    order = [kind.nouns[1] for kind in get_args(Damage) if kind.nouns[1] in found]
-    *others, last = [found[noun][0] if len(found[noun]) == 1 else f"{len(found[noun])} {noun}" for noun in order] or [""]
+    by_noun: dict[str, list[str]] = {}
+    for side, gear_damage in damage.items():
+        for defect in gear_damage:
+            by_noun.setdefault(defect.nouns[1], []).append(defect.told(gears[side]))
+    order = [kind.nouns[1] for kind in get_args(Damage) if kind.nouns[1] in by_noun]
+    *others, last = [by_noun[noun][0] if len(by_noun[noun]) == 1 else f"{len(by_noun[noun])} {noun}" for noun in order] or [""]
     return f"{', '.join(others)} and {last}" if others else last
 
 
 def called(damage: Iterable[Damage]) -> str:
     """What a tooth with such damage is called: cracked, pitted or spalled; damaged if it is more than one of these."""
-    words = {hurt.called for hurt in damage}
-    return words.pop() if len(words) == 1 else "damaged"
+    names = {defect.called for defect in damage}
+    return names.pop() if len(names) == 1 else "damaged"
 
 
 def why_wide(damage: Sequence[Damage]) -> str:
     """Which damage no transverse section shows, because it changes along the width; empty if none does."""
-    nouns = {hurt.nouns[1] for hurt in damage if not hurt.through}
+    nouns = {defect.nouns[1] for defect in damage if not defect.through}
     return next((f"{kind.nouns[1]} change along the width" for kind in get_args(Damage) if kind.nouns[1] in nouns), "")

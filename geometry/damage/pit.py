@@ -69,7 +69,7 @@ class Pit:
     through: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        """Refuse contradictory descriptions."""
+        """Reject contradictory descriptions."""
         for name in ("radius", "z", "depth", "angle"):
             object.__setattr__(self, name, finite("pit", name, getattr(self, name)))
         try:
@@ -107,7 +107,7 @@ class Pit:
         return profile(gear, self)
 
     def told(self, gear: Gear) -> str:
-        """It in words."""
+        """The pit in words."""
         return "1 pit"
 
     def doubts(self, gear: Gear) -> str:
@@ -155,9 +155,9 @@ class Pit:
         inside = across * _times(w, w, 5) + 2 * mixed * _times(u, w, 5) + along * _times(u, u, 5)
         inside[0] -= 1.0
         inside = inside[: np.flatnonzero(np.abs(inside) > 1e-15 * np.abs(inside).max())[-1] + 1]
-        found = np.polynomial.polynomial.polyroots(inside)
-        found = found.real[np.abs(found.imag) < 1e-9]
-        places = np.sort(np.concatenate([[-1.0, 1.0], found[np.abs(found) < 1]]))
+        roots = np.polynomial.polynomial.polyroots(inside)
+        roots = roots.real[np.abs(roots.imag) < 1e-9]
+        places = np.sort(np.concatenate([[-1.0, 1.0], roots[np.abs(roots) < 1]]))
         parts = zip(places[:-1], places[1:], strict=True)
         return ranges([(a, b) for a, b in parts if np.polynomial.polynomial.polyval((a + b) / 2, inside) < 0])
 

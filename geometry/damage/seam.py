@@ -38,12 +38,12 @@ def _left_part(points, triangles, node, following, fan, sides):
                 seeds.append(tri)
     if not seeds:
         raise RuntimeError("the crack is not made of mesh edges: gmsh did not embed it; change the crack or the resolution")
-    found, waiting = set(seeds), list(seeds)
+    left, waiting = set(seeds), list(seeds)
     while waiting:
         tri = waiting.pop()
         for other in fan:
             shared = corners[tri] & corners[other]
-            if other not in found and len(shared) == 2 and node in shared and tuple(sorted(shared)) not in sides:
-                found.add(other)
+            if other not in left and len(shared) == 2 and node in shared and tuple(sorted(shared)) not in sides:
+                left.add(other)
                 waiting.append(other)
-    return found
+    return left

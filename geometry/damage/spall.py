@@ -66,7 +66,7 @@ class Spall:
     angle: ClassVar[float] = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse contradictory descriptions."""
+        """Reject contradictory descriptions."""
         sides = self.sides if isinstance(self.sides, (tuple, list)) else ()
         if len(sides) != 2:
             raise ValueError(f"sides = {self.sides!r}, but give two lengths [mm]: along the profile, along the width")
@@ -102,7 +102,7 @@ class Spall:
         return profile(gear, self)
 
     def told(self, gear: Gear) -> str:
-        """It in words."""
+        """The spall in words, with its size."""
         return f"{self.sides[0]:.3g} x {self.sides[1]:.3g} mm spall"
 
     def doubts(self, gear: Gear) -> str:
@@ -116,7 +116,7 @@ class Spall:
     def covers(self, u: Any, w: Any) -> NDArray[np.bool_]:
         """Whether places are in it: `u` along the profile, `w` along the width from its centre [mm]."""
         away = [np.abs(at) - half for at, half in zip((u, w), self.axes, strict=True)]
-        beside = [np.maximum(one + self.corner, 0.0) for one in away]
+        beside = [np.maximum(distance + self.corner, 0.0) for distance in away]
         return (
             (away[0] <= 0) & (away[1] <= 0) & ((beside[0] ** 2 + beside[1] ** 2 <= self.corner**2) | (beside[0] * beside[1] == 0))
         )
@@ -158,8 +158,8 @@ class Spall:
             at = (p - i * (1 - rounded[0])) / rounded[0], (q - j * (1 - rounded[1])) / rounded[1]
             parts.append(in_circle(*at, dp / rounded[0], dq / rounded[1], 1e-24))
         low, high = np.array(parts).transpose(1, 0, 2, 3)
-        there = high > low
-        low, high = np.where(there, low, np.inf).min(axis=0), np.where(there, high, -np.inf).max(axis=0)
+        hit = high > low
+        low, high = np.where(hit, low, np.inf).min(axis=0), np.where(hit, high, -np.inf).max(axis=0)
         return np.where(high > low, low, 0.0), np.where(high > low, high, 0.0)
 
     def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
@@ -167,19 +167,19 @@ class Spall:
 
         The line as of `geometry.damage.hollow.on_line`.
         """
-        (u, ranges), reach, one = on_line(gear, self, roll, z), self.axes[1], np.array([1.0, 0.0, 0.0])
+        (u, ranges), reach, unit = on_line(gear, self, roll, z), self.axes[1], np.array([1.0, 0.0, 0.0])
         inner = [half - self.corner for half in self.axes]
-        limits = [u - sign * half * one for half in (self.axes[0], inner[0]) for sign in (-1, 1)]
+        limits = [u - sign * half * unit for half in (self.axes[0], inner[0]) for sign in (-1, 1)]
         for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1)) if self.corner else ():
-            circle = _square(*(u - i * inner[0] * one))
-            circle[:3] += _square(-j * inner[1], reach) - self.corner**2 * one
+            circle = _square(*(u - i * inner[0] * unit))
+            circle[:3] += _square(-j * inner[1], reach) - self.corner**2 * unit
             limits.append(circle)
-        found = np.concatenate([_roots(limit) for limit in limits])
-        places = np.unique([-1.0, *found[np.abs(found) < 1], 1.0])
+        roots = np.concatenate([_roots(limit) for limit in limits])
+        places = np.unique([-1.0, *roots[np.abs(roots) < 1], 1.0])
         middles = (places[1:] + places[:-1]) / 2
-        there = self.covers(np.polynomial.polynomial.polyval(middles, u), reach * middles)
+        covered = self.covers(np.polynomial.polynomial.polyval(middles, u), reach * middles)
         ends: list[list[float]] = []
-        for first, last, inside in zip(places[:-1], places[1:], there, strict=True):
+        for first, last, inside in zip(places[:-1], places[1:], covered, strict=True):
             if inside and ends and ends[-1][1] == first:
                 ends[-1][1] = last
             elif inside:
@@ -197,8 +197,8 @@ def _roots(coefficients):
     size = np.abs(coefficients)
     if size[0] > size[1:].sum() or not size.any():
         return np.zeros(0)
-    found = np.polynomial.polynomial.polyroots(coefficients[: np.flatnonzero(size > 1e-15 * size.max())[-1] + 1])
-    return found.real[np.abs(found.imag) < 1e-9]
+    roots = np.polynomial.polynomial.polyroots(coefficients[: np.flatnonzero(size > 1e-15 * size.max())[-1] + 1])
+    return roots.real[np.abs(roots.imag) < 1e-9]
 
 
 def _in_box(p, q, dp, dq, wide, high):

@@ -13,7 +13,7 @@ from ..damage.front import LEAST, Front, shallowest
 SPARE = 0.8  # a mesh must not fold at this part of the least depth that it follows
 REACH = 1.2, 0.8  # how far from the crack vertices move: in its lengths, and at least [m_n]
 STIFFER = 0.5  # small triangles resist as their area to minus this power: they keep their shape, the large ones give way
-# Triangles that a crack of depth nothing would turn over resist that so many times more; they are looked for so often.
+# How many times more triangles resist that a crack of no depth would turn over, and how often these are looked for.
 HARD, ROUNDS = 1000.0, 10
 
 
@@ -62,11 +62,11 @@ def shifts(points, triangles, fixed, line, reach):
     length = math.hypot(*along)
     place = along @ (points - ends[:, :1]) / length
     away = np.hypot(*(points - ends[:, :1] - along[:, None] * np.clip(place / length, 0.0, 1.0)))
-    still, own = np.union1d(fixed, np.flatnonzero(away > reach)), np.unique(line)
+    still, on_crack = np.union1d(fixed, np.flatnonzero(away > reach)), np.unique(line)
     out = np.zeros(place.size)
-    out[own] = place[own]
+    out[on_crack] = place[on_crack]
     out[still] = 0.0
-    free = np.setdiff1d(np.arange(place.size), np.union1d(own, still))
+    free = np.setdiff1d(np.arange(place.size), np.union1d(on_crack, still))
     slope, area = _slopes(points, triangles)
     good = area > 1e-9 * area.max()
     slope, area, triangles = slope[..., good], area[good], triangles[:, good]
@@ -80,10 +80,10 @@ def shifts(points, triangles, fixed, line, reach):
         force = np.bincount(triangles.ravel(), (rise * hard).ravel(), out.size)
         out[free] = 0.0
         out[free] = np.linalg.solve(matrix[np.ix_(free, free)], (force - matrix @ out)[free])
-        more = steep | ((rise * out[triangles]).sum(axis=0) > 1)
-        if (more == steep).all():
+        steeper = steep | ((rise * out[triangles]).sum(axis=0) > 1)
+        if (steeper == steep).all():
             break
-        steep = more
+        steep = steeper
     return along[:, None] / length * out
 
 

@@ -37,11 +37,11 @@ def section(gear, crack, teeth):
             for number, (kind, radius, angle, cut) in enumerate(pieces, 1):
                 closing = teeth is None and (tooth, side, number) == (own_teeth[-1], "loaded", len(pieces))
                 places = zip(radius[1 : -1 if closing else None], angle[1 : -1 if closing else None], strict=True)
-                own = [last, *(at(cartesian(r, a + tooth * pitch)) for r, a in places), *([first] if closing else [])]
+                nodes = [last, *(at(cartesian(r, a + tooth * pitch)) for r, a in places), *([first] if closing else [])]
                 if cut and side == "unloaded":
-                    marks["unloaded"], before = own[0], len(rim)
-                (above if "unloaded" in marks and "loaded" not in marks else rim).append(join(kind, *own))
-                last = own[-1]
+                    marks["unloaded"], before = nodes[0], len(rim)
+                (above if "unloaded" in marks and "loaded" not in marks else rim).append(join(kind, *nodes))
+                last = nodes[-1]
                 if cut and side == "loaded":
                     marks["loaded"] = last
     hole = []
@@ -100,8 +100,8 @@ def on_outline(gear, radius, angle):
         (np.full(dense, gear.r_f), np.linspace(root_half_angle(gear), max(pitch / 2, root_half_angle(gear)), dense)),
     ]
     curve = [np.concatenate([piece[k] for piece in pieces]) for k in (0, 1)]
-    found = cKDTree(cartesian(*curve).T).query(cartesian(radius, np.abs(angle - tooth)).T)[1]
-    return curve[0][found], tooth + np.copysign(curve[1][found], angle - tooth)
+    nearest = cKDTree(cartesian(*curve).T).query(cartesian(radius, np.abs(angle - tooth)).T)[1]
+    return curve[0][nearest], tooth + np.copysign(curve[1][nearest], angle - tooth)
 
 
 def fine(gear, crack, size, teeth):

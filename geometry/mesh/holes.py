@@ -149,7 +149,7 @@ def _attempt(gear, pits, crack, teeth, size, strips, stretch):
 
 
 def _check_place(gear, pits, crack):
-    places = {one.tooth % gear.z for one in (*pits, *([] if crack is None else [crack]))}
+    places = {defect.tooth % gear.z for defect in (*pits, *([] if crack is None else [crack]))}
     if len(places) > 1:
         raise ValueError(f"damage on teeth {sorted(places)}, but holes are cut into one tooth at a time: give those of one")
     for pit in pits:
@@ -223,8 +223,8 @@ def _triangles(cells):
 
 def skin(cells):
     """Triangles ``(3, k)`` that belong to one tet only."""
-    found, count = np.unique(_triangles(cells), axis=1, return_counts=True)
-    return found[:, count == 1]
+    faces, count = np.unique(_triangles(cells), axis=1, return_counts=True)
+    return faces[:, count == 1]
 
 
 def _named(gear, points, cells, plug, teeth):
@@ -249,8 +249,8 @@ def _named(gear, points, cells, plug, teeth):
         on[f"flank {tooth}"] = (np.abs(off) * radius < near) & (roll > low - near) & (roll < high + near)
     near_to = np.array(on_outline(gear, radius, angle))
     on["outline"] = np.hypot(*(cartesian(radius, angle) - cartesian(*near_to))) < 10 * near
-    own = outer[:, kept]
-    found = {name: own[:, mask[own].all(axis=0)] for name, mask in on.items()}
-    ends = np.isin(own, found["held"]).all(axis=0) | (on["end 0"] | on["end b"])[own].all(axis=0)
-    found["outline"] = own[:, on["outline"][own].all(axis=0) & ~ends]
-    return found | {"pits": outer[:, ~kept]}
+    uncut = outer[:, kept]
+    faces = {name: uncut[:, mask[uncut].all(axis=0)] for name, mask in on.items()}
+    ends = np.isin(uncut, faces["held"]).all(axis=0) | (on["end 0"] | on["end b"])[uncut].all(axis=0)
+    faces["outline"] = uncut[:, on["outline"][uncut].all(axis=0) & ~ends]
+    return faces | {"pits": outer[:, ~kept]}

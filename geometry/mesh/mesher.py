@@ -87,8 +87,8 @@ def triangulate(loops, chains, ring, free=()):
 
     Nodes keep their order: loops, chains, free points, then those that gmsh adds.
     """
-    given = np.hstack([*loops, *(points for _, points in chains), np.reshape(free, (-1, 2)).T])
-    unit = np.abs(given).max() / SEEN
+    nodes = np.hstack([*loops, *(points for _, points in chains), np.reshape(free, (-1, 2)).T])
+    unit = np.abs(nodes).max() / SEEN
     loops, free = [np.round(points / unit, DECIMALS) for points in loops], np.round(np.asarray(free) / unit, DECIMALS)
     chains = [(start, np.round(points / unit, DECIMALS)) for start, points in chains]
     with gmsh_session() as gmsh:
@@ -122,7 +122,7 @@ def triangulate(loops, chains, ring, free=()):
     place = np.empty(int(tags.max()) + 1, dtype=np.int64)
     place[tags[order]] = np.arange(tags.size)
     points = unit * coords.reshape(-1, 3)[order, :2].T
-    points[:, : given.shape[1]] = given
+    points[:, : nodes.shape[1]] = nodes
     return points, place[triangles].T
 
 
@@ -166,18 +166,18 @@ def quadrangulate(points, lines, surfaces, algorithm):
         for name, value in (("Algorithm", algorithm), ("RecombinationAlgorithm", 3), ("MeshSizeFromPoints", 0)):
             gmsh.option.setNumber(f"Mesh.{name}", value)
         mesh.generate(2)
-        found, coords, _ = mesh.getNodes()
-        place = np.full(int(found.max()) + 1, -1)
+        node_tags, coords, _ = mesh.getNodes()
+        place = np.full(int(node_tags.max()) + 1, -1)
         for node, tag in tags.items():
             place[int(mesh.getNodes(0, tag)[0][0])] = node
         for curve, middle in zip(curves, lines[:, 1], strict=True):
             place[mesh.getNodes(1, curve)[0].astype(int)] = middle
         kinds = {int(kind) for face in faces for kind in mesh.getElements(2, face)[0]}
         cells = [mesh.getElementsByType(3, face)[1].astype(int).reshape(-1, 4) for face in faces]
-    found = found.astype(int)
-    known = place[found] >= 0
-    if kinds != {3} or not np.array_equal(np.sort(place[found[known]]), used):
+    node_tags = node_tags.astype(int)
+    known = place[node_tags] >= 0
+    if kinds != {3} or not np.array_equal(np.sort(place[node_tags[known]]), used):
         raise RuntimeError("gmsh did not fill the section with quads between the given nodes; change the resolution")
-    place[found[~known]] = points.shape[1] + np.arange((~known).sum())
+    place[node_tags[~known]] = points.shape[1] + np.arange((~known).sum())
     points = np.hstack([points, unit * coords.reshape(-1, 3)[~known, :2].T])
     return points, place[np.concatenate(cells)].T, np.repeat(np.arange(len(cells)), [len(c) for c in cells])

@@ -8,7 +8,7 @@ import numpy as np
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
 
 NEAR = 3  # teeth beside the loaded ones that get the edge length `size`; those beyond get `far_size`
-MERGED = 1e-6  # m_n: a shorter root arc between two fillets is none
+MERGED = 1e-6  # a root arc between two fillets that is shorter than this is left out [m_n]
 GROWTH = 0.25  # of the edge length per length, away from fine places
 
 

@@ -39,8 +39,8 @@ def periodic_sector(gear, *, refine=1.0):
     """Mesh one pitch sector of a gear; `refine` divides the edge lengths."""
     unit, pitch = gear.m_n / refine, math.pi / gear.z
     roll = stations(gear, FLANK * unit)
-    one = half(gear, roll, FILLET * unit, COARSE * unit)
-    radius, angle = np.append(one.radius, gear.r_f), np.append(one.angle, pitch)
+    half_tooth = half(gear, roll, FILLET * unit, COARSE * unit)
+    radius, angle = np.append(half_tooth.radius, gear.r_f), np.append(half_tooth.angle, pitch)
     thick = abs(gear.r_f - gear.held)
     cells = math.ceil((RIM if gear.internal else 2) * refine)
     fine = 2 * pitch * gear.held / cells
@@ -60,6 +60,6 @@ def periodic_sector(gear, *, refine=1.0):
     mesh, _ = fill(cartesian(r, a), np.zeros((2, 0)))
     count = first[-1]
     left, _, _, right, below = ((np.arange(first[k], first[k + 1] + 1)) % count for k in range(5))
-    up = one.flank  # from the tip to the form point, from the middle of the tip
+    up = half_tooth.flank  # from the tip to the form point, from the middle of the tip
     flanks = (first[2] + up)[::-1], (first[2] - up)[::-1]
     return PeriodicSector(gear, mesh, left, right[::-1], below[::-1], flanks, roll)

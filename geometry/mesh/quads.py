@@ -20,7 +20,7 @@ from .outline import spaced
 # largest crack edge, crack tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
 ATTEMPTS = tuple((finer, algorithm) for own in ((5, 6), (8,)) for finer in (1.0, 1.07, 1.15, 1.24, 1.4, 1.6) for algorithm in own)
-# finer, gmsh's algorithm: it may leave triangles, or fold quads; 8 comes last, for it gives one section now this mesh, now that
+# finer, gmsh's algorithm: it may leave triangles, or fold quads; 8 comes last: it does not always give the same mesh
 GROWTH = 0.4  # of the edge length per length, away from fine places
 BELOW = 2  # of the pieces of half a tooth: the one below the flank
 
@@ -111,7 +111,7 @@ def quad_section(gear, *, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     check_single(gear, cracks)
     teeth = [tooth % gear.z for tooth in loaded]
     if isinstance(patches, Mapping):
-        patches = {tooth % gear.z: found for tooth, found in patches.items()}
+        patches = {tooth % gear.z: places for tooth, places in patches.items()}
     else:
         patches = dict.fromkeys(teeth, patches)
     for finer, algorithm in ATTEMPTS:
@@ -127,15 +127,15 @@ def _attempt(gear, teeth, cracks, patches, size, algorithm):
     draft, damaged = _Draft(), {}
     for number, crack in enumerate(cracks):
         damaged.setdefault(crack.tooth % gear.z, []).append((number, crack))
-    mouths = {tooth: _mouths(gear, size, found) for tooth, found in damaged.items()}
+    mouths = {tooth: _mouths(gear, size, tooth_cracks) for tooth, tooth_cracks in damaged.items()}
     outline, flanks, fillets, marks = _rim(gear, draft, size, teeth, mouths, patches)
     rim = abs(gear.r_f - gear.held)  # two quads through it at least: with one a ring's section is 0.2 ... 0.5 % too stiff
     count = max(8, math.ceil(math.pi * gear.held / min(rim / 2, 3 * size["far"])))
     turn = _quarters(np.linspace(0.0, 2 * math.pi, count + 1))
     bore = draft.add(gear.held * np.array([np.sin(turn), np.cos(turn)]), closed=True)
     body, tops, cuts = list(outline), [], []
-    for tooth, found in sorted(damaged.items()):
-        line, cut = _cut(gear, draft, size, tooth, found, mouths[tooth], marks)
+    for tooth, tooth_cracks in sorted(damaged.items()):
+        line, cut = _cut(gear, draft, size, tooth, tooth_cracks, mouths[tooth], marks)
         ends = {draft.lines[i - 1][0]: k for k, i in enumerate(outline)}
         first, last = ends[marks[tooth, "unloaded"]], ends[marks[tooth, "loaded"]]
         above = [outline[i % len(outline)] for i in range(first, last if last > first else last + len(outline))]
@@ -160,11 +160,11 @@ class _Draft:
         """Lines along points ``(2, 4 k + 1)``: every fourth an end, in between quarter, middle, quarter; numbers from 1."""
         numbers, end = [], points.shape[1] - 1
         for i in range(0, points.shape[1], 2):
-            known = numbers[0] if closed and i == end else {0: first, end: last}.get(i)
-            if known is None:
-                known = len(self.points)
+            number = numbers[0] if closed and i == end else {0: first, end: last}.get(i)
+            if number is None:
+                number = len(self.points)
                 self.points.append(points[:, i])
-            numbers.append(known)
+            numbers.append(number)
         for i, pair in enumerate(zip(numbers[:-1], numbers[1:], strict=True)):
             self.middles[tuple(sorted(pair))] = points[:, 2 * i + 1]
         start = len(self.lines)
@@ -173,8 +173,8 @@ class _Draft:
 
     def edges(self, lines):
         """Start and end nodes ``(2, 2 n)`` of the halves of `lines`."""
-        found = np.array(self.lines)[np.array(lines) - 1]
-        return np.stack([found[:, :2], found[:, 1:]], axis=1).reshape(-1, 2).T
+        nodes = np.array(self.lines)[np.array(lines) - 1]
+        return np.stack([nodes[:, :2], nodes[:, 1:]], axis=1).reshape(-1, 2).T
 
 
 def _quarters(values):
@@ -184,9 +184,9 @@ def _quarters(values):
 
 def _mouths(gear, size, found):
     """By side of a cracked tooth: arc where the parting line starts and the edge length there [mm]."""
-    own = {crack.side: (start_arc(gear, crack), min(size["fillet"], _lengths(gear, crack)[-1] / 4)) for _, crack in found}
-    (only,) = [*own.values()][:1]
-    return {side: own.get(side, (only[0], size["fillet"])) for side in ("unloaded", "loaded")}
+    mouths = {crack.side: (start_arc(gear, crack), min(size["fillet"], _lengths(gear, crack)[-1] / 4)) for _, crack in found}
+    (only,) = [*mouths.values()][:1]
+    return {side: mouths.get(side, (only[0], size["fillet"])) for side in ("unloaded", "loaded")}
 
 
 def _lengths(gear, crack):
@@ -200,21 +200,21 @@ def _rim(gear, draft, size, teeth, mouths, patches):
     halves = [(tooth, side) for k in range(gear.z) for tooth, side in ((k, "loaded"), ((k + 1) % gear.z, "unloaded"))]
     for owner, side in halves:
         away = min(abs((owner - k + gear.z // 2) % gear.z - gear.z // 2) for k in [*teeth, *mouths])
-        own = side == "loaded" and owner in teeth
-        pieces = _half(gear, size, away, own, mouths.get(owner, {}).get(side), patches.get(owner, ()))
+        loaded = side == "loaded" and owner in teeth
+        pieces = _half(gear, size, away, loaded, mouths.get(owner, {}).get(side), patches.get(owner, ()))
         sign = 1 if side == "loaded" else -1
         for k, (name, radius, angle, params) in list(enumerate(pieces))[::sign]:
             final = (owner, side, name) == (0, "unloaded", "tip")
             points = cartesian(radius, 2 * math.pi * owner / gear.z + sign * angle)[:, ::sign]
-            found = draft.add(points, first=last, last=draft.lines[0][0] if final else None)
-            last = draft.lines[found[-1] - 1][2]
-            lines += found
-            if name == "flank" and own:
-                flanks[owner] = draft.edges(found)[::-1, ::-1], params[::-2]
-            if k == BELOW and own:
-                fillets[owner] = draft.edges(found)[::-1, ::-1]
+            added = draft.add(points, first=last, last=draft.lines[0][0] if final else None)
+            last = draft.lines[added[-1] - 1][2]
+            lines += added
+            if name == "flank" and loaded:
+                flanks[owner] = draft.edges(added)[::-1, ::-1], params[::-2]
+            if k == BELOW and loaded:
+                fillets[owner] = draft.edges(added)[::-1, ::-1]
             if name == "fillet":
-                marks[owner, side] = last if sign > 0 else draft.lines[found[0] - 1][0]
+                marks[owner, side] = last if sign > 0 else draft.lines[added[0] - 1][0]
     return lines, flanks, fillets, marks
 
 

@@ -37,11 +37,11 @@ def relieved_points(points: NDArray[np.float64], gear: Gear, form: FlankForm, te
         centre = 2 * np.pi * tooth / gear.z + gear.twist_rate * z
         angle = (np.arctan2(x, y) - centre + np.pi) % (2 * np.pi) - np.pi
         inside = np.flatnonzero((np.abs(angle) < np.pi / gear.z) & (gear.outward * (radius - gear.r_f) > 0))
-        r, own = radius[inside], form.at(z[inside])
+        r, form_at_z = radius[inside], form.at(z[inside])
         roll = np.sqrt(np.maximum(r**2 - gear.r_b**2, 0.0))
-        removed = own.removed(np.clip(roll, least, most)) + own.shift(np.full(inside.size, tooth))
+        removed = form_at_z.removed(np.clip(roll, least, most)) + form_at_z.shift(np.full(inside.size, tooth))
         inner = gear.outward * (r - gear.r_form) < 0
-        half = np.array([gear.half_thickness(one) for one in np.where(inner, gear.r_form, r).tolist()])
+        half = np.array([gear.half_thickness(node_radius) for node_radius in np.where(inner, gear.r_form, r).tolist()])
         across = np.clip((angle[inside] / half + 1) / 2, 0.0, 1.0)
         fade = np.clip((r - gear.r_f) / (gear.r_form - gear.r_f), 0.0, 1.0)
         turned = angle[inside] + centre[inside] - across * fade * removed / gear.r_b

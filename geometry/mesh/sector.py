@@ -29,7 +29,7 @@ SIZES = {
     "crack": 0.5,
     "crack tip": 0.004,
 }
-FLAT = 1e-6  # least area of a triangle, in squares of its longest edge: three points of a straight crack make one of nothing
+FLAT = 1e-6  # least area of a triangle, in squares of its longest edge: three points of a straight crack make one without area
 ON_LINE = 0.05  # points of a ring closer to the line of a crack than this part of the ring's radius lie on it
 CHECKED = 6  # order at whose quadrature points the maps are checked
 GROWTH = 1.2  # of the edge length per length, away from fine places
@@ -80,8 +80,8 @@ class Sector:
             for local, (a, b) in enumerate(ENDS):
                 wanted = self.triangles[a].astype(np.int64) * count + self.triangles[b]
                 at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), keys.size - 1)]
-                found = keys[at] == wanted
-                out[local][..., found] = np.moveaxis(along[at[found]], 0, -1)
+                matches = keys[at] == wanted
+                out[local][..., matches] = np.moveaxis(along[at[matches]], 0, -1)
         object.__setattr__(self, "edge_bulges", out)
 
 
@@ -149,8 +149,8 @@ def _apart(side, triangles, doubles):
 
 def _twice_areas(points, triangles):
     """Twice the areas of triangles, negative if their corners run clockwise."""
-    corner, one, two = points[:, triangles].transpose(1, 0, 2)
-    (x, y), (u, v) = one - corner, two - corner
+    corner, second, third = points[:, triangles].transpose(1, 0, 2)
+    (x, y), (u, v) = second - corner, third - corner
     return x * v - y * u
 
 

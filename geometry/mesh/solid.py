@@ -133,7 +133,7 @@ def follow_front(section, number, crack):
     ]
     others = [edges[[0, 2]].ravel() for k, edges, _ in lines if k != number]
     (line,) = [_chain(section, edges[[0, 2]], depth) for k, edges, depth in lines if k == number]
-    triangles = np.hstack([quads[list(own)] for own in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))])  # the corners of all quads
+    triangles = np.hstack([quads[list(at)] for at in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))])  # the corners of all quads
     arm = section.points[:, ends[1]] - section.points[:, ends[0]]
     place = ((section.points[:, middle] - section.points[:, ends[0]]) * arm).sum(axis=0) / (arm**2).sum(axis=0)
 
@@ -184,7 +184,7 @@ def extrude(section, levels, rate, moves=()):
     for k, cut in enumerate(section.cuts):
         faces[f"cut {k}"] = walls(cut.edges)
     held = np.unique(faces["held"])
-    faces = {name: found.reshape(8, -1) for name, found in faces.items()}
+    faces = {name: wall.reshape(8, -1) for name, wall in faces.items()}
     fillets = {k: walls(edges).reshape(8, -1) for k, edges in section.fillet.items()}
     return Solid(section.gear, points, cells, levels, section, held, faces, fillets=fillets)
 
@@ -212,14 +212,14 @@ def _open(made, cut, part, cracks):
     height = (made.levels[1:] + made.levels[:-1]) / 2
     opened = np.zeros((cut.crack.size, height.size), dtype=bool)
     for number in set(cut.crack.tolist()) - {-1}:
-        own = cut.crack == number
-        length = cut.depth[own].max()
+        of_crack = cut.crack == number
+        length = cut.depth[of_crack].max()
         if number in made.fronts:
             reach = sum((height > low) & (height < high) for low, high in made.fronts[number].open())
         else:
             crack = cracks[number]
             reach = open_part(crack, made.gear.b, height) / (1.0 if crack.bends else deepest(crack))
-        opened |= own[:, None] & (cut.depth[:, None] <= length * reach * (1 + 1e-9))
+        opened |= of_crack[:, None] & (cut.depth[:, None] <= length * reach * (1 + 1e-9))
     opened = opened.ravel()
     if not opened.any():
         raise ValueError("the crack is narrower or shallower than the mesh: give smaller layers or a larger refine")
@@ -230,10 +230,10 @@ def _open(made, cut, part, cracks):
     cells = made.cells.copy()
     cells[:, above] = double[cells[:, above]]
     for number in set(cut.crack.tolist()) - {-1}:
-        own = walls[:, opened & np.repeat(cut.crack == number, height.size)]
-        if own.size:
-            faces |= {f"crack {number} body": own, f"crack {number} tooth": double[own]}
+        of_crack = walls[:, opened & np.repeat(cut.crack == number, height.size)]
+        if of_crack.size:
+            faces |= {f"crack {number} body": of_crack, f"crack {number} tooth": double[of_crack]}
     above = {cracks[number].tooth % made.section.gear.z for number in set(cut.crack.tolist()) - {-1}}
-    fillets = {k: double[found] if k in above else found for k, found in made.fillets.items()}
+    fillets = {k: double[fillet] if k in above else fillet for k, fillet in made.fillets.items()}
     points = np.hstack([made.points, made.points[:, free]])
     return replace(made, points=points, cells=cells, faces=faces, fillets=fillets)

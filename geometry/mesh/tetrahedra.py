@@ -73,18 +73,18 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
         }
         lines = [make[kind]([tags[i] for i in at]) for kind, at in curves]
         flat = [occ.addPlaneSurface([occ.addCurveLoop([lines[i] for i in loop]) for loop in loops]) for loops in faces]
-        prisms = [next(one for one in occ.extrude([(2, face)], 0, 0, height) if one[0] == 3) for face in flat]
+        prisms = [next(entity for entity in occ.extrude([(2, face)], 0, 0, height) if entity[0] == 3) for face in flat]
         plugs = [_cylinder(occ, *cylinder) for cylinder in cylinders]
         if len(prisms) + len(plugs) > 1:
             _, made = occ.fragment(prisms[:1], prisms[1:] + plugs)
         else:
             made = [prisms]
         owner, outside = {}, set()
-        for face, own in enumerate(made[: len(prisms)]):
-            owner |= {tag: (face, -1) for _, tag in own}
-        for plug, own in reversed([*enumerate(made[len(prisms) :])]):
-            outside |= {tag for _, tag in own if tag not in owner}
-            owner |= {tag: (owner[tag][0], plug) for _, tag in own if tag in owner}
+        for face, solids in enumerate(made[: len(prisms)]):
+            owner |= {tag: (face, -1) for _, tag in solids}
+        for plug, solids in reversed([*enumerate(made[len(prisms) :])]):
+            outside |= {tag for _, tag in solids if tag not in owner}
+            owner |= {tag: (owner[tag][0], plug) for _, tag in solids if tag in owner}
         occ.remove([(3, tag) for tag in outside], recursive=True)
         occ.remove([(0, centre)])
         occ.synchronize()
@@ -99,9 +99,9 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
             raise UnmeshedError(
                 f"gmsh cannot mesh this solid: {error}; raise refine, or move what nearly touches apart"
             ) from error
-        found, coords, _ = mesh.getNodes()
-        place = np.full(int(found.max()) + 1, -1, dtype=np.int64)
-        place[found] = np.arange(found.size)
+        node_tags, coords, _ = mesh.getNodes()
+        place = np.full(int(node_tags.max()) + 1, -1, dtype=np.int64)
+        place[node_tags] = np.arange(node_tags.size)
         cells = {piece: [] for piece in volume}
         for tag, piece in owner.items():
             cells[piece].append(place[mesh.getElementsByType(4, tag)[1]].reshape(-1, 4))
@@ -132,7 +132,7 @@ def _cylinder(occ, outline, push):
             curves.append(occ.addEllipseArc(tags[-2], middle, longer, tags[-1]))
             occ.remove([(0, middle)])
         face = occ.addPlaneSurface([occ.addCurveLoop(curves)])
-    return next(one for one in occ.extrude([(2, face)], *push) if one[0] == 3)
+    return next(entity for entity in occ.extrude([(2, face)], *push) if entity[0] == 3)
 
 
 def _sizes(gmsh, inner, fine, rim, far, strips):

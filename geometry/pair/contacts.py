@@ -44,7 +44,7 @@ STEPS = 10  # of Newton's method at most: each doubles the correct digits, or ad
 SETTLED = 1e-7  # last step, in base pitches
 EXACT = 1e-13  # the same, where no further step is needed: light loads close by less than any larger
 SQUARED = 1e-9  # the same between unmodified flanks: the next step would be its square
-PITCHES = 8  # beyond the path that are looked at, of rings with hardly more teeth than their pinion
+PITCHES = 8  # base pitches beyond the path that are searched, of rings with hardly more teeth than their pinion
 CLOSE = 0.02  # gap [m_n] that no load closes
 ROUNDING = 1e-7  # overlap [m_n] of corners that are on the path of contact
 TIP, FORM = (1, 2), (3, 4)  # numbers of the corners: tips of pinion and wheel, form points of pinion and wheel
@@ -151,12 +151,12 @@ def touching(pair: GearPair, nominal: NDArray, *, extended: bool = True) -> Touc
     if extended and near.any():
         rolls_1, rolls_2, gaps = _corners(pair, nominal[near])
         corner_gap[:, near], corner_roll[:, :, near] = gaps, np.array([rolls_1, rolls_2])
-        each = (least := np.argmin(gaps, axis=0), np.arange(least.size))
-        first = gaps[each] < np.where(path[near], -ROUNDING * pair.gear_1.m_n, np.inf)
-        there, chosen = near.copy(), tuple(index[first] for index in each)
-        there[near] = first
-        roll_1[there], roll_2[there], corner[there] = rolls_1[chosen], rolls_2[chosen], chosen[0] + 1
-        gap[there] = np.where(np.abs(gaps[chosen]) < ROUNDING * pair.gear_1.m_n, 0.0, gaps[chosen])
+        nearest = (least := np.argmin(gaps, axis=0), np.arange(least.size))
+        first = gaps[nearest] < np.where(path[near], -ROUNDING * pair.gear_1.m_n, np.inf)
+        at_corner, chosen = near.copy(), tuple(index[first] for index in nearest)
+        at_corner[near] = first
+        roll_1[at_corner], roll_2[at_corner], corner[at_corner] = rolls_1[chosen], rolls_2[chosen], chosen[0] + 1
+        gap[at_corner] = np.where(np.abs(gaps[chosen]) < ROUNDING * pair.gear_1.m_n, 0.0, gaps[chosen])
     radius = pair.relative_radius(roll_1, roll_2)
     radius = np.where(np.isfinite(gap) & (radius > 0), radius, 1.0)
     return Touch(roll_1, roll_2, gap, corner, corner_gap, corner_roll, radius)
@@ -174,11 +174,11 @@ def end_corners(pair: GearPair) -> tuple[int, int]:
 
     They are the tip corners of wheel and pinion, unless the mate's flank ends before, at the edge that undercut leaves.
     """
-    one, two = pair.gear_1, pair.gear_2
-    first = pair.outward * (pair.length - two.roll_a)
+    pinion, wheel = pair.gear_1, pair.gear_2
+    first = pair.outward * (pair.length - wheel.roll_a)
     return (
-        3 if form_corner(one) and one.roll_f > first else 2,
-        4 if form_corner(two) and pair.outward * (pair.length - two.roll_f) < one.roll_a else 1,
+        3 if form_corner(pinion) and pinion.roll_f > first else 2,
+        4 if form_corner(wheel) and pair.outward * (pair.length - wheel.roll_f) < pinion.roll_a else 1,
     )
 
 
@@ -189,8 +189,8 @@ def _corners(pair, nominal):
     for number, roll, driver in corners_of(pair):
         half = nominal < middle if number in (2, 3) else nominal > middle  # corners touch in their own half of the cycle
         distance, met = approach(pair, roll, nominal[half], driver=driver)[:2]
-        own, other = (rolls_1, rolls_2) if driver else (rolls_2, rolls_1)
-        own[number - 1], other[number - 1, half] = roll, np.where(np.isnan(met), other[number - 1, half], met)
+        host, other = (rolls_1, rolls_2) if driver else (rolls_2, rolls_1)
+        host[number - 1], other[number - 1, half] = roll, np.where(np.isnan(met), other[number - 1, half], met)
         gaps[number - 1, half] = np.where(np.isnan(distance), np.inf, distance)
     return rolls_1, rolls_2, gaps
 
@@ -233,8 +233,8 @@ def approach(
     back: NDArray[np.float64] | float = 0.0
     mate = None
     if flanks is not None:
-        own, mate = (form.of(order) for form in (flanks if driver else flanks[::-1]))
-        back, behind = own.removed(roll) + own.shift(order), mate.shift(order)
+        host, mate = (form.of(order) for form in (flanks if driver else flanks[::-1]))
+        back, behind = host.removed(roll) + host.shift(order), mate.shift(order)
     for _ in range(STEPS):
         distance, met, *arms = distances(sense * (gap / 2 - back))
         if mate is not None:
@@ -246,8 +246,8 @@ def approach(
             break
     if mate is not None:
         arms = distances(sense * (gap / 2 - back), mate.slope(met))[2:]
-    there = np.abs(step) < SETTLED * pair.p_bt
-    return Met(*(np.where(there, values, np.nan) for values in (gap, met, *arms)))
+    settled = np.abs(step) < SETTLED * pair.p_bt
+    return Met(*(np.where(settled, values, np.nan) for values in (gap, met, *arms)))
 
 
 def opposite(pair: GearPair, roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True) -> tuple[NDArray, NDArray]:
@@ -268,21 +268,21 @@ def facing(pair, roll, nominal, driver, turns=None):
     """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
     pushes = (1, -pair.outward)  # sense of a force along the line of action around the two centres
-    own, other, sense = (0, 1, -1) if driver else (1, 0, 1)  # it acts on the wheel, its reaction on the pinion
+    host, other, sense = (0, 1, -1) if driver else (1, 0, 1)  # it acts on the wheel, its reaction on the pinion
     turns, mate = pair.turn(nominal) if turns is None else turns, gears[other]
-    radius, angle = side(gears[own], roll)
-    ahead, apart = turns[own] + mirror[own] * angle, centres[own] - centres[other]
-    r_b, base = gears[own].r_b, mate.r_b
+    radius, angle = side(gears[host], roll)
+    ahead, apart = turns[host] + mirror[host] * angle, centres[host] - centres[other]
+    r_b, base = gears[host].r_b, mate.r_b
 
     def distances(moved, slope=0.0):
-        x, y = cartesian(radius, ahead + pushes[own] * moved / r_b)
+        x, y = cartesian(radius, ahead + pushes[host] * moved / r_b)
         y = y + apart
         away, seen = np.hypot(x, y), np.arctan2(x, y)
         met = place(mate, away)
         behind = mirror[other] * (seen - turns[other] - pushes[other] * moved / base) - met.angle
         met_arm, lean = met.arm - slope * met.lean, met.lean + slope * met.arm  # a modified flank's normal is turned
         across = pushes[other] * (met_arm * y + lean * x) / away**2  # of the met normal, across the centre line
-        arm = pushes[own] * (pushes[other] * met_arm - apart * across) / r_b
+        arm = pushes[host] * (pushes[other] * met_arm - apart * across) / r_b
         up = pushes[other] * (lean * y - met_arm * x) / away**2  # and along the centre line
         out = sense * (across * x + up * (y - apart)) / radius
         gap = base * ((behind + math.pi) % (2 * math.pi) - math.pi)

@@ -9,7 +9,7 @@ from ..checks import by_gear, is_finite
 from ..tooth.flank_form import FlankForm
 from ..tooth.modified import Flank
 
-STEEPEST = 0.01  # misalignment by width: more is no gear pair with parallel axes
+STEEPEST = 0.01  # largest misalignment per width: with more the axes are not parallel
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class Misalignment:
     length: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no misalignment."""
+        """Reject numbers that are not finite, and deviations of the axes without their length."""
         for name in self.__slots__:
             value = getattr(self, name)
             if name == "length" and value is None:

@@ -54,27 +54,27 @@ class GearPair:
     notes: tuple[str, ...] = field(default=(), init=False)
 
     def __post_init__(self) -> None:
-        """Refuse gears that cannot mesh; trim a ring's tip."""
-        one, two = self.gear_1, self.gear_2
-        if not isinstance(one, Gear) or not isinstance(two, Gear):
+        """Reject gears that cannot mesh; trim a ring's tip."""
+        pinion, wheel = self.gear_1, self.gear_2
+        if not isinstance(pinion, Gear) or not isinstance(wheel, Gear):
             raise ValueError("gear_1 and gear_2 must be Gear objects")
-        if one.internal:
+        if pinion.internal:
             raise ValueError("gear_1 is a ring; give the external gear first and the ring as gear_2")
         for name, unit in (("m_n", "mm"), ("alpha_n", "rad")):
-            first, second = getattr(one, name), getattr(two, name)
+            first, second = getattr(pinion, name), getattr(wheel, name)
             if not math.isclose(first, second, rel_tol=1e-9):
                 raise ValueError(f"{name} = {first} and {second} {unit}: gears in mesh need the same one")
-        if not math.isclose(abs(one.beta), abs(two.beta), rel_tol=1e-9, abs_tol=1e-12):
-            raise ValueError(f"beta = {one.beta} and {two.beta} rad: gears in mesh need the same helix angle")
-        if two.internal and two.z <= one.z:
-            raise ValueError(f"z = {one.z} does not fit into a ring of z = {two.z}: the ring needs more teeth")
+        if not math.isclose(abs(pinion.beta), abs(wheel.beta), rel_tol=1e-9, abs_tol=1e-12):
+            raise ValueError(f"beta = {pinion.beta} and {wheel.beta} rad: gears in mesh need the same helix angle")
+        if wheel.internal and wheel.z <= pinion.z:
+            raise ValueError(f"z = {pinion.z} does not fit into a ring of z = {wheel.z}: the ring needs more teeth")
         if self.a is None:
-            object.__setattr__(self, "a", free_centre_distance(one, two))
+            object.__setattr__(self, "a", free_centre_distance(pinion, wheel))
         elif not isinstance(self.a, Real) or not math.isfinite(self.a):
             raise ValueError(f"a = {self.a!r}, but a centre distance is a finite length [mm]")
         object.__setattr__(self, "a", float(self.a))
         self._check_distance()
-        if two.internal:
+        if wheel.internal:
             self._trim_ring()
         self._check_mesh()
 
@@ -88,19 +88,19 @@ class GearPair:
         return pair_html(self)
 
     def _check_distance(self):
-        one, two = self.gear_1, self.gear_2
-        least = self.outward * one.r_b + two.r_b
-        wrong = "large" if two.internal else "small"
+        pinion, wheel = self.gear_1, self.gear_2
+        least = self.outward * pinion.r_b + wheel.r_b
+        wrong = "large" if wheel.internal else "small"
         if self.a <= least:
             raise ValueError(f"a = {self.a} mm is too small: the line of action needs more than {least:.6g} mm")
-        for tip, root in ((one, two), (two, one)):
+        for tip, root in ((pinion, wheel), (wheel, pinion)):
             clearance = self._clearance(tip, root)
             if clearance <= 0:
                 raise ValueError(
                     f"a = {self.a:.6g} mm is too {wrong}: the tip circle of z = {tip.z} reaches the root circle of z = {root.z} "
                     f"({-clearance:.4g} mm deep); change a or lower the addendum"
                 )
-        if self.backlash < -1e-4 * one.m_n:
+        if self.backlash < -1e-4 * pinion.m_n:
             raise ValueError(
                 f"a = {self.a:.6g} mm is too {wrong}: the teeth overlap by {-self.backlash:.4g} mm along the line "
                 "of action; give a=None for the centre distance without backlash"
@@ -113,16 +113,16 @@ class GearPair:
         return root.r_f - self.a - tip.r_a if root.internal else tip.r_a - self.a - root.r_f
 
     def _trim_ring(self):
-        one, two = self.gear_1, self.gear_2
-        lowest = one.roll_f + self.length
-        if two.roll_a >= lowest:
+        pinion, wheel = self.gear_1, self.gear_2
+        lowest = pinion.roll_f + self.length
+        if wheel.roll_a >= lowest:
             return
-        before = self.eps_alpha_of(one.roll_a, two.roll_a)
-        cut = math.hypot(two.r_b, lowest) - two.r_a
-        object.__setattr__(self, "gear_2", replace(two, addendum=two.addendum - cut / two.m_n))
+        before = self.eps_alpha_of(pinion.roll_a, wheel.roll_a)
+        cut = math.hypot(wheel.r_b, lowest) - wheel.r_a
+        object.__setattr__(self, "gear_2", replace(wheel, addendum=wheel.addendum - cut / wheel.m_n))
         note = (
-            f"the ring's tip (z = {two.z}) was trimmed by {cut:.4g} mm, its addendum from {two.addendum:g} to "
-            f"{self.gear_2.addendum:.4g} m_n: it would reach into the fillet of z = {one.z}; contact ratio {before:.4g} -> "
+            f"the ring's tip (z = {wheel.z}) was trimmed by {cut:.4g} mm, its addendum from {wheel.addendum:g} to "
+            f"{self.gear_2.addendum:.4g} m_n: it would reach into the fillet of z = {pinion.z}; contact ratio {before:.4g} -> "
             f"{self.eps_alpha:.4g}"
         )
         object.__setattr__(self, "notes", (*self.notes, note))
@@ -177,10 +177,10 @@ class GearPair:
     @property
     def backlash(self) -> float:
         """Normal backlash: play along the line of action [mm] (negative: the teeth overlap)."""
-        one, two = self.gear_1, self.gear_2
-        tooth_1 = 2 * (one.base_half_angle - inv(self.alpha_w))
-        tooth_2 = 2 * (two.base_half_angle - two.outward * inv(self.alpha_w))
-        return one.r_b * (2 * math.pi / one.z - tooth_1) - two.r_b * tooth_2
+        pinion, wheel = self.gear_1, self.gear_2
+        tooth_1 = 2 * (pinion.base_half_angle - inv(self.alpha_w))
+        tooth_2 = 2 * (wheel.base_half_angle - wheel.outward * inv(self.alpha_w))
+        return pinion.r_b * (2 * math.pi / pinion.z - tooth_1) - wheel.r_b * tooth_2
 
     @property
     def p_bt(self) -> float:

@@ -23,18 +23,18 @@ def overlap(pair, nominals):
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
     outlines, turned = [outline(gear) for gear in gears], np.array(pair.turn(np.asarray(nominals)))
     deepest = 0.0
-    for own, other in ((0, 1), (1, 0)):
-        gear, mate = gears[own], gears[other]
-        radius, half = outlines[own]
+    for index, mate_index in ((0, 1), (1, 0)):
+        gear, mate = gears[index], gears[mate_index]
+        radius, half = outlines[index]
         reach = min(gear.z // 2, 8 if not pair.gear_2.internal else pair.gear_1.z // 2)
-        teeth, apart = 2 * math.pi / gear.z * np.arange(-reach, reach + 1), centres[own] - centres[other]
+        teeth, apart = 2 * math.pi / gear.z * np.arange(-reach, reach + 1), centres[index] - centres[mate_index]
         towards = -math.copysign(mate.outward, apart)  # cosine of the angle at which the mate is
         widest = towards * (mate.r_a**2 - radius**2 - apart**2) / (2 * radius * apart)  # its cosine where a point may reach it
         reached = math.cos(min(math.acos(np.clip(widest.min(), -1, 1)) + half.max(), math.pi))
         for turns in turned.T:
-            near = teeth[towards * np.cos(turns[own] + mirror[own] * teeth) >= reached]
-            x, y = _teeth(radius, half, near, turns[own], mirror[own])
-            deepest = max(deepest, _cut(mate, outlines[other], x, y + apart, turns[other], mirror[other]))
+            near = teeth[towards * np.cos(turns[index] + mirror[index] * teeth) >= reached]
+            x, y = _teeth(radius, half, near, turns[index], mirror[index])
+            deepest = max(deepest, _cut(mate, outlines[mate_index], x, y + apart, turns[mate_index], mirror[mate_index]))
     return deepest
 
 
@@ -43,11 +43,11 @@ def radial_assembly(pair):
 
     The pinion is lowered from its place to the ring's centre in steps; no outline may be cut on the way.
     """
-    one, ring = pair.gear_1, pair.gear_2
+    pinion, ring = pair.gear_1, pair.gear_2
     solid, between = outline(ring), -math.pi / ring.z  # the pinion's tooth 0 stands in a space
-    x, y = _teeth(*outline(one), 2 * math.pi / one.z * np.arange(one.z))
-    drops = np.linspace(0, (one.addendum + ring.addendum + 0.5) * one.m_n, 24)
-    allowed = 1e-3 * one.m_n + pair.backlash / 2
+    x, y = _teeth(*outline(pinion), 2 * math.pi / pinion.z * np.arange(pinion.z))
+    drops = np.linspace(0, (pinion.addendum + ring.addendum + 0.5) * pinion.m_n, 24)
+    allowed = 1e-3 * pinion.m_n + pair.backlash / 2
     return all(_cut(ring, solid, x, y + pair.a - drop, between) <= allowed for drop in drops)
 
 

@@ -248,17 +248,17 @@ def covered(pair, pits, order, rolls, z):
         Part of the piece that a pit takes, 0 at its first end and 1 at the other; parts may overlap.
     """
     rows, common = [], min(pair.gear_1.b, pair.gear_2.b)
-    for which, (gear, found) in enumerate(zip((pair.gear_1, pair.gear_2), pits, strict=True)):
-        found = tuple(pit for pit in found if pit.side == "loaded")
-        if not found or not order.size:
+    for which, (gear, gear_pits) in enumerate(zip((pair.gear_1, pair.gear_2), pits, strict=True)):
+        gear_pits = tuple(pit for pit in gear_pits if pit.side == "loaded")
+        if not gear_pits or not order.size:
             continue
-        tooth, near, far, bottom, top = _limits(gear, found)
+        tooth, near, far, bottom, top = _limits(gear, gear_pits)
         height = z + (gear.b - common) / 2  # the gears lie centred on each other
         meets = (tooth - (1 - 2 * which) * order[:, None]) % gear.z == 0
         meets &= (rolls[which].min(axis=1)[:, None] <= far) & (rolls[which].max(axis=1)[:, None] >= near)
         meets &= (height.min(axis=1)[:, None] < top) & (height.max(axis=1)[:, None] > bottom)
         for i, k in np.argwhere(meets).tolist():
-            rows += [(i, which, s, t) for s, t in found[k].crossing(gear, rolls[which][i], height[i])]
+            rows += [(i, which, s, t) for s, t in gear_pits[k].crossing(gear, rolls[which][i], height[i])]
     piece, gear, first, last = np.array(rows, dtype=float).reshape(-1, 4).T
     return piece.astype(int), gear.astype(int), first, last
 
@@ -273,11 +273,11 @@ def _limits(gear, pits):
 
 def lost_length(lines, pits):
     """Lengths ``(phases, pairs, bands)`` [mm] of contact line that pits take, overlaps counted once."""
-    found, out = removed(lines, pits), np.zeros(lines.low.shape)
-    place = np.array([found.phase, found.column, found.band])
+    cut, out = removed(lines, pits), np.zeros(lines.low.shape)
+    place = np.array([cut.phase, cut.column, cut.band])
     for index in np.unique(place, axis=1).T:
-        own = (place == index[:, None]).all(axis=0)
-        out[tuple(index)] = union_length(found.low[own], found.high[own])
+        at_place = (place == index[:, None]).all(axis=0)
+        out[tuple(index)] = union_length(cut.low[at_place], cut.high[at_place])
     return out / np.cos(lines.beta_b)
 
 

@@ -22,7 +22,7 @@ from ..tooth.profile import arc_at, fillet_length, roll_at_arc
 from .contacts import TIP, Contacts, Touch, approach, contacts, corners_of, facing
 from .gear_pair import GearPair
 
-EDGE = 0.25  # what may be cut away where the edge of a tip touches, of all that it cuts away
+EDGE = 0.25  # part of its largest removal that the edge of a tip may have removed where it touches
 FAR = 0.1  # gap before modification [m_n] beyond which only corners are looked at: no gear that holds closes it
 SCAN = 25  # places along the flank from which the search starts
 OFF = 1e6  # a distance that no flanks have [mm]
@@ -41,14 +41,14 @@ def flank_contacts(
     plain = contacts(pair, phase, extended=extended)
     if flanks is None:
         return plain
-    there, empty = np.isfinite(plain.gap), np.full(plain.gap.shape, np.inf)
-    touch = first_touch(pair, flanks, plain.nominal[there], np.broadcast_to(plain.order, there.shape)[there], plain.gap[there])
+    meets, empty = np.isfinite(plain.gap), np.full(plain.gap.shape, np.inf)
+    touch = first_touch(pair, flanks, plain.nominal[meets], np.broadcast_to(plain.order, meets.shape)[meets], plain.gap[meets])
     out = Touch(
-        plain.roll_1.copy(), plain.roll_2.copy(), empty, np.zeros(there.shape, dtype=int), np.full_like(plain.corner_gap, np.inf),
-        np.full_like(plain.corner_roll, np.nan), np.ones(there.shape),
+        plain.roll_1.copy(), plain.roll_2.copy(), empty, np.zeros(meets.shape, dtype=int), np.full_like(plain.corner_gap, np.inf),
+        np.full_like(plain.corner_roll, np.nan), np.ones(meets.shape),
     )  # fmt: skip
-    for values, found in zip(out, touch, strict=True):
-        values[..., there] = found
+    for values, met in zip(out, touch, strict=True):
+        values[..., meets] = met
     return Contacts(plain.order, plain.nominal, *out)
 
 
@@ -87,23 +87,23 @@ def first_touch(
     """
     common = min(pair.gear_1.b, pair.gear_2.b)
     own_z = [None if z is None else z + (gear.b - common) / 2 for gear in (pair.gear_1, pair.gear_2)]
-    here = forms[0].at(own_z[0]).of(order), forms[1].at(own_z[1]).of(order)
-    rolls_1, rolls_2, found = nominal.copy(), pair.mate_roll(nominal), np.full(nominal.shape, np.inf)
+    sections = forms[0].at(own_z[0]).of(order), forms[1].at(own_z[1]).of(order)
+    rolls_1, rolls_2, gap = nominal.copy(), pair.mate_roll(nominal), np.full(nominal.shape, np.inf)
     near, corner = start < FAR * pair.gear_1.m_n, np.zeros(nominal.shape, dtype=int)
     never, start = ~np.isfinite(start), np.where(np.isfinite(start), start, 0.0)
     inner = [form.at(None if h is None else h[near]).of(order[near]) for form, h in zip(forms, own_z, strict=True)]
-    rolls_1[near], rolls_2[near], found[near] = _inside(pair, inner, nominal[near], order[near], start[near])
+    rolls_1[near], rolls_2[near], gap[near] = _inside(pair, inner, nominal[near], order[near], start[near])
     gaps, places = np.full((4, nominal.size), np.inf), np.full((2, 4, nominal.size), np.nan)
     for number, roll, driver in corners_of(pair):
         if number in TIP and forms[number - 1].edge is not None:
             continue
-        own, met = (rolls_1, rolls_2) if driver else (rolls_2, rolls_1)
-        distance, facing_roll, *_ = approach(pair, roll, nominal, driver=driver, start=start, flanks=here, order=order)
+        host, met = (rolls_1, rolls_2) if driver else (rolls_2, rolls_1)
+        distance, facing_roll, *_ = approach(pair, roll, nominal, driver=driver, start=start, flanks=sections, order=order)
         gaps[number - 1] = np.where(np.isnan(distance) | never, np.inf, distance)
         places[:, number - 1] = (np.full(nominal.size, roll), facing_roll)[:: 1 if driver else -1]
-        first = np.isfinite(gaps[number - 1]) & (gaps[number - 1] <= found + 1e-12)
-        own[first], met[first], found[first], corner[first] = roll, facing_roll[first], distance[first], number
-    return Touch(rolls_1, rolls_2, found, corner, gaps, places, _radius(pair, here, rolls_1, rolls_2, np.isfinite(found)))
+        first = np.isfinite(gaps[number - 1]) & (gaps[number - 1] <= gap + 1e-12)
+        host[first], met[first], gap[first], corner[first] = roll, facing_roll[first], distance[first], number
+    return Touch(rolls_1, rolls_2, gap, corner, gaps, places, _radius(pair, sections, rolls_1, rolls_2, np.isfinite(gap)))
 
 
 def _radius(pair, forms, roll_1, roll_2, there):
@@ -123,20 +123,20 @@ def _radius(pair, forms, roll_1, roll_2, there):
 
 def _inside(pair, forms, nominal, order, start):
     """Touching points on the flanks, their corners left out: rolls of both gears and gaps ``(n,)``, inf where there is none."""
-    one = pair.gear_1
+    pinion = pair.gear_1
     amounts = [form.removed(form.before_edge(np.linspace(form.low, form.high, 65))[None, :]) for form in forms]
     range_ = sum(np.ptp(values, axis=-1) for values in amounts)
     edges = [form.edge.most for form in forms if form.edge is not None]
     if edges:  # a tip's edge is part of the flank and may touch beyond the path; sharp corners are looked at by `first_touch`
         range_ = range_ + start + EDGE * max(edges)
     shift = forms[0].shift(order) + forms[1].shift(order)
-    on_path = [arc_at(one, roll) for roll in pair.path]
-    low, high = arc_at(one, one.roll_f) - fillet_length(one), arc_at(one, one.roll_a)
+    on_path = [arc_at(pinion, roll) for roll in pair.path]
+    low, high = arc_at(pinion, pinion.roll_f) - fillet_length(pinion), arc_at(pinion, pinion.roll_a)
     ends = np.linspace(*pair.path, 9)
     reach = float(np.abs(pair.relative_radius(ends, pair.mate_roll(ends))).max())
-    middle = arc_at(one, nominal)
+    middle = arc_at(pinion, nominal)
     off = np.abs(middle - np.clip(middle, *on_path))
-    half = 1.1 * np.sqrt(off**2 + 2 * reach * (range_ + np.abs(shift))) + 1e-3 * one.m_n
+    half = 1.1 * np.sqrt(off**2 + 2 * reach * (range_ + np.abs(shift))) + 1e-3 * pinion.m_n
     if edges:
         half = half + np.abs(nominal - np.clip(nominal, *pair.path))  # rounded tips slide on into the mate's fillet
     first, last = np.clip(middle - half, low, high), np.clip(middle + half, low, high)
@@ -145,22 +145,22 @@ def _inside(pair, forms, nominal, order, start):
     pose = pose + forms[1].removed(forms[1].before_edge(pair.mate_roll(roll_0)))
     turns = pair.turn(nominal)
     arcs = first[:, None] + (last - first)[:, None] * np.linspace(0, 1, SCAN)
-    own = [turn[:, None] for turn in turns]
-    values = _residual(pair, forms, arcs, own, order[:, None], pose[:, None])
+    columns = [turn[:, None] for turn in turns]
+    values = _residual(pair, forms, arcs, columns, order[:, None], pose[:, None])
     best = np.argmin(values, axis=1)
     rows = np.arange(nominal.size)
     bounds = arcs[rows, np.maximum(best - 1, 0)], arcs[rows, np.minimum(best + 1, SCAN - 1)]
-    roll, found = roll_0, pose
+    roll, gap = roll_0, pose
     for steps in (8, 16):
-        arc = _least(lambda s, at=found: _residual(pair, forms, s, turns, order, at), *bounds, steps)
-        roll = roll_at_arc(one, arc)
-        found, met, *_ = approach(pair, roll, nominal, start=found, flanks=forms, order=order)
-        found = np.where(np.isfinite(found), found, pose)
+        arc = _least(lambda s, at=gap: _residual(pair, forms, s, turns, order, at), *bounds, steps)
+        roll = roll_at_arc(pinion, arc)
+        gap, met, *_ = approach(pair, roll, nominal, start=gap, flanks=forms, order=order)
+        gap = np.where(np.isfinite(gap), gap, pose)
         width = (bounds[1] - bounds[0]) / 8
         bounds = np.maximum(arc - width, bounds[0]), np.minimum(arc + width, bounds[1])
-    roll, met, found = _exact(pair, forms, nominal, order, (arc, roll, met, found))
+    roll, met, gap = _exact(pair, forms, nominal, order, (arc, roll, met, gap))
     on = np.isfinite(met)
-    return roll, np.where(on, met, pair.mate_roll(roll)), np.where(on, found, np.inf)
+    return roll, np.where(on, met, pair.mate_roll(roll)), np.where(on, gap, np.inf)
 
 
 def _exact(pair, forms, nominal, order, near):
@@ -170,11 +170,11 @@ def _exact(pair, forms, nominal, order, near):
     three places gives, and 1e-9 mm at a ridge, which is looked at itself: close to a steep one the search may have met nothing.
     """
     arc, roll, met, start = near
-    found = np.where(np.isfinite(met), start, np.inf)
+    least = np.where(np.isfinite(met), start, np.inf)
     step = VERTEX * pair.gear_1.m_n
     sides = [roll_at_arc(pair.gear_1, arc + k * step) for k in (-1, 1)]
     before, after = (approach(pair, at, nominal, start=start, flanks=forms, order=order)[0] for at in sides)
-    bend = before - 2 * found + after
+    bend = before - 2 * least + after
     off = np.where(bend > 0, (before - after) / np.where(bend > 0, 2 * bend, 1.0), 0.0)
     at = arc + step * np.clip(np.nan_to_num(off), -1, 1)
     tried = [(True, roll_at_arc(pair.gear_1, np.minimum(at, arc_at(pair.gear_1, pair.gear_1.roll_a))))]  # not beyond the tip
@@ -182,11 +182,11 @@ def _exact(pair, forms, nominal, order, near):
         tried += [(driver, np.nextafter(kink, (form.low + form.high) / 2)) for kink, _ in form.kinks]
     for driver, at in tried:
         gap, faced, *_ = approach(pair, at, nominal, driver=driver, start=start, flanks=forms, order=order)
-        one, two = (at, faced) if driver else (faced, at)
-        own, side = (one, pair.gear_1) if driver else (two, pair.gear_2)
-        better = (gap < found) & (side.outward * (side.roll_a - own) >= 0)
-        roll, met, found = (np.where(better, *both) for both in ((one, roll), (two, met), (gap, found)))
-    return roll, met, found
+        roll_1, roll_2 = (at, faced) if driver else (faced, at)
+        host_roll, side = (roll_1, pair.gear_1) if driver else (roll_2, pair.gear_2)
+        better = (gap < least) & (side.outward * (side.roll_a - host_roll) >= 0)
+        roll, met, least = (np.where(better, *choice) for choice in ((roll_1, roll), (roll_2, met), (gap, least)))
+    return roll, met, least
 
 
 def _residual(pair, forms, arc, turns, order, pose):

@@ -60,17 +60,17 @@ def gear_html(gear):
 
 def pair_html(pair):
     """Table of a pair's numbers beside its drawing, in mesh at the pitch point's phase."""
-    one, two = pair.gear_1, pair.gear_2
+    pinion, wheel = pair.gear_1, pair.gear_2
     turns = pair.turn(pair.path[0] + pair.pitch_phase * pair.p_bt)
     rows = {
-        "teeth": f"{one.z} / {two.z}{' (ring)' if two.internal else ''}",
-        "normal module": f"{one.m_n:g} mm",
+        "teeth": f"{pinion.z} / {wheel.z}{' (ring)' if wheel.internal else ''}",
+        "normal module": f"{pinion.m_n:g} mm",
         "centre distance": f"{pair.a:.5g} mm",
         "transverse contact ratio": f"{pair.eps_alpha:.4g}",
         "overlap ratio": f"{pair.eps_beta:.4g}",
-        "face widths": f"{one.b:g} / {two.b:g} mm",
+        "face widths": f"{pinion.b:g} / {wheel.b:g} mm",
     }
-    return beside(gear_svg((one, 0.0, float(turns[0])), (two, pair.centre_2, float(turns[1])), size=180), "gear pair", rows)
+    return beside(gear_svg((pinion, 0.0, float(turns[0])), (wheel, pair.centre_2, float(turns[1])), size=180), "gear pair", rows)
 
 
 def beside(picture, title, rows):

@@ -14,8 +14,8 @@ from .relief import relief_start
 from .tables import covering, each_tooth
 from .tip_edge import TipEdge
 
-LARGEST = 0.1  # m_n: the tooth's flexibility is that of the unmodified tooth
-STEP = 1e-6  # m_n: over which a slope is taken
+LARGEST = 0.1  # most that may be removed [m_n]: the tooth's flexibility is that of the unmodified tooth
+STEP = 1e-6  # roll length over which a slope is taken [m_n]
 
 
 class FlankForm:
@@ -92,11 +92,11 @@ class FlankForm:
     def _check_size(self) -> None:
         roll = np.linspace(self.low, self.high, 65)
         most = LARGEST * self.gear.m_n
-        here = self.at(np.linspace(0, self.gear.b, 17))
+        sections = self.at(np.linspace(0, self.gear.b, 17))
         largest = max(1.0, float(np.abs(self._scales).max(initial=0.0)))
         eccentric = np.array([self.flank.eccentricity])
-        for what, values in (
-            ("removed from the flank", largest * here._shaped(roll[None, :], 0)),
+        for name, values in (
+            ("removed from the flank", largest * sections._shaped(roll[None, :], 0)),
             ("of pitch deviation", self._shifts),
             ("of eccentricity", eccentric),
             ("of wear", np.zeros(1) if self._worn is None else self._wear(roll, 0)),
@@ -104,7 +104,7 @@ class FlankForm:
             worst = float(np.abs(values).max(initial=0.0))
             if worst > most:
                 raise ValueError(
-                    f"{worst:.4g} mm {what} of z = {self.gear.z}: more than a tenth of the module, {most:.4g} mm, so that the "
+                    f"{worst:.4g} mm {name} of z = {self.gear.z}: more than a tenth of the module, {most:.4g} mm, so that the "
                     "tooth would be another one; amounts are in mm (20 um are 0.02)"
                 )
 
@@ -114,12 +114,12 @@ class FlankForm:
         Derivatives are those of the flank without the edge of its tip (for that see `bend`).
         The fillet goes on with what is removed at the form point.
         """
-        given, n = np.asarray(roll, dtype=float), derivative
-        at = np.maximum(given, self.low) if self.high > self.low else np.minimum(given, self.low)
+        rolls, n = np.asarray(roll, dtype=float), derivative
+        at = np.maximum(rolls, self.low) if self.high > self.low else np.minimum(rolls, self.low)
         out = self._shaped(at, n)
         if self._scales.size:
-            own = self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], at)
-            out = out * own
+            factor = self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], at)
+            out = out * factor
         if self._worn is not None:
             out = out + self._wear(at, n)
         if self.edge is not None and n == 0:

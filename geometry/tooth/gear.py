@@ -77,7 +77,7 @@ class Gear:
     z_cutter: int = 20
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be cut, and cap the rack tip radius."""
+        """Reject gears that cannot be cut, and cap the rack tip radius."""
         self._check_numbers()
         self._check_body()
         if self.r_a <= self.r_b:

@@ -1,4 +1,4 @@
-"""What flanks have less along the width: crowning, slope, end relief, twist, a measured grid."""
+"""Modifications of flanks along the width: crowning, slope, end relief, twist, a measured grid."""
 
 from typing import Any
 
@@ -22,10 +22,10 @@ class LeadForm:
         if flank.topography is not None:
             rolls, heights, amounts = flank.topography
             slack = 1e-6 * gear.m_n
-            for name, given, ends in (("roll length", rolls, sorted((low, high))), ("height", heights, (0.0, gear.b))):
-                if given[0] > ends[0] + slack or given[-1] < ends[1] - slack:
+            for name, axis, ends in (("roll length", rolls, sorted((low, high))), ("height", heights, (0.0, gear.b))):
+                if axis[0] > ends[0] + slack or axis[-1] < ends[1] - slack:
                     raise ValueError(
-                        f"topography from {given[0]:.5g} to {given[-1]:.5g} mm of {name} does not cover the flank of "
+                        f"topography from {axis[0]:.5g} to {axis[-1]:.5g} mm of {name} does not cover the flank of "
                         f"z = {gear.z}: {ends[0]:.5g} to {ends[1]:.5g} mm"
                     )
             degree = {"kx": min(3, len(rolls) - 1), "ky": min(3, len(heights) - 1)}
@@ -58,11 +58,11 @@ def two_ends(flank: Any) -> list[tuple[float, float]]:
     """
     out = []
     for name in ("end_relief", "end_length", "end_exponent"):
-        given = getattr(flank, name)
-        given = 0.0 if given is None else given
-        values = given if isinstance(given, (tuple, list)) else (given, given)
+        value = getattr(flank, name)
+        value = 0.0 if value is None else value
+        values = value if isinstance(value, (tuple, list)) else (value, value)
         if len(values) != 2 or not all(map(is_finite, values)):
-            raise ValueError(f"{name} = {given!r}, but give one finite number, or two: at z = 0 and at z = b")
+            raise ValueError(f"{name} = {value!r}, but give one finite number, or two: at z = 0 and at z = b")
         out.append((float(values[0]), float(values[1])))
     for amount, length, exponent in zip(*out, strict=True):
         if amount and not length > 0:

@@ -1,4 +1,4 @@
-"""`Flank`: what the loaded flanks of a gear have less (or more) than the involute, and how far each tooth is from its place."""
+"""`Flank`: how the loaded flanks of a gear differ from involutes, and how far each tooth is from its place."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -123,7 +123,7 @@ class Flank:
     eccentric_tooth: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse contradictory descriptions."""
+        """Reject contradictory descriptions."""
         for name in self.__slots__:
             value = getattr(self, name)
             if name in LISTS or (value is None and "_start_" in name) or name.startswith("end_"):

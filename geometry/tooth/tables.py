@@ -8,7 +8,7 @@ from .gear import Gear
 
 
 def numbers(name: str, values: Any) -> list[float]:
-    """A row of finite numbers; ValueError if it is none."""
+    """A row of finite numbers as a list; ValueError if something else is given."""
     try:
         out = np.asarray(values, dtype=float)
     except (TypeError, ValueError) as error:
@@ -19,7 +19,7 @@ def numbers(name: str, values: Any) -> list[float]:
 
 
 def table(name: str, given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Rising roll lengths, and as many amounts; ValueError if they are none."""
+    """Rising roll lengths, and as many amounts; ValueError if something else is given."""
     try:
         rolls, amounts = given
     except (TypeError, ValueError) as error:
@@ -41,7 +41,7 @@ def worn(given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def each_tooth(name: str, values: tuple[float, ...], gear: Gear) -> np.ndarray:
-    """Values by tooth, or none; ValueError unless there is one for each."""
+    """Values by tooth, empty if none are given; ValueError unless there is one for each tooth."""
     if len(values) not in (0, gear.z):
         raise ValueError(f"{name} has {len(values)} values, but z = {gear.z}: give one for each tooth")
     return np.array(values)
@@ -49,12 +49,12 @@ def each_tooth(name: str, values: tuple[float, ...], gear: Gear) -> np.ndarray:
 
 def covering(values: tuple, gear: Gear) -> np.ndarray:
     """A table ``(2, n)`` of roll lengths and amounts [mm]; ValueError unless it covers the flank."""
-    found = np.array(values)
-    rolls = found[0]
+    rows = np.array(values)
+    rolls = rows[0]
     least, most = sorted((gear.roll_f, gear.roll_a))
     if rolls[0] > least + 1e-6 * gear.m_n or rolls[-1] < most - 1e-6 * gear.m_n:
         raise ValueError(
             f"table from {rolls[0]:.5g} to {rolls[-1]:.5g} mm of roll length does not cover the flank of z = {gear.z}: "
             f"{least:.5g} to {most:.5g} mm"
         )
-    return found
+    return rows

@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 from .gear import Gear
 from .profile import cartesian, flank, flank_normal
 
-LARGEST = 0.3  # m_n: what is left of the flank must still be one
-FROM_FLANK = math.pi / 4  # between a chamfer and the flank it cuts
+LARGEST = 0.3  # largest rounding or chamfer [m_n]: enough of the flank must be left
+FROM_FLANK = math.pi / 4  # angle between a chamfer and the flank it cuts [rad]
 SOFT = -1e-9  # "kink" at the start of a rounding: no sudden bend, but a curvature so much larger that contact is resolved there
 
 
@@ -95,8 +95,8 @@ class TipEdge:
             d = np.maximum(gear.outward * (gear.roll_a**2 - roll**2) / (gear.r_a + radius), 0.0)
             return middle + 2 * np.arcsin(np.sqrt(d * np.maximum(2 * self.rounding - d, 0.0) / (4 * radius * away)))
         first, cut = self._line
-        up, more = first @ cut, roll**2 - self.start**2
-        t = more / (up + gear.outward * np.sqrt(np.maximum(up**2 + more, 0.0)))
+        up, rise = first @ cut, roll**2 - self.start**2
+        t = rise / (up + gear.outward * np.sqrt(np.maximum(up**2 + rise, 0.0)))
         return np.arctan2(first[0] + t * cut[0], first[1] + t * cut[1])
 
     def removed(self, roll: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -5,6 +5,7 @@ import tomllib
 from importlib import resources
 
 import pytest
+from conftest import ROOT
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -216,3 +217,10 @@ def test_a_crack_of_part_of_the_width_waits_for_three_dimensions():
         assert shown["section"]
         assert "solve in three dimensions" in shown["notes"][0]
         assert [one["k"] for one in shown["curves"]] == [one["k"] for one in plain["curves"]]
+
+
+def test_of_a_planetary_set_one_pair_is_shown_and_that_is_said():
+    page = (ROOT / "gearfe" / "docs" / "howto" / "planetary_set.md").read_text(encoding="utf-8")
+    text = page[page.index("title = ") : page.index("```\n\n```sh")]
+    _, told = read("my.toml", text, "sun_planet", "")
+    assert "not taken from my.toml: the planetary set" in told

@@ -5,6 +5,8 @@ import re
 import pytest
 
 import gearfe as gf
+from gearfe.many.sweeps.kinds import KINDS
+from gearfe.reports.sweep_page import SHOWN
 
 pytest.importorskip("plotly")
 pytest.importorskip("jinja2")
@@ -32,3 +34,10 @@ def test_page_of_a_sweep_has_its_numbers(tmp_path):
     assert not re.findall(r"<(?:script|img|link|iframe)[^>]*(?:src|href)=\"(?!data:)[^\"]*", own)
     with pytest.raises(ValueError, match="no folder"):
         gf.sweep_report(tmp_path / "none", tmp_path / "page.html")
+
+
+def test_every_kind_of_study_has_a_page():
+    """What is drawn of a kind are columns of its results."""
+    assert set(SHOWN) == set(KINDS)
+    for kind, (output, curve) in SHOWN.items():
+        assert {output, curve} - {None} <= set(KINDS[kind].fields)

@@ -1,13 +1,14 @@
 """What article S2 prints and no simulation is needed for: stiffnesses, frequencies, times, cracks."""
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
 import gearfe as gf
 
-from ..shared.simulated import machine, scene
+from ..shared.simulated import amplitude, machine, scene, spectrum
 
 NAME = "compound_planetary"
 LEVELS = {"10 %": "crack10", "30 %": "crack30", "50 %": "crack50", "70 %": "crack70", "80 %": "crack80"}
@@ -65,6 +66,16 @@ def frequencies():
     carrier = run["speed_rpm"] * ratios[1] / sum(ratios)  # (n2 - nc) z_s2 / z_r2 = nc z_s1 / z_r1
     mesh = carrier / 60 * sun, (run["speed_rpm"] - carrier) / 60 * sun
     return mesh, tuple(run["n_planets"] * f / sun for f in mesh)
+
+
+def of_mesh_lines(one):
+    """Part of a signal's power in mesh lines and their harmonics, over whole periods of all lines: else they leak aside."""
+    mesh, (slow, quick) = frequencies()
+    step = quick - slow  # divides every line
+    count = round(one.rate * math.floor(one.values.size / one.rate * step + 1e-6) / step)
+    whole = replace(one, values=one.values[:count])
+    found, lines = spectrum(whole), {round(n * f, 6) for f in mesh for n in range(1, 141)}
+    return sum(amplitude(found, f) ** 2 for f in lines) / 2 / whole.values.var()
 
 
 def mating_time():

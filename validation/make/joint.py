@@ -73,12 +73,18 @@ def by_chance(apart, held, inputs):
     return 1 - (1 - ways / comb(held.size, yes)) ** inputs
 
 
+def judged(name):
+    """Draws in which each statement holds, on the channel that the page judges: that of `JUDGED_ON`, or the first."""
+    chosen = getattr(home(name), "JUDGED_ON", {})
+    return {word: channels[chosen.get(word, next(iter(channels)))] for word, channels in said(name).items()}
+
+
 def counts(name):
     """Statements, on the channel that the page judges, that hold in all draws, in none and in some; none that we set."""
     from gearfe.scene import verdicts
 
     ours = {row.case for row in read(name) if row.verdict == verdicts.ASSUMED}
-    share = [next(iter(channels.values())).mean() for word, channels in said(name).items() if word not in ours]
+    share = [held.mean() for word, held in judged(name).items() if word not in ours]
     return sum(x == 1 for x in share), sum(x == 0 for x in share), sum(0 < x < 1 for x in share)
 
 
@@ -95,22 +101,29 @@ def section(name):
     """Lines of the page of a machine; none without rows."""
     if not rows_of(name):
         return []
-    found = said(name)
+    found, own = said(name), judged(name)
     channels = list(dict.fromkeys(channel for one in found.values() for channel in one))
     lines = [
         "## Within which unprinted inputs statements hold",
         "",
         f"{sentence(name)[0].upper()}{sentence(name)[1:]}; what the scene's assumptions set is not counted. How they are "
         f"drawn: [joint.md](joint.md). The inputs, without a unit as factors of what is assumed: {'; '.join(told(name))}. Below, "
-        "in how many draws a statement holds, by channel, and for the first channel the input that goes with it most.",
+        "in how many draws a statement holds, by channel, and the input that goes with it most on the channel that is judged "
+        f"and counted: {judges(name)}.",
         "",
         table_row(["statement", *channels, "input that goes with it"]),
         "|---" * (len(channels) + 2) + "|",
     ]
     for statement, one in found.items():
         cells = [f"{one[channel].sum()} of {one[channel].size}" if channel in one else "" for channel in channels]
-        lines.append(table_row([statement, *cells, decides(name, next(iter(one.values())))]))
+        lines.append(table_row([statement, *cells, decides(name, own[statement])]))
     return [*lines, "", *numbers(name)]
+
+
+def judges(name):
+    """Which channel a page judges its statements on, in words."""
+    chosen = getattr(home(name), "JUDGED_ON", {})
+    return "the first" + "".join(f"; of '{word}' {channel}" for word, channel in chosen.items())
 
 
 def told(name):
@@ -146,7 +159,8 @@ def answer():
     """The first line."""
     every, none, some = np.sum([counts(name) for name in joint_inputs.RANGES], axis=0)
     return (
-        f"Of {every + none + some} statements of the articles that a simulation decides, {every} hold in all joint draws of "
+        f"Of {every + none + some} statements of the articles that a simulation decides, each on the channel that its page "
+        f"judges, {every} hold in all joint draws of "
         f"load, supports, damping, noise and what else is not printed, {none} in none; the "
         f"other {some} hold or not by inputs that the articles leave out, so that neither verdict on them is evidence."
     )

@@ -48,9 +48,9 @@ FURTHER = places.SOURCES / "statements.toml"
 
 def references(page):
     """References of its scene that the page computes, and further statements."""
-    more = tomllib.loads(FURTHER.read_text(encoding="utf-8"))[page]
+    more = tomllib.loads(FURTHER.read_text(encoding="utf-8"))
     own = [one for one in gf.load_scene(PAGES[page]).references if one.id not in ELSEWHERE]
-    return [*own, *read_references(FURTHER.name, more, {})]
+    return [*own, *read_references(FURTHER.name, more[page], {})]
 
 
 def functions(page, *, quick=False):
@@ -123,7 +123,7 @@ def text(page):
 
 def with_draws(page, table):
     """The table with the share of joint draws in which a statement holds beside its verdict."""
-    found = {name: next(iter(channels.values())) for name, channels in joint.said(page).items()}
+    found = joint.judged(page)
     out = []
     for line in table.splitlines():
         cells = line.split(" | ")

@@ -7,11 +7,13 @@ import numpy as np
 import gearfe as gf
 
 from ..shared.laws import beside, tables
-from ..shared.simulated import amplitude, own_law, record, scene, signal, spectrum, told
+from ..shared.simulated import amplitude, scene, spectrum, told
 from . import centroid
 from .planetary_numbers import CASES, NAME, QUICK, lengths, speeds  # noqa: F401
 from .planetary_repeats import (  # noqa: F401
+    JUDGED_ON,
     PRINTED,
+    ROUNDING,
     about_impacts,
     about_spectra,
     drawn,
@@ -22,6 +24,7 @@ from .planetary_repeats import (  # noqa: F401
     write_repeats,
 )
 from .planetary_runs import (  # noqa: F401
+    FINE,
     FORCE,
     LINEAR,
     OWN,
@@ -31,6 +34,7 @@ from .planetary_runs import (  # noqa: F401
     SENSOR,
     SETTLE,
     STEADY,
+    finer,
     linear,
     record_of,
     ring_path,
@@ -39,7 +43,6 @@ from .planetary_runs import (  # noqa: F401
     values_of,
 )  # fmt: skip
 
-FINE = 256 * 280.0  # above twice the highest natural frequency, 16.5 kHz; a multiple of f_m
 PATHS = {"raised cosine": lambda: None, "ring on its bearing": ring_path}
 
 
@@ -91,9 +94,8 @@ def amplitudes(law=OWN):
 @cache
 def folded(law=OWN):
     """Healthy force at 240 Hz over its mesh line: 10 000 samples per second as in S0, and `FINE`."""
-    made = linear(None) if law == LINEAR else own_law(NAME, pulsed=False)
-    finer = spectrum(signal(record(made, 0.3, FINE, SETTLE), FORCE))
-    return [amplitude(one, 240.0) / amplitude(one, 280.0) for one in (spectrum_of("healthy", False, law=law), finer)]
+    found = spectrum_of("healthy", False, law=law), finer("healthy", law)
+    return [amplitude(one, 240.0) / amplitude(one, 280.0) for one in found]
 
 
 @cache
@@ -147,6 +149,20 @@ def statements(law=OWN):
         out |= {"sidebands at the carrier's frequency beside them": seen("raised cosine")["holds"]}
         out |= {"the window of SC allows 349.8 and 352.9 Hz": mesh + fault >= 349.8}
     return out
+
+
+def finer_sidebands(law=OWN):
+    """Mean amplitude [N] at f_m +- f_fault, sampled `FINE`; zero where it is rounding."""
+    mesh, fault = speeds()[2:]
+    found = {case: finer(case, law) for case in ("healthy", *CASES)}
+    side = {case: (amplitude(one, mesh - fault) + amplitude(one, mesh + fault)) / 2 for case, one in found.items()}
+    return {case: value if value > ROUNDING else 0.0 for case, value in side.items()}
+
+
+def also():
+    """Statements of `sources/statements.toml`."""
+    healthy, *pitted = finer_sidebands().values()
+    return further() | {"pits raise sidebands 40 Hz beside 280 Hz, sampled finer": min(pitted) > 10 * healthy}
 
 
 def sidebands(law=OWN):
@@ -242,7 +258,7 @@ SIMULATED = {
     "amplitudes": amplitudes,
     "housing_lines": housing_lines,
     "statements": statements,
-    "further": further,
+    "further": also,
 }
 RUN_OF = dict.fromkeys(SIMULATED, OWN) | {"housing_lines": OWN + STEADY}
 BESIDE = {
@@ -254,6 +270,7 @@ BESIDE = {
     "shape factor": shape_factor,
     "peak [m/s^2]": amplitudes,
     "sidebands f_m +- 40 Hz [N]": sidebands,
+    f"the same, sampled {FINE:g} times a second [N]": finer_sidebands,
     "bandwidth of the sidebands [Hz]": spread,
     "force of the damaged tooth over the others'": strewn,
     "the articles say": statements,

@@ -25,6 +25,8 @@ INDICATORS = {"SC by S0's formula [Hz]": "SC (S0)", "SC by S1's formula [mm/s^2]
 INDICATORS |= {"kurtosis": "kurtosis", "shape factor": "shape factor"}
 STANDS_OUT = 1.5  # as for article S3
 ROUNDING = 1e-9  # of the mesh force's sidebands [N]
+MEASURED, RISES = ("rms", "kurtosis", "shape factor", "peak"), "{} rises with severity"
+JUDGED_ON = dict.fromkeys((RISES.format(word) for word in MEASURED), SENSOR)  # printed of the measured acceleration
 
 
 def about_spectra(law=OWN, channel=FORCE):
@@ -115,9 +117,9 @@ def section():
 
 
 TEXT = (
-    "S1 measured each level three times under impacts of several sizes: SC told the levels apart, RMS, kurtosis and shape factor "
-    "did not. Here pulses of 125, 250 and 500 N m, acceleration of the ring, article's own law; a level is told apart if the "
-    "ranges of its three repeats lie one above the other"
+    "S1 measured each level three times under impacts: SC told the levels apart and rose with them, RMS, kurtosis and shape "
+    "factor told none apart. Here pulses of 125, 250 and 500 N m, acceleration of the ring, article's own law; levels are told "
+    "apart if the ranges of their three repeats do not overlap, and by SC, which is said to rise, only if they rise"
 )
 
 
@@ -127,9 +129,9 @@ def drawn(draw):
     for channel in (FORCE, SENSOR, HOUSING):
         for name, found in about_spectra(draw, channel).items():
             holds.setdefault(name, {})[channel] = bool(found)
-        for word in ("rms", "kurtosis", "shape factor", "peak"):
+        for word in MEASURED:
             risen = rises(lambda case, word=word, channel=channel: values_of(case, True, channel, draw)[word])
-            holds.setdefault(f"{word} rises with severity", {})[channel] = risen
+            holds.setdefault(RISES.format(word), {})[channel] = risen
     numbers = {word: [values_of(case, True, SENSOR, draw)[word] for case in CASES] for word in PRINTED}
     forget()
     return {"holds": holds, "numbers": numbers}

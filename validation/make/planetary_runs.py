@@ -14,6 +14,7 @@ from .planetary_numbers import CASES, NAME, lined, speeds
 SECONDS, SETTLE = 10.0, 0.25
 DRAWN, DRAWN_SETTLE = 1.0, 0.25  # of a draw of the unprinted inputs
 RATE = 10000.0  # S0: 100 000 steps in 10 s
+FINE = 256 * 280.0  # above twice the highest natural frequency, 16.5 kHz; a multiple of f_m
 OWN, ROWS, LINEAR = "impact law", "impact law, rows of five", "linear stiffness"
 STEADY = ", no pulses"
 FORCE, SENSOR, HOUSING = "force sun_planet1", "ring.y acceleration", "ring's forces through its window"
@@ -49,6 +50,14 @@ def record_of(case, impact, law=OWN):
     options = scene(NAME).machine["impact"]
     made = knocked(made, "carrier torque", options, SECONDS + SETTLE) if impact else made
     return record(made, SECONDS, RATE, SETTLE)
+
+
+@cache
+def finer(case, law=OWN):
+    """Amplitudes of the force without pulses, sampled so often that nothing folds, over whole periods of its lines."""
+    name = None if case == "healthy" else case
+    made = linear(name) if law == LINEAR else _built(name, 0.0, law)
+    return spectrum(signal(record(made, 0.3, FINE, SETTLE), FORCE))
 
 
 def ring_path(foundation=1.0):

@@ -86,13 +86,14 @@ def ours(method, found=None):
 
 def verdicts(method):
     """Lines: printed numbers of the scene beside those of a method."""
-    k, references = ours(method)[0], [_chosen(one) for one in gf.load_scene(SCENE).references]
+    k, references = ours(method)[0], [_chosen(one, method) for one in gf.load_scene(SCENE).references]
     lost = dict(zip([(case, pair) for pair, case in rows() if case != "healthy"], layouts.reductions(k), strict=True))
     values = {(case, pair): 1e6 * v for (pair, case), v in zip(rows(), k, strict=True)}
     made = [row for one in references for row in judge(one, values if one.id == "stiffness_fe" else lost)]
     return text(references, made)
 
 
-def _chosen(reference):
-    """A reference whose rows say that what agrees was chosen to: no verdict of a fit is 'reproduced'."""
-    return replace(reference, rows=tuple(replace(row, set_by=CHOSEN) for row in reference.rows))
+def _chosen(reference, method):
+    """A reference whose rows say that what agrees was chosen to: no verdict of a fit is 'reproduced'; its note has the method."""
+    note = reference.note.replace("`ritz3d`", f"`{method}`")
+    return replace(reference, note=note, rows=tuple(replace(row, set_by=CHOSEN) for row in reference.rows))

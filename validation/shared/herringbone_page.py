@@ -2,6 +2,7 @@
 
 import csv
 import math
+from dataclasses import replace
 
 import gearfe as gf
 from gearfe.scene.verdicts import judge, text
@@ -14,6 +15,9 @@ from .places import TABLES
 
 SCENE = "herringbone"
 SUMS = ("published", "textbook")
+ASSUMED = (
+    "bores, ring, and of what length a crack's percentage is, none of them printed: other usual ones move it beyond the tolerance"
+)
 TEXT = """
 ## The ten rows
 
@@ -154,9 +158,19 @@ def ten_rows():
     return made.strip().splitlines()
 
 
+def judged():
+    """References of S4's table of stiffness, and rows with their verdicts."""
+    ours = found()
+    references = [_assumed(one) for one in gf.load_scene(SCENE).references if one.id in ours]
+    return references, [row for one in references for row in judge(one, ours[one.id])]
+
+
 def as_printed():
     """Lines: every number of S4's table with its verdict."""
-    ours = found()
-    references = [one for one in gf.load_scene(SCENE).references if one.id in ours]
-    rows = [row for one in references for row in judge(one, ours[one.id])]
-    return PRINTED.format(printed=text(references, rows)).strip().splitlines()
+    return PRINTED.format(printed=text(*judged())).strip().splitlines()
+
+
+def _assumed(reference):
+    """A reference whose results of a model, where they agree, do so by what the scene assumes."""
+    rows = (replace(row, set_by=ASSUMED if row.kind == "model" else "") for row in reference.rows)
+    return replace(reference, rows=tuple(rows))

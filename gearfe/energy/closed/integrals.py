@@ -59,13 +59,13 @@ def integrals(gear, roll, root="fillet", damage=HEALTHY):
         low = _lowest(gear, root)
         foot = np.array(_healthy_foot(gear, root))
         return foot[:, None] + _panel(gear, _flank(gear), low, roll, FLANK)
-    found, pits = _limits(gear, root, damage), damage.pits
-    edges, start = _flank_edges(gear, root, found, pits), np.zeros(5)
+    limit_lines, pits = _limits(gear, root, damage), damage.pits
+    edges, start = _flank_edges(gear, root, limit_lines, pits), np.zeros(5)
     below = _foot(gear, root)
     if below:
         curve, *ends = below
-        start = _running(gear, curve, _edges(curve, found, pits, ends), found, pits)(np.array(ends[1:]))[:, 0]
-    return start[:, None] + _running(gear, _flank(gear), edges, found, pits)(roll)
+        start = _running(gear, curve, _edges(curve, limit_lines, pits, ends), limit_lines, pits)(np.array(ends[1:]))[:, 0]
+    return start[:, None] + _running(gear, _flank(gear), edges, limit_lines, pits)(roll)
 
 
 def flank_edges(gear, root, damage):

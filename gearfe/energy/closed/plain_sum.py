@@ -80,36 +80,36 @@ def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lo
     teeth, outside = np.zeros(at.roll_1.shape), {}
     order = at.order[at.column]
     places = zip(gears, materials, (at.roll_1, at.roll_2), (order, -order), damage, strict=True)
-    for gear, material, roll, tooth, own in places:
-        for where, here in _by_tooth(gear, tooth, own, crack_model):
-            one = formulas.components(gear, material, roll[where], damage=here, **variants)
-            teeth[where] += one.total
-            outside |= dict.fromkeys(one.outside)
+    for gear, material, roll, tooth, gear_damage in places:
+        for where, tooth_damage in _by_tooth(gear, tooth, gear_damage, crack_model):
+            flexibility = formulas.components(gear, material, roll[where], damage=tooth_damage, **variants)
+            teeth[where] += flexibility.total
+            outside |= dict.fromkeys(flexibility.outside)
     return _solver(at, phase.size, teeth, _law(case, at, contact)), {"outside": tuple(outside)}
 
 
 def _by_tooth(gear, tooth, damage, crack_model):
     """Stations of the healthy teeth and of each damaged one, as (mask, `ToothDamage`)."""
-    damaged = {one.tooth % gear.z for found in damage for one in found}
-    rest = ~np.isin(tooth % gear.z, list(damaged))
-    if rest.any():
-        yield rest, ToothDamage()
+    damaged = {defect.tooth % gear.z for kind in damage for defect in kind}
+    healthy = ~np.isin(tooth % gear.z, list(damaged))
+    if healthy.any():
+        yield healthy, ToothDamage()
     for number in sorted(damaged):
         where = tooth % gear.z == number
         if where.any():
-            yield where, ToothDamage(*(tuple(d for d in found if d.tooth % gear.z == number) for found in damage), crack_model)
+            yield where, ToothDamage(*(tuple(d for d in kind if d.tooth % gear.z == number) for kind in damage), crack_model)
 
 
 def _edges(pair, order, *, damage, crack_model, root):
     """Pinion rolls [mm] at which pairs with a damaged tooth are not smooth, by pair order."""
     out = {}
     for number in order:
-        found = []
+        pinion_rolls = []
         for k, (gear, tooth) in enumerate(((pair.gear_1, number), (pair.gear_2, -number))):
-            for _, here in _by_tooth(gear, np.array([tooth]), damage[k], crack_model):
-                rolls = flank_edges(gear, root, here) if here else np.zeros(0)
-                found += (rolls if k == 0 else pair.outward * (pair.length - rolls)).tolist()
-        out[number] = found
+            for _, tooth_damage in _by_tooth(gear, np.array([tooth]), damage[k], crack_model):
+                rolls = flank_edges(gear, root, tooth_damage) if tooth_damage else np.zeros(0)
+                pinion_rolls += (rolls if k == 0 else pair.outward * (pair.length - rolls)).tolist()
+        out[number] = pinion_rolls
     return out
 
 

@@ -59,9 +59,9 @@ def components(gear, material, roll, *, damage=HEALTHY, foundation="sainsot", ro
     X. Liang, M. J. Zuo, T. H. Patel, J. Mech. Eng. Sci. 228(3) (2014) 535-547, eqs. 6-20 (the planetary form).
     """
     roll = np.atleast_1d(np.asarray(roll, dtype=float))
-    for name, value, known in (("foundation", foundation, FOUNDATIONS), ("root", root, ROOTS), ("foot", foot, FEET)):
-        if value not in known:
-            raise ValueError(f"{name} = {value!r}, but it must be one of {', '.join(known)}")
+    for name, value, choices in (("foundation", foundation, FOUNDATIONS), ("root", root, ROOTS), ("foot", foot, FEET)):
+        if value not in choices:
+            raise ValueError(f"{name} = {value!r}, but it must be one of {', '.join(choices)}")
     if damage or gear.internal:  # the same integrals over the height, with the sections that damage leaves
         parts = beam_parts(gear, material, roll, root, damage)
     else:

@@ -165,7 +165,7 @@ def _left_of(gear, h, y, arc, edges, pits):
 
 
 def _positive(gear, thickness, y):
-    """Return `thickness` [mm], or refuse where nothing is left."""
+    """Return `thickness` [mm]; ValueError where nothing is left."""
     if (thickness <= 0).any():
         height = abs(y[thickness <= 0].flat[0])
         raise ValueError(

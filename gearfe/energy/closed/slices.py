@@ -115,8 +115,8 @@ def _summed(pair, order, pits, bands):
     """Parts of the width of each band that the pits of a pair's two teeth take, summed: ``(pairs, bands)``."""
     out = np.zeros((order.size, len(bands)))
     common = min(pair.gear_1.b, pair.gear_2.b)
-    for gear, own, sense in ((pair.gear_1, pits[0], 1), (pair.gear_2, pits[1], -1)):
-        for pit in own:
+    for gear, gear_pits, sense in ((pair.gear_1, pits[0], 1), (pair.gear_2, pits[1], -1)):
+        for pit in gear_pits:
             z = pit.z - (gear.b - common) / 2
             ends = [(max(min(a, b), z - pit.reach[1]), min(max(a, b), z + pit.reach[1])) for a, b, _ in bands]
             width = [max(high - low, 0.0) / abs(b - a) for (low, high), (a, b, _) in zip(ends, bands, strict=True)]

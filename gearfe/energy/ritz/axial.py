@@ -15,12 +15,12 @@ from numpy.polynomial import legendre
 from ...flexibility.halfspace import modes
 
 PUSHING = 6  # degree, at most, of forces between faces of a crack over the whole width (`depth.degrees`: all nodes have that)
-OPEN = 6, 1.6  # degree of the opening along a part of the width: at least, and per normal module
+OPEN = 6, 1.6  # degree of the opening along a part of the width: the least, and per normal module of that part
 # How far the short cubics about the end of a crack reach [m_n], and the shortest of them, in that. Set while looking at
 # hexahedra of one gear, 12 mm wide with a crack over half of that; judged on finer layers and on 8 mm of the same gear only.
 ENDS = 1.0, 0.2
 MOVED = 3  # polynomials that the depth of a front is multiplied by
-FRONT = 8  # more Gauss points where the section follows a crack's front
+FRONT = 8  # so many more Gauss points where the section follows a crack's front
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,10 +62,10 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
     """
     fronts = tuple(fronts) or (None,) * len(parts)
     kinks = [z for front in fronts if front for z in front.kinks()]
-    bands = sorted({band for own in parts if own for band in own})
+    bands = sorted({band for where in parts if where for band in where})
     degrees = [max(OPEN[0], math.ceil(OPEN[1] * (high - low) / m_n) + 2) for low, high in bands]
     shallow = {
-        end for front, own in zip(fronts, parts, strict=True) if front for end in np.ravel(own or ()) if front.runs_out(end)
+        end for front, where in zip(fronts, parts, strict=True) if front for end in np.ravel(where or ()) if front.runs_out(end)
     }
     fine = {
         (band, k): _steps(band, k, width, m_n, band[k] in shallow)
@@ -73,7 +73,9 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
         for k in (0, 1)
         if 1e-9 * width < band[k] < width * (1 - 1e-9)
     }
-    ends = np.unique([0.0, width, *kinks, *(end for band in bands for end in band), *(at for own in fine.values() for at in own)])
+    ends = np.unique(
+        [0.0, width, *kinks, *(end for band in bands for end in band), *(at for where in fine.values() for at in where)]
+    )
     ends = ends[np.append(True, np.diff(ends) > 1e-12 * width)]
     gauss, weight = legendre.leggauss(max([degree, *degrees]) + 1 + (FRONT if kinks else 0))
     half = np.diff(ends)[:, None] / 2
@@ -90,13 +92,13 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
             first += made[0].shape[1]
     short, inside = {}, {}
     for (band, k), places in fine.items():
-        made, own = _short(z, places, band[k], 1 - 2 * k)
+        made, where = _short(z, places, band[k], 1 - 2 * k)
         columns.append(made[0])
         slopes.append(made[1])
-        number = np.arange(first, first + own.size)
+        number = np.arange(first, first + where.size)
         short.setdefault(band, []).append(number)
-        inside.setdefault(band, []).append(number[own])
-        first += own.size
+        inside.setdefault(band, []).append(number[where])
+        first += where.size
     depths = {}
     for i, front in enumerate(fronts):
         if front and front.sharp:
@@ -108,13 +110,17 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
     value, rise = np.hstack(columns), np.hstack(slopes)
     every = np.arange(degree + 1)
     sets, points, at = [every], [], []
-    for i, own in enumerate(parts):
-        own = own or ()
-        sets.append(np.concatenate([part for band in own for part in (opening[band], *inside.get(band, ()))]) if own else every)
-        sets.append(np.concatenate([pushing[band] for band in own]) if own else every[: PUSHING + 1])
-        sets.append(np.concatenate([every, *(part for band in own for part in short.get(band, ())), depths.get(i, every[:0])]))
+    for i, where in enumerate(parts):
+        where = where or ()
+        sets.append(
+            np.concatenate([part for band in where for part in (opening[band], *inside.get(band, ()))]) if where else every
+        )
+        sets.append(np.concatenate([pushing[band] for band in where]) if where else every[: PUSHING + 1])
+        sets.append(np.concatenate([every, *(part for band in where for part in short.get(band, ())), depths.get(i, every[:0])]))
         sets.append(np.append(every, depths.get(i, every[:0])))
-        place, matrix = _points(own or ((0.0, width),), [degrees[bands.index(band)] for band in own] or [min(degree, PUSHING)])
+        place, matrix = _points(
+            where or ((0.0, width),), [degrees[bands.index(band)] for band in where] or [min(degree, PUSHING)]
+        )
         points.append(place)
         at.append(matrix)
     sets += [every[: k + 1] for k in range(degree + 1)]
@@ -173,18 +179,18 @@ def _graded(nearest, reach):
 
 def _short(z, places, end, inwards):
     """Continuous cubics between `places`, zero at the first and the last, their slopes, and which vanish outside the crack."""
-    value, rise, own = [], [], []
+    value, rise, inside = [], [], []
     for low, middle, high in zip(places[:-2], places[1:-1], places[2:], strict=True):  # hats
         up, down = (z > low) & (z <= middle), (z > middle) & (z < high)
         value.append(np.where(up, (z - low) / (middle - low), np.where(down, (high - z) / (high - middle), 0.0)))
         rise.append(np.where(up, 1 / (middle - low), np.where(down, -1 / (high - middle), 0.0)))
-        own.append(inwards * (middle - end) > 0)
+        inside.append(inwards * (middle - end) > 0)
     for low, high in zip(places[:-1], places[1:], strict=True):
         there, t = (z > low) & (z < high), 2 * (z - low) / (high - low) - 1
         value += [np.where(there, 1 - t**2, 0.0), np.where(there, t * (1 - t**2), 0.0)]
         rise += [np.where(there, slope * 2 / (high - low), 0.0) for slope in (-2 * t, 1 - 3 * t**2)]
-        own += [inwards * ((low + high) / 2 - end) > 0] * 2
-    return (np.column_stack(value), np.column_stack(rise)), np.array(own)
+        inside += [inwards * ((low + high) / 2 - end) > 0] * 2
+    return (np.column_stack(value), np.column_stack(rise)), np.array(inside)
 
 
 def _depth(z, weight, front, whole, rise):
@@ -195,8 +201,8 @@ def _depth(z, weight, front, whole, rise):
     value, slope = front.depth(z)
     few, steep = whole[:, :MOVED], rise[:, :MOVED]
     value, slope = value[:, None] * few, slope[:, None] * few + value[:, None] * steep
-    own = whole.T @ (weight * value)
-    value, slope = value - whole @ own, slope - rise @ own
+    carried = whole.T @ (weight * value)
+    value, slope = value - whole @ carried, slope - rise @ carried
     size, turn = np.linalg.eigh(value.T @ (weight * value))
     kept = size > 1e-12  # of functions that have about unit size before
     turn = turn[:, kept] / np.sqrt(size[kept])

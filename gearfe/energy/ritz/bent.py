@@ -18,7 +18,7 @@ from numpy.polynomial import chebyshev
 from geometry.mesh.front import follow
 from geometry.mesh.triangle import jacobians
 
-DEPTHS = 7  # at which the section's matrices are computed, or more in proportion if the depth falls below a quarter
+DEPTHS = 7  # depths at which the section's matrices are computed; in proportion more if the depth falls below a quarter
 CHECKED = 6  # order at whose quadrature points the triangles are checked
 
 
@@ -86,7 +86,7 @@ def bent_triangles(sector, shift, front, along, section):
 
     def integrals(power, one, two):
         weight = (along.weight * slope**power)[:, None] * carry
-        return np.array([one.T @ (own[:, None] * two) for own in weight.T])
+        return np.array([one.T @ (column[:, None] * two) for column in weight.T])
 
     even = [integrals(0, value, value), integrals(1, value, value), integrals(2, value, value), integrals(0, rise, rise)]
     mixed = [integrals(0, value, rise), integrals(1, value, rise)]
@@ -123,6 +123,6 @@ def moved_factors(bent, one, other):
 def _added(parts, at, size):
     """Matrices ``(t, k, n, n)`` of k triangles added up at their places ``(k, n)``: ``(t, size, size)``."""
     out = np.zeros((parts.shape[0], size, size))
-    for own, place in zip(parts.transpose(1, 0, 2, 3), at, strict=True):
-        out[(slice(None), *np.ix_(place, place))] += own
+    for matrices, place in zip(parts.transpose(1, 0, 2, 3), at, strict=True):
+        out[(slice(None), *np.ix_(place, place))] += matrices
     return out

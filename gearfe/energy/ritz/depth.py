@@ -11,7 +11,7 @@ import numpy as np
 from geometry.mesh.triangle import table
 from geometry.tooth.profile import cartesian, flank
 
-LEAST, DECAY = 5, 2.0  # degree of what does not decay, and half waves kept, in powers of e they decay by
+LEAST, DECAY = 5, 2.0  # degree of what does not decay; half waves that decay by less than exp(-`DECAY`) are kept
 SAMPLES = 60  # of a loaded flank
 SAME = 1e-6  # distances that differ by less have one degree [m_n]
 
@@ -26,8 +26,8 @@ def degrees(gear, sector, numbers, sides, degree, order):
     place = np.einsum("cn,dcm->dnm", table(order).nodes, sector.points[:, sector.triangles])
     away = np.zeros(int(numbers.max()) + 1)
     away[numbers.ravel()] = _distance(gear, place.reshape(2, -1))
-    both = away[sides].reshape(2, -1).min(axis=0)
-    away[sides] = np.tile(np.round(both / (SAME * gear.m_n)) * SAME * gear.m_n, 2)
+    nearer = away[sides].reshape(2, -1).min(axis=0)
+    away[sides] = np.tile(np.round(nearer / (SAME * gear.m_n)) * SAME * gear.m_n, 2)
     turned = abs(gear.twist_rate) * width / 2  # rigid motions are not constant along a twisted gear
     wanted = LEAST + turned + DECAY * width / (math.pi * np.maximum(away, 1e-9 * width))
     return np.minimum(2 * np.ceil(np.minimum(wanted, degree) / 2).astype(int), degree)

@@ -15,8 +15,8 @@ def dissect(sector):
     def parted(own):
         if own.size <= LEAF:
             return own, (), ()
-        one, two = _halves(sector.triangles, centre, own)
-        return own, parted(one), parted(two)
+        first, second = _halves(sector.triangles, centre, own)
+        return own, parted(first), parted(second)
 
     return parted(np.arange(sector.triangles.shape[1]))
 

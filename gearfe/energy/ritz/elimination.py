@@ -108,10 +108,10 @@ def body_of(section, axial, *, seams=(), kinds=None, bent=None):
     partner = np.arange(nodes)
     for left, right in seams:
         partner[left], partner[right] = right, left
-    touch = tuple(np.union1d(own, partner[own]) for own in numbers.T)
+    touch = tuple(np.union1d(members, partner[members]) for members in numbers.T)
     kind = np.zeros(nodes + loads, dtype=int) if kinds is None else kinds
     used = np.unique(kind).tolist()
-    each = np.append(np.full(nodes, 3), np.ones(loads, dtype=int))
+    components = np.append(np.full(nodes, 3), np.ones(loads, dtype=int))
     return SectorBody(
         numbers=numbers,
         touch=touch,
@@ -125,7 +125,7 @@ def body_of(section, axial, *, seams=(), kinds=None, bent=None):
         section=section.stiffness,
         factors={(a, b): _factors(axial, axial.sets[a], axial.sets[b]) for a in used for b in used},
         kind=kind,
-        size=each * np.array([own.size for own in axial.sets])[kind],
+        size=components * np.array([members.size for members in axial.sets])[kind],
         bent=bent,
     )
 
@@ -166,36 +166,38 @@ def _room(body, plan):
 
 def _planned(body, tree, turn, count):
     """Triangles, numbers that go, numbers that stay, and the same of both halves; `turn` is when each number goes."""
-    own = tree[0]
+    triangles = tree[0]
     parts = [_planned(body, half, turn, count) for half in tree[1:] if half]
     if parts:
         ids = np.union1d(parts[0][2], parts[1][2])
     else:
-        nodes = np.unique(body.numbers[:, own])
-        loads = body.load[nodes[np.isin(body.owner[nodes], own)]].any(axis=(0, 1))
-        ids = np.unique(np.concatenate([body.touch[k] for k in own.tolist()]))
+        nodes = np.unique(body.numbers[:, triangles])
+        loads = body.load[nodes[np.isin(body.owner[nodes], triangles)]].any(axis=(0, 1))
+        ids = np.unique(np.concatenate([body.touch[k] for k in triangles.tolist()]))
         ids = np.append(ids, body.first_load + np.flatnonzero(loads))
         ids = ids[body.there[ids]]
-    used = np.bincount(np.concatenate([body.touch[k] for k in own.tolist()]), minlength=body.size.size)
+    used = np.bincount(np.concatenate([body.touch[k] for k in triangles.tolist()]), minlength=body.size.size)
     gone = (used[ids] == body.uses[ids]) & ~body.stays[ids]
     turn[ids[gone]] = count[0]
     count[0] += 1
-    return own, ids[gone], ids[~gone], parts
+    return triangles, ids[gone], ids[~gone], parts
 
 
 def _eliminated(body, plan, turn, room):
     """Numbers of a set that stay, in the order in which they go, and the lower triangle of the matrix between them in `room`."""
-    own, gone, rest, parts = plan
-    gone, rest = (some[np.lexsort((some, body.kind[some], some >= body.first_load, turn[some]))] for some in (gone, rest))
+    triangles, gone, rest, parts = plan
+    gone, rest = (
+        numbers[np.lexsort((numbers, body.kind[numbers], numbers >= body.first_load, turn[numbers]))] for numbers in (gone, rest)
+    )
     first, left = int(body.size[gone].sum()), int(body.size[rest].sum())
     blocks, room = _blocks(room, first, left)
     if parts:
         ids = np.append(gone, rest)
         for part in parts:
-            others, matrix = _eliminated(body, part, turn, room)
-            _add(blocks, matrix, places(body, ids, others), first)
+            part_ids, matrix = _eliminated(body, part, turn, room)
+            _add(blocks, matrix, places(body, ids, part_ids), first)
     else:
-        leaf(body, own, gone, rest, blocks)
+        leaf(body, triangles, gone, rest, blocks)
     inside, across, matrix = blocks
     if first:
         lower, failed = dpotrf(inside, lower=1, clean=0, overwrite_a=1)

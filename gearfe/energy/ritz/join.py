@@ -42,9 +42,9 @@ def join(gear, panels, healthy):
     between = _full(_added(total, loads, np.zeros((loads.shape[1],) * 2, order="F"), 1.0))
     n = healthy.push.shape[1]
     for tooth in teeth:
-        at, one = pushes[tooth], panels[tooth]
-        own = (one.own + one.own.T) / 2
-        between[at, at] += np.block([[own, one.open_own.T], [one.open_own, one.open_open]])
+        at, panel = pushes[tooth], panels[tooth]
+        direct = (panel.own + panel.own.T) / 2
+        between[at, at] += np.block([[direct, panel.open_own.T], [panel.open_own, panel.open_open]])
     index = {t: slice(pushes[t].start, pushes[t].start + n) for t in teeth}
     faces = np.concatenate([np.arange(pushes[t].start + n, pushes[t].stop) for t in teeth])
     influence = {(i, j): between[index[i], index[j]].copy() for i in teeth for j in teeth}

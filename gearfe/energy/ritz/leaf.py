@@ -24,9 +24,9 @@ def leaf(body, own, gone, rest, blocks):
     plane[2] = plane[1].T
     if body.bent is not None:
         plane = np.concatenate([plane, moved_products(body.bent, own, index[body.numbers[:, own]].T, raw.size)])
-    here = np.where(np.isin(body.owner[raw], own)[:, None, None], body.load[raw], 0.0)[:, :, loads - body.first_load]
+    forces = np.where(np.isin(body.owner[raw], own)[:, None, None], body.load[raw], 0.0)[:, :, loads - body.first_load]
     turn = _seamed(body, raw, nodes)
-    here = (turn.T @ here.reshape(raw.size, -1)).reshape(3 * nodes.size, loads.size)
+    forces = (turn.T @ forces.reshape(raw.size, -1)).reshape(3 * nodes.size, loads.size)
     if np.isin(turn, (0.0, 1.0)).all():
         at = (3 * turn.argmax(axis=0)[:, None] + np.arange(3)).ravel()
         plane = plane[:, at[:, None], at]
@@ -35,7 +35,7 @@ def leaf(body, own, gone, rest, blocks):
         plane = turn.T @ plane @ turn
     if body.parted:
         plane = _by_component(plane)
-    _times(body, plane, here, ids, gone.size, [block.T for block in blocks])
+    _times(body, plane, forces, ids, gone.size, [block.T for block in blocks])
 
 
 def _by_component(plane):
@@ -69,18 +69,18 @@ def _times(body, plane, here, ids, gone, blocks):
     place[gone:] -= first
     cuts = np.unique(np.concatenate([[0, gone, nodes, ids.size], 1 + np.flatnonzero(np.diff(kind))]))
     runs = [(slice(a, b), int(kind[a]), slice(place[a], place[a] + size[a:b].sum())) for a, b in pairwise(cuts.tolist())]
-    for k, (own, one, rows) in enumerate(runs):
-        if own.start >= nodes:
+    for k, (nodes_i, kind_i, rows) in enumerate(runs):
+        if nodes_i.start >= nodes:
             break  # loads have nothing to do with each other
-        for others, other, columns in runs[k:]:
-            factors, coupled = body.factors[one, other], plane[:, _three(own), _three(others)]
-            if others.start >= nodes:
-                factors, coupled = factors[:1], here[None, _three(own), others.start - nodes : others.stop - nodes]
+        for nodes_j, kind_j, columns in runs[k:]:
+            factors, coupled = body.factors[kind_i, kind_j], plane[:, _three(nodes_i), _three(nodes_j)]
+            if nodes_j.start >= nodes:
+                factors, coupled = factors[:1], here[None, _three(nodes_i), nodes_j.start - nodes : nodes_j.stop - nodes]
             elif len(plane) > len(factors):
-                factors = np.concatenate([factors, moved_factors(body.bent, one, other)])
+                factors = np.concatenate([factors, moved_factors(body.bent, kind_i, kind_j)])
             block = coupled.reshape(len(factors), -1).T @ factors.reshape(len(factors), -1)
             block = block.reshape(*coupled.shape[1:], *factors.shape[1:]).transpose(0, 2, 1, 3)
-            target = blocks[(own.start >= gone) + (others.start >= gone)]
+            target = blocks[(nodes_i.start >= gone) + (nodes_j.start >= gone)]
             target[rows, columns].reshape(block.shape)[:] = block
 
 

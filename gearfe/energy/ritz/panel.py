@@ -135,8 +135,8 @@ def numbering(sector, order):
         a, b = corners[:-1], corners[1:]
         at = np.searchsorted(keys, np.minimum(a, b) * vertices + np.maximum(a, b))
         middle = vertices + at[..., None] * (order - 1) + np.where((a < b)[..., None], steps, steps[::-1])
-        found = np.moveaxis(np.concatenate([a[..., None], middle], axis=-1), -1, 1)
-        return np.concatenate([found.reshape(-1, *corners.shape[1:]), corners[-1:]])
+        nodes = np.moveaxis(np.concatenate([a[..., None], middle], axis=-1), -1, 1)
+        return np.concatenate([nodes.reshape(-1, *corners.shape[1:]), corners[-1:]])
 
     return numbers, vertices + keys.size * (order - 1), chain
 
@@ -219,13 +219,13 @@ def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
     spread = flamant.traction(points.reshape(2, -1), outward.reshape(2, -1), where, inward, tip_side)
     force = -spread.reshape(2, n, start.size, gauss.size) @ lagrange(order, tuple(gauss)).T  # (2, n, edges, nodes)
     nodes = chain(np.array([start, stop])).T
-    rows, columns = (np.broadcast_to(one, force.shape).ravel() for one in _places(nodes, np.arange(n)[:, None, None]))
+    rows, columns = (np.broadcast_to(indices, force.shape).ravel() for indices in _places(nodes, np.arange(n)[:, None, None]))
     edge = np.clip(np.searchsorted(sector.roll * gear.outward, roll * gear.outward) - 1, 0, sector.roll.size - 2)
     low, high = sector.roll[edge], sector.roll[edge + 1]
     values = lagrange(order, tuple((2 * (roll - low) / (high - low) - 1).tolist()))
     at = chain(np.array([sector.flank[edge], sector.flank[edge + 1]]))
     read = values * inward[:, None]  # (2, nodes, n)
-    read_rows, read_columns = (np.broadcast_to(one, read.shape).ravel() for one in _places(at, n + np.arange(n)))
+    read_rows, read_columns = (np.broadcast_to(indices, read.shape).ravel() for indices in _places(at, n + np.arange(n)))
     arc = arc_at(gear, roll)
     with np.errstate(divide="ignore", invalid="ignore"):  # a load at itself, which is taken as zero
         moved = flamant.displacement(where, where, inward, tip_side, *elastic)

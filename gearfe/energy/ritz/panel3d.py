@@ -107,16 +107,16 @@ def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
     border = int(body.size[sides].sum())
     edge = polar(gear, sizes, polar(gear, sizes, matrix[:border, :border]).T)
     push = polar(gear, sizes, matrix[:border, border:])
-    own = -(matrix[border:, border:] + matrix[border:, border:].T) / 2
+    between = -(matrix[border:, border:] + matrix[border:, border:].T) / 2
     n = knots.shape[1] * (degree + 1)
     points = block_diag(*(along.at[i] for i in owner)) if owner else np.zeros((0, 0))
     return Panel(
         stiffness=(edge + edge.T) / 2,
         push=push[:, :n],
-        own=own[:n, :n],
+        own=between[:n, :n],
         open_push=push[:, n:] @ points.T,
-        open_own=points @ own[n:, :n],
-        open_open=points @ own[n:, n:] @ points.T,
+        open_own=points @ between[n:, :n],
+        open_open=points @ between[n:, n:] @ points.T,
         unknowns=int(body.size[: body.first_load][body.there[: body.first_load]].sum()),
     )
 
@@ -152,12 +152,12 @@ def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
     """Which set of `axial.Axial` each node has: by its degree, but near and on cracks that change along the width."""
     whole = 1 + 4 * len(parts) + degree
     out, right = whole.copy(), iter(right)
-    for i, (own, bend) in enumerate(zip(parts, bends, strict=True)):
+    for i, (bands, bend) in enumerate(zip(parts, bends, strict=True)):
         if bend:
             moved = (np.abs(bend[0]) > 0).any(axis=0)[sector.triangles].any(axis=0)
             out[np.unique(numbers[:, moved])] = 4 + 4 * i
-        if own:
-            out[_near(gear, sector, numbers, sector.faces[i], own, bend)] = 3 + 4 * i
+        if bands:
+            out[_near(gear, sector, numbers, sector.faces[i], bands, bend)] = 3 + 4 * i
             out[next(right)] = 1 + 4 * i
     out[sides] = whole[sides]
     return out
@@ -172,12 +172,12 @@ def _apart(sector, chain, count):
         lengths = np.hypot(*ahead)
         normal = np.array([-ahead[1], ahead[0]]) / lengths
         pairs = np.array([chain(left), chain(right)])[:, :-1]
-        each = pairs.shape[1] // lengths.size
+        per_edge = pairs.shape[1] // lengths.size
         to_tip = np.cumsum(lengths[::-1])[::-1]
         for k in range(pairs.shape[1]):
-            if to_tip[k // each] > NEAR_TIP * lengths.sum():
+            if to_tip[k // per_edge] > NEAR_TIP * lengths.sum():
                 force = np.zeros((count, 3))
-                force[pairs[0, k], :2], force[pairs[1, k], :2] = normal[:, k // each], -normal[:, k // each]
+                force[pairs[0, k], :2], force[pairs[1, k], :2] = normal[:, k // per_edge], -normal[:, k // per_edge]
                 columns.append(force)
                 owner.append(i)
     return (np.stack(columns, axis=2) if columns else np.zeros((count, 3, 0))), owner
@@ -275,9 +275,9 @@ def _between(material, twist):
     def energy(one, two):
         return np.einsum("ij,icf,jdg->cdfg", stiffness, one, two)
 
-    both = energy(flat, carried) + energy(carried, flat)
+    mixed = energy(flat, carried) + energy(carried, flat)
     plain = energy(flat, flat), energy(flat, along), energy(along, along)
-    return np.array([*plain, both, energy(carried, carried), energy(carried, along)])
+    return np.array([*plain, mixed, energy(carried, carried), energy(carried, along)])
 
 
 def _hats(gear, sector, chain, count, knots, order, tilt):

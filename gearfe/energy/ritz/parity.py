@@ -18,8 +18,8 @@ def front_by_parity(body, tree):
     ids = np.flatnonzero(body.stays & body.there)
     total = np.zeros((int(body.size[ids].sum()),) * 2)
     for parity in (0, 1):
-        found, matrix = carried_out(_half(body, parity), plan, turn)
-        at, real = _places(body, found, ids, parity)
+        numbers, matrix = carried_out(_half(body, parity), plan, turn)
+        at, real = _places(body, numbers, ids, parity)
         total[at[:, None], at] = matrix[np.ix_(real, real)]
     return ids, total
 
@@ -28,8 +28,8 @@ def _functions(count, parity):
     """Degrees along the width in the section, and axial ones, of the `count` lowest; `count` itself if there is one too few."""
     out = np.full((2, (count + 1) // 2), count)
     for row, first in zip(out, (parity, 1 - parity), strict=True):
-        own = np.arange(first, count, 2)
-        row[: own.size] = own
+        degrees = np.arange(first, count, 2)
+        row[: degrees.size] = degrees
     return out
 
 
@@ -41,16 +41,16 @@ def _half(body, parity):
     """
     nodes = set(body.kind[: body.first_load].tolist())
     factors = {}
-    for (one, other), known in body.factors.items():
-        padded = np.zeros((4, known.shape[1] + 1, known.shape[2] + 1))
-        padded[:, :-1, :-1] = known
-        padded[0, -1, -1] = one in nodes and other in nodes
-        (flat, axial), (flat_2, axial_2) = (_functions(n, parity) for n in known.shape[1:])
+    for (row_kind, column_kind), factor in body.factors.items():
+        padded = np.zeros((4, factor.shape[1] + 1, factor.shape[2] + 1))
+        padded[:, :-1, :-1] = factor
+        padded[0, -1, -1] = row_kind in nodes and column_kind in nodes
+        (flat, axial), (flat_2, axial_2) = (_functions(n, parity) for n in factor.shape[1:])
         terms = ((0, flat, flat_2), (0, axial, axial_2), (1, flat, axial_2), (1, axial, flat_2))
         terms += ((2, flat, axial_2), (2, axial, flat_2), (3, flat, flat_2), (3, axial, axial_2))
-        factors[one, other] = np.array([padded[k][np.ix_(rows, columns)] for k, rows, columns in terms])
-    each = np.where(np.arange(body.size.size) < body.first_load, 3, 1)
-    return replace(body, factors=factors, size=each * ((body.size // each + 1) // 2), parted=True)
+        factors[row_kind, column_kind] = np.array([padded[k][np.ix_(rows, columns)] for k, rows, columns in terms])
+    components = np.where(np.arange(body.size.size) < body.first_load, 3, 1)
+    return replace(body, factors=factors, size=components * ((body.size // components + 1) // 2), parted=True)
 
 
 def _places(body, found, ids, parity):
@@ -62,7 +62,7 @@ def _places(body, found, ids, parity):
         node = number < body.first_load
         count = int(body.size[number]) // (3 if node else 1)
         flat, axial = _functions(count, parity)
-        for k, own in enumerate((flat, flat, axial) if node else (flat,)):
-            at.append((start[number] + k * count + own)[own < count])
-            real.append(own < count)
+        for k, functions in enumerate((flat, flat, axial) if node else (flat,)):
+            at.append((start[number] + k * count + functions)[functions < count])
+            real.append(functions < count)
     return np.concatenate(at), np.concatenate(real)

@@ -22,8 +22,8 @@ from .join import join
 from .panel import SectionModel, check_order, panel
 
 PLACES = 16  # loads on each flank
-FOOT = 20 * NEAREST  # of them to the form point; to the tip corner it is `NEAREST` [m_n]
-HATS = 2  # times finer hats at corners than those of `fe`
+FOOT = 20 * NEAREST  # distance from the first of them to the form point; from the last to the tip corner it is `NEAREST` [m_n]
+HATS = 2  # how many times shorter the hats at corners are than those of `fe`
 KNOTS = 48  # of the splines that carry their polynomial
 
 
@@ -63,13 +63,15 @@ def _flexibility(model, cracks, neighbours, cache):
 
 
 def _healthy(model, _, neighbours, cache):
-    gear, one = model.gear, loaded_sector(model, (), cache)
+    gear, healthy = model.gear, loaded_sector(model, (), cache)
     teeth = range(min(neighbours + 1, gear.z))
-    influence, _ = join(gear, dict.fromkeys(teeth, one), one)
+    influence, _ = join(gear, dict.fromkeys(teeth, healthy), healthy)
     far = {(0, k): _spline(gear, influence[0, k]) for k in teeth if k}
-    near, own, leans = _own_tooth(gear, influence[0, 0])
+    near, within, leans = _own_tooth(gear, influence[0, 0])
     fine = HATS * model.refine
-    return Flexibility(gear, {0: near}, far, {0: own}, _limits(gear), fine, one.unknowns, basis=_basis(gear), leans={0: leans})
+    return Flexibility(
+        gear, {0: near}, far, {0: within}, _limits(gear), fine, healthy.unknowns, basis=_basis(gear), leans={0: leans}
+    )
 
 
 def _cracked(model, cracks, neighbours, cache):
@@ -77,23 +79,23 @@ def _cracked(model, cracks, neighbours, cache):
     gear, reach = model.gear, max(1, neighbours - 1)
     healthy = _flexibility(model, (), neighbours, cache)
     teeth = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
-    hurt = {tooth: tuple(crack for crack in cracks if crack.tooth % gear.z == tooth) for tooth in teeth}
-    panels = {tooth: loaded_sector(model, found, cache) for tooth, found in hurt.items()}
+    by_tooth = {tooth: tuple(crack for crack in cracks if crack.tooth % gear.z == tooth) for tooth in teeth}
+    panels = {tooth: loaded_sector(model, tooth_cracks, cache) for tooth, tooth_cracks in by_tooth.items()}
     influence, opening = join(gear, panels, loaded_sector(model, (), cache))
     between = opening["influence"]
     stiffness = np.linalg.inv(between)
-    near, own, far, leans = {}, {}, {}, {}
+    near, within, far, leans = {}, {}, {}, {}
     for i in teeth:
         for j in teeth:
             glued = influence[i, j] - opening[i].T @ stiffness @ opening[j]
             if i == j:
-                near[i], own[i], leans[i] = _own_tooth(gear, glued)
+                near[i], within[i], leans[i] = _own_tooth(gear, glued)
             elif (j - i) % gear.z <= gear.z // 2:
                 far[i, j] = _spline(gear, glued)
     arcs, matrix = _knots(gear)
     seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t][:, :PLACES].T) for t in teeth}, between, stiffness)
     unknowns, fine = sum(p.unknowns for p in panels.values()), HATS * model.refine
-    return Flexibility(gear, near, far, own, _limits(gear), fine, unknowns, healthy, seam, _basis(gear), leans)
+    return Flexibility(gear, near, far, within, _limits(gear), fine, unknowns, healthy, seam, _basis(gear), leans)
 
 
 def loaded_sector(model, cracks, cache=True):

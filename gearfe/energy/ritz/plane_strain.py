@@ -25,10 +25,10 @@ def missing(model, cracks, sections, *, cubic=False, cache=True):
     `cracks` are on tooth 0, `sections` the `Sector` with them and that without; `cubic` as of `panel3d.section_of`.
     """
     gear, material = model.gear, model.material
-    one = plane_panel(model, sections[1], cubic)
-    found = join(gear, {0: plane_panel(model, sections[0], cubic) if cracks else one, 1: one}, one)[0][0, 0]
+    healthy = plane_panel(model, sections[1], cubic)
+    coarse = join(gear, {0: plane_panel(model, sections[0], cubic) if cracks else healthy, 1: healthy}, healthy)[0][0, 0]
     local = half_plane(material) * hat_logarithm(hats(gear), hats(gear))
-    return plane_hats(gear, material, cracks, cache=cache) + local - found
+    return plane_hats(gear, material, cracks, cache=cache) + local - coarse
 
 
 def plane_panel(model, sector, cubic=False):
@@ -43,7 +43,7 @@ def plane_panel(model, sector, cubic=False):
     force = np.zeros((2 * nodes, load.shape[2]))
     force[: 2 * load.shape[0]] = load[:, :2].reshape(-1, load.shape[2])
     inner = np.setdiff1d(np.arange(nodes), np.concatenate([sides, held]))
-    inside, border = ((2 * own[:, None] + np.arange(2)).ravel() for own in (inner, sides))
+    inside, border = ((2 * numbers[:, None] + np.arange(2)).ravel() for numbers in (inner, sides))
     coupled = np.hstack([matrix[inside][:, border].toarray(), force[inside]])
     factor = splu(matrix[inside][:, inside].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
     between = coupled.T @ factor.solve(coupled)
@@ -66,7 +66,7 @@ def plane_hats(gear, material, cracks=(), *, cache=True):
     kept = solved_gears(cache)
 
     def solve():
-        panels = {k: loaded_sector(SectionModel(gear, material), own, kept) for k, own in enumerate((cracks, ()))}
+        panels = {k: loaded_sector(SectionModel(gear, material), on_tooth, kept) for k, on_tooth in enumerate((cracks, ()))}
         influence = join(gear, panels, panels[1])[0][0, 0][:LOADS, :LOADS]
         points, weight = hat_points(hats(gear), 12)
         mean = np.einsum("hg,hgk->hk", weight, carry(gear, points.ravel()).reshape(*points.shape, -1))

@@ -12,7 +12,7 @@ from geometry.mesh.triangle import ENDS, lobatto
 
 ORDER = 3  # of the triangles this is for
 SHORT = 0.8  # edges shorter than this are quadratic [m_n]
-TIP = 0.2  # but not so close to the tip of a crack [m_n]
+TIP = 0.2  # edges closer than this to the tip of a crack stay cubic [m_n]
 
 
 def quadratic_edges(gear, sector):
@@ -25,10 +25,10 @@ def quadratic_edges(gear, sector):
         far &= np.hypot(*(sector.points - sector.points[:, left[-1:]])) > TIP * gear.m_n
     out = np.zeros(sector.triangles.shape, dtype=bool)
     for k, (a, b) in enumerate(ENDS):
-        one, two = sector.triangles[a], sector.triangles[b]
+        start, end = sector.triangles[a], sector.triangles[b]
         out[k] = np.hypot(*(corners[:, a] - corners[:, b])) < SHORT * gear.m_n
-        out[k] &= ~np.isin(one, outline) & ~np.isin(two, outline) & (far[one] | far[two])
-        out[k] &= ~np.any([np.isin(one, line) & np.isin(two, line) for line in lines], axis=0)
+        out[k] &= ~np.isin(start, outline) & ~np.isin(end, outline) & (far[start] | far[end])
+        out[k] &= ~np.any([np.isin(start, line) & np.isin(end, line) for line in lines], axis=0)
     return out
 
 
@@ -42,22 +42,22 @@ def bind(section, load, numbers, edges):
     done = set()
     for k, (a, b) in enumerate(ENDS):
         first, second = 3 + 2 * k, 4 + 2 * k
-        own = np.flatnonzero(edges[k])
-        swapped = numbers[first, own] > numbers[second, own]  # all triangles at an edge leave out the same node
+        triangles = np.flatnonzero(edges[k])
+        swapped = numbers[first, triangles] > numbers[second, triangles]  # all triangles at an edge leave out the same node
         kept, lost = np.where(swapped, second, first), np.where(swapped, first, second)
-        bound[own, first, a], bound[own, first, b] = 1 - s, s
-        bound[own, second, a], bound[own, second, b] = s, 1 - s
-        bound[own, lost, lost] = 0.0
-        bound[own, lost, kept] = 1.0
-        for t in own.tolist():
+        bound[triangles, first, a], bound[triangles, first, b] = 1 - s, s
+        bound[triangles, second, a], bound[triangles, second, b] = s, 1 - s
+        bound[triangles, lost, lost] = 0.0
+        bound[triangles, lost, kept] = 1.0
+        for t in triangles.tolist():
             pair = numbers[first, t], numbers[second, t]
             if min(pair) in done:
                 continue
             done.add(min(pair))
-            one, two = load[pair[0]].copy(), load[pair[1]].copy()
-            load[numbers[a, t]] += (1 - s) * one + s * two
-            load[numbers[b, t]] += s * one + (1 - s) * two
-            load[min(pair)], load[max(pair)] = one + two, 0.0
+            at_first, at_second = load[pair[0]].copy(), load[pair[1]].copy()
+            load[numbers[a, t]] += (1 - s) * at_first + s * at_second
+            load[numbers[b, t]] += s * at_first + (1 - s) * at_second
+            load[min(pair)], load[max(pair)] = at_first + at_second, 0.0
     bound = np.kron(bound, np.eye(3))
     section[:] = bound.transpose(0, 2, 1) @ section @ bound
     pairs = [np.max([numbers[3 + 2 * k, edges[k]], numbers[4 + 2 * k, edges[k]]], axis=0) for k in range(3)]

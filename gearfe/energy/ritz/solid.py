@@ -25,7 +25,8 @@ from .panel3d import SolidModel, panel3d
 from .plane_strain import missing
 
 LOST = 2  # axial modes too poor to be kept
-DEPTHS, ALONG = 3, 12  # at which a sloping crack's section is compared with plane strain; Gauss points along each open part
+# Depths at which a sloping crack's section is compared with plane strain; Gauss points along each open part.
+DEPTHS, ALONG = 3, 12
 # edge lengths in modules, see `geometry.mesh.sector.SIZES`
 SIZES = {
     "flank": 0.28,
@@ -92,24 +93,24 @@ def _mirrored(model, cracks, neighbours, cache):
     cracks = tuple(crack_in_band(crack, gear.b, gear.b, 0.0) for crack in cracks)
     other = _flexibility(replace(model, gear=replace(gear, beta=-gear.beta)), cracks, neighbours, cache)
     sign = np.tile((-1.0) ** np.arange(other.degree + 1), PLACES)
-    near, far = ({key: sign[:, None] * found * sign for key, found in own.items()} for own in (other.near, other.far))
+    near, far = ({key: sign[:, None] * matrix * sign for key, matrix in matrices.items()} for matrices in (other.near, other.far))
     healthy = other.healthy and _flexibility(model, (), neighbours, cache)
-    seam = other.seam and replace(other.seam, opening={tooth: found * sign for tooth, found in other.seam.opening.items()})
+    seam = other.seam and replace(other.seam, opening={tooth: matrix * sign for tooth, matrix in other.seam.opening.items()})
     return replace(other, gear=gear, near=near, far=far, healthy=healthy, seam=seam)
 
 
 def _solved(model, cracks, neighbours, cache):
     gear, degree = model.gear, max(model.axial - LOST, 0)
-    one = solid_sector(model, (), cache)
-    hurt = {t: tuple(c for c in cracks if c.tooth % gear.z == t) for t in {crack.tooth % gear.z for crack in cracks}}
-    panels = dict.fromkeys(solved_teeth(gear, cracks, neighbours), one)
-    panels |= {t: solid_sector(model, found, cache) for t, found in hurt.items()}
+    healthy_panel = solid_sector(model, (), cache)
+    by_tooth = {t: tuple(c for c in cracks if c.tooth % gear.z == t) for t in {crack.tooth % gear.z for crack in cracks}}
+    panels = dict.fromkeys(solved_teeth(gear, cracks, neighbours), healthy_panel)
+    panels |= {t: solid_sector(model, tooth_cracks, cache) for t, tooth_cracks in by_tooth.items()}
     healthy = _flexibility(model, (), neighbours, cache) if cracks else None
-    influence, opening = join(gear, panels, one)
+    influence, opening = join(gear, panels, healthy_panel)
     kept = (np.arange(PLACES)[:, None] * (model.axial + 1) + np.arange(degree + 1)).ravel()
     influence = {key: value[np.ix_(kept, kept)] for key, value in influence.items()}
     for tooth in panels:
-        _complete(model, hurt.get(tooth, ()), influence[tooth, tooth], cache)
+        _complete(model, by_tooth.get(tooth, ()), influence[tooth, tooth], cache)
     unknowns = sum(p.unknowns for p in panels.values())
     made = parted(gear, model.material, degree, influence, unknowns, healthy, cache=cache)
     if not cracks:
@@ -140,23 +141,23 @@ def _seams(cracks):
     ValueError
         If cracks on one side of a tooth are not parts of one crack, or more than one has a front.
     """
-    found = {}
+    by_shape = {}
     for crack in cracks:
-        found.setdefault(whole(crack), []).append(crack)
-    sides = [crack.side for crack in found]
+        by_shape.setdefault(whole(crack), []).append(crack)
+    sides = [crack.side for crack in by_shape]
     if len(set(sides)) < len(sides):
         raise ValueError(
             f"cracks of different shape on the {sides[0]} side of a tooth: the energy model has one section for all of them; "
             "give them the same level, start and angle, or use method = 'fe3d'"
         )
-    fronts = [None if all(crack.even for crack in own) else own[0] for own in found.values()]
-    if len(fronts) - fronts.count(None) > 1 or any(front and len(found[whole(front)]) > 1 for front in fronts):
+    fronts = [None if all(crack.even for crack in group) else group[0] for group in by_shape.values()]
+    if len(fronts) - fronts.count(None) > 1 or any(front and len(by_shape[whole(front)]) > 1 for front in fronts):
         raise ValueError(
             f"tooth {cracks[0].tooth} has several cracks, and the depth of more than one may change along the width: the energy "
             "model follows one front; give the others ends = (1, 1) on the other side, or use method = 'fe3d'"
         )
-    parts = ([crack.width for crack in own] for own in found.values())
-    return tuple(found), [None if None in own else tuple(own) for own in parts], fronts
+    parts = ([crack.width for crack in group] for group in by_shape.values())
+    return tuple(by_shape), [None if None in group else tuple(group) for group in parts], fronts
 
 
 def solid_sector(model, cracks, cache=True):
@@ -220,7 +221,7 @@ def _missing(model, cracks, cache, cubic=False):
     """
 
     def solve():
-        sections = tuple(_sector(model.gear, own, model.refine, cache)[0] for own in (cracks, ()))
+        sections = tuple(_sector(model.gear, tooth_cracks, model.refine, cache)[0] for tooth_cracks in (cracks, ()))
         return missing(model, cracks, sections, cubic=cubic, cache=cache)
 
     return cache.get(("ritz3d missing", model, cracks, cubic), solve)

@@ -22,7 +22,7 @@ class Impact:
     per_full: float = field(init=False)  # one over it, or 0
 
     def __post_init__(self) -> None:
-        """Invert once what every step asks for."""
+        """Compute 1 / `full` once, for all steps."""
         object.__setattr__(self, "per_full", 1 / self.full if self.full > 0 else 0.0)
 
     @staticmethod
@@ -49,7 +49,7 @@ class Hertz:
     per_full: float = field(init=False)
 
     def __post_init__(self) -> None:
-        """Invert as `Impact` does."""
+        """Compute 1 / `full`, as `Impact` does."""
         object.__setattr__(self, "per_full", Impact(self.power, self.full).per_full)
 
     @staticmethod

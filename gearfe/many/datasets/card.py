@@ -125,7 +125,11 @@ def _levels(labels):
         return [f"{part.loc[part['sensor'] == sensor, 'rms'].median():.3g}" for sensor in sensors]
 
     table = _by_class(labels, [f"{sensor} [{units[sensor]}]" for sensor in sensors], cells)
-    silent = [one for one in sensors if any(level[HEALTHY, 0.0, one] < SILENT * level[(*two, one)] for two in classes)]
+    silent = [
+        channel
+        for channel in sensors
+        if any(level[HEALTHY, 0.0, channel] < SILENT * level[(*label, channel)] for label in classes)
+    ]
     out = f"Median rms before noise, without the mean.\n\n{table}"
     if silent:
         out += f"\n\n**Of the healthy machine {', '.join(silent)} hears nothing**: it is perfectly equal all round, so that any "
@@ -144,8 +148,8 @@ def _failed(made, every):
     lost = made.failed()
     if not lost:
         return ""
-    told = "\n".join(f"- {name}: {error}" for name, error in list(lost.items())[:5])
-    return f"## Conditions that could not be simulated\n\n{len(lost)} of {len(every)}:\n\n{told}"
+    listed = "\n".join(f"- {name}: {error}" for name, error in list(lost.items())[:5])
+    return f"## Conditions that could not be simulated\n\n{len(lost)} of {len(every)}:\n\n{listed}"
 
 
 def _made(made):

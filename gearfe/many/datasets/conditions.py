@@ -51,7 +51,7 @@ def conditions(plan: Plan) -> list[Condition]:
 
     ValueError if there are too few for the sides of the split.
     """
-    made, points = [], operations(plan)
+    out, points = [], operations(plan)
     rows = [
         (fault, severity, nominal)
         for fault, severity, repeats in combinations(plan)
@@ -66,12 +66,12 @@ def conditions(plan: Plan) -> list[Condition]:
         values = {key: quantiles(spec, drawn[3 + j : 4 + j])[0] for j, (key, spec) in enumerate(plan.scatter.items())}
         label = HEALTHY if fault is None else fault["kind"]
         at = None if fault is None else plan.fault.index(fault)
-        made.append(Condition(number, label, at, severity, nominal, speed, torque, values, float(drawn[2]), sides[number]))
-    return made
+        out.append(Condition(number, label, at, severity, nominal, speed, torque, values, float(drawn[2]), sides[number]))
+    return out
 
 
 def _sides(plan, rows):
-    """Side of each condition: of each class by shares, or of each operation."""
+    """Side of each condition: dealt by shares within each class, or to whole operations."""
     shares = np.array([plan.split[side] for side in SIDES])
     rng = np.random.default_rng([plan.seed, 7])
     if plan.split["by"] == "operation":
@@ -81,18 +81,18 @@ def _sides(plan, rows):
     out = np.zeros(len(rows), dtype=int)
     keys = [(None if fault is None else plan.fault.index(fault), severity) for fault, severity, _ in rows]
     for key in dict.fromkeys(keys):
-        own = [i for i, one in enumerate(keys) if one == key]
-        told = HEALTHY if key[0] is None else f"{plan.fault[key[0]]['kind']} {key[1]:g}"
-        out[own] = _dealt(len(own), shares, rng, f"{len(own)} conditions of {told}")
+        members = [i for i, other in enumerate(keys) if other == key]
+        class_name = HEALTHY if key[0] is None else f"{plan.fault[key[0]]['kind']} {key[1]:g}"
+        out[members] = _dealt(len(members), shares, rng, f"{len(members)} conditions of {class_name}")
     return [SIDES[i] for i in out]
 
 
 def _dealt(count: int, shares: NDArray[np.float64], rng: np.random.Generator, told: str) -> NDArray[np.int64]:
     """Number of the side of each of `count`, in random order: the shares rounded, one at least for each side that has a share."""
-    wanted = shares > 0
-    if count < wanted.sum():
-        raise ValueError(f"[split] {told} for {wanted.sum()} sides: give more repeats or operations, or fewer sides")
-    sizes = np.where(wanted, np.maximum(np.floor(shares * count), 1), 0).astype(int)
+    has_share = shares > 0
+    if count < has_share.sum():
+        raise ValueError(f"[split] {told} for {has_share.sum()} sides: give more repeats or operations, or fewer sides")
+    sizes = np.where(has_share, np.maximum(np.floor(shares * count), 1), 0).astype(int)
     while sizes.sum() > count:
         sizes[np.argmax(sizes)] -= 1
     for i in np.argsort(sizes - shares * count)[: count - sizes.sum()]:

@@ -57,7 +57,7 @@ def dataset(
         call it again.
     """
     check_workers(workers)
-    unknown = [one for one in also if one not in EXPORTS]
+    unknown = [export for export in also if export not in EXPORTS]
     if unknown or isinstance(also, str):
         raise ValueError(f"also = {also!r}, but it lists {' and '.join(EXPORTS)}")
     arrow()
@@ -95,18 +95,18 @@ def _about(plan, count, told):
 
 def _fill(place, plan, every, workers, progress):
     """Simulate the conditions that are not there yet."""
-    failed = [one.stem for one in (place / FAILED).glob("condition-*.txt")]
-    left = unfinished(place / WINDOWS, [one.name for one in every], "data set", failed)
+    failed = [condition.stem for condition in (place / FAILED).glob("condition-*.txt")]
+    left = unfinished(place / WINDOWS, [condition.name for condition in every], "data set", failed)
     tally = Tally("conditions", len(every), progress)
     tally.add(len(every) - len(left))
-    todo = [one for one in every if one.name in left]
-    for _, found in results(partial(simulate_condition, plan), todo, workers):
-        if found is None:
+    todo = [condition for condition in every if condition.name in left]
+    for _, result in results(partial(simulate_condition, plan), todo, workers):
+        if result is None:
             raise RuntimeError(
                 "a process ended before its condition was done, alone too: killed, or out of memory; what is finished stays, so "
                 "call it again, with fewer workers if memory was short"
             )
-        name, content, error = found
+        name, content, error = result
         if error:
             with durable(place / FAILED / f"{name}.txt") as file:
                 file.write(error.encode())
@@ -118,7 +118,7 @@ def _fill(place, plan, every, workers, progress):
 def simulate_condition(plan: Plan, condition: Condition) -> tuple[str, bytes, str]:
     """Name and encoded windows of a condition, or the error why there are none."""
     try:
-        made = table_of(plan, rows_of(plan, condition))
+        table = table_of(plan, rows_of(plan, condition))
     except (ValueError, RuntimeError) as error:
         return condition.name, b"", f"{type(error).__name__}: {error}"
-    return condition.name, encoded(made), ""
+    return condition.name, encoded(table), ""

@@ -81,18 +81,18 @@ class Dataset:
 
     def failed(self) -> dict[str, str]:
         """Errors of the conditions that could not be simulated, by name."""
-        return {one.stem: one.read_text(encoding="utf-8") for one in sorted((self.folder / FAILED).glob("condition-*.txt"))}
+        return {path.stem: path.read_text(encoding="utf-8") for path in sorted((self.folder / FAILED).glob("condition-*.txt"))}
 
     def _read(self, where, *, signal):
-        found = opened(self.folder / WINDOWS)
-        fields = fields_of(found.schema)
+        shards = opened(self.folder / WINDOWS)
+        fields = fields_of(shards.schema)
         names = [name for name in fields if name != "signal"]
-        got = read(self.folder / WINDOWS, [*names, *(["signal"] if signal else [])], where_of(where, names))
-        labels = frame(got.select(names), fields)
+        rows = read(self.folder / WINDOWS, [*names, *(["signal"] if signal else [])], where_of(where, names))
+        labels = frame(rows.select(names), fields)
         if not signal:
             return labels, None
-        size = found.schema.field("signal").type.list_size
-        flat = got.column("signal").combine_chunks().flatten().to_numpy(zero_copy_only=False)
+        size = shards.schema.field("signal").type.list_size
+        flat = rows.column("signal").combine_chunks().flatten().to_numpy(zero_copy_only=False)
         return labels, flat.reshape(-1, size)
 
     def export(self, form: str) -> list[Path]:
@@ -131,8 +131,8 @@ def _mat(name, signals, labels, about):
     if signals.nbytes > MOST_MAT:
         raise ValueError(f"{signals.nbytes / 1e9:.3g} GB of signals, but an array of a MATLAB 5 file has at most 2: take hdf5")
     columns = {key.replace(".", "_"): _column(labels[key]) for key in labels}
-    told = {"about": json.dumps(about), "units_json": json.dumps(labels.attrs["units"])}
-    savemat(name, {"signals": signals} | columns | told, appendmat=False, oned_as="column", long_field_names=True)
+    notes = {"about": json.dumps(about), "units_json": json.dumps(labels.attrs["units"])}
+    savemat(name, {"signals": signals} | columns | notes, appendmat=False, oned_as="column", long_field_names=True)
 
 
 def _hdf5(name, signals, labels, about):
@@ -143,8 +143,8 @@ def _hdf5(name, signals, labels, about):
         file.create_dataset("signals", data=signals, chunks=(1, signals.shape[1]), compression="gzip", shuffle=True)
         for key in labels:
             values = _column(labels[key])
-            made = file.create_dataset(key, data=values, dtype=h5py.string_dtype() if values.dtype == object else None)
-            made.attrs["units"] = labels.attrs["units"][key]
+            column = file.create_dataset(key, data=values, dtype=h5py.string_dtype() if values.dtype == object else None)
+            column.attrs["units"] = labels.attrs["units"][key]
 
 
 def _column(values):

@@ -130,12 +130,12 @@ def read_plan(given: str | os.PathLike[str] | Mapping[str, Any]) -> Plan:
     top = checked(file, "top level", data, TOP)
     for name, table in (("window", WINDOW), ("operation", OPERATION), ("split", SPLIT)):
         top[name] = checked(file, name, top[name], table)
-    top["fault"] = tuple(_fault(file, i, one) for i, one in enumerate(top["fault"]))
-    top["sensor"] = tuple(_sensor(file, i, one) for i, one in enumerate(top["sensor"]))
+    top["fault"] = tuple(_fault(file, i, entry) for i, entry in enumerate(top["fault"]))
+    top["sensor"] = tuple(_sensor(file, i, entry) for i, entry in enumerate(top["sensor"]))
     scene, tables = tables_near(place, top.pop("scene"))
-    tables = {kind: one for kind, one in tables.items() if kind not in DAMAGE}  # of its own it has none
+    tables = {kind: entry for kind, entry in tables.items() if kind not in DAMAGE}  # of its own it has none
     top["healthy"] = top["repeats"] if top["healthy"] is None else top["healthy"]
-    top["curves"] = top["curves"] or ("ritz3d" if any(one["kind"] == "pits" for one in top["fault"]) else "auto")
+    top["curves"] = top["curves"] or ("ritz3d" if any(entry["kind"] == "pits" for entry in top["fault"]) else "auto")
     plan = Plan(**top, scene=scene, tables=tables)
     try:
         _check(plan)
@@ -175,7 +175,7 @@ def _sensor(file, i, table):
 
 
 def _check(plan):
-    """Refuse what contradicts itself or the scene."""
+    """Raise ValueError for a plan that contradicts itself or its scene."""
     if "machine" not in plan.tables:
         raise ValueError(f"scene {plan.scene} has no [machine], so that nothing vibrates: add one, or take another scene")
     if not plan.fault:
@@ -192,7 +192,7 @@ def _check(plan):
             raise ValueError(f"[operation] {key} = {values!r}: give different numbers > 0")
     if not 0 <= plan.operation["spread"] < 0.5:
         raise ValueError(f"[operation] spread = {plan.operation['spread']}: give a part of speed and torque, from 0 to below 0.5")
-    names = [one["name"] for one in plan.sensor]
+    names = [sensor["name"] for sensor in plan.sensor]
     if not names or len(set(names)) < len(names):
         raise ValueError(f"[[sensor]] names {names!r}: give one sensor or more, each with a name of its own")
     _check_split(plan.split)
@@ -205,15 +205,15 @@ def _check(plan):
 def _check_split(split):
     shares = [split[side] for side in SIDES]
     if not all(share >= 0 for share in shares) or not math.isclose(sum(shares), 1.0, abs_tol=1e-6) or not split["train"] > 0:
-        told = ", ".join(f"{side} = {share:g}" for side, share in zip(SIDES, shares, strict=True))
-        raise ValueError(f"[split] {told}: shares >= 0 add up to 1, with some to train on")
+        stated = ", ".join(f"{side} = {share:g}" for side, share in zip(SIDES, shares, strict=True))
+        raise ValueError(f"[split] {stated}: shares >= 0 add up to 1, with some to train on")
     if split["by"] not in ("condition", "operation"):
         raise ValueError(f"[split] by = {split['by']!r}, but it must be 'condition' or 'operation'")
 
 
 def _check_scatter(plan):
     ours = {"machine.speed_rpm", "machine.torque_Nm"}
-    ours |= {f"machine.{one['kind']}_um" for one in plan.fault if not FAULTS[one["kind"]].damage}
+    ours |= {f"machine.{fault['kind']}_um" for fault in plan.fault if not FAULTS[fault["kind"]].damage}
     for key, spec in plan.scatter.items():
         check_key(key, plan.tables, {})
         if key in ours or (key.startswith("pair.") and key.endswith(".force_N")):

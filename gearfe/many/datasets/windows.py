@@ -74,7 +74,7 @@ def stage_of(machine: Machine) -> Stage:
 
 
 def simulated(plan: Plan, condition: Condition) -> tuple[Machine, Response, int]:
-    """Machine and response of a condition, and how many of its samples make one of a window."""
+    """Machine and response of a condition, and how many samples of the response make one sample of a window."""
     fault = None if condition.fault is None else plan.fault[condition.fault]
     scene = plan.scene_at(condition.values, fault, condition.severity)
     case = CASE if fault is not None and FAULTS[fault["kind"]].damage else None
@@ -108,10 +108,10 @@ def losses(machine: Machine) -> tuple[float, float]:
 
 def rows_of(plan: Plan, condition: Condition) -> list[dict[str, Any]]:
     """All windows of a condition: the signal and its labels."""
-    with own_warnings() as said:
+    with own_warnings() as caught:
         machine, response, finer = simulated(plan, condition)
     same = _labels(plan, condition, machine, response)
-    same["notes"] = "; ".join(dict.fromkeys(str(one.message) for one in said)) or None
+    same["notes"] = "; ".join(dict.fromkeys(str(warning.message) for warning in caught)) or None
     count, size = plan.window["count"], samples_of(plan)
     first = float(response.time[0]) + EDGE / plan.window["rate_Hz"]
     out = []
@@ -121,11 +121,11 @@ def rows_of(plan: Plan, condition: Condition) -> list[dict[str, Any]]:
         for level, noise in enumerate(sensor["noise"]):
             rng = np.random.default_rng([plan.seed, condition.number, place, level])
             values = (signal + noise * rng.standard_normal(signal.size)).astype(np.float32).reshape(count, size)
-            own = {"sensor": sensor["name"], "unit": fine.unit, "rms": float(np.std(signal)), "noise": noise}
-            own["snr_dB"] = 20 * math.log10(own["rms"] / noise) if noise and own["rms"] else None
+            labels = {"sensor": sensor["name"], "unit": fine.unit, "rms": float(np.std(signal)), "noise": noise}
+            labels["snr_dB"] = 20 * math.log10(labels["rms"] / noise) if noise and labels["rms"] else None
             for i, window in enumerate(values):
                 at = {"window": i, "start_s": first + i * size / plan.window["rate_Hz"], "signal": window}
-                out.append(same | own | at)
+                out.append(same | labels | at)
     return out
 
 

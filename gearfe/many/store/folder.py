@@ -79,7 +79,7 @@ def _take(handle, folder):
 
 
 def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str, Any]:
-    """What an existing folder says of its shards, to be compared; a new or empty one is made and says what `about` holds.
+    """The note of an existing folder, to be compared with `about`; a new or empty folder is made and gets `about` as its note.
 
     `about` is JSON, and its ``"format"`` a name such as ``"gearfe sweep 1"``. ValueError if the folder cannot be made or written,
     or holds anything else.
@@ -89,7 +89,7 @@ def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str,
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        inside = sorted(one.name for one in folder.iterdir() if one.name != LOCK and not one.name.startswith(PART))
+        inside = sorted(path.name for path in folder.iterdir() if path.name != LOCK and not path.name.startswith(PART))
     except OSError as error:
         raise ValueError(f"cannot make the folder {folder}: {error.strerror or error}") from error
     if inside:
@@ -100,7 +100,7 @@ def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str,
 
 
 def read_about(folder: str | os.PathLike[str], form: str) -> dict[str, Any]:
-    """What a folder of shards of the format `form` says of itself.
+    """The note of a folder of shards, of the format `form`.
 
     ValueError if it is no such folder; nothing in it is touched.
     """
@@ -108,16 +108,16 @@ def read_about(folder: str | os.PathLike[str], form: str) -> dict[str, Any]:
     if not Path(folder).is_dir():
         raise ValueError(f"no folder {folder}")
     if not file.is_file():
-        inside = sorted(one.name for one in Path(folder).iterdir() if one.name != LOCK)
-        told = f"holds other files ({', '.join(inside[:3])}{', ...' if len(inside) > 3 else ''})" if inside else "is empty"
-        raise ValueError(f"{folder} {told} and no {ABOUT}, so it is no {form}: give a new or empty folder, or one of these")
+        inside = sorted(path.name for path in Path(folder).iterdir() if path.name != LOCK)
+        content = f"holds other files ({', '.join(inside[:3])}{', ...' if len(inside) > 3 else ''})" if inside else "is empty"
+        raise ValueError(f"{folder} {content} and no {ABOUT}, so it is no {form}: give a new or empty folder, or one of these")
     try:
         about = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise ValueError(f"{file} is damaged: {error}; nothing in the folder was touched") from error
     if not isinstance(about, dict) or about.get("format") != form:
-        found = about.get("format") if isinstance(about, dict) else about
-        raise ValueError(f"{file} says format = {found!r}, not {form!r}: another program's or version's folder; give a new one")
+        stated = about.get("format") if isinstance(about, dict) else about
+        raise ValueError(f"{file} says format = {stated!r}, not {form!r}: another program's or version's folder; give a new one")
     return about
 
 
@@ -136,9 +136,9 @@ def check_same(folder: Any, stored: Mapping[str, Any], about: Mapping[str, Any],
         )
     versions = list(_differences(stored["made"], about["made"]))
     if versions and not mixed:
-        told = "" if mixed is None else ", or go on with mixed = True (--mixed): each row says which made it"
+        hint = "" if mixed is None else ", or go on with mixed = True (--mixed): each row says which made it"
         raise ValueError(
-            f"{folder} was begun by another program, with {'; '.join(versions)}: finish it with that, or give a new folder{told}"
+            f"{folder} was begun by another program, with {'; '.join(versions)}: finish it with that, or give a new folder{hint}"
         )
 
 
@@ -148,8 +148,8 @@ def _differences(there, here, path=""):
         for name in dict.fromkeys((*there, *here)):
             yield from _differences(there.get(name), here.get(name), f"{path}.{name}" if path else name)
     elif isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
-        for i, (one, other) in enumerate(zip(there, here, strict=True)):
-            yield from _differences(one, other, f"{path}.{i}")
+        for i, (old, new) in enumerate(zip(there, here, strict=True)):
+            yield from _differences(old, new, f"{path}.{i}")
     elif there != here and not (there != there and here != here):  # nan is equal to nan
         yield f"{path} = {_short(there)}, not {_short(here)}"
 

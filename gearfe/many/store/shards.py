@@ -58,14 +58,14 @@ def where_of(where: Any, names: Sequence[str]) -> Any:
         try:
             if isinstance(value, tuple):
                 low, high = value
-                one = (field(name) >= low) & (field(name) <= high)
+                rows = (field(name) >= low) & (field(name) <= high)
             else:
-                one = field(name).isin(value) if isinstance(value, list) else field(name) == value
+                rows = field(name).isin(value) if isinstance(value, list) else field(name) == value
         except (TypeError, ValueError) as error:
             raise ValueError(
                 f"where: {name} = {value!r}; give a value, a range as a tuple of two, or a list of values"
             ) from error
-        out = one if out is None else out & one
+        out = rows if out is None else out & rows
     return out
 
 
@@ -97,8 +97,8 @@ def schema_of(fields: Mapping[str, Field]) -> "pyarrow.Schema":
 
 def fields_of(schema: "pyarrow.Schema") -> dict[str, Field]:
     """Columns by name, of a schema that `schema_of` made."""
-    told = {field.name: {k.decode(): v.decode() for k, v in (field.metadata or {}).items()} for field in schema}
-    return {name: Field(one.get("kind", "text"), one.get("unit", "-")) for name, one in told.items()}
+    metadata = {field.name: {k.decode(): v.decode() for k, v in (field.metadata or {}).items()} for field in schema}
+    return {name: Field(about.get("kind", "text"), about.get("unit", "-")) for name, about in metadata.items()}
 
 
 def _plain(value, name, kind):
@@ -151,7 +151,7 @@ def write_shard(folder: str | os.PathLike[str], name: str, content: bytes) -> No
 
 def shard_names(folder: str | os.PathLike[str]) -> list[str]:
     """Names of the shards in a folder, sorted."""
-    return sorted(one.name.removesuffix(SUFFIX) for one in Path(folder).glob(f"[!.]*{SUFFIX}"))
+    return sorted(path.name.removesuffix(SUFFIX) for path in Path(folder).glob(f"[!.]*{SUFFIX}"))
 
 
 def check_shards(folder: str | os.PathLike[str]) -> None:
@@ -176,12 +176,12 @@ def unfinished(folder: str | os.PathLike[str], names: Sequence[str], what: str, 
     ValueError if a shard is damaged, or there is one that is none of this `what`.
     """
     check_shards(folder)
-    there = {*shard_names(folder), *failed}
-    unknown = sorted(there - set(names))
+    present = {*shard_names(folder), *failed}
+    unknown = sorted(present - set(names))
     if unknown:
         name = unknown[0] if unknown[0] in failed else f"{unknown[0]}{SUFFIX}"
         raise ValueError(f"{folder} holds {name}, which is none of this {what}'s: take it out")
-    return [name for name in names if name not in there]
+    return [name for name in names if name not in present]
 
 
 def _alike(folder):
@@ -223,13 +223,13 @@ def opened(folder: str | os.PathLike[str]) -> "dataset.Dataset":
     try:
         checked = pa.dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
         form = pa.dataset.ParquetFileFormat(default_fragment_scan_options=checked)
-        found = pa.dataset.dataset(files, format=form, schema=pa.parquet.read_schema(files[0]))
+        shards = pa.dataset.dataset(files, format=form, schema=pa.parquet.read_schema(files[0]))
         alike = _alike(folder)
     except (OSError, pa.ArrowException) as error:
         raise _damaged(_first_damaged(folder), error) from error
     if not alike:
         check_shards(folder)
-    return found
+    return shards
 
 
 def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":
@@ -238,12 +238,12 @@ def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, w
     ValueError if a shard is damaged or a copy, there is no such column, or `where` compares numbers with text.
     """
     pa = arrow()
-    found = opened(folder)
-    unknown = [name for name in columns or () if name not in found.schema.names]
+    shards = opened(folder)
+    unknown = [name for name in columns or () if name not in shards.schema.names]
     if unknown:
-        raise ValueError(f"no column {unknown[0]!r} in {folder}; it has {', '.join(found.schema.names)}")
+        raise ValueError(f"no column {unknown[0]!r} in {folder}; it has {', '.join(shards.schema.names)}")
     try:
-        return found.to_table(columns=list(columns) if columns is not None else None, filter=where)
+        return shards.to_table(columns=list(columns) if columns is not None else None, filter=where)
     except (pa.ArrowNotImplementedError, pa.ArrowTypeError) as error:
         raise ValueError(f"where = {where}: {_line(error)}; a column is compared with values of its own kind") from error
     except (OSError, pa.ArrowInvalid) as error:
@@ -253,10 +253,10 @@ def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, w
 def frame(found: "pyarrow.Table", fields: Mapping[str, Field], index: str | None = None) -> "pandas.DataFrame":
     """A table that was read as pandas has it, by `index`; ``attrs["units"]`` has the units by column. Needs pandas."""
     with needing("pandas"):
-        made = found.to_pandas()
-    made = made if index is None else made.set_index(index).sort_index()
-    made.attrs["units"] = {name: fields[name].unit for name in made}
-    return made
+        data = found.to_pandas()
+    data = data if index is None else data.set_index(index).sort_index()
+    data.attrs["units"] = {name: fields[name].unit for name in data}
+    return data
 
 
 def _line(error):

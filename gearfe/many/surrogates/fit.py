@@ -79,20 +79,21 @@ def fit_surrogate(
         if not is_number(count) or count != int(count) or not least <= count <= MOST:
             raise ValueError(f"{name} = {count!r}, but give a whole number from {least} to {MOST}")
     _check_corners(space, materials)
-    made, fresh = _sample(space, int(cases), seed), _sample(space, int(held_back), seed + 1_000_003)
+    drawn, fresh = _sample(space, int(cases), seed), _sample(space, int(held_back), seed + 1_000_003)
     jobs = [
-        {"space": space, "materials": materials, "point": point, "check": i >= len(made)} for i, point in enumerate(made + fresh)
+        {"space": space, "materials": materials, "point": point, "check": i >= len(drawn)}
+        for i, point in enumerate(drawn + fresh)
     ]
     done = batch(jobs, work=solved, workers=workers, progress=progress)
-    for point, result in zip(made + fresh, done.results, strict=True):
+    for point, result in zip(drawn + fresh, done.results, strict=True):
         if isinstance(result, Exception):
             raise ValueError(f"the ranges have a gap at {_told(point)}: {result}; narrow them") from result
     pairs = sorted({result["pairs"] for result in done.results})
     if len(pairs) > 1:
         raise ValueError(f"contact ratios from below {pairs[-1]} to above it are in the ranges: k jumps there; narrow them")
-    fitted, judged = done.results[: len(made)], done.results[len(made) :]
-    points = space.scaled([list(point.values()) for point in made])
-    values = np.array([np.append(one["breaks"], one["series"]) for one in fitted])
+    fitted, judged = done.results[: len(drawn)], done.results[len(drawn) :]
+    points = space.scaled([list(point.values()) for point in drawn])
+    values = np.array([np.append(case["breaks"], case["series"]) for case in fitted])
     powers, weights, left_out = _regression(points, values, fitted[0]["breaks"].size)
     meta = {
         "pairs": pairs[0], "cases": int(cases), "held_back": int(held_back), "seed": seed, "terms": len(powers),
@@ -117,12 +118,12 @@ def solved(space: Space, materials: tuple[Material, Material], point: dict[str, 
         half = (1 - (eps_alpha - low)) / 2
         span = np.array([-half, eps_alpha + half if space.cracked else 1 - half])
         phase = np.arange(np.ceil(span[0] * CHECKED), np.floor(span[1] * CHECKED)) / CHECKED + 0.37 / CHECKED
-        found = curve(phase[(phase > span[0]) & (phase < span[1])])
-        return {"pairs": low, "phase": found.phase, "k": found.k}
+        sampled = curve(phase[(phase > span[0]) & (phase < span[1])])
+        return {"pairs": low, "phase": sampled.phase, "k": sampled.k}
     breaks = breaks_of(eps_alpha, curve, cracked=space.cracked)
-    found = curve(phases_of(breaks))
-    meta = {name: found.meta[name] for name in ("materials", "state", "order", "refine", "versions", "stiffness", "pose")}
-    return {"pairs": int(eps_alpha), "breaks": breaks, "series": series_of(np.log(found.k)), "meta": meta}
+    sampled = curve(phases_of(breaks))
+    meta = {name: sampled.meta[name] for name in ("materials", "state", "order", "refine", "versions", "stiffness", "pose")}
+    return {"pairs": int(eps_alpha), "breaks": breaks, "series": series_of(np.log(sampled.k)), "meta": meta}
 
 
 def held_back_error(
@@ -130,23 +131,23 @@ def held_back_error(
 ) -> tuple[dict[str, float], NDArray[np.float64]]:
     """Differences of a surrogate from cases it was not fitted on: as `Surrogate.error` and `Surrogate.worst` have them."""
     worst = np.zeros(surrogate.worst.size)
-    every, means = [], []
+    differences, means = [], []
     for point, case in zip(points, judged, strict=True):
         breaks, _ = surrogate._parts(surrogate.space.point(point))
         phase = np.clip(case["phase"], breaks[0], breaks[-1]) if surrogate.space.cracked else case["phase"]
         k = surrogate.k(phase, **point)
         away = np.abs(k / case["k"] - 1)
         np.maximum.at(worst, piece_of(surrogate._within(phase, breaks), breaks), away)
-        every.append(away)
+        differences.append(away)
         means.append(abs(k.mean() / case["k"].mean() - 1))
-    away = np.concatenate(every)
+    away = np.concatenate(differences)
     error = {"mean": float(away.mean()), "worst": float(away.max()), "worst mean k": float(max(means))}
     return error | {"cases": len(judged), "phases": int(away.size)}, worst
 
 
 def _sample(space, count, seed):
     unit = qmc.Sobol(len(space.ranges), seed=seed).random_base2(int(np.ceil(np.log2(count))))[:count]
-    return [space.at(one) for one in unit]
+    return [space.at(point) for point in unit]
 
 
 def _check_corners(space, materials):
@@ -170,8 +171,8 @@ def _regression(points, values, breaks):
         powers = _products(points.shape[1], degree, power, BUSY * len(points))
         if powers is None:
             continue
-        found = legendre.legvander(points, degree)
-        terms = np.prod([found[:, j, powers[:, j]] for j in range(points.shape[1])], axis=0)
+        basis = legendre.legvander(points, degree)
+        terms = np.prod([basis[:, j, powers[:, j]] for j in range(points.shape[1])], axis=0)
         inverse = np.linalg.pinv(terms)
         weights = inverse @ values
         leverage = np.einsum("ij,ji->i", terms, inverse)

@@ -65,8 +65,8 @@ class Space:
         """
         if given.keys() != self.ranges.keys():
             unknown, missing = set(given) - set(self.ranges), [name for name in self.ranges if name not in given]
-            told = f"{sorted(unknown)[0]!r} is none of its inputs" if unknown else f"no value of {missing[0]!r}"
-            raise ValueError(f"{told}: this surrogate is asked by {', '.join(f'{name} = ...' for name in self.ranges)}")
+            wrong = f"{sorted(unknown)[0]!r} is none of its inputs" if unknown else f"no value of {missing[0]!r}"
+            raise ValueError(f"{wrong}: this surrogate is asked by {', '.join(f'{name} = ...' for name in self.ranges)}")
         out = []
         for name, (low, high) in self.ranges.items():
             value = given[name]
@@ -110,8 +110,8 @@ class Space:
             if bore is not None:
                 new["r_bore"] = bore * replace(gear, **new, r_bore=0.1 * gear.m_n).r_f
             gears.append(replace(gear, **new))
-        one, two = gears
-        pair = GearPair(one, two) if any(name in values for name in SHAPE) else GearPair(one, two, self.pair.a)
+        pinion, wheel = gears
+        pair = GearPair(pinion, wheel) if any(name in values for name in SHAPE) else GearPair(pinion, wheel, self.pair.a)
         crack: dict[str, Any] = {name: values[name] for name in ("level", "angle") if name in values}
         return Case(pair, values["force"], material, damage={"pinion": [Crack(**crack)]} if crack else None)
 
@@ -157,9 +157,9 @@ def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
 
 
 def _range(name, value):
-    if not isinstance(value, (tuple, list)) or len(value) != 2 or not all(is_number(one) for one in value):
+    if not isinstance(value, (tuple, list)) or len(value) != 2 or not all(is_number(end) for end in value):
         raise ValueError(f"inputs: {name} = {value!r}, but give a range (low, high) or one number")
-    low, high = (_finite(name, one) for one in value)
+    low, high = (_finite(name, end) for end in value)
     if not low < high:
         raise ValueError(f"inputs: {name} from {low:g} to {high:g}, but a range rises: give low < high, or one number")
     return low, high

@@ -61,8 +61,8 @@ class Surrogate:
         """One line: ranges and error."""
         ranges = ", ".join(f"{name} {low:g} to {high:g}" for name, (low, high) in self.space.ranges.items())
         mean, worst = (100 * self.error[name] for name in ("mean", "worst"))
-        told = f"on {self.error['cases']} fresh cases off by {mean:.2g} % in the mean, {worst:.2g} % at worst"
-        return f"<Surrogate of ritz: {ranges}; {told}>"
+        accuracy = f"on {self.error['cases']} fresh cases off by {mean:.2g} % in the mean, {worst:.2g} % at worst"
+        return f"<Surrogate of ritz: {ranges}; {accuracy}>"
 
     def k(self, phase: ArrayLike, **point: float) -> NDArray[np.float64]:
         """Secant stiffness [N/m] at phases, of their shape, in a few microseconds each; for models of dynamics.
@@ -105,21 +105,21 @@ class Surrogate:
         phase = self._phases(phases, breaks)
         inside = self._within(phase, breaks)
         k = np.exp(at(inside, breaks, series))
-        given = self.space.held | dict(zip(self.space.ranges, values, strict=True))
+        inputs = self.space.held | dict(zip(self.space.ranges, values, strict=True))
         none, width = np.full((phase.size, 1), np.nan), min(self.space.pair.gear_1.b, self.space.pair.gear_2.b)
         meta = self.meta["curve"] | {
-            "method": "surrogate of ritz", "inputs": given, "force_N": given["force"], "width_mm": width, "error": self.error,
+            "method": "surrogate of ritz", "inputs": inputs, "force_N": inputs["force"], "width_mm": width, "error": self.error,
             "eps_alpha": float(int(self.meta["pairs"]) + 1 + 2 * breaks[0]),  # the first break: half the zone of fewer pairs
         }  # fmt: skip
         return StiffnessCurve(
-            phase=phase, k=k, k_tangent=none[:, 0], lte=given["force"] / k, order=np.array([0]), force=none, pressure=none,
+            phase=phase, k=k, k_tangent=none[:, 0], lte=inputs["force"] / k, order=np.array([0]), force=none, pressure=none,
             error=k * self.worst[piece_of(inside, breaks)], meta=meta,
         )  # fmt: skip
 
     def _parts(self, values):
         """Breaks and coefficients at a point."""
-        found = legendre.legvander(self.space.scaled(values), int(self.powers.max()))
-        terms = found[np.arange(len(values)), self.powers].prod(axis=1)
+        basis = legendre.legvander(self.space.scaled(values), int(self.powers.max()))
+        terms = basis[np.arange(len(values)), self.powers].prod(axis=1)
         out = terms @ self.weights
         count = self.worst.size + 1
         return out[:count], out[count:].reshape(-1, DEGREE + 1)
@@ -165,15 +165,15 @@ class Surrogate:
         ValueError
             If the file is no such archive.
         """
-        found = read_npz(path)
+        archive = read_npz(path)
         try:
-            told = json.loads(str(found["meta"]))
-            if told["title"] != TITLE:
-                raise ValueError(f"its title is {told['title']!r}")
-            gears = [Gear(**told["gears"][name]) for name in ("gear_1", "gear_2")]
-            inputs = {name: tuple(value) if isinstance(value, list) else value for name, value in told["inputs"].items()}
-            space = space_of(GearPair(gears[0], gears[1], told["a"]), inputs)
-            out = cls(space, found["powers"], found["weights"], told["error"], found["worst"], told["meta"])
+            meta = json.loads(str(archive["meta"]))
+            if meta["title"] != TITLE:
+                raise ValueError(f"its title is {meta['title']!r}")
+            gears = [Gear(**meta["gears"][name]) for name in ("gear_1", "gear_2")]
+            inputs = {name: tuple(value) if isinstance(value, list) else value for name, value in meta["inputs"].items()}
+            space = space_of(GearPair(gears[0], gears[1], meta["a"]), inputs)
+            out = cls(space, archive["powers"], archive["weights"], meta["error"], archive["worst"], meta["meta"])
             _check_shapes(out)
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             raise ValueError(f"{path} is no surrogate written by gearfe: {error}") from error

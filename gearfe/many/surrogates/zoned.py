@@ -58,18 +58,18 @@ def _outermost(events, half, solve):
     last = []
     for _ in range(ROUNDS):
         phase = np.concatenate([np.linspace(*span, SEARCH) for span in spans])
-        found, last = solve(phase), []
+        curve, last = solve(phase), []
         for i, (_, _, order) in enumerate(events):
-            own = slice(i * SEARCH, (i + 1) * SEARCH)
-            column = np.flatnonzero(found.order == order)
-            force = found.force[own, column[0]] if column.size else np.zeros(SEARCH)
+            rows = slice(i * SEARCH, (i + 1) * SEARCH)
+            column = np.flatnonzero(curve.order == order)
+            force = curve.force[rows, column[0]] if column.size else np.zeros(SEARCH)
             if force.all():
                 raise ValueError(f"the zone of fewer pairs vanishes under this load: {LESS}")
             free = int(np.argmin(force > 0))
             k, before = max(free - 1, 0), max(free - 2, 0)
-            last.append((phase[own][k], phase[own][free], phase[own][before], force[k], force[before]))
+            last.append((phase[rows][k], phase[rows][free], phase[rows][before], force[k], force[before]))
         spans = [(touching, open_) for touching, open_, *_ in last]
-    return [_vanishing(*one) for one in last]
+    return [_vanishing(*touch) for touch in last]
 
 
 def _vanishing(touching, open_, before, force, force_before):
@@ -81,7 +81,7 @@ def _vanishing(touching, open_, before, force, force_before):
 
 
 def phases_of(breaks: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Phases ``(pieces * (DEGREE + 1),)`` at which k is wanted."""
+    """Phases ``(pieces * (DEGREE + 1),)`` at which k is needed: Chebyshev's nodes of each piece."""
     low, high = breaks[:-1, None], breaks[1:, None]
     return ((low + high) / 2 + (high - low) / 2 * _NODES).ravel()
 

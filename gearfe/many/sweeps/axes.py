@@ -18,11 +18,16 @@ def flat(tables, path=()):
     """Values of nested tables by dotted key; a table of `SPEC` keys is a value."""
     out = {}
     for name, value in tables.items():
-        if isinstance(value, dict) and not (value and set(value) <= SPEC):
+        if isinstance(value, dict) and not _says_values(value):
             out |= flat(value, (*path, name))
         else:
             out[".".join((*path, name))] = value
     return out
+
+
+def _says_values(table):
+    """Whether a table says values of one key: `SPEC` keys only, of which ``count`` may be a key of a scene that varies itself."""
+    return bool(table) and set(table) <= SPEC and not isinstance(table.get("count"), (list, dict))
 
 
 def axes(file, vary, along):
@@ -33,8 +38,10 @@ def axes(file, vary, along):
     for i, table in enumerate(along):
         lists = {key: _listed(file, key, value) for key, value in flat(table).items()}
         if len({len(one) for one in lists.values()}) != 1:
-            told = ", ".join(f"{key} has {len(one)}" for key, one in lists.items())
-            raise ValueError(f"{file} [along {i + 1}]: lists that go together are of one length, but {told or 'there is none'}")
+            lengths = ", ".join(f"{key} has {len(one)}" for key, one in lists.items())
+            raise ValueError(
+                f"{file} [along {i + 1}]: lists that go together are of one length, but {lengths or 'there is none'}"
+            )
         yield lists
 
 
@@ -49,7 +56,7 @@ def _listed(file, key, value):
     """Values of one key of the grid."""
     where = f"vary {key}"
     if isinstance(value, dict):
-        steps = checked(file, where, {name: one for name, one in value.items() if name != "also"}, STEPS)
+        steps = checked(file, where, {name: entry for name, entry in value.items() if name != "also"}, STEPS)
         if not 2 <= steps["count"] <= MOST or steps["spacing"] not in ("even", "log"):
             raise ValueError(f'{file} [{where}]: give count >= 2, at most {MOST:.0e}, and spacing = "even" or "log"')
         if steps["spacing"] == "even":
@@ -60,19 +67,19 @@ def _listed(file, key, value):
     if not isinstance(value, (list, tuple)) or not value:
         raise ValueError(f"{file} [{where}] = {shown(value)}: give a list of values, or from, to and count")
     check_values(f"{file} [{where}]", value)
-    if len({repr(one) for one in value}) < len(value):
+    if len({repr(entry) for entry in value}) < len(value):
         raise ValueError(f"{file} [{where}]: a value stands in the list twice")
     return list(value)
 
 
 def check_values(where, values):
     """Raise ValueError for a value that no key of a scene has: a number beyond all bounds, a table, a date."""
-    for one in values:
-        parts = one if isinstance(one, (list, tuple)) else [one]
+    for value in values:
+        parts = value if isinstance(value, (list, tuple)) else [value]
         for part in parts:
             if not isinstance(part, (bool, str)) and not (isinstance(part, (int, float)) and abs(part) < LARGEST):
                 raise ValueError(
-                    f"{where}: {shown(one)} is no value of a scene: give numbers, texts, true or false, or lists of them"
+                    f"{where}: {shown(value)} is no value of a scene: give numbers, texts, true or false, or lists of them"
                 )
 
 
@@ -82,7 +89,7 @@ def checked_sample(file, given):
         return {}
     out = checked(file, "sample", given, SAMPLE)
     out["of"] = flat(out["of"])
-    out["correlated"] = [checked(file, f"sample.correlated {i + 1}", one, BETWEEN) for i, one in enumerate(out["correlated"])]
+    out["correlated"] = [checked(file, f"sample.correlated {i + 1}", entry, BETWEEN) for i, entry in enumerate(out["correlated"])]
     method, count = out["method"], out["count"]
     if method not in samples.METHODS:
         raise ValueError(f"{file} [sample] method = {method!r}, but it must be one of {', '.join(samples.METHODS)}")
@@ -105,13 +112,15 @@ def checked_sample(file, given):
 
 def _check_correlated(file, sample):
     """Raise ValueError unless each correlation is of two keys that have a distribution, and said once."""
-    known, said = [key for key, spec in sample["of"].items() if "choice" not in spec], set()
-    for one in sample["correlated"]:
-        two = frozenset(one["between"])
-        if len(one["between"]) != 2 or len(two) != 2 or not two <= set(known) or not -1 < one["value"] < 1:
+    known, seen = [key for key, spec in sample["of"].items() if "choice" not in spec], set()
+    for entry in sample["correlated"]:
+        pair = frozenset(entry["between"])
+        if len(entry["between"]) != 2 or len(pair) != 2 or not pair <= set(known) or not -1 < entry["value"] < 1:
             raise ValueError(
-                f"{file} [[sample.correlated]] {one!r}: give two different keys of {', '.join(known)} and a value in (-1, 1)"
+                f"{file} [[sample.correlated]] {entry!r}: give two different keys of {', '.join(known)} and a value in (-1, 1)"
             )
-        if two in said:
-            raise ValueError(f"{file} [[sample.correlated]]: {' and '.join(one['between'])} are correlated twice; leave one out")
-        said.add(two)
+        if pair in seen:
+            raise ValueError(
+                f"{file} [[sample.correlated]]: {' and '.join(entry['between'])} are correlated twice; leave one out"
+            )
+        seen.add(pair)

@@ -48,14 +48,14 @@ def blocks(study: Study) -> tuple[list[Block], dict[str, Field]]:
     """
     columns, point, draw = values(study)
     order, group = _sorted(columns, point.size)
-    made = []
+    out = []
     for i, part in enumerate(_parts(group, study.block)):
-        own = order[part]
-        cases = tuple({key: column[j] for key, column in columns.items()} for j in own)
-        told = tuple({"number": int(j), "point": int(point[j]), "draw": int(draw[j])} for j in own)
-        made.append(Block(f"block-{i:06d}", cases, told))
+        members = order[part]
+        cases = tuple({key: column[j] for key, column in columns.items()} for j in members)
+        told = tuple({"number": int(j), "point": int(point[j]), "draw": int(draw[j])} for j in members)
+        out.append(Block(f"block-{i:06d}", cases, told))
     inputs = {key: Field(_kind(column)) for key, column in columns.items()}
-    return made, FIRST | inputs | KINDS[study.kind].fields | LAST
+    return out, FIRST | inputs | KINDS[study.kind].fields | LAST
 
 
 def _sorted(columns, count):
@@ -110,7 +110,7 @@ def rows(study: Study, block: Block) -> list[dict[str, Any]]:
     """Rows of a block's cases; a case that cannot be has its error in its row.
 
     Cases that differ in their load only are computed together. If one of them fails or has something to note, each is computed
-    alone, so that the row says it to which it belongs.
+    alone, so that error and note stand in the row they belong to.
     """
     cases, out = block.cases, []
     built: dict[str, Scene] = {}
@@ -118,26 +118,26 @@ def rows(study: Study, block: Block) -> list[dict[str, Any]]:
     with _ONE, listening(lambda text, share: None):  # how far one case is says nothing here
         for _, same in groupby(range(len(cases)), keys.__getitem__):
             numbers = list(same)
-            found = _tried(study, [cases[i] for i in numbers], built)
-            if len(numbers) > 1 and any(row["status"] != DONE or row["notes"] for row in found):
-                spent = found[0]["seconds"]
-                found = [row for i in numbers for row in _tried(study, [cases[i]], built)]
-                found = [row | {"seconds": row["seconds"] + spent} for row in found]
-            out += [_told(block, i) | row for i, row in zip(numbers, found, strict=True)]
+            computed = _tried(study, [cases[i] for i in numbers], built)
+            if len(numbers) > 1 and any(row["status"] != DONE or row["notes"] for row in computed):
+                spent = computed[0]["seconds"]
+                computed = [row for i in numbers for row in _tried(study, [cases[i]], built)]
+                computed = [row | {"seconds": row["seconds"] + spent} for row in computed]
+            out += [_told(block, i) | row for i, row in zip(numbers, computed, strict=True)]
     return out
 
 
 def _tried(study, cases, built):
     """Rows of cases that differ in their load only, their processor time shared, or with the error of all."""
     started = time.process_time()
-    with own_warnings() as said:
+    with own_warnings() as caught:
         try:
-            found = [row | {"status": DONE} for row in _computed(study, cases, built)]
+            computed = [row | {"status": DONE} for row in _computed(study, cases, built)]
         except FAILURES as error:
-            found = [{"status": FAILED, "error": f"{type(error).__name__}: {error}"} for _ in cases]
-    notes = "; ".join(dict.fromkeys(str(one.message) for one in said))
-    each = {"notes": notes or None, "seconds": (time.process_time() - started) / len(cases)}
-    return [row | each for row in found]
+            computed = [{"status": FAILED, "error": f"{type(error).__name__}: {error}"} for _ in cases]
+    notes = "; ".join(dict.fromkeys(str(warning.message) for warning in caught))
+    shared = {"notes": notes or None, "seconds": (time.process_time() - started) / len(cases)}
+    return [row | shared for row in computed]
 
 
 def lost(block: Block) -> list[dict[str, Any]]:
@@ -147,15 +147,15 @@ def lost(block: Block) -> list[dict[str, Any]]:
 
 
 def _told(block, i):
-    """What a row says of its case and of the program."""
+    """Columns of a row that name its case and the program's versions."""
     return block.told[i] | block.cases[i] | _program()
 
 
 @cache
 def _program():
     """What each row says of the program that made it."""
-    made = program()
-    return {"version": made["gearfe"], "source": made["source"]}
+    versions = program()
+    return {"version": versions["gearfe"], "source": versions["source"]}
 
 
 def _computed(study, cases, built):
@@ -169,7 +169,7 @@ def _computed(study, cases, built):
     scene, hurt = built[key], None if damage == "healthy" else damage
     if kind.whole:
         return kind.work(scene, hurt, options)
-    forces = tuple(one.get(f"pair.{pair}.force_N", scene.pair(pair).force) for one in cases)
+    forces = tuple(load_case.get(f"pair.{pair}.force_N", scene.pair(pair).force) for load_case in cases)
     return kind.work(replace(scene.case(pair, hurt), force=forces), options)
 
 

@@ -46,10 +46,10 @@ def main_effects(runs: Runs, output: str, where: Any = None) -> "pandas.DataFram
         drawn = column.dtype.kind == "f" and column.nunique() > 4 * BINS
         home = pandas.qcut(column, BINS, labels=False) if drawn else column
         groups = table.groupby(home, sort=True)
-        one = groups[output].agg(["mean", "std", "count"]).reset_index(drop=True)
-        one.columns = ["mean", "spread", "cases"]
+        summary = groups[output].agg(["mean", "std", "count"]).reset_index(drop=True)
+        summary.columns = ["mean", "spread", "cases"]
         values = groups[name].median() if drawn else groups[name].first()
-        parts.append(pandas.DataFrame({"input": name, "value": values.to_numpy(dtype=object)}).join(one))
+        parts.append(pandas.DataFrame({"input": name, "value": values.to_numpy(dtype=object)}).join(summary))
     return pandas.concat(parts, ignore_index=True)
 
 
@@ -90,12 +90,12 @@ def sobol_indices(runs: Runs, output: str, where: Any = None) -> "pandas.DataFra
             f"of {table['draw'].nunique()} draws: choose one value of the other inputs by where, within which no case fails"
         )
     parts = table[output].to_numpy().reshape(len(names) + 2, 1, count)
-    found = stats.sobol_indices(func={"f_A": parts[0], "f_B": parts[1], "f_AB": parts[2:]}, n=count)
-    spread = found.bootstrap(confidence_level=0.95, n_resamples=RESAMPLES)
+    indices = stats.sobol_indices(func={"f_A": parts[0], "f_B": parts[1], "f_AB": parts[2:]}, n=count)
+    spread = indices.bootstrap(confidence_level=0.95, n_resamples=RESAMPLES)
     columns: dict[str, Any] = {}
     for name, order in (("first", "first_order"), ("total", "total_order")):
         ends = getattr(spread, order).confidence_interval
-        columns |= {name: getattr(found, order).ravel(), f"{name}_low": ends.low.ravel(), f"{name}_high": ends.high.ravel()}
+        columns |= {name: getattr(indices, order).ravel(), f"{name}_low": ends.low.ravel(), f"{name}_high": ends.high.ravel()}
     return pandas.DataFrame(columns, index=pandas.Index(names, name="input"))
 
 
@@ -123,12 +123,12 @@ def curve_bands(
     ValueError
         If curves have other phases, or there is none.
     """
-    found = runs.curves([name], where)
-    found = found.isel(number=found["status"].to_numpy() == "done")
-    if not found.sizes["number"] or "phase" in found.data_vars:
+    curves = runs.curves([name], where)
+    curves = curves.isel(number=curves["status"].to_numpy() == "done")
+    if not curves.sizes["number"] or "phase" in curves.data_vars:
         raise ValueError("percentiles need curves at the same phases: choose cases of one geometry and span by where")
-    made = found[[name]].quantile(np.asarray(percentiles) / 100, dim="number", keep_attrs=True, skipna=False)
-    return made.rename(quantile="percentile").assign_coords(percentile=list(percentiles)).dropna("place")
+    bands = curves[[name]].quantile(np.asarray(percentiles) / 100, dim="number", keep_attrs=True, skipna=False)
+    return bands.rename(quantile="percentile").assign_coords(percentile=list(percentiles)).dropna("place")
 
 
 def told_apart(healthy: Any, damaged: Any) -> float:
@@ -141,8 +141,8 @@ def told_apart(healthy: Any, damaged: Any) -> float:
     >>> told_apart([1.0, 2.0, 3.0], [2.5, 3.5, 4.5])
     0.8888888888888888
     """
-    one, other = np.asarray(healthy, dtype=float), np.asarray(damaged, dtype=float)
-    return float(stats.mannwhitneyu(other, one).statistic / (one.size * other.size))
+    undamaged, hurt = np.asarray(healthy, dtype=float), np.asarray(damaged, dtype=float)
+    return float(stats.mannwhitneyu(hurt, undamaged).statistic / (undamaged.size * hurt.size))
 
 
 def _numbers(runs, output, where):

@@ -2,7 +2,7 @@
 
 import copy
 
-from ...scene import machine_table
+from ...scene import machine_table, set_table
 from ...scene.load import DAMAGE, TABLES, read_tables
 
 OUTSIDE = ("pair", "case")  # keys by themselves: which pair, which case of damage ("healthy": none)
@@ -13,7 +13,7 @@ def tables_near(place, scene):
     """Name and tables of a scene, a file in the folder `place` or a built-in one, without what its sources print."""
     near = place / scene
     name, tables = read_tables(near if near.is_file() else scene)
-    return name, {kind: one for kind, one in tables.items() if kind not in ("reference", "assumption", "given", "later")}
+    return name, {kind: table for kind, table in tables.items() if kind not in ("reference", "assumption", "given", "later")}
 
 
 def check_key(key, tables, options):
@@ -39,15 +39,25 @@ def _known(parts, tables, options):
     if first in TABLES:
         return [list(tables.get(first, {})), list(TABLES[first])]
     if first in DAMAGE:
-        return [list(dict.fromkeys(one["case"] for one in tables.get(first, []))), list(DAMAGE[first])]
+        return [list(dict.fromkeys(row["case"] for row in tables.get(first, []))), list(DAMAGE[first])]
     if first == "machine" and "machine" in tables:
         if parts[1:2] == ["impact"]:
             return [["impact"], list(machine_table.IMPACT)]
         if parts[1:2] == ["bodies"]:
             return [["bodies"], list(tables["machine"].get("bodies", {})), list(machine_table.BODY)]
         return [[*machine_table.MACHINE, "impact", "bodies"]]
-    there = [name for name in (*TABLES, *DAMAGE, "machine") if tables.get(name)]
-    raise ValueError(f"{'.'.join(parts)!r}: a key begins with {', '.join(there)} or options, or is pair or case")
+    if first in set_table.NAMES and "set" in tables:
+        return _known_of_set(first, tables)
+    kinds = [name for name in (*TABLES, *DAMAGE, "machine", *set_table.NAMES) if tables.get(name)]
+    raise ValueError(f"{'.'.join(parts)!r}: a key begins with {', '.join(kinds)} or options, or is pair or case")
+
+
+def _known_of_set(first, tables):
+    if first == "set":
+        return [list(set_table.SET)]
+    if first == "ring":
+        return [["support"], list(set_table.SUPPORT)]
+    return [list(tables.get("pin", {})), list(set_table.PIN)]
 
 
 def placed(tables, values):
@@ -58,7 +68,7 @@ def placed(tables, values):
         if key in OUTSIDE or parts[0] == "options":
             continue
         if parts[0] in DAMAGE:
-            homes = [one for one in out[parts[0]] if one["case"] == parts[1]]
+            homes = [row for row in out[parts[0]] if row["case"] == parts[1]]
             parts = parts[2:]
         else:
             deep = 2 if parts[0] in TABLES else len(parts) - 1 - parts[-1].isdigit()
@@ -77,11 +87,11 @@ def _set(home, parts, value):
         home[parts[0]] = value
         return
     key, at = parts[0], int(parts[1])
-    given = list(home.get(key) or [])
-    if at >= len(given):
-        raise ValueError(f"{key} = {given!r} in the scene has no number {at}; the first is 0")
-    given[at] = value
-    home[key] = given
+    numbers = list(home.get(key) or [])
+    if at >= len(numbers):
+        raise ValueError(f"{key} = {numbers!r} in the scene has no number {at}; the first is 0")
+    numbers[at] = value
+    home[key] = numbers
 
 
 def trimmed(tables, pair, case):
@@ -90,15 +100,17 @@ def trimmed(tables, pair, case):
     gears = {chosen.get(name) for name in ("gear_1", "gear_2")}
     out = {name: tables[name] for name in ("title", "source") if name in tables}
     out["pair"] = {pair: chosen}
-    out["gear"] = {name: one for name, one in tables["gear"].items() if name in gears}
-    used = {one.get("material") for one in out["gear"].values()}
-    out["material"] = {name: one for name, one in tables["material"].items() if name in used}
+    out["gear"] = {name: table for name, table in tables["gear"].items() if name in gears}
+    used = {table.get("material") for table in out["gear"].values()}
+    out["material"] = {name: table for name, table in tables["material"].items() if name in used}
     out["flank"] = {
-        name: one for name, one in tables.get("flank", {}).items() if one.get("gear") in gears and one.get("pair") in (None, pair)
+        name: table
+        for name, table in tables.get("flank", {}).items()
+        if table.get("gear") in gears and table.get("pair") in (None, pair)
     }
     for kind in DAMAGE:
-        found = [one for one in tables.get(kind, []) if one.get("case") == case]
-        out[kind] = [one for one in found if one.get("gear") in gears and one.get("pair") in (None, pair)]
+        of_case = [table for table in tables.get(kind, []) if table.get("case") == case]
+        out[kind] = [table for table in of_case if table.get("gear") in gears and table.get("pair") in (None, pair)]
     return out
 
 

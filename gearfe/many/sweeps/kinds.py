@@ -7,6 +7,8 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 
 from ...case import Case
+from ...epicyclic.of_scene import build_set
+from ...epicyclic.solve import planetary_stiffness
 from ...flexibility.solved import SolvedGears
 from ...machine.of_scene import build_machine
 from ...motion.step_control import default_step
@@ -15,6 +17,7 @@ from ...scene.strict import NUMBER, TEXT, TRUTH, WHOLE
 from ...signal.series import Signal
 from ...stiffness.curve import StiffnessCurve
 from ...stiffness.solve import Solve, solve
+from ...studies.told_set import set_numbers, spread
 from ...studies.vibration import recorded
 from ..store.shards import Field
 
@@ -38,6 +41,9 @@ VIBRATION = {
     "channel": (TEXT, None),
     "signal": (TRUTH, False),
 }
+SET = {"positions": (WHOLE, 32), "cycles": (WHOLE, None), "refine": (NUMBER, 1.0)}
+MESHES = dict.fromkeys(("k_sun_planet", "k_planet_ring", "k_sun_planet_alone", "k_planet_ring_alone"), Field("number", "N/m"))
+MESHES |= {"K_gamma": Field("number"), "te_peak_to_peak": Field("number", "m")}
 STIFFNESS = dict.fromkeys(("k_mean", "k_min", "k_max", "k_single", "k_double"), Field("number", "N/m"))
 STIFFNESS |= {"k_error": Field("number"), "te_peak_to_peak": Field("number", "m")}
 HARMONICS = 3
@@ -48,7 +54,7 @@ class Kind(NamedTuple):
     """A kind of study.
 
     `options` are checked as a TOML table; `fields` are the columns of its results; `work` is called with a `Case` and the
-    options, and gives a row for each of its loads; `block`: cases in a shard, so many that one takes seconds. `whole`: it needs
+    options, and gives a row for each of its loads; `block`: cases in a shard, which takes seconds. `whole`: it needs
     all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the options.
     """
 
@@ -102,17 +108,24 @@ def vibration(scene: Scene, case: str | None, options: dict[str, Any]) -> list[d
     machine = build_machine(scene, case, phases=options["phases"], method=options["curves"])
     duration = options["duration_s"]
     rate = options["rate_Hz"] or math.ceil(duration / default_step(machine)) / duration
-    found = recorded(machine, duration, rate, method=options["method"])
+    response = recorded(machine, duration, rate, method=options["method"])
     stage = machine.stages[-1]
-    mesh = next(one for one in machine.meshes if abs(one.frequency - stage.mesh) < 1e-6 * stage.mesh)
+    mesh = next(candidate for candidate in machine.meshes if abs(candidate.frequency - stage.mesh) < 1e-6 * stage.mesh)
     channel = options["channel"] or f"force {mesh.name}"
-    signal = Signal(np.asarray(found[channel], dtype=float), rate, found.unit(channel), name=channel)
+    signal = Signal(np.asarray(response[channel], dtype=float), rate, response.unit(channel), name=channel)
     fault = stage.fault or stage.turning
     seen = signal.indicators(*((stage.mesh, fault) if fault else (None, None)))
     row: dict[str, Any] = {name.replace(" ", "_"): seen.get(name) for name in INDICATORS}
     row |= {"rms": seen["rms"], "peak": seen["peak"], "mesh_line": seen.get("mesh line"), "unit": signal.unit}
-    row |= {"mesh_Hz": stage.mesh, "fault_Hz": fault, "rate": rate, "free": found.stats["free"]}
+    row |= {"mesh_Hz": stage.mesh, "fault_Hz": fault, "rate": rate, "free": response.stats["free"]}
     return [row | ({"signal": signal.values} if options["signal"] else {})]
+
+
+def planetary_set(scene: Scene, case: str | None, options: dict[str, Any]) -> list[dict[str, Any]]:
+    """Row of a whole planetary set: mean stiffness of both kinds of mesh in it and alone, K_gamma, transmission error."""
+    made = build_set(scene, case)
+    at = spread(made, options["positions"], options["cycles"])
+    return [set_numbers(planetary_stiffness(made, at, refine=options["refine"], cache=KEPT))]
 
 
 SEEN = {name.replace(" ", "_"): Field("number") for name in INDICATORS}
@@ -124,5 +137,6 @@ KINDS = {
     "transmission error": Kind(
         CURVE, TE | {"k_mean": Field("number", "N/m"), "phase": Field("list"), "te": Field("list", "m")}, transmission_error, 32
     ),
+    "set": Kind(SET, MESHES, planetary_set, 4, whole=True),
     "vibration": Kind(VIBRATION, SEEN | {"signal": Field("list", "unit")}, vibration, 4, whole=True),
 }

@@ -76,19 +76,19 @@ def plan_sweep(
     chosen = every[len(every) // 2]
     rows(checked, chosen.single(0))  # imports and tables that are made once
     started = time.process_time()
-    made = rows(checked, chosen)
-    tried = len(made)
-    content = encoded(table(made, fields))
-    each = (time.process_time() - started) / tried
+    computed = rows(checked, chosen)
+    tried = len(computed)
+    content = encoded(table(computed, fields))
+    per_case = (time.process_time() - started) / tried
     cases = sum(len(one.cases) for one in every)
-    wrong = [row["error"] for row in made if row["status"] != DONE]
+    wrong = [row["error"] for row in computed if row["status"] != DONE]
     unit = 1 if sys.platform == "darwin" else 1024
     place = Path(folder).absolute()
-    there = next(one for one in (place, *place.parents) if one.exists())
+    existing = next(one for one in (place, *place.parents) if one.exists())
     return Plan(
-        cases, len(every), each * cases, workers or os.cpu_count() or 1,
+        cases, len(every), per_case * cases, workers or os.cpu_count() or 1,
         float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit), len(content) / tried * cases,
-        float(shutil.disk_usage(there).free), tried, len(wrong), wrong[0] if wrong else "",
+        float(shutil.disk_usage(existing).free), tried, len(wrong), wrong[0] if wrong else "",
     )  # fmt: skip
 
 

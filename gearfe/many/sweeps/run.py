@@ -60,26 +60,26 @@ def sweep(
         raise ValueError("workers are processes of this machine, a scheduler has its own: give one of them")
     checked = read_study(study)
     every, fields = blocks(checked)
-    stored = begin(folder, _about(checked, sum(len(one.cases) for one in every)))
+    stored = begin(folder, _about(checked, sum(len(block.cases) for block in every)))
     with locked(folder):
         if stored["study"]["block"] != checked.block:  # how it is cut is no other study
             checked = replace(checked, block=stored["study"]["block"])
             every, fields = blocks(checked)
         about = _about(checked, stored["cases"])
         check_same(folder, stored, about, "study", mixed=mixed)
-        left = unfinished(folder, [one.name for one in every], "study")
-        todo = [one for one in every if one.name in left]
+        left = unfinished(folder, [block.name for block in every], "study")
+        todo = [block for block in every if block.name in left]
         tally = Tally("cases", stored["cases"], progress)
-        tally.add(tally.total - sum(len(one.cases) for one in todo))
+        tally.add(tally.total - sum(len(block.cases) for block in todo))
         small = slim(checked)
-        for block, found in results(partial(compute, small, fields), todo, workers, scheduler=scheduler):
-            content, source = found or shard(fields, lost(block) if scheduler else _case_by_case(small, block))
+        for ended, result in results(partial(compute, small, fields), todo, workers, scheduler=scheduler):
+            content, source = result or shard(fields, lost(ended) if scheduler else _case_by_case(small, ended))
             if source != about["made"]["source"]:
                 raise RuntimeError(
                     f"a worker has gearfe of source {source}, this process {about['made']['source']}: install the same there"
                 )
-            write_shard(folder, block.name, content)
-            tally.add(len(block.cases))
+            write_shard(folder, ended.name, content)
+            tally.add(len(ended.cases))
     if tally.done != tally.total:
         raise RuntimeError(
             f"{tally.total - tally.done} of {tally.total} cases were handed out and never came back: start the sweep again"
@@ -89,8 +89,8 @@ def sweep(
 
 def _case_by_case(study, block):
     """Rows of a block that ended its process: only cases that end theirs once more, computed alone, are recorded as lost."""
-    each = [block.single(i) for i in range(len(block.cases))]
-    return [row for one, found in alone(partial(rows, study), each) for row in found or lost(one)]
+    singles = [block.single(i) for i in range(len(block.cases))]
+    return [row for single, result in alone(partial(rows, study), singles) for row in result or lost(single)]
 
 
 def _about(study: Study, cases: int) -> dict[str, Any]:

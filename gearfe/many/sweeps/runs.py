@@ -114,9 +114,9 @@ class Runs:
                 raise ValueError(f"{name!r} is no curve of this study; it has {', '.join(known)}")
         beside = ["number", *self.inputs, "status"]
         lists = list(dict.fromkeys([*(["phase"] if "phase" in known else []), *names]))
-        found = read(self.folder, [*beside, *lists], where_of(where, list(self.fields))).sort_by("number")
-        values = {name: padded(found[name]) for name in lists}
-        coords: dict[str, Any] = {name: ("number", found[name].to_pandas().to_numpy()) for name in beside}
+        rows = read(self.folder, [*beside, *lists], where_of(where, list(self.fields))).sort_by("number")
+        values = {name: padded(rows[name]) for name in lists}
+        coords: dict[str, Any] = {name: ("number", rows[name].to_pandas().to_numpy()) for name in beside}
         if "phase" in values and "phase" not in names and _alike(values["phase"]):
             coords["phase"] = ("place", _longest(values["phase"]), {"units": "-"})
         elif "phase" in values and "phase" not in names:
@@ -127,10 +127,12 @@ class Runs:
 
 def padded(column: Any) -> np.ndarray:
     """Lists of a column as an array ``(n, longest)``, filled up with nan; a null is all nan."""
-    lists = [np.asarray(one, dtype=float) if one is not None else np.empty(0) for one in column.to_numpy(zero_copy_only=False)]
-    out = np.full((len(lists), max((one.size for one in lists), default=0)), np.nan)
-    for row, one in zip(out, lists, strict=True):
-        row[: one.size] = one
+    lists = [
+        np.asarray(values, dtype=float) if values is not None else np.empty(0) for values in column.to_numpy(zero_copy_only=False)
+    ]
+    out = np.full((len(lists), max((values.size for values in lists), default=0)), np.nan)
+    for row, values in zip(out, lists, strict=True):
+        row[: values.size] = values
     return out
 
 

@@ -33,8 +33,8 @@ def cube(method, count, dims, seed):
         return qmc.LatinHypercube(dims, rng=rng).random(count)
     if method == "sobol":
         return qmc.Sobol(dims, rng=rng).random(count)
-    both = qmc.Sobol(2 * dims, rng=rng).random(count)
-    a, b = both[:, :dims], both[:, dims:]
+    joint = qmc.Sobol(2 * dims, rng=rng).random(count)
+    a, b = joint[:, :dims], joint[:, dims:]
     mixed = [np.where(np.arange(dims) == j, b, a) for j in range(dims)]
     return np.concatenate([a, b, *mixed])
 
@@ -45,8 +45,8 @@ def correlated(points, names, pairs):
     Of normal distributions these are the correlations themselves.
     """
     matrix = np.eye(len(names))
-    for one, other, value in pairs:
-        i, j = names.index(one), names.index(other)
+    for first, second, value in pairs:
+        i, j = names.index(first), names.index(second)
         matrix[i, j] = matrix[j, i] = value
     try:
         factor = np.linalg.cholesky(matrix)
@@ -62,24 +62,24 @@ def check_shape(where, spec):
     if len(names) != 1 or unknown:
         raise ValueError(f"{where}: {shown(spec)} is no distribution; give one of {', '.join(SHAPES)}, and within = [low, high]")
     (name,) = names
-    count, said = SHAPES[name]
+    count, meaning = SHAPES[name]
     values = spec[name]
     if not isinstance(values, (list, tuple)) or not values or (count is not None and len(values) != count):
-        raise ValueError(f"{where}: {name} = {shown(values)}, but give a list: {said}")
+        raise ValueError(f"{where}: {name} = {shown(values)}, but give a list: {meaning}")
     if name == "choice":
         if "within" in spec:
             raise ValueError(f"{where}: within is of a distribution; leave out of the choice what is not in it")
         return
     if not all(map(_finite, values)):
-        raise ValueError(f"{where}: {name} = {shown(values)}, but give finite numbers: {said}")
+        raise ValueError(f"{where}: {name} = {shown(values)}, but give finite numbers: {meaning}")
     rising = {"uniform": values, "triangular": values}.get(name, [0, 1])
     if sorted(rising) != list(rising) or rising[0] == rising[-1]:
-        raise ValueError(f"{where}: {name} = {values!r}, but the values must rise: {said}")
+        raise ValueError(f"{where}: {name} = {values!r}, but the values must rise: {meaning}")
     if name in ("normal", "lognormal") and not values[1] > 0:
         raise ValueError(f"{where}: {name} = {values!r}, but a standard deviation is > 0")
     if name == "lognormal" and not (values[0] > 0 and values[1] <= WIDEST):
-        told = f"a median is > 0, and a standard deviation of the logarithm above {WIDEST:g} is none of gears"
-        raise ValueError(f"{where}: lognormal = {values!r}, but {told}")
+        bounds = f"a median is > 0, and a standard deviation of the logarithm above {WIDEST:g} is none of gears"
+        raise ValueError(f"{where}: lognormal = {values!r}, but {bounds}")
     if "within" in spec:
         _check_within(where, name, spec)
 
@@ -89,7 +89,7 @@ def _finite(value):
 
 
 def _check_within(where, name, spec):
-    """Refuse what is no interval, or leaves nothing of a distribution."""
+    """Raise ValueError unless ``within`` is an interval in which a part of the distribution lies."""
     within = spec["within"]
     if not (isinstance(within, (list, tuple)) and len(within) == 2 and all(map(_finite, within)) and within[0] < within[1]):
         raise ValueError(f"{where}: within = {shown(within)}, but give [low, high] with low < high")
@@ -105,11 +105,11 @@ def quantiles(spec, u):
     if "choice" in spec:
         values = spec["choice"]
         return [values[min(int(p * len(values)), len(values) - 1)] for p in u]
-    made = _distribution(spec)
+    distribution = _distribution(spec)
     if "within" in spec:
-        low, high = made.cdf(spec["within"])
+        low, high = distribution.cdf(spec["within"])
         u = low + (high - low) * u
-    return made.ppf(u).tolist()
+    return distribution.ppf(u).tolist()
 
 
 def _distribution(spec):

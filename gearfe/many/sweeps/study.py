@@ -4,7 +4,7 @@
 
     title = "cracks under load"
     scene = "my.toml"                     # or the name of a built-in scene
-    kind = "stiffness"                    # or "transmission error", "vibration"
+    kind = "stiffness"                    # or "transmission error", "set", "vibration"
     pair = "stage"                        # default: the scene's first
     case = "cracked"                      # default: healthy
     seed = 1
@@ -20,7 +20,7 @@
     "gear.pinion.r_bore_mm" = [8.0, 10.0]
     "gear.wheel.r_bore_mm" = [12.0, 15.0]
 
-    [sample]                              # drawn anew for no case: every draw meets every combination
+    [sample]                              # drawn once: every draw meets every combination
     method = "sobol"                      # or "random", "latin", "saltelli" (for Sobol indices)
     count = 256
     [sample.of]
@@ -128,9 +128,9 @@ def _study(file, place, data):
         if keys.count(key) > 1:
             raise ValueError(f"{file}: {key!r} varies twice; leave one out")
     _check_names(file, tables, pair if "pair" not in keys else None, top["case"] if "case" not in keys else None)
-    given = {one: top[one] for one in ("title", "kind", "case", "seed")}
+    copied = {entry: top[entry] for entry in ("title", "kind", "case", "seed")}
     return Study(
-        **given, pair=pair, name=name, tables=tables, options=options, axes=grid, sample=sample, keys=keys,
+        **copied, pair=pair, name=name, tables=tables, options=options, axes=grid, sample=sample, keys=keys,
         block=top["block"] or kind.block,
     )  # fmt: skip
 
@@ -138,11 +138,11 @@ def _study(file, place, data):
 def _scene(file, place, scene, added):
     """Name and tables of the scene with those that the study adds, tried as a whole."""
     name, tables = tables_near(place, scene)
-    for kind, one in added.items():
-        here = tables.get(kind, {} if kind == "flank" else [])
-        if not isinstance(one, type(here)):
+    for kind, extra in added.items():
+        present = tables.get(kind, {} if kind == "flank" else [])
+        if not isinstance(extra, type(present)):
             raise ValueError(f"{file}: [[{kind}]] is written with two brackets, [flank.NAME] with one")
-        tables[kind] = here | one if isinstance(here, dict) else here + one
+        tables[kind] = present | extra if isinstance(present, dict) else present + extra
     scene_of(f"{name} with {file}" if added else name, tables)
     return name, tables
 
@@ -150,7 +150,7 @@ def _scene(file, place, scene, added):
 def _check_names(file, tables, pair, case):
     if pair is not None and pair not in tables["pair"]:
         raise ValueError(f"{file} pair = {pair!r}: no such pair; there is {', '.join(tables['pair'])}")
-    cases = {one["case"] for kind in DAMAGE for one in tables.get(kind, [])}
+    cases = {row["case"] for kind in DAMAGE for row in tables.get(kind, [])}
     if case not in (None, "healthy", *cases):
         raise ValueError(f"{file} case = {case!r}: no such case; there is healthy, {', '.join(sorted(cases))}")
 
@@ -187,10 +187,10 @@ def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:
 
 def of_case(study: Study, case: Mapping[str, Any]) -> tuple[str, str, dict[str, Any]]:
     """Pair, case of damage and options of a case with its values by key."""
-    own = {key.partition(".")[2]: value for key, value in case.items() if key.startswith("options.")}
-    if own:
-        own = checked("options", "of this case", study.options | own, KINDS[study.kind].options)
-    return case.get("pair", study.pair), case.get("case", study.case), own or study.options
+    options = {key.partition(".")[2]: value for key, value in case.items() if key.startswith("options.")}
+    if options:
+        options = checked("options", "of this case", study.options | options, KINDS[study.kind].options)
+    return case.get("pair", study.pair), case.get("case", study.case), options or study.options
 
 
 def slim(study: Study) -> Study:

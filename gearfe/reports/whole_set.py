@@ -1,0 +1,58 @@
+"""The section of a report on the planetary set of its scene."""
+
+import base64
+import tempfile
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from ..epicyclic.case import PlanetaryCase
+from ..epicyclic.curves import SetCurves
+from ..epicyclic.of_scene import build_set
+from ..epicyclic.shape import plot_planetary_set
+from ..epicyclic.solve import planetary_stiffness
+from ..scene.load import Scene
+from ..studies.told_set import set_headline, set_table, spread, told_set, told_span
+
+POSITIONS = 32
+DPI = {"loads": 90, "bent": 110}
+
+
+def find_set(scene: Scene, case: str | None) -> tuple[dict[str, SetCurves], list[str]]:
+    """Curves of a scene's set, healthy and in a case of damage, at the same positions; and what could not be solved, and why."""
+    made: dict[str, PlanetaryCase] = {}
+    notes = []
+    for which in dict.fromkeys((case, None)):
+        try:
+            made[which or "healthy"] = build_set(scene, which)
+        except ValueError as error:
+            notes.append(f"the set is not shown {'healthy' if which is None else f'in case {which}'}: {error}")
+    if not made:
+        return {}, list(dict.fromkeys(notes))
+    at = spread(next(iter(made.values())), POSITIONS)
+    return {name: planetary_stiffness(one, at) for name, one in reversed(made.items())}, notes
+
+
+def set_section(found: dict[str, SetCurves]) -> list[dict[str, Any]]:
+    """What the page shows of each of these sets: a sentence, what it is, a table in Markdown, pictures as data of the page."""
+    out = []
+    for name, curves in found.items():
+        healthy = found.get("healthy") if name != "healthy" else None
+        out.append({
+            "case": name, "headline": set_headline(curves, healthy), "told": told_set(curves.meta["case"]),
+            "span": told_span(curves.position), "table": set_table(curves),
+            "loads": _picture("loads", curves.plot), "bent": _picture("bent", partial(plot_planetary_set, curves, 0)),
+        })  # fmt: skip
+    return out
+
+
+def _picture(name: str, draw: Callable[..., Any]) -> dict[str, str]:
+    """A picture as data of the page, or why there is none."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "set.png"
+        try:
+            draw(file, dpi=DPI[name])
+        except ValueError as error:
+            return {"missing": str(error)}
+        return {"data": base64.b64encode(file.read_bytes()).decode()}

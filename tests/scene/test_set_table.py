@@ -1,0 +1,97 @@
+"""Tables [set], [ring.support], [pin.NAME]: units, what is deduced, mistakes; of the scene on the how-to page."""
+
+import math
+import re
+
+import pytest
+from conftest import ROOT
+
+import gearfe as gf
+
+PAGE = (ROOT / "gearfe" / "docs" / "howto" / "planetary_set.md").read_text(encoding="utf-8")
+SCENE = re.search(r"```toml\n(title.*?)```", PAGE, re.DOTALL)[1]
+OTHER = '[gear.other]\nz = 31\nm_n_mm = 2.0\nalpha_n_deg = 20\nb_mm = 20\nr_bore_mm = 9\nmaterial = "steel"\n'
+OTHER += '[pair.a]\ngear_1 = "sun"\ngear_2 = "other"\nforce_N = 1\n'
+OTHER += '[pair.b]\ngear_1 = "other"\ngear_2 = "ring"\na_mm = 52\nforce_N = 1\n'
+
+
+def loaded(tmp_path, text):
+    path = tmp_path / "s.toml"
+    path.write_text(text)
+    return gf.load_scene(path)
+
+
+def test_units_are_those_of_the_keys(tmp_path):
+    scene = loaded(tmp_path, SCENE)
+    assert scene.set.pairs == ("sun_planet", "planet_ring")
+    assert scene.set.force * 3 * scene.gears["sun"].r_b == pytest.approx(120e3)
+    assert scene.set.pin == 3e5
+    assert scene.set.errors == ((0.0, 0.005), (0.0, 0.0), (0.0, 0.0))
+    assert scene.set.angles is None
+    turned = loaded(tmp_path, SCENE.replace("n_planets = 3 ", "angles_deg = [0, 120, 240] #").replace("torque_Nm = 120", ""))
+    assert turned.set.angles == pytest.approx([0, 2 * math.pi / 3, 4 * math.pi / 3])
+    assert turned.set.force == 2000
+
+
+def test_a_scene_without_a_set_has_none(tmp_path):
+    assert loaded(tmp_path, SCENE[: SCENE.index("[set]")]).set is None
+
+
+def test_of_several_sets_the_one_of_the_named_gears(tmp_path):
+    with pytest.raises(
+        ValueError, match=r"2 sets are in the pairs .* name sun, planet, ring: sun, planet, ring; sun, other, ring"
+    ):
+        loaded(tmp_path, SCENE + OTHER)
+    found = loaded(tmp_path, (SCENE + OTHER).replace("[set]", '[set]\nplanet = "other"')).set
+    assert found.pairs == ("a", "b")
+    assert found.gears.planet.r_bore == 9
+
+
+def test_assumptions_speak_of_a_set(tmp_path):
+    note = '[[assumption]]\nwhat = "six pads"\nwhy = "a guess"\nholds = { "ring.support.count" = 6, "pin.first.planet" = 0 }\n'
+    assert len(loaded(tmp_path, SCENE + note).assumptions) == 1
+    other = loaded(tmp_path, (SCENE + note).replace("count = 6\n", "count = 5\n"))
+    assert not other.assumptions
+    assert other.changed == ("ring.support.count = 5 (assumed in the original: 6)",)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("[set]", "[sets]", r"\[ring\] belongs to a planetary set: add a table \[set\]"),
+        ("[set]\n", "[set]\nplanets = 3\n", r"s.toml \[set\]: unknown key 'planets'; expected n_planets, angles_deg"),
+        ("n_planets = 3 ", "#", r"\[set\]: give n_planets, equally spaced, or angles_deg"),
+        ("n_planets = 3 ", "angles_deg = [] #", r"\[set\]: give n_planets, equally spaced, or angles_deg"),
+        ("n_planets = 3 ", "n_planets = 0 #", r"\[set\]: n_planets = 0, but a set has a whole number of planets"),
+        ("n_planets = 3 ", "n_planets = 4 #", r"\[set\]: 4 planets cannot be spaced equally"),
+        ("[set]\n", '[set]\nsun = "moon"\n', r"\[set\] sun = 'moon': no such gear in a pair; there is sun, planet, ring"),
+        ("[set]\n", '[set]\nsun = "planet"\n', r"\[set\]: no two pairs make it: give one with the sun as gear_1"),
+        ("torque_Nm = 120", "torque_Nm = 120\nforce_N = 2000", r"\[set\]: force_N and torque_Nm say the same twice"),
+        ("torque_Nm = 120", "torque_Nm = -1", r"\[set\] torque_Nm = -1, but give a number > 0"),
+        ("pin_N_per_um = 300", "pin_N_per_um = 0", r"\[set\] pin_N_per_um = 0, but give a number > 0"),
+        ("[set]\n", "[set]\ndamaged_planet = 3\n", r"\[set\] damaged_planet = 3, but the set has 3 planets: give 0 to 2"),
+        ("planet = 0\n", "planet = 3\n", r"\[pin.first\] planet = 3, but the set has 3 planets"),
+        ("[pin.first]", "[pin.second]\nplanet = 0\n[pin.first]", r"\[pin.first\]: the pin of planet 0 is \[pin.second\] already"),
+        ("[pin.first]", "[[pin]]", r"\[\[pin\]\] is a list of tables, but they have names: write \[pin.NAME\]"),
+        ('kind = "pads"', 'kind = "bolts"', r"\[ring.support\] kind = 'bolts': no such kind of support; there is held, bed"),
+        ('kind = "pads"', 'kind = "held"', r"\[ring.support\]: kind = 'held' has no count; expected no other key"),
+        ('kind = "pads"', 'kind = "bed"', r"kind = 'bed' needs radial_MPa_per_mm"),
+        ("width_mm = 5 ", "#", r"kind = 'pads' needs width_mm, the stiffness depends on it"),
+        ('kind = "pads"', 'kind = "lugs"\nradial_N_per_um = 2', r"kind = 'lugs' has no radial_N_per_um; expected count"),
+        ("width_mm = 5 ", 'width_mm = "wide" #', r"\[ring.support\] width_mm = 'wide': expected a number in mm"),
+        ("[ring.support]", "[ring.supports]", r"\[ring\] = .*: what holds the ring of a set stands in \[ring.support\]"),
+    ],
+)  # fmt: skip
+def test_mistakes_are_explained(tmp_path, old, new, message):
+    assert old in SCENE
+    with pytest.raises(ValueError, match=message):
+        loaded(tmp_path, SCENE.replace(old, new))
+
+
+@pytest.mark.parametrize("value", ["3", '"x"', "[]", "[1.0]", "{ a = 1 }", "2020-01-01"])
+@pytest.mark.parametrize("name", ["set", "ring", "pin"])
+def test_tables_given_as_something_else_are_refused(tmp_path, name, value):
+    head = SCENE[: SCENE.index("[set]")]
+    text = f"{name} = {value}\n{head}" + ("" if name == "set" else "[set]\nn_planets = 3\n")
+    with pytest.raises(ValueError, match=name):
+        loaded(tmp_path, text)
