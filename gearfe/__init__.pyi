@@ -24,6 +24,10 @@ from .epicyclic.rim_supports import RimBed as RimBed
 from .epicyclic.rim_supports import RimSupports as RimSupports
 from .epicyclic.shape import plot_planetary_set as plot_planetary_set
 from .epicyclic.solve import planetary_stiffness as planetary_stiffness
+from .epicyclic.with_set import with_set as with_set
+from .machine.back_flanks import BackFlanks as BackFlanks
+from .machine.back_flanks import back_phase as back_phase
+from .machine.back_flanks import with_back_flanks as with_back_flanks
 from .machine.campbell import Campbell as Campbell
 from .machine.campbell import campbell as campbell
 from .machine.compound_planetary import compound_planetary as compound_planetary
@@ -38,6 +42,7 @@ from .machine.helical_pair import pitted_helical as pitted_helical
 from .machine.herringbone_planetary import herringbone_planetary as herringbone_planetary
 from .machine.law_error import LawError as LawError
 from .machine.law_error import law_error as law_error
+from .machine.law_error import law_within as law_within
 from .machine.layout import Body as Body
 from .machine.layout import Layout as Layout
 from .machine.member import Member as Member

@@ -9,6 +9,8 @@ import pytest  # isort: skip
 
 import gearfe as gf  # isort: skip
 
+gc.disable()  # until all tests are collected, nothing of which is garbage
+
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 ROOT = Path(__file__).parents[1]  # of the repository
 QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose failure says that the room is broken
@@ -73,6 +75,7 @@ def pytest_xdist_make_scheduler(config, log):
 def pytest_collection_finish():
     """What is there by now stays: the collector of garbage need not look at it again and again."""
     gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(scope="session")

@@ -93,6 +93,7 @@ def test_every_page_can_be_asked_for():
         assert (places.HOME / "make" / f"{page}.py").is_file(), page
 
 
+@pytest.mark.slow
 def test_page_of_the_ten_rows_is_not_stale(monkeypatch):
     """A pair without a ring, which knows of no foundation of one, is solved once for both."""
     real, known = gf.mesh_stiffness, {}

@@ -27,6 +27,7 @@ def test_every_input_is_drawn_once_in_each_part_of_its_range(page):
     assert joint_inputs.draws(page) == found, "the same every time"
 
 
+@pytest.mark.slow
 def test_a_draw_changes_the_machine_as_it_says():
     made = simulated.machine("herringbone")
     one = joint_inputs.Draw("herringbone_machine", 0, (("load", 0.5), ("supports", 4.0), ("groove", 9.0), ("damping", 2.0)))

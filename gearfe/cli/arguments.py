@@ -91,6 +91,11 @@ def main(argv=None):
     )  # fmt: skip
     add("--channel", metavar="NAME", help="channel to analyse, e.g. 'sun.theta acceleration' (default: first mesh's force)")
     add("--contact", choices=("linear", "impact"), help="contact law (default: the scene's, else linear)")
+    add(
+        "--loads", type=float, nargs="+", default=(1.0,), metavar="X",
+        help="laws of force solved under these multiples of the meshes' own loads, e.g. 0.0625 0.25 0.5 1 2: for resonances and "
+        "loads that change (default: 1, a stiffness over the phase)",
+    )  # fmt: skip
     add("--method", default="fast", help="fast or a method of scipy's solve_ivp, e.g. DOP853 (default: fast)")
     add("-o", "--output", metavar="FILE", help="save the response: .csv, .npz or .mat")
     _assumptions(add)

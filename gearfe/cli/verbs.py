@@ -247,7 +247,8 @@ def dynamics(arguments):
         scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
     print(f"{scene.title}\n")
     with working("stiffness curves and response") as tell:
-        found = responses(scene, arguments.case, duration=arguments.duration, method=arguments.method, progress=tell)
+        options = {"duration": arguments.duration, "method": arguments.method, "loads": arguments.loads, "progress": tell}
+        found = responses(scene, arguments.case, **options)
     made = next(iter(found.values())).machine
     for name, value in made.notes.items():
         print(f"  {name}: {_rounded(value)}")
@@ -257,6 +258,8 @@ def dynamics(arguments):
         doubt = f", error about {100 * stats['error']:.2g} % of the range" if "error" in stats else ""
         print(f"  {case}: {len(made.dofs)} degrees of freedom, {stats['seconds']:.2f} s by {stats['method']}{doubt}")
         left = f"free vibrations at {stats['free']:.1g} of their start"
+        for line in stats.get("loads", ()):
+            print(f"  {case}: {line}")
         print(f"  {case}: recorded after {stats['settled']:.3g} s, {left}")
         if "switched" in stats:
             print(f"  {case}: reference used because {stats['switched']}")

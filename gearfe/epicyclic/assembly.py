@@ -18,20 +18,23 @@ class Bodies(NamedTuple):
     """How gears yield between meshes [mm per N/mm]: tables of `gearfe.epicyclic.whole_gear`.
 
     `sun` and `ring` ``(z, PLACES, z, PLACES)`` between right flanks, `planet` ``(z, PLACES, PLACES)`` of a right flank by loads
-    on a left one so many teeth before it, `rim` what the ring's support adds.
+    on a left one so many teeth before it, `rim` what the ring's support adds. `planets` ``(z, PLACES, z, PLACES)`` of a right
+    flank by left ones, of planets with cracks, by their number.
     """
 
     sun: NDArray[np.float64]
     planet: NDArray[np.float64]
     ring: NDArray[np.float64]
     rim: Rim
+    planets: dict[int, NDArray[np.float64]]
 
 
 class Position(NamedTuple):
     """A solved position: line loads [N/mm], lengths [mm] along the line of action.
 
-    `loads`, `closing` and `rim` ``(2, planets)`` of the meshes with the sun and with the ring: load, how far it closes the mesh
-    beyond the first touch, and the part that the ring's support gives way. `turn` of the sun, its motion `orbit` (x, y) [mm].
+    `loads`, `closing`, `rim` and `gap` ``(2, planets)`` of the meshes with the sun and with the ring: load, how far it closes the
+    mesh beyond the first touch, the part that the ring's support gives way, and how far from each other flanks and pins off
+    their places leave the mesh without load. `turn` of the sun, its motion `orbit` (x, y) [mm].
     `pairs` are (inner, planet, number of the pair beyond the newest, pinion's tooth, line load). `on_ring` ``(z, PLACES)`` are
     the loads on the ring, `lugs` those of its lugs, `whole` ``(3,)`` the motion of a ring on lugs.
     """
@@ -39,6 +42,7 @@ class Position(NamedTuple):
     loads: NDArray[np.float64]
     closing: NDArray[np.float64]
     rim: NDArray[np.float64]
+    gap: NDArray[np.float64]
     turn: float
     orbit: NDArray[np.float64]
     pairs: list[tuple[int, int, int, int, float]]
@@ -126,8 +130,11 @@ class Set:
             rows, columns, side = a.teeth[0] % gears.sun.z, b.teeth[0] % gears.sun.z, (0, 0)
             own = bodies.sun[np.ix_(rows, range(PLACES), columns, range(PLACES))]
         elif a.planet == b.planet:
-            side = (1, 0)
-            own = bodies.planet[(a.teeth[1][:, None] - b.teeth[0]) % gears.planet.z].transpose(0, 2, 1, 3)
+            side, z = (1, 0), gears.planet.z
+            if a.planet in bodies.planets:
+                own = bodies.planets[a.planet][np.ix_(a.teeth[1] % z, range(PLACES), b.teeth[0] % z, range(PLACES))]
+            else:
+                own = bodies.planet[(a.teeth[1][:, None] - b.teeth[0]) % z].transpose(0, 2, 1, 3)
         else:
             return None
         rows, columns = a.spread[side[0]], b.spread[side[1]]
@@ -198,7 +205,7 @@ class Set:
     def _read(self, blocks, force, motion, problem):
         """`Position` from forces and motions."""
         case, z = self.case, self.case.gears.ring.z
-        loads, closing, rim = np.zeros((3, 2, case.planets))
+        loads, closing, rim, gap = np.zeros((4, 2, case.planets))
         on_ring, pairs = np.zeros((z, PLACES)), []
         give = case.width / case.pin
         for one in blocks:
@@ -212,6 +219,7 @@ class Set:
             own = force[one.at]
             way = self._closing(one) @ motion - back[one.inner, one.planet]
             closing[one.inner, one.planet] = way - one.met.contacts.least
+            gap[one.inner, one.planet] = self.behind[one.inner, one.planet] + one.met.contacts.least
             if one.inner and own.any():
                 given = one.spread[1] @ released[one.teeth[1] % z].ravel()
                 if self._lugs:
@@ -223,7 +231,7 @@ class Set:
                 pairs.append((one.inner, one.planet, order + one.met.newest, tooth, float(own[orders == order].sum())))
         orbit = motion[1:3] if case.floating else np.zeros(2)
         lugs, whole = (force[-self._lugs :], motion[-3:]) if self._lugs else (np.zeros(0), np.zeros(3))
-        return Position(loads, closing, rim, float(motion[0]), orbit, pairs, on_ring, lugs, whole)
+        return Position(loads, closing, rim, gap, float(motion[0]), orbit, pairs, on_ring, lugs, whole)
 
     def _by_lugs(self, one, force):
         """What lugs move the ring at the contacts of a mesh."""

@@ -54,8 +54,8 @@ class PlanetaryCase:
         tooth 0 of the sun meets tooth 0 of planet 0, see `gearfe.epicyclic.standing`.
     damage : dict, optional
         Lists of cracks through the whole width ``{"sun": [Crack(...)], ...}``, by the same names. The loaded side of a planet's
-        tooth is the one that the sun loads. A crack changes how the meshes near it yield to their own loads; that it also changes
-        how they feel the loads of other meshes is left out. A ring that bends may have none.
+        tooth is the one that the sun loads. One crack to a side of a tooth. In what a gear feels of its other meshes, and in how
+        a ring bends, faces of cracks are free; in the mesh that loads their tooth they do not pass through each other.
 
     Raises
     ------
@@ -165,10 +165,8 @@ class PlanetaryCase:
             if flank.eccentricity and name not in ("sun", "ring"):
                 raise ValueError(f"eccentricity of {name!r}: give that of a planet as pitch deviations")
             flank.on(self.gear_of(name))
-        for name, cracks in self.damage.items():
+        for cracks in self.damage.values():
             check_through(cracks, "the section of a planetary set")
-            if name == "ring" and cracks and self.ring != "held":
-                raise ValueError("a crack in a ring that bends is not modelled: give ring = 'held', or no crack there")
 
     def gear_of(self, name: Any) -> Any:
         """Gear by its name."""

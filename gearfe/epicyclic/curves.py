@@ -37,6 +37,8 @@ class SetCurves:
         Stiffness of the isolated pair under the mean force, both gears held at their bore or rim [N/m].
     rim : ndarray, shape (2, p, planets)
         How far a ring that is not held all around gives way in each mesh, along the line of action [m]; 0 in meshes of the sun.
+    gap : ndarray, shape (2, p, planets)
+        How far apart each mesh is before it is loaded, by modified flanks and by pins off their places [m].
     te : ndarray, shape (p,)
         Transmission error of the set under load: how far the sun turns ahead while carrier and ring are held, times its base
         radius [m].
@@ -61,6 +63,7 @@ class SetCurves:
     k: NDArray[np.float64]
     k_alone: NDArray[np.float64]
     rim: NDArray[np.float64]
+    gap: NDArray[np.float64]
     te: NDArray[np.float64]
     orbit: NDArray[np.float64]
     pair_force: NDArray[np.float64]
@@ -105,8 +108,8 @@ class SetCurves:
         """From solved positions, `gearfe.epicyclic.assembly.Position`."""
         case, p = of.case, len(found)
         width, n = case.width, case.planets
-        loads, closing, rim = (
-            np.array([getattr(one, name) for one in found]).transpose(1, 0, 2) for name in ("loads", "closing", "rim")
+        loads, closing, rim, gap = (
+            np.array([getattr(one, name) for one in found]).transpose(1, 0, 2) for name in ("loads", "closing", "rim", "gap")
         )
         even = case.force / width
         alone = np.array([[[meshes.alone(i, k, j, even) for j in range(n)] for i in range(p)] for k in (0, 1)])
@@ -121,7 +124,7 @@ class SetCurves:
         k = np.where(carries, loads * width / np.where(carries, closing * 1e-3, 1.0), 0.0)
         angle, moved = _rim_of(of, found)
         return cls(
-            position, loads * width, k, even * width / (alone * 1e-3), rim * 1e-3,
+            position, loads * width, k, even * width / (alone * 1e-3), rim * 1e-3, gap * 1e-3,
             np.array([one.turn for one in found]) * 1e-3, np.array([one.orbit for one in found]) * 1e-3,
             pair_force, tooth, orders, angle, moved * 1e-3, {"case": case} | meta,
         )  # fmt: skip

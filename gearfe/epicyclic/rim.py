@@ -20,6 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from .cracked import Cracks, Moved, cracked, on_pads
 from .pads import Pads, among, by_teeth, pads_on
 from .rim_supports import RimBed, RimSupports, check_support
 from .whole_gear import PLACES, WholeGear, between_teeth, motion
@@ -34,7 +35,8 @@ class Rim:
     `more` ``(z, PLACES, z, PLACES)`` is added to the flexibility with the rim held. With p pads' tractions per load `reaction`
     ``(p, z, PLACES)``, and motions of the whole ring `moves` ``(3, z, PLACES)``: along x, along y [mm], clockwise turn [rad].
     Lugs that only push (l of them) are contacts of their own: `lug` ``(l, l)`` and `across` ``(l, z, PLACES)`` their flexibility,
-    `turns` ``(3, l)`` and `gives` ``(3, z, PLACES)`` what motions of the whole ring do to them and to the loads.
+    `turns` ``(3, l)`` and `gives` ``(3, z, PLACES)`` what motions of the whole ring do to them and to the loads. `hurt`: of
+    cracks.
     """
 
     whole: WholeGear
@@ -46,26 +48,35 @@ class Rim:
     across: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
     turns: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
     gives: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    hurt: Moved | None = None
 
 
-def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: float) -> Rim:
-    """`Rim` of a ring by what holds it; pads' stiffnesses are shared by the face `width` [mm].
+def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: float, cracks: Cracks | None = None) -> Rim:
+    """`Rim` of a ring by what holds it; pads' stiffnesses are shared by the face `width` [mm]. `cracks` of the ring.
 
     ValueError as of `check_support`, or if the ring could move without force.
     """
     gear = whole.gear
     check_support(support, gear)
     if isinstance(support, RimBed):
-        return Rim(whole, between_teeth(whole.bedded(np.array([support.radial, support.tangential]))))
+        springs = np.array([support.radial, support.tangential])
+        if cracks is not None:
+            return Rim(whole, _more(cracks, whole.bedded_inverse(springs))[0])
+        return Rim(whole, between_teeth(whole.bedded(springs)))
     if not isinstance(support, RimSupports):
         return Rim(whole, np.zeros((gear.z, PLACES) * 2))
     more, moved = whole.loose()
     pads = pads_on(whole, support, width, moved)
-    teeth = between_teeth(more)
+    teeth, hurt = between_teeth(more), None
     across, between = by_teeth(pads), among(pads) + pads.compliance
+    if cracks is not None:
+        inverse = whole.loose_inverse()
+        teeth, free = _more(cracks, inverse)
+        found = on_pads(free, inverse, pads.load, across)
+        across, between, hurt = found.by_teeth, between + found.among, found.moved
     gives = _moves(gear)
     if support.pushes:
-        return Rim(whole, teeth, pads, lug=between, across=across, turns=pads.turns, gives=gives)
+        return Rim(whole, teeth, pads, lug=between, across=across, turns=pads.turns, gives=gives, hurt=hurt)
     p, n = pads.compliance.shape[0], gear.z * PLACES
     scale = np.diag(between).mean()
     unit = scale * np.array([1.0, 1.0, 1 / gear.held])[:, None]  # so that all of the system is of one size
@@ -78,8 +89,15 @@ def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: floa
     shape = gear.z, PLACES
     return Rim(
         whole, ((more + more.T) / 2).reshape(*shape, *shape), pads, solved[:p].reshape(p, *shape),
-        (unit * solved[p:]).reshape(3, *shape),
+        (unit * solved[p:]).reshape(3, *shape), hurt=hurt,
     )  # fmt: skip
+
+
+def _more(cracks, inverse):
+    """What an edge that is not held adds to the flexibility of a cracked ring's teeth, and the ring with that edge."""
+    free = cracked(cracks, inverse)
+    held = cracked(cracks, cracks.whole.held_inverse())
+    return (free.table - held.table)[:, :PLACES][:, :, :, :PLACES].copy(), free
 
 
 def _moves(gear):
@@ -97,10 +115,16 @@ def rim_moved(rim: Rim, loads: NDArray[np.float64], tractions: NDArray, whole: N
     ``(3,)``: along x, y [mm], clockwise turn [rad].
     """
     assert rim.pads is not None
-    gear, pads, r = rim.whole.gear, rim.pads, rim.whole.edge
+    gear, pads, r, hurt = rim.whole.gear, rim.pads, rim.whole.edge, rim.hurt
+    if hurt is not None:
+        forces = np.einsum("nta,ta->n", hurt.by_loads, loads) + hurt.by_pads @ tractions
+        loads = loads.copy()
+        loads[list(hurt.teeth)] = 0.0
     waves = np.einsum("hra,ha->hr", pads.moved[:, :, :PLACES], np.fft.rfft(loads, axis=0))
     waves += np.einsum("hrs,hs->hr", pads.moved[:, :, -r:], np.fft.rfft(pads.load @ tractions, axis=0))
     moved = np.fft.irfft(waves, n=gear.z, axis=0).reshape(-1, 2)
+    if hurt is not None:
+        moved = moved + (hurt.edge @ forces).reshape(-1, 2)
     angle = rim_angles(rim.whole)
     sin, cos = np.sin(angle), np.cos(angle)
     x, y, turn = whole

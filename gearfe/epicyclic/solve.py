@@ -1,6 +1,7 @@
 """Loads, stiffness and motions of a planetary set over its positions, from one contact problem over all meshes."""
 
 import time
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from ..steps import steps
 from ..stiffness.limits import FURTHEST
 from .assembly import Bodies, Position, Set
 from .case import PlanetaryCase
+from .cracked import cracked, cracks_of
 from .curves import SetCurves
 from .meshes import Meshes, near_load
 from .rim import ring_on
@@ -107,9 +109,25 @@ def _position(of: Set, meshes: Meshes, i: int) -> Position:
 
 def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) -> Bodies:
     """`Bodies` of a case."""
-    gears = case.gears.sun, case.gears.planet, case.ring_gear
+    gears, kept = (case.gears.sun, case.gears.planet, case.ring_gear), solved_gears(cache)
     sun, planet, ring = (whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True))
-    rim = solved_gears(cache).get(("rim", ring.gear, case.material[2], case.ring, case.width, refine),
-                                  lambda: ring_on(ring, case.ring, case.width))  # fmt: skip
+    cracked_gears = {}
+    for name, cracks in case.damage.items():
+        if cracks:
+            of = {"sun": sun, "ring": ring}.get(name, planet), tuple(cracks), refine
+            cracked_gears[name] = kept.get(("cracks", of[0].gear, of[0].material, *of[1:]), partial(cracks_of, *of))
+    key = ring.gear, case.material[2], case.ring, case.width, refine, case.damage.get("ring")
+    rim = kept.get(("rim", *key), lambda: ring_on(ring, case.ring, case.width, cracked_gears.get("ring")))
+    planets = {name[1]: _held(gear)[..., PLACES:] for name, gear in cracked_gears.items() if name not in ("sun", "ring")}
     across = planet.held()[:, :PLACES, PLACES:]
-    return Bodies(between_teeth(sun.held()), across, between_teeth(ring.held()), rim)
+    return Bodies(_alike(sun, cracked_gears.get("sun")), across, _alike(ring, cracked_gears.get("ring")), rim, planets)
+
+
+def _alike(whole, cracks):
+    """Flexibility ``(z, PLACES, z, PLACES)`` between the right flanks of a gear, its edge held."""
+    return between_teeth(whole.held()) if cracks is None else _held(cracks)[..., :PLACES].copy()
+
+
+def _held(cracks):
+    """That of its right flanks by loads on both."""
+    return cracked(cracks, cracks.whole.held_inverse()).table[:, :PLACES]

@@ -70,9 +70,7 @@ class WholeGear:
 
     def bedded(self, stiffness: NDArray[np.float64]) -> NDArray[np.float64]:
         """What is added to `held` if springs hold the edge: radial and tangential [N/mm per mm of edge, per mm of width]."""
-        springs = self.stiffness.copy()
-        springs[:, : self.edge, : self.edge] += self.bed * np.tile(stiffness, self.edge // 2)
-        return self._turned(self._yields(springs, self.push, self.push)) - self.held()
+        return self._turned(self._yields(self._springs(stiffness), self.push, self.push)) - self.held()
 
     def loose(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
         """What is added to `held` if nothing holds the edge, and how forces on the edge move the loads and the edge.
@@ -83,12 +81,29 @@ class WholeGear:
         h, n, r = *self.stiffness.shape[:2], self.edge
         own = np.zeros((h, n, r))
         own[:, np.arange(r), np.arange(r)] = 1.0
-        right = np.concatenate([self.push, own], axis=2)
-        inverse = np.linalg.inv(self.stiffness[2:])
-        whole = np.concatenate([[_pseudo(one) for one in self.stiffness[:2]], inverse])
-        out = whole @ right
+        out = self.loose_inverse() @ np.concatenate([self.push, own], axis=2)
         more = self._turned(np.conj(self.push.transpose(0, 2, 1)) @ out[:, :, : self.push.shape[2]]) - self.held()
         return more, out[:, :r]
+
+    def held_inverse(self) -> NDArray[np.complex128]:
+        """Inverses ``(h, n, n)`` of the stiffness with the edge held: 0 there."""
+        out, inner = np.zeros_like(self.stiffness), slice(self.edge, None)
+        out[:, inner, inner] = np.linalg.inv(self.stiffness[:, inner, inner])
+        return out
+
+    def bedded_inverse(self, stiffness: NDArray[np.float64]) -> NDArray[np.complex128]:
+        """Inverses with the springs of `bedded` on the edge."""
+        return np.linalg.inv(self._springs(stiffness))
+
+    def loose_inverse(self) -> NDArray[np.complex128]:
+        """Inverses if nothing holds the edge, without the motions of the whole gear."""
+        free = [_pseudo(one) for one in self.stiffness[:2]]
+        return np.concatenate([free, np.linalg.inv(self.stiffness[2:])])
+
+    def _springs(self, stiffness):
+        springs = self.stiffness.copy()
+        springs[:, : self.edge, : self.edge] += self.bed * np.tile(stiffness, self.edge // 2)
+        return springs
 
     def _yields(self, stiffness, left, right):
         return np.conj(left.transpose(0, 2, 1)) @ np.linalg.solve(stiffness, right)
@@ -113,39 +128,59 @@ def whole_gear(gear, material, *, refine=1.0, cache=True):
 
 def _solved(gear, material, refine):
     sector = periodic_sector(gear, refine=refine)
-    body = Body(sector.mesh, material, held="rim")  # its own outline: only its elements are used
-    local, dofs = body.local()
-    left, right, edge = (np.array(_chain(sector.mesh, way)) for way in (sector.left, sector.right, sector.held))
-    ends = np.concatenate([left, edge[1:-1], right])  # both sides begin with a corner of the held edge
-    rolls = _rolls(gear)
-    load = np.hstack([line_loads(gear, sector.mesh, sector.flank[k], sector.roll, rolls, k) for k in (0, 1)])
-    centre = sector.mesh.doflocs[:, sector.mesh.t[:3]].mean(axis=1)
-    stays = (2 * ends[:, None] + np.arange(2)).ravel()
-    total = condense(local, dofs, centre, coo_array(load), stays, leaf=LEAF)
-    angle = np.concatenate([np.full(left.size, -math.pi / gear.z), np.arctan2(*sector.mesh.doflocs[:, edge[1:-1]]),
-                            np.full(left.size, math.pi / gear.z)])  # fmt: skip
-    turn = _polar(angle)
-    matrix = turn.T @ total[: stays.size, : stays.size] @ turn
-    push = turn.T @ total[: stays.size, stays.size :]
-    # of a sector: corner, held edge, the rest of the left side; then the next one's corner and side
-    m, e, n = 2 * left.size, 2 * (edge.size - 2), stays.size
-    own = np.concatenate([np.arange(2), np.arange(m, m + e), np.arange(2, m)])
-    next_ = np.concatenate([np.arange(m + e, m + e + 2), np.arange(m + e + 2, n)])
-    to = np.concatenate([np.arange(2), np.arange(2 + e, m + e)])  # where the next one's stand among its own
+    matrix, push, angle = sector_stiffness(sector, material)
+    own, next_, to = in_chain(sector)
+    n, e = matrix.shape[0], sector_edge(sector)
     wave = np.exp(2j * math.pi / gear.z * np.arange(gear.z // 2 + 1))[:, None, None]
-    first = np.zeros((n, m + e))  # from unknowns of one harmonic to those of the sector with its right side
-    first[own, np.arange(m + e)] = 1.0
-    second = np.zeros((n, m + e))
+    first = np.zeros((n, own.size))  # from unknowns of one harmonic to those of the sector with its right side
+    first[own, np.arange(own.size)] = 1.0
+    second = np.zeros((n, own.size))
     second[next_, to] = 1.0
     spread = first + second * wave
     back = np.conj(spread.transpose(0, 2, 1))
     stiffness = back @ matrix @ spread
-    bed = np.zeros((n, n))
+    bed, m = np.zeros((n, n)), own.size - e
     at = np.concatenate([[0, 1], np.arange(m, m + e + 2)])
     bed[np.ix_(at, at)] = _mass(sector)
     bed = (back @ bed @ spread)[:, : e + 2, : e + 2]
-    places = np.append(-math.pi / gear.z, angle[left.size : -left.size])
+    places = np.append(-math.pi / gear.z, angle[m // 2 : -(m // 2)])
     return WholeGear(gear, material, (stiffness + np.conj(stiffness.transpose(0, 2, 1))) / 2, back @ push, bed, places)
+
+
+def sector_stiffness(sector, material):
+    """Stiffness ``(n, n)`` of a sector, forces ``(n, 2 PLACES)`` of its tooth's loads, angles of its nodes.
+
+    Unknowns are polar components of the nodes of the left side, of the held edge between its corners, of the right side.
+    """
+    body = Body(sector.mesh, material, held="rim")  # its own outline: only its elements are used
+    local, dofs = body.local()
+    left, right, edge = (np.array(_chain(sector.mesh, way)) for way in (sector.left, sector.right, sector.held))
+    ends = np.concatenate([left, edge[1:-1], right])  # both sides begin with a corner of the held edge
+    rolls = _rolls(sector.gear)
+    load = np.hstack([line_loads(sector.gear, sector.mesh, sector.flank[k], sector.roll, rolls, k) for k in (0, 1)])
+    centre = sector.mesh.doflocs[:, sector.mesh.t[:3]].mean(axis=1)
+    stays = (2 * ends[:, None] + np.arange(2)).ravel()
+    total = condense(local, dofs, centre, coo_array(load), stays, leaf=LEAF)
+    side = np.full(left.size, math.pi / sector.gear.z)
+    angle = np.concatenate([-side, np.arctan2(*sector.mesh.doflocs[:, edge[1:-1]]), side])
+    turn = _polar(angle)
+    return turn.T @ total[: stays.size, : stays.size] @ turn, turn.T @ total[: stays.size, stays.size :], angle
+
+
+def sector_edge(sector):
+    """Unknowns of the held edge of a sector between its corners."""
+    return 2 * (2 * sector.held.size - 3)
+
+
+def in_chain(sector):
+    """Where the unknowns of a chain of sectors stand among those of `sector_stiffness`.
+
+    A sector's own (corner, held edge, the rest of the left side); the next one's corner and side; and where these stand among the
+    next one's own.
+    """
+    m, e = 2 * (2 * sector.left.size - 1), sector_edge(sector)
+    own = np.concatenate([np.arange(2), np.arange(m, m + e), np.arange(2, m)])
+    return own, np.arange(m + e, 2 * m + e), np.concatenate([np.arange(2), np.arange(2 + e, m + e)])
 
 
 def _chain(mesh, vertices):

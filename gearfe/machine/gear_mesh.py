@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..stiffness.curve import StiffnessCurve
 from .contact_law import LAWS, Law, law_of
 from .force_law import ForceLaw, Secant
+from .phase_table import SMOOTH, Table, smooth_table, table
 
 FINE = 1024  # samples per cycle that curves on uneven phases are brought to
 
@@ -30,59 +31,14 @@ class Samples(NamedTuple):
 Curve = StiffnessCurve | Samples  # stiffness over the phase
 
 
-@dataclass(frozen=True, slots=True)
-class Table:
-    """A function of the phase by monotone cubics over equal cells: a ramp stays a ramp, no overshoot, no staircase.
-
-    Attributes
-    ----------
-    start, width : float
-        Phase of the first sample and width of a cell.
-    cells : ndarray, shape (n, 4)
-        Coefficients of ``1, u, u**2, u**3`` in each cell, u from 0 to 1.
-    """
-
-    start: float
-    width: float
-    cells: NDArray[np.float64]
-
-    @property
-    def end(self) -> float:
-        """Phase at which the last cell ends."""
-        return self.start + self.width * len(self.cells)
-
-    def __call__(self, phase: ArrayLike) -> NDArray[np.float64]:
-        """Value at phases from `start` to `end` (beyond them, of the end cells)."""
-        place = (np.asarray(phase) - self.start) / self.width
-        cell = np.clip(place.astype(np.int64), 0, len(self.cells) - 1)
-        u = place - cell
-        c = self.cells[cell]
-        return c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
-
-    @property
-    def mean(self) -> float:
-        """Mean over the table."""
-        return float((self.cells @ (1, 1 / 2, 1 / 3, 1 / 4)).mean())
-
-
 Stiffness = float | NDArray[np.float64] | Curve | ForceLaw | Table  # what `GearMesh` takes
 
 
-def table(values: ArrayLike, start: float, width: float, *, periodic: bool) -> Table:
-    """`Table` through equally spaced `values`; `periodic` ones close with the first value (F. N. Fritsch, J. Butland, 1984)."""
-    values = np.asarray(values, dtype=float)
-    values = np.append(values, values[0]) if periodic else values
-    rise = np.diff(values)
-    before, after = (np.roll(rise, 1), rise) if periodic else (rise[:-1], rise[1:])
-    product = before * after
-    slope = np.where(product > 0, 2 * product / np.where(product > 0, before + after, 1.0), 0.0)
-    slope = np.append(slope, slope[0]) if periodic else np.concatenate([[0.0], slope, [0.0]])
-    left, right = slope[:-1], slope[1:]
-    return Table(start, width, np.stack([values[:-1], left, 3 * rise - 2 * left - right, left + right - 2 * rise], axis=1))
-
-
 def cycle_table(stiffness: Stiffness) -> Table:
-    """`Table` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law."""
+    """`Table` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law.
+
+    Through samples smooth cubics (`gearfe.machine.phase_table.smooth_table`), through a `StiffnessCurve` those of `table`.
+    """
     if isinstance(stiffness, Table):
         return stiffness
     if isinstance(stiffness, ForceLaw):
@@ -97,7 +53,9 @@ def cycle_table(stiffness: Stiffness) -> Table:
             values = np.interp(np.arange(FINE) / FINE, phase, values, period=1.0)
     if values.ndim != 1 or not np.isfinite(values).all() or (values < 0).any():
         raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
-    return table(values, 0.0, 1.0 / values.size, periodic=True)
+    if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # bent where pairs come in
+        return table(values, 0.0, 1.0 / values.size, periodic=True)
+    return smooth_table(values)
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,6 +126,8 @@ class GearMesh:
         Part of the damping that acts while no flank touches (1: all of it, as A. Kahraman, R. Singh, J. Sound Vib. 142 (1990)).
     friction : tuple of (ndarray, Table)
         Rows and their weights over the phase: friction acts with ``-row weight(phase) F``.
+    gap : float
+        How far the flanks are apart where ``row @ q - e`` is 0 [m]: the play before back flanks of their own touch.
     law : Law, optional
         Another contact law than `power` and `depth` state, with its parameters (`gearfe.machine.contact_law`).
     """
@@ -190,6 +150,7 @@ class GearMesh:
     backlash: float = 0.0
     film: float = 1.0
     friction: tuple[tuple[NDArray[np.float64], Table], ...] = ()
+    gap: float = 0.0
     law: Law | None = None
     contact: Law = field(init=False)
     cycle: Table = field(init=False)
@@ -210,7 +171,7 @@ class GearMesh:
         object.__setattr__(self, "changes", tuple(self._change(hurt) for hurt in self.damage))
 
     def _check(self) -> None:
-        for name in ("frequency", "phase", "damping", "beta", "zeta", "depth"):
+        for name in ("frequency", "phase", "damping", "beta", "zeta", "depth", "gap"):
             value = getattr(self, name)
             if not math.isfinite(value) or (value < 0 and name not in ("phase", "frequency")):
                 raise ValueError(f"mesh {self.name}: {name} = {value}, but it must be finite and not negative")
@@ -251,6 +212,11 @@ class GearMesh:
         healthy = self.stiffness.secant
         return healthy, *(hurt.curve.secant.less(healthy) for hurt in self.damage if isinstance(hurt.curve, ForceLaw))
 
+    @property
+    def openings(self) -> tuple[tuple[float, float, float], ...]:
+        """Its errors, and its gap as one that stays."""
+        return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
+
     def k(self, t: ArrayLike) -> NDArray[np.float64]:
         """Stiffness at times `t` [N/m^power], never below zero."""
         return self.at_phase(self.phase + self.frequency * np.asarray(t, dtype=float))
@@ -265,9 +231,9 @@ class GearMesh:
         return np.maximum(out, 0.0) if self.changes else out
 
     def e(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Mesh error and its rate at times `t` [m], [m/s]."""
+        """Mesh error with the gap, and its rate, at times `t` [m], [m/s]."""
         out, rate = np.zeros(np.shape(t)), np.zeros(np.shape(t))
-        for amplitude, frequency, angle in self.error:
+        for amplitude, frequency, angle in self.openings:
             turn = 2 * math.pi * frequency * np.asarray(t) + angle
             out = out + amplitude * np.sin(turn)
             rate = rate + amplitude * 2 * math.pi * frequency * np.cos(turn)

@@ -54,7 +54,8 @@ def build_machine(
         load that the scene states for the pair need not be. One of them makes stiffnesses over the phase that are true of this
         load alone, by default of the meshes' own. Several make laws of force (`gearfe.machine.force_law.ForceLaw`), for loads
         that change and for resonances: ``(1 / 16, 1 / 4, 1 / 2, 1, 2)``. Their mesh forces bend where pairs come in, with
-        harmonics far above the mesh frequency: keep a high rate of output, or they fold into a spectrum.
+        harmonics far above the mesh frequency: `gearfe.simulate` filters them out above half of its rate. Not under the impact
+        law, which has a coefficient.
 
     Returns
     -------
@@ -80,6 +81,10 @@ def build_machine(
         raise ValueError(f"[machine] contact = 'impact': the model {model!r} has linear contact only")
     if scene.machine.get("bodies") and model not in STATED:
         raise ValueError(f"[machine.bodies]: the model {model!r} takes masses and inertias from its gears; leave the table out")
+    if contact == "impact" and tuple(loads) != (1.0,):
+        raise ValueError(
+            f"loads = {tuple(loads)}: the impact law has a coefficient and no curves under loads; take contact = 'linear'"
+        )
     if contact == "impact":
         return with_scene_errors(scene, MACHINES[model][contact](scene, case))
     if not len(loads) or not all(math.isfinite(multiple) and multiple > 0 for multiple in loads):

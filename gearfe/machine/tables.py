@@ -284,10 +284,19 @@ class Machine:
 
     def working(self) -> NDArray[np.float64] | None:
         """Compressions of the meshes at rest ``(m,)`` [m], about which their forces are taken as straight; None if they are."""
-        if not self.curved:
+        gaps = np.array([mesh.gap for mesh in self.meshes])
+        if not self.curved and not gaps.any():
             return None
-        x = self.G @ self.rest()
-        return np.where([bool(mesh.secants) for mesh in self.meshes] & (depth(x, self.law) == 0), TOUCH, x)
+        x = self.compressions(self.rest())
+        free = gaps > 0
+        for i in np.flatnonzero((gaps > 0) & (x > 0)):  # these carry, and the flanks before them do not
+            free |= (self.G + self.G[i] == 0).all(axis=1)
+        touching = np.array([bool(mesh.secants) or not self.curved for mesh in self.meshes])
+        return np.where(touching & ~free & (depth(x, self.law) == 0), TOUCH, x)
+
+    def compressions(self, q: NDArray[Any]) -> NDArray[np.float64]:
+        """Compressions of the meshes ``(m,)`` [m] at displacements ``(n,)``, errors disregarded."""
+        return self.G @ q - np.array([mesh.gap for mesh in self.meshes])
 
     def load(self, t: float = 0.0) -> NDArray[np.float64]:
         """Sum of the loads at time `t` ``(n,)``."""
@@ -308,7 +317,7 @@ class Machine:
         start = 1e-5 * np.ones(len(self.meshes))
         q = np.linalg.lstsq(self.linear(start)[0], load, rcond=1e-12)[0]
         for _ in range(200):
-            x = self.G @ q
+            x = self.compressions(q)
             mean, bend = self._mean_at(x)
             away = load - self.K @ q - self.G.T @ force(x, zero, mean, self.law)
             tangent = slopes(x, zero, mean, self.law, bend)[0]

@@ -23,12 +23,12 @@ def dynamic_factors(response: Response) -> dict[str, float]:
     Returns
     -------
     dict of str to float
-        By mesh, without unit.
+        By mesh, without unit; meshes that carry nothing at rest, as back flanks of their own do, have none.
 
     Raises
     ------
     ValueError
-        If a mesh carries nothing at rest.
+        If no mesh carries anything at rest.
 
     References
     ----------
@@ -49,14 +49,16 @@ def dynamic_factors(response: Response) -> dict[str, float]:
     zero = np.zeros(len(machine.meshes))
     still = []
     for t in times:
-        x = machine.G @ machine.rest(float(t))
+        x = machine.compressions(machine.rest(float(t)))
         still.append(force(x, zero, machine._mean_at(x)[0], machine.law))
     most = np.max(np.abs(still), axis=0)
     largest = np.abs(response.raw.mesh()).max(axis=0)
-    for mesh, static in zip(machine.meshes, most, strict=True):
-        if not static > 1e-9 * max(most.max(), 1e-30):
-            raise ValueError(f"mesh {mesh.name} carries nothing at rest: it has no dynamic factor; give its load")
-    return {mesh.name: float(dynamic / static) for mesh, dynamic, static in zip(machine.meshes, largest, most, strict=True)}
+    loads = [(m.name, float(dynamic), float(static)) for m, dynamic, static in zip(machine.meshes, largest, most, strict=True)]
+    factors = {name: dynamic / static for name, dynamic, static in loads if static > 1e-9 * max(most.max(), 1e-30)}
+    if not factors:
+        names = ", ".join(name for name, *_ in loads) or "of no machine"
+        raise ValueError(f"mesh {names} carries nothing at rest: it has no dynamic factor; give its load")
+    return factors
 
 
 def _change(machine):

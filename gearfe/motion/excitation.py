@@ -56,7 +56,7 @@ def flatten(machine, times):
     meshes = machine.meshes
     cycles = [add(m.cycle) for m in meshes]
     changes = [(i, z, first, change, *add(change)) for i, m in enumerate(meshes) for z, first, change in m.changes]
-    errors = [(i, a, 2 * math.pi * f, p) for i, m in enumerate(meshes) for a, f, p in m.error]
+    errors = [(i, a, 2 * math.pi * f, p) for i, m in enumerate(meshes) for a, f, p in m.openings]
     rubs = [(i, *add(weight)) for i, m in enumerate(meshes) for _, weight in m.friction]
     knots = [_knots(load, times) for load in machine.loads]
     laws = [m.secants[0] if m.secants else None for m in meshes]

@@ -16,7 +16,6 @@ from ..threads import single
 from . import excitation
 from .fixed_step import fixed_steps
 from .law_range import compared
-from .propagator import is_bent
 from .reference import SOLVERS, reference
 from .response import Response, all_channels
 from .step_control import (
@@ -28,6 +27,7 @@ from .step_control import (
     difference,
     estimate,
     estimate_along,
+    is_rough,
     longest_seen,
     unseen,
 )
@@ -113,7 +113,9 @@ def simulate(
         step (under a law of contact that is not linear, of a third), over their ranges
         (`gearfe.motion.step_control.difference`), on ``stats["error_seconds"]`` of the run, about the worst damaged tooth or
         where the speed is highest, or on the whole run; ``stats["error_acceleration"]`` is that of the accelerations. Without
-        damping the error goes on growing after such a stretch: ask for the whole run (``error=True``). ``stats["loads"]`` says
+        damping the error goes on growing after such a stretch: ask for the whole run (``error=True``). These are of the
+        integration; ``stats["error_phases"]`` is how far stiffnesses over the phase may be off between their samples, over their
+        spread (`gearfe.motion.law_range.between_phases`): where it is the larger, solve more phases. ``stats["loads"]`` says
         which mesh forces leave the loads that their law of force or stiffness curve was solved for, if any do.
 
     Raises
@@ -271,7 +273,7 @@ class _Runs:
         every = self.steps(math.ceil(self.duration / self.count / dt * (1 - 1e-9)))
         out = self(every, adapt=True)
         if not (out.stats["losses"] or error):
-            if is_bent(self.machine):
+            if is_rough(self.machine):
                 found = estimate_along(out, found)
             return told(out, error=found.error, error_acceleration=found.acceleration, error_seconds=found.length)
         length = float(self.duration)

@@ -181,6 +181,11 @@ class Estimate(NamedTuple):
     acceleration: float
 
 
+def is_rough(machine):
+    """Whether the error of a step hangs on where the steps lie: flanks meet under a law that is not straight, or one of force."""
+    return is_bent(machine) or any(mesh.secants for mesh in machine.meshes)
+
+
 def estimate(machine, duration, h, initial=None, *, begin=0.0, adapt=False, at=None):
     """`Estimate` of the step `h` on a `stretch`, or where ``at``, its start and length, says.
 
@@ -192,12 +197,12 @@ def estimate(machine, duration, h, initial=None, *, begin=0.0, adapt=False, at=N
         initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     steps = math.ceil(length / h * (1 - 1e-12))
     options = {"start": start, "adapt": adapt}
-    rough = adapt and is_bent(machine)
+    rough = adapt and is_rough(machine)
     runs = [fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in ((1, 2, 3) if rough else (1, 2))]
     one, two = (run.stats["seconds"] for run in runs[:2])
     if one >= two:  # the first waited for the compiler, or for the processor
         one = fixed_steps(machine, length, steps, initial, **options).stats["seconds"]
-    cost = max(two - one, 0.0) / length
+    cost = max(two - one, two / 4) / length  # half of `two` but for noise, which may make it nothing
     *coarse, fine = runs
     margin = ROUGH if rough else SMOOTH
     error = margin * max(max(difference(one, fine)) for one in coarse)
@@ -206,7 +211,7 @@ def estimate(machine, duration, h, initial=None, *, begin=0.0, adapt=False, at=N
 
 
 def estimate_along(response, found):
-    """`Estimate` of a run whose flanks meet under a law of contact that is not linear, from what it went through.
+    """`Estimate` of a run under laws for which `is_rough`, from what it went through.
 
     Its error depends on where its own steps happen to lie when pairs come in, so that one stretch says too little: the whole of
     a run as short as `SPREAD` stretches is run again, of a longer one `SPREAD` stretches spread over it, each from the state

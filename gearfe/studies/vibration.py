@@ -164,11 +164,11 @@ def _risen(found: Demodulated, name, before):
     return f"{in_words(name)} at {frequency:.2f} Hz, {over}{healthy}"
 
 
-def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progress=None):
+def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, loads=(1.0,), progress=None):
     """`Response` of a scene's machine by case: ``"healthy"`` and, if asked for, a case of damage.
 
     `duration` [s] is kept, from when the free vibrations have fallen to a thousandth (`recorded`); `phases` are those of the
-    stiffness curves, per mesh cycle; `method` and `progress` as of `gearfe.simulate`.
+    stiffness curves, per mesh cycle; `loads` as of `gearfe.build_machine`, `method` and `progress` as of `gearfe.simulate`.
     """
     check_run(duration, method)
     cases = {name for pair in scene.pairs.values() for name in pair.damage}
@@ -181,7 +181,7 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progr
     names = ("healthy", *([case] if case else []))
     with part("", 0.0, 0.5):
         machines = {
-            name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
+            name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves, loads=loads)
             for name in steps(names, lambda name: f"stiffness curves, {name}")
         }
     rate = math.ceil(duration / min(default_step(one) for one in machines.values())) / duration

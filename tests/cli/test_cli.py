@@ -31,13 +31,13 @@ def test_stiffness_of_one_gear_turned_against_the_other(tmp_path):
 
 def test_stiffness_of_a_case_is_told_as_compare_tells_it(capsys):
     """One number for one question: zones over the same cycle, losses against the same healthy gears."""
-    run = ["compound_planetary", "--case", "crack30", "--phases", "16"]
+    run = ["compound_planetary", "--case", "crack30", "--phases", "8"]
     assert main(["stiffness", *run]) == 0
     text = capsys.readouterr().out
     rows = {
         line.split("|")[1].strip(): [cell.strip() for cell in line.split("|")[2:-1]] for line in text.splitlines() if "|" in line
     }
-    told = gf.compare("compound_planetary", case="crack30", phases=16)
+    told = gf.compare("compound_planetary", case="crack30", phases=8)
     for zone, lost in told.losses()["ritz"].items():
         assert rows[zone][2] == f"{100 * lost:.1f} %"
     assert rows["single"][1] == f"{next(told.rows())[3]['ritz'][0] / 1e6:.1f}"
@@ -68,6 +68,7 @@ def test_warnings_become_notes(tmp_path, capsys):
     assert "note: the ring's tip (z = 84) was trimmed" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_render_makes_a_picture_of_stress(tmp_path, capsys):
     path = tmp_path / "stress.png"
     assert main(["render", "planetary_pitting", "--refine", "0.5", "-o", str(path)]) == 0
@@ -90,6 +91,7 @@ def test_render_opens_a_crack_and_says_how_far(tmp_path, capsys):
     assert np.isfinite(found.point_data["stress [MPa]"]).all()
 
 
+@pytest.mark.slow
 def test_pictures_have_the_flanks_and_shafts_of_their_scene(tmp_path):
     """k of the picture of contact is that of `mesh_stiffness`; a relieved neighbour leaves its load to the tooth shown."""
     chosen = gf.load_scene("planetary_pitting").pair()

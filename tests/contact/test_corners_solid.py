@@ -21,8 +21,7 @@ def pair_of(z, width, degrees=0.0):
     return gf.GearPair(gf.Gear(z=z, r_bore=3.0, beta=beta, **rack), gf.Gear(z=30, r_bore=12.0, beta=-beta, **rack))
 
 
-@pytest.mark.parametrize("line_load", [10.0, 800.0])
-@pytest.mark.parametrize("z", [9, 12])
+@pytest.mark.parametrize(("z", "line_load"), [(9, 10.0), (12, 800.0)])
 def test_wide_undercut_spur_pair_is_that_of_the_plane(z, line_load):
     pair, phases = pair_of(z, 100.0), np.append(np.arange(8) / 8, [-0.02, 0.02])
     assert pair.path[0] == pair.gear_1.roll_f, "else the pinion is not undercut"
@@ -55,6 +54,7 @@ def test_loads_lighter_than_resolved_see_the_same_wedge_from_nearer():
     assert_allclose(coarse, fine, rtol=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("degrees", [0.0, 16.0])
 def test_the_lightest_loads_follow_the_logarithm(degrees):
     """Contact softens by the logarithm of the load and by nothing else: 1 / k is nearly straight over ln F, down to 0.001 N/mm.

@@ -44,6 +44,7 @@ def test_a_wide_spur_pair_whose_tips_cut_into_fillets_is_that_of_the_plane(line_
     assert set(solid.fillet) >= {0, 1, 2, 3}, "the wheel's tip presses into the pinion's fillet"
 
 
+@pytest.mark.slow
 def test_the_curve_of_a_helical_pair_says_where_tips_press_into_fillets():
     run = {"phases": [0.05, 0.5], "refine": 0.6}
     curve = gf.mesh_stiffness(pair_of(8.0, 4.0), 800.0, STEEL, method="ritz3d", **run)
@@ -57,6 +58,7 @@ def test_the_curve_of_a_helical_pair_says_where_tips_press_into_fillets():
     assert "tip_in_fillet_phases" not in away.meta
 
 
+@pytest.mark.slow
 def test_a_helix_of_a_thousandth_of_a_degree_changes_nothing():
     run = {"phases": [0.02, 0.08], "refine": 0.6, "method": "ritz3d"}
     helical, spur = (gf.mesh_stiffness(pair_of(8.0, degrees), 800.0, STEEL, **run).k for degrees in (0.001, 0.0))

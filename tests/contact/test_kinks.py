@@ -83,6 +83,7 @@ def test_what_a_kink_adds_in_three_dimensions_is_that_of_its_own_flank(monkeypat
     assert np.ptp(alone) > 0.1
 
 
+@pytest.mark.slow
 def test_pinion_and_wheel_exchanged_where_a_chamfer_carries():
     """Lines of a helical pair touch the ridge far off the path: the same whichever gear is called pinion, law and gaps."""
     rack = {"m_n": 6.0, "alpha_n": math.radians(20), "b": 39.163, "beta": math.radians(15)}

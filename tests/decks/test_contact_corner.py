@@ -48,6 +48,7 @@ def test_the_gear_that_owns_the_edge_is_the_slave_with_its_fillet(tmp_path, crac
     assert np.diff(arcs[beside]).max() < 1.6 * np.diff(arcs[beside]).min(), "the fillet is as fine as the flank"
 
 
+@pytest.mark.slow
 def test_without_an_edge_that_touches_flanks_alone_are_pressed(tmp_path):
     for z, phase in ((10, 0.5), (25, 0.5)):
         pair, deck = written(tmp_path, z, phase, per_width=0.3)

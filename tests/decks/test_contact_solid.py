@@ -101,6 +101,7 @@ def test_deck_is_whole(damaged):
     assert deck.parts[1].points[2, deck.parts[1].faces["crack 0 body"]].max() <= 3.0 + 1e-9
 
 
+@pytest.mark.slow
 def test_controls_are_the_same_mesh_with_its_holes_filled(tmp_path, damaged):
     control = written(tmp_path, pair_of(15.0), damage={"pinion": [PIT]}, pits="filled", **COARSE)
     assert len(control.parts[1].cells) == 10  # an undamaged mate is in tets too, whose surface follows the pits' rims

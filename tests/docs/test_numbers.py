@@ -66,7 +66,7 @@ def middle(pair, count=64):
     return (ceil((pair.eps_alpha - 1) / 2 * count) + np.arange(count)) / count
 
 
-@pytest.mark.parametrize("page", ["index.md", "howto/design.md", "howto/scene.md"])
+@pytest.mark.parametrize("page", ["index.md", pytest.param("howto/design.md", marks=pytest.mark.slow), "howto/scene.md"])
 def test_programs_print_what_the_page_shows(page):
     text = (SITE / page).read_text(encoding="utf-8")
     if page == "howto/design.md":  # its programs go on from each other, and from the scene that `gearfe new` writes
@@ -176,6 +176,7 @@ def test_support(pair):
     says("faq.md", "at the pinion alone, leaves {} of {} N/um", held, mean(pair))
 
 
+@pytest.mark.slow
 def test_law_of_force(pair):
     law = gf.force_law(pair, [100.0 * 2 ** (i / 2) for i in range(13)], STEEL, force=1600.0)
     curve = solved(pair, 1600.0, phases=128)

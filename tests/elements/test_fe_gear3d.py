@@ -41,6 +41,7 @@ def curve_of(steel, damage=None, pair=None, force=400.0, **options):
     )
 
 
+@pytest.mark.slow
 def test_a_solved_gear_is_found_on_the_disk(steel, tmp_path, monkeypatch):
     monkeypatch.setenv("GEARFE_CACHE", str(tmp_path))
     monkeypatch.setattr(section_error, "FINER", 2.0)
@@ -80,6 +81,7 @@ def test_both_gears_are_looked_at_before_the_first_is_solved(steel, monkeypatch)
     assert not told
 
 
+@pytest.mark.slow
 def test_what_is_solved_is_no_work_ahead(steel, tmp_path, monkeypatch):
     """A cracked gear needs the sound one first; what is kept, in the process or on the disk, needs nothing."""
     monkeypatch.setenv("GEARFE_CACHE", str(tmp_path))

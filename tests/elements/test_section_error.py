@@ -26,6 +26,7 @@ def hats_at():
     return {refine: plane_hats(GEAR, gf.Material(), (), refine) for refine in (0.5, 1.0, 2.0)}
 
 
+@pytest.mark.slow
 def test_the_finest_section_is_that_of_the_energy_model_in_plane_strain(hats_at):
     model = flexibility3d(GEAR, gf.Material(), axial=0, order=5)
     half = half_space(gf.Material())

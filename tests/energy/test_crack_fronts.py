@@ -46,6 +46,7 @@ def test_a_front_that_hardly_slopes_is_one_parallel_to_the_teeth():
     assert_allclose(compliance(HELICAL, pinned), compliance(HELICAL, gf.Crack(level=0.5)), rtol=2e-3)
 
 
+@pytest.mark.slow
 def test_what_cubics_lack_at_the_tip_is_known_of_fronts_too():
     """A gear with a front that hardly slopes moves as with the straight crack, whose difference to plane strain is known."""
     at = HAT * 7
@@ -65,6 +66,7 @@ def test_a_front_seen_from_the_other_end():
     assert one[0, 1] < -0.01 * one[0, 0], "more compliant at the end at z = 0, where it is deep"
 
 
+@pytest.mark.slow
 def test_a_front_on_a_gear_of_the_other_hand_is_the_mirrored_one():
     """`flexibility3d` solves that gear as a mirror image: as the section of its own, with what plane strain says it lacks."""
     other, crack = replace(HELICAL, beta=-HELICAL.beta), gf.Crack(level=0.5, ends=(1.0, 0.3))
@@ -146,6 +148,7 @@ def test_the_heights_at_which_a_front_has_a_depth_are_all_found():
     assert_allclose(front.open(), [(0.0, 5.0)])
 
 
+@pytest.mark.slow
 def test_a_crack_that_the_load_closes_hardly_matters():
     """Kept apart, faces on the unloaded side change k as the section says; the energy model's forces on them are independent."""
     rack = RACK | {"b": 4.0}

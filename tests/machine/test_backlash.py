@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from machines import two_masses, worst
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
@@ -80,6 +81,7 @@ def test_backlash_oscillator_against_its_piecewise_exact_motion():
     assert_allclose(got["pair.x"], want, atol=1e-3 * np.ptp(want))
 
 
+@pytest.mark.slow
 def test_order_survives_contact_loss():
     """Steps are halved about changes of contact: the error falls by far more than the first order of plain fixed steps."""
     machine = two_masses(error=((80e-6, 500.0, 0.3),), backlash=4e-5)

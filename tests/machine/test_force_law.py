@@ -64,6 +64,7 @@ def test_a_law_is_the_contact_solved_anew_at_other_loads_and_phases():
         assert_allclose(got, load, rtol=0.02)
 
 
+@pytest.mark.slow
 def test_more_loads_and_phases_converge():
     asked = gf.mesh_stiffness(PAIR, [120.0, 600.0, 2700.0], STEEL, phases=1024)
 

@@ -60,6 +60,7 @@ def test_cancelling_lines_leave_those_of_single_planets(herringbone_stage):
     assert (lines(response, "sunL.x", 80 / 3, (17, 19)) > 1e3 * lines(response, "sunL.x", 80.0, (6,))).all()
 
 
+@pytest.mark.slow
 def test_fast_path_is_the_reference_on_55_degrees_of_freedom(herringbone_stage):
     """DOP853 against the fast path at 25 us, a damaged tooth, bearings 100 times as stiff: errors below 1e-3 of the range.
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import gearfe as gf
 
@@ -36,3 +37,21 @@ def test_more_loads_leave_less():
 def test_two_loads_tell_nothing():
     with pytest.raises(ValueError, match="three loads and four phases"):
         gf.law_error(gf.force_law(PAIR, [100.0, 200.0], STEEL, phases=8))
+
+
+def test_a_law_takes_the_loads_and_phases_that_it_needs():
+    rough, fine = (gf.law_within(PAIR, 100.0, 3200.0, STEEL, force=800.0, error=one) for one in (1e-2, 4e-3))
+    assert rough.load.size < fine.load.size or rough.phase.size < fine.phase.size
+    assert (fine.load[0], fine.force) == (100.0, 800.0)
+    assert_allclose(fine.load[-1], 3200.0)
+    for law, wanted in ((rough, 1e-2), (fine, 4e-3)):
+        own = true(law, [130.0, 470.0, 1300.0, 2900.0], np.sort(np.random.default_rng(1).random(150)))
+        assert np.sqrt((own**2).mean()) < wanted
+
+
+def test_no_law_is_within_nothing():
+    for given in ((0.0, 100.0), (200.0, 100.0)):
+        with pytest.raises(ValueError, match="0 < smallest < largest"):
+            gf.law_within(PAIR, *given, STEEL)
+    with pytest.raises(ValueError, match="no phases"):
+        gf.law_within(PAIR, 100.0, 200.0, STEEL, phases=64)

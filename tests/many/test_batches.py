@@ -56,6 +56,7 @@ gf.batch([{"x": 1}, {"x": 2}], work=work, workers=2)
 """
 
 
+@pytest.mark.slow
 def test_a_plain_script_runs_once_however_many_workers(tmp_path):
     """Its main module is not imported by the workers; without that it would run once for each of them, and fail."""
     file = tmp_path / "plain.py"

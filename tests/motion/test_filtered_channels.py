@@ -8,7 +8,8 @@ from machines import WAVE, tooth, two_masses
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.machine.gear_mesh import ToothDamage, table
+from gearfe.machine.gear_mesh import ToothDamage
+from gearfe.machine.phase_table import table
 from gearfe.motion import excitation
 from gearfe.motion.fixed_step import fixed_steps
 from gearfe.motion.response import all_channels

@@ -25,7 +25,7 @@ def bouncing(t, speed=SPEED):
     return np.where(t < flight, -speed * t + FORCE / MASS * t**2 / 2, pressed)
 
 
-@pytest.mark.parametrize("method", ["RK45", "DOP853"])
+@pytest.mark.parametrize("method", [pytest.param("RK45", marks=pytest.mark.slow), "DOP853"])
 def test_bounces_follow_the_closed_form(method):
     """Each is found, and the error after all of them is in proportion to the tolerance."""
     machine = gf.single_mesh(MASS, STIFF, 1.0, force=FORCE, backlash=1e-3)

@@ -5,6 +5,7 @@ integrator.
 """
 
 import math
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -16,6 +17,7 @@ from scipy.integrate import cumulative_simpson
 
 import gearfe as gf
 from gearfe.machine.of_scene import with_flanks
+from gearfe.motion.step_control import difference
 
 STEEL = gf.Material(E=207e3, nu=0.25)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
@@ -48,7 +50,7 @@ def test_turned_slowly_a_mesh_has_its_static_transmission_error_at_every_load(lo
     assert abs(np.ptp(got[8:]) / np.ptp(want[8:]) - 1) < 0.01
 
 
-@pytest.mark.parametrize("load", [300.0, 1600.0])
+@pytest.mark.parametrize("load", [pytest.param(300.0, marks=pytest.mark.slow), 1600.0])
 def test_relieved_flanks_turned_slowly_have_the_transmission_error_that_the_contact_has(load):
     """Unloaded gaps and deflections together, at loads that close the relief and at such that do not."""
     gears = {"pinion": PAIR.gear_1, "wheel": PAIR.gear_2}
@@ -64,6 +66,7 @@ def test_relieved_flanks_turned_slowly_have_the_transmission_error_that_the_cont
     assert rms(gf.mesh_stiffness(PAIR, load, STEEL, phases=128).te[8:] / want[8:] - 1) > 0.05, "the relief matters"
 
 
+@pytest.mark.slow
 def test_a_cracked_tooth_turned_slowly_has_its_static_transmission_error():
     loads, load, frequency = [200.0 * 2**i for i in range(4)], 900.0, 2.0
     hurt = gf.force_law(PAIR, loads, STEEL, damage=CRACK, span="tooth")
@@ -78,6 +81,7 @@ def test_a_cracked_tooth_turned_slowly_has_its_static_transmission_error():
     assert np.abs(want / healthy - 1).max() > 0.02, "the crack matters"
 
 
+@pytest.mark.slow
 def test_it_is_the_motion_of_contact_solved_at_every_step():
     frequency, load, steps, phase = 2500.0, 300.0, 60, 0.55  # half a cycle: a pair leaves, another comes in
     h = 0.5 / frequency / steps
@@ -128,7 +132,7 @@ def test_standing_still_energy_is_kept_through_losses_of_contact():
     assert np.ptp(energy) < 1e-4 * np.ptp(MASS * v**2 / 2)
 
 
-@pytest.mark.parametrize("frequency", [2500.0, 7000.0])
+@pytest.mark.parametrize("frequency", [2500.0, pytest.param(7000.0, marks=pytest.mark.slow)])
 def test_the_fast_path_is_the_reference(frequency):
     machine = mass(law(), frequency, (np.array([0.0, 0.0006, 0.0012]), np.array([200.0, 800.0, 200.0])))
     got = gf.simulate(machine, 0.0012, rate=1e5)
@@ -137,12 +141,21 @@ def test_the_fast_path_is_the_reference(frequency):
     assert worst(got, want) < 2e-3
 
 
+@pytest.mark.parametrize("frequency", [1200.0, 2500.0])
+def test_the_estimate_covers_a_run_that_grows_worse_after_its_stretch(frequency):
+    """Near superharmonic resonances of a little damped mass; before, 1.4e-3 of the range at an estimate of 5.5e-4."""
+    machine = mass(law(), frequency, 1600.0, backlash=1e-4)
+    got = gf.simulate(machine, 0.004, rate=1e4, filtered=False)
+    want = gf.simulate(machine, 0.004, rate=1e4, method="DOP853", rtol=1e-7, filtered=False)
+    assert max(difference(got, want)) < got.stats["error"] < 1e-3
+
+
 def test_flanks_that_only_push_and_damp_by_depth_meet_under_a_law_as_the_reference_has_them():
     """Impact damping and loss of contact with the force of the law: both halve their steps about the same places."""
     impact = {"damping": 2e3, "depth": 1e-5, "push": True, "backlash": 1e-4, "error": ((40e-6, 1130.0, 0.0),)}
     machine = mass(law(), 2500.0, 800.0, **impact)
-    got = gf.simulate(machine, 0.0025, rate=2e4)
-    want = gf.simulate(machine, 0.0025, rate=2e4, method="DOP853", rtol=1e-7)
+    got = gf.simulate(machine, 0.0015, rate=2e4)
+    want = gf.simulate(machine, 0.0015, rate=2e4, method="DOP853", rtol=1e-7)
     assert got.stats["losses"] == want.stats["losses"] > 0
     assert worst(got, want) < got.stats["error"] < 1e-2
 
@@ -198,3 +211,40 @@ def test_forces_above_the_loads_of_a_law_are_told():
     curve = gf.mesh_stiffness(PAIR, 2000.0, STEEL)
     told = gf.simulate(mass(curve, 100.0, 1600.0), 0.002).stats["loads"]
     assert "its stiffness is that of 2000 N" in told[0]
+
+
+def test_one_curve_says_within_which_loads_it_holds():
+    """A load that swings about that of the curve is told although its mean is right; the loads named change k as much as told."""
+    curve = gf.mesh_stiffness(PAIR, 1600.0, STEEL, phases=32)
+
+    def told(low, high):
+        history = (np.array([0.005, 0.015, 0.025, 0.035]), np.array([low, high, high, low]))
+        return gf.simulate(mass(curve, 2500.0, history), 0.04, rate=25600.0).stats.get("loads", [])
+
+    assert not told(1500.0, 1700.0)
+    (line,) = told(200.0, 3000.0)
+    mean, low, high, stated, least, most = (float(one) for one in re.findall(r"[\d.]+(?= N)|[\d.]+(?= to)", line))
+    assert_allclose((mean, low, high, stated), (1600.0, 200.0, 3000.0, 1600.0), rtol=0.1)
+    for load, change in ((least, -0.01), (most, 0.01)):
+        k = gf.mesh_stiffness(PAIR, load, STEEL, phases=32).k.mean()
+        assert_allclose(k / curve.k.mean() - 1, change, rtol=0.15)
+
+
+@pytest.mark.parametrize("phases", [32, 64, 128])
+def test_the_error_of_a_stiffness_between_its_phases_is_told_and_covers(phases):
+    curve, fine = (gf.mesh_stiffness(PAIR, 1600.0, STEEL, phases=count) for count in (phases, 1024))
+    made = mass(curve, 2500.0, 1600.0)
+    told = gf.simulate(made, 0.002).stats["error_phases"]
+    true = rms(made.meshes[0].cycle(fine.phase) - fine.k) / np.ptp(fine.k)
+    assert true < told < 20 * true
+
+
+def test_smooth_samples_are_known_between_them_and_laws_have_an_error_of_their_own():
+    def told(count):
+        wave = 3e8 * (1 + 0.1 * np.cos(6 * np.pi * np.arange(count) / count + 0.3))
+        return gf.simulate(mass(wave, 2500.0, 1600.0), 0.002).stats["error_phases"]
+
+    assert told(64) < 1e-3
+    assert told(256) < told(128) / 12
+    assert "error_phases" not in gf.simulate(mass(law(), 2500.0, 1600.0), 0.002).stats
+    assert "error_phases" not in gf.simulate(mass(3e8, 2500.0, 1600.0), 0.002).stats

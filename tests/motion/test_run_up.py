@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.machine.gear_mesh import ToothDamage
+from gearfe.machine.speed import Speed
 from gearfe.motion.simulate import simulate
 from gearfe.motion.step_control import difference, stretch
 
@@ -22,6 +23,13 @@ def turned(t):
 
 def run_up(**mesh):
     return gf.with_speed(two_masses(**mesh), [0.0, LAST], [START, END])
+
+
+def test_turned_time_is_the_integral_between_the_knots_and_beyond_them():
+    t = np.linspace(0.0, LAST, 7)
+    speed = Speed((0.0, LAST), (START, END))
+    assert_allclose(speed.turned(t), turned(t), rtol=1e-12)
+    assert_allclose(speed.turned([-0.1, LAST + 0.1]), [-0.1 * START, turned(LAST) + 0.1 * END], rtol=1e-12)
 
 
 def test_stiffness_follows_the_integrated_phase():

@@ -92,6 +92,7 @@ def test_the_unloaded_error_is_that_of_pure_geometry():
     assert_allclose(np.ptp(found.te), np.ptp(best) * 1e-3, rtol=0.03)  # 0.1 N adds little
 
 
+@pytest.mark.slow
 def test_light_loads_leave_the_unloaded_error():
     flanks = {"pinion": gf.Flank(lead_crowning=0.01, crowning=0.01), "wheel": gf.Flank(end_relief=(0.0, 0.01), end_length=4.0)}
     spans = gf.transmission_error(PAIR, [1.0, 30.0, 900.0], STEEL, flanks=flanks, phases=PHASES, method="ritz3d", order=2)
@@ -203,6 +204,7 @@ def test_a_section_says_that_it_knows_no_width():
         solved(misalignment=0.01)
 
 
+@pytest.mark.slow
 def test_the_pattern_marks_edge_contact(tmp_path):
     found = gf.contact_pattern(PAIR, 2000.0, STEEL, misalignment=gf.Misalignment(F_beta=0.02), phases=4)
     assert {z for cells in found.cells for z, _ in cells.at_ends(PAIR)} == {0.0}
@@ -214,6 +216,7 @@ def test_the_pattern_marks_edge_contact(tmp_path):
     assert not soft.cells[0].at_ends(PAIR)
 
 
+@pytest.mark.slow
 def test_kinks_in_three_dimensions_are_those_of_the_section():
     """Even loads along the width: contact on the ridge where a linear relief starts closes as in the plane, which resolves it."""
     rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 100.0}

@@ -40,7 +40,9 @@ def solved(name, phase, loads=LOADS, **options):
     return gf.mesh_stiffness(PAIR, loads, STEEL, flanks=FLANKS[name], phases=phase, **options)
 
 
-@pytest.mark.parametrize(("name", "pose"), [*((name, "mean") for name in FLANKS), ("pitch", "pinion")])
+@pytest.mark.parametrize(
+    ("name", "pose"), [*((name, "mean") for name in FLANKS), pytest.param("pitch", "pinion", marks=pytest.mark.slow)]
+)
 def test_what_a_load_more_closes_is_between_its_tangents(name, pose):
     """Contacts only join, so that lte is concave: between two loads it grows by dF / k_tangent, of the one to the other."""
     curves = solved(name, 3 * np.arange(24) / 24 + 1e-3, pose=pose)
@@ -59,7 +61,7 @@ def test_what_a_load_more_closes_is_between_its_tangents(name, pose):
         ("parabolic relief", "ritz", 0, 5e-6),
         ("parabolic relief", "fe", 0, 5e-6),
         ("crowning and slope", "ritz", 0, 5e-6),
-        ("crowning and slope", "ritz3d", 4, 2e-3),
+        pytest.param("crowning and slope", "ritz3d", 4, 2e-3, marks=pytest.mark.slow),
     ],
 )
 def test_light_loads_follow_the_half_planes_logarithm(name, method, first, rtol):

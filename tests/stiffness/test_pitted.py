@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from checks import pit_loss
 from machines import SHAPE, STEEL, herringbone, tooth
 from numpy.testing import assert_allclose
@@ -80,6 +81,7 @@ def test_which_places_of_three_teeth_could_give_twice_the_turning_frequency():
     assert [1 + int(np.argmax([pattern(teeth, n) for n in range(1, 9)])) for teeth in ((0, 1, 2), (0, 6, 11))] == [1, 3]
 
 
+@pytest.mark.slow
 def test_impact_law_of_the_spur_stage_runs(spur_stage):
     """Hertz K of the article, pits on sun tooth 0, pulses on the carrier, friction: forces push, and the tooth is seen."""
     pair = spur_stage.sun_planet

@@ -40,6 +40,7 @@ def test_ring_root_stress_of_boundary_elements():
         assert_allclose(eps_alpha, row["eps_alpha"], rtol=1e-11)
 
 
+@pytest.mark.slow
 def test_ring_root_stress_has_an_estimate_that_covers_a_finer_mesh():
     row = reference.load()["ring_root_stress"]["rows"][0]
     one = gf.Gear(z=row["z"], m_n=1.0, alpha_n=math.radians(20), b=1.0, r_rim=42.0, tip_radius=row["tip_radius"])

@@ -81,7 +81,7 @@ def test_default_resolution_is_within_half_a_percent(pair, steel, curve):
     assert_allclose(curve.k, fine.k, rtol=2e-3)
 
 
-@pytest.mark.parametrize(("line_load", "phase"), [(100.0, 0.75), (300.0, 0.55)])
+@pytest.mark.parametrize(("line_load", "phase"), [(100.0, 0.75), pytest.param(300.0, 0.55, marks=pytest.mark.slow)])
 def test_fast_path_equals_full_contact_inside_the_path(pair, steel, phase, line_load):
     fast = gf.mesh_stiffness(pair, line_load * 20.0, steel, phases=[phase])
     full = full_contact(pair, line_load, phase, (steel, steel))
@@ -90,6 +90,7 @@ def test_fast_path_equals_full_contact_inside_the_path(pair, steel, phase, line_
     assert_allclose(fast.share[0], [share[k] for k in fast.order], atol=2e-3)
 
 
+@pytest.mark.slow
 def test_corner_contact_is_within_one_percent_of_full_contact(pair, steel):
     fast = gf.mesh_stiffness(pair, 300.0 * 20.0, steel, phases=[0.62])
     full = full_contact(pair, 300.0, 0.62, (steel, steel), per_width=12)

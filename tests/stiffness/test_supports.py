@@ -79,6 +79,7 @@ def test_a_tilting_shaft_is_the_misalignment_it_makes():
     assert_allclose(found.cells[0].load, cells.load, atol=1e-5 * cells.load.max())
 
 
+@pytest.mark.slow
 def test_the_load_of_helical_gears_moves_to_the_stiff_side_and_mirrors():
     right = gf.Shaft(segments=[(80, 30)], bearings=(30, 80), gear=10, material=STEEL, torque=80)
     one, two = (

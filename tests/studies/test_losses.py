@@ -60,6 +60,7 @@ def test_phases_have_the_tooth_in_the_middle_and_in_contact(pair):
         assert_allclose(np.sort(phase % 1), np.arange(64) / 64, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_any_tooth_loses_as_tooth_nought():
     chosen = gf.load_scene("planetary_pitting").pair()
     run = {"force": chosen.force, "material": chosen.materials, "phases": 8, "refine": 0.3}
@@ -69,13 +70,18 @@ def test_any_tooth_loses_as_tooth_nought():
 
 
 def test_every_method_has_a_column_or_a_reason(found, scene):
-    for one in (found, gf.compare(scene, phases=4), gf.compare("planetary_pitting", "planet_ring", phases=4, refine=0.5)):
+    for one in (
+        found,
+        gf.compare(scene, phases=4, refine=0.5),
+        gf.compare("planetary_pitting", "planet_ring", phases=4, refine=0.5),
+    ):
         assert one.curves.keys() | one.left_out.keys() == set(METHODS)
         assert not one.curves.keys() & one.left_out.keys()
     assert "healthy gears only" in found.left_out["coupled"]
     assert "not for rings" in one.left_out["textbook"]
 
 
+@pytest.mark.slow
 def test_losses_are_judged_by_a_finer_solve(found, scene):
     """The estimate covers what a two and a half times finer mesh of the finite elements changes."""
     rough = gf.compare(scene, case="cracked", phases=16, refine=0.4)

@@ -11,7 +11,7 @@ from gearfe.studies.by_zone import Comparison
 def test_a_pair_without_a_scene_is_compared_as_in_one():
     chosen = gf.load_scene("planetary_pitting").pair()
     own = {"force": chosen.force, "material": chosen.materials}
-    run = {"models": {"mine": lambda phase: 3e8 + 0 * phase}, "phases": 4, "refine": 0.5}
+    run = {"models": {"mine": lambda phase: 3e8 + 0 * phase}, "phases": 4, "refine": 0.3}
     one = gf.compare(pair=chosen.pair, **own, **run)
     other = gf.compare("planetary_pitting", **run)
     assert one.pair_name == "21/31"

@@ -114,6 +114,7 @@ def test_what_cannot_run_is_refused():
         responses(SCENE, duration=0)
 
 
+@pytest.mark.slow
 def test_command_line(tmp_path, capsys):
     out, plot = tmp_path / "r.npz", tmp_path / "s.png"
     command = ["dynamics", "compound_planetary", "--case", "crack50", "--duration", "0.3"]

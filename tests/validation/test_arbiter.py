@@ -135,6 +135,7 @@ def test_complementary_conditions_hold(seed):
     assert_allclose(rate @ p, 3.0)
 
 
+@pytest.mark.slow
 def test_pressure_is_hertz(undercut, answer):
     """Single contact away from corners: largest pressure and half width of two cylinders."""
     _, solved = answer.zones[0]

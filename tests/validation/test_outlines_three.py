@@ -5,8 +5,10 @@ from numpy.testing import assert_allclose
 
 from validation.shared.outlines_three import ASKED, cases, ours, section, stored
 
+FIRST, *OTHERS = cases()
 
-@pytest.mark.parametrize("name", [*cases()])
+
+@pytest.mark.parametrize("name", [FIRST, *(pytest.param(name, marks=pytest.mark.slow) for name in OTHERS)])
 def test_form_corners_carry_what_calculix_says(name):
     rows = [row for row in stored() if row["case"] == name]
     assert len(rows) >= 2, "two meshes"

@@ -15,6 +15,7 @@ from ..shared import page
 from ..shared.decks import calculix
 from ..shared.kept_rows import check, kept, stored
 from ..shared.places import PAGES
+from . import sets_dynamics
 
 TABLE, PICTURE = "sets_calculix", PAGES / "sets_bent.png"
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -73,15 +74,20 @@ PROOF = """
 corners included); forces on sun, planets and pads are in balance (1e-10); equal planets carry the same (1e-9); planets on elastic
 pins with position errors are springs in series; very stiff springs are rigid; teeth touch at the places, and with the numbers,
 that the set names; the ring on pads is that of finite elements of the whole ring (0.2 % of what the pads let it give way); how
-far teeth move under loads on others is that of the energy method, elements of order 4.
+far teeth move under loads on others is that of the energy method, elements of order 4; a machine that takes its meshes from a
+set (`gf.with_set`) has at rest the set's turn of the sun and the set's mesh forces (1e-6), with the ring's motion in k and
+with the ring as a body.
 
-Left out: friction, changes along the width, cracks in a ring that bends, and how a crack changes what its gear feels of other
-meshes; the carrier is rigid. Where a mesh carries much less than others, its k says little about its teeth: it is mostly how the
+A cracked gear between its meshes, and a cracked ring on pads, are those of finite elements of the whole gear with its crack
+(0.2 and 0.3 % of the largest).
+
+Left out: friction, changes along the width, and that faces of a crack may touch under the loads of other meshes; the carrier is
+rigid. Where a mesh carries much less than others, its k says little about its teeth: it is mostly how the
 loads of the others move its gears.
 """
 HOW = """
-`python -m validation sets` makes this page; runs of CalculiX are kept in `tables/sets_calculix.jsonl`, and
-`python -m validation sets NAME` makes those anew whose names begin with NAME.
+`python -m validation sets` makes this page; runs of CalculiX are kept in `tables/sets_calculix.jsonl`, the machines in
+`tables/sets_machines.jsonl`, and `python -m validation sets NAME` makes those anew whose names begin with NAME.
 """
 
 
@@ -226,15 +232,19 @@ def cost():
 
 def run(parts=()):
     """Make the page; rows of CalculiX whose names begin with one of `parts` anew."""
-    check(parts, TABLE)
+    check(parts, TABLE, sets_dynamics.TABLE)
+    sets_dynamics.compute(page.anew(parts))
     for name, first in STANDS.items():
         kept(TABLE, name, lambda first=first: outside(first), page.anew(parts))
     shown = small(STANDS["between two"]).with_(gears=_thin(), errors=None)
     gf.plot_planetary_set(gf.planetary_stiffness(shown, [AT]), 0, PICTURE)
     lines, least, most = table()
+    change, verdicts, count = sets_dynamics.largest()
     answer = (
         f"Forces of all meshes of a set of three planets on six supports are within {100 * worst():.2f} % of CalculiX's, in one "
-        f"contact of the whole set; k of planet and ring on supports is {least:.2f} to {most:.2f} times the isolated pair's."
+        f"contact of the whole set; k of planet and ring on supports is {least:.2f} to {most:.2f} times the isolated pair's. "
+        f"A ring that is held leaves natural frequencies of the articles' machines within {change:.1f} % and changes the "
+        f"verdicts of {verdicts} of {count} statements."
     )
     drawn = [
         "",
@@ -243,7 +253,14 @@ def run(parts=()):
         "21/31/84 teeth, rim of 5.4 mm, planets between the pads (triangles).",
     ]
     page.write(
-        "sets", answer, [*INTRO.splitlines(), "", *lines, *drawn], outsider(), PROOF.splitlines(), cost(), HOW.splitlines()
+        "sets",
+        answer,
+        [*INTRO.splitlines(), "", *lines, *drawn],
+        sets_dynamics.section(),
+        outsider(),
+        PROOF.splitlines(),
+        cost(),
+        HOW.splitlines(),
     )
 
 

@@ -84,7 +84,7 @@ def test_a_spall_takes_what_its_parts_take(beta):
     """A sharp rectangle against twelve that fill it, and against two thousand small pits that fill it but for its edge."""
     made, whole = pair(beta), gf.Spall(radius=21.0 / math.cos(beta), z=10.0, sides=(1.2, 4.0), depth=0.2)
     gear = made.gear_1
-    lines = contact_lines(made, np.linspace(0.0, 1.6, 23), face="helical" if beta else "spur")
+    lines = contact_lines(made, np.linspace(0.0, 1.6, 9), face="helical" if beta else "spur")
     lost = lost_length(lines, ((whole,), ()))
     middle = centre_arc(gear, whole)
 
@@ -98,12 +98,13 @@ def test_a_spall_takes_what_its_parts_take(beta):
     filled, inner = lost_length(lines, (pits, ())), gf.Spall(at(0.0), 10.0, (1.2 - 2 * size, 4.0 - 2 * size), 0.2)
     assert (filled <= lost + 1e-9).all(), "the pits lie within the spall"
     assert (filled >= lost_length(lines, ((inner,), ())) - 1e-9).all(), "and cover the rectangle of their centres"
-    assert lost.sum() > 10.0
+    assert lost.sum() > 4.0
 
 
-@pytest.mark.parametrize("corner", [0.0, 0.4, 0.75])
-@pytest.mark.parametrize("gear", [GEAR, HELICAL], ids=["spur", "helical"])
-@pytest.mark.parametrize("stretch", [1.0, 1.6])
+@pytest.mark.parametrize(  # each two of the three choices meet
+    ("gear", "corner", "stretch"),
+    [(GEAR, 0.0, 1.0), (GEAR, 0.4, 1.6), (GEAR, 0.75, 1.0), (HELICAL, 0.0, 1.6), (HELICAL, 0.4, 1.0), (HELICAL, 0.75, 1.6)],
+)
 def test_volume_by_integral_is_that_of_the_solid_that_is_cut(gear, corner, stretch):
     made = holed_sector(gear, [spall(gear, corner=corner)], teeth=1, sizes=COARSE, stretch=stretch)
     want, cut, meshed = made.removed
@@ -111,6 +112,7 @@ def test_volume_by_integral_is_that_of_the_solid_that_is_cut(gear, corner, stret
     assert_allclose(meshed, cut, rtol=0.05)
 
 
+@pytest.mark.slow
 def test_spalls_over_the_tip_and_the_end_face_and_of_a_ring_are_cut():
     for gear, numbers in ((GEAR, {"z": 19.5}), (GEAR, {"radius": GEAR.r_a - 0.2}), (RING, {}), (GEAR, {"side": "unloaded"})):
         _, cut, _ = holed_sector(gear, [spall(gear, **numbers)], teeth=1, sizes=COARSE).removed

@@ -103,7 +103,13 @@ LAYOUTS = {
 }
 
 
-@pytest.mark.parametrize(("name", "beta"), [(name, -0.2 if name == "both sides" else 0.4) for name in LAYOUTS])
+@pytest.mark.parametrize(
+    ("name", "beta"),
+    [
+        pytest.param(name, -0.2 if name == "both sides" else 0.4, marks=pytest.mark.slow if name in ("turned", "nested") else ())
+        for name in LAYOUTS
+    ],
+)
 def test_what_is_cut_is_what_the_pits_take(name, beta):
     gear = replace(GEAR, beta=beta)
     scale = gear.r / GEAR.r

@@ -50,6 +50,7 @@ def test_a_crack_between_two_teeth_leaves_the_sides_whole(side):
         assert {tuple(sorted(pair)) for pair in zip(line[:-1].tolist(), line[1:].tolist(), strict=True)} <= edges
 
 
+@pytest.mark.slow
 def test_a_crack_between_two_teeth_softens_as_the_section_has_it(steel):
     """gmsh did not end; the sector's crack was shut at its mouth, and stiffer the deeper it went."""
     shallow, deep, section = (

@@ -41,6 +41,7 @@ def plan():
     return copy.deepcopy(PLAN)
 
 
+@pytest.mark.slow
 def test_windows_are_those_of_the_simulation(made, plan):
     """Mean and strongest lines, in size and phase, against those of the fine response that the windows were cut from."""
     plan = read_plan(plan)

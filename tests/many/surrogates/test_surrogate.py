@@ -26,7 +26,7 @@ def fresh(fitted, steel, forces):
 
 def test_error_on_cases_of_our_own_is_as_stated(fitted, steel):
     """Neither fitted nor held back: forces of this test."""
-    error, _ = held_back_error(fitted, *fresh(fitted, steel, [650.0, 1111.0, 1777.0, 2900.0]))
+    error, _ = held_back_error(fitted, *fresh(fitted, steel, [650.0, 1777.0]))
     assert fitted.error["mean"] < 2e-4
     assert fitted.error["worst"] < 5e-3
     assert error["mean"] < 2 * fitted.error["mean"]

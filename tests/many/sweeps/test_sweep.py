@@ -78,6 +78,7 @@ def test_tables_and_curves_are_filtered_and_have_units(undisturbed):
     assert "48 of 48" in repr(undisturbed)
 
 
+@pytest.mark.slow
 def test_killed_at_once_and_continued_the_store_is_the_same(undisturbed, tmp_path):
     """Kill -9 while blocks are written; nothing of what is there is computed again."""
     (tmp_path / "study.json").write_text(json.dumps(STUDY))
