@@ -168,7 +168,7 @@ def test_a_new_scene_and_its_check_know_them(copy):
 
 def test_closed_form_and_damage_are_compared(copy):
     """A tooth pair of the closed form is two springs 4 / E and the contact 4 (1 - nu**2) / (pi E) over the width that is left."""
-    said = gearfe(copy, "compare", "my.toml", "--pair", "stage", "--case", "banded", "--phases", "2", "--refine", "0.4")
+    said = gearfe(copy, "compare", "my.toml", "--pair", "stage", "--case", "banded", "--phases", "4", "--refine", "0.5")
     columns = [one.strip() for one in next(line for line in said.splitlines() if "| estimate |" in line).split("|")[1:-1]]
     assert columns[-2] == "equal [N/um]"
     left = (20 - 6) / 20

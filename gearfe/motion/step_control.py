@@ -202,7 +202,7 @@ def estimate(machine, duration, h, initial=None, *, begin=0.0, adapt=False, at=N
     one, two = (run.stats["seconds"] for run in runs[:2])
     if one >= two:  # the first waited for the compiler, or for the processor
         one = fixed_steps(machine, length, steps, initial, **options).stats["seconds"]
-    cost = max(two - one, 0.0) / length
+    cost = max(two - one, two / 4) / length  # half of `two` but for noise, which may make it nothing
     *coarse, fine = runs
     margin = ROUGH if rough else SMOOTH
     error = margin * max(max(difference(one, fine)) for one in coarse)
