@@ -101,13 +101,6 @@ def check_output(path, kind):
     os.unlink(_beside(path))
 
 
-def check_folder(path):
-    """Raise ValueError if no file can be made at `path`, whatever its suffix."""
-    if os.path.isdir(path):
-        raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
-    os.unlink(_beside(path))
-
-
 def suffixes(kind, *, reading=False):
     """Suffixes of the files that hold what `kind` says."""
     known = [suffix for suffix, row in FORMATS.items() if kind in (row.reads if reading else row.writes)]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files import check_folder, written
+from ..files import _beside, written
 from ..steps import steps
 from .set_plot import BRIGHT, LARGEST, draw_set
 
@@ -20,7 +20,9 @@ def check_moving(path: Any) -> None:
     """Raise ValueError if a moving picture cannot be written to `path` later: to be called before work begins."""
     if not isinstance(path, (str, os.PathLike)) or Path(path).suffix.lower() != SUFFIX:
         raise ValueError(f"{path!r} is no moving picture: give the name of a file that ends in {SUFFIX}")
-    check_folder(path)
+    if os.path.isdir(path):
+        raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
+    os.unlink(_beside(path))  # a file can be made there
 
 
 def draw_motion(
