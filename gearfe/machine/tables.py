@@ -315,13 +315,14 @@ class Machine:
         load = self.load(0.0 if t is None else t)
         zero = np.zeros(len(self.meshes))
         start = 1e-5 * np.ones(len(self.meshes))
-        q = np.linalg.lstsq(self.linear(start)[0], load, rcond=1e-12)[0]
+        stiffness, _, least, _ = self.linear(start)
+        q = np.linalg.lstsq(stiffness, load, rcond=1e-12)[0]
         for _ in range(200):
             x = self.compressions(q)
             mean, bend = self._mean_at(x)
             away = load - self.K @ q - self.G.T @ force(x, zero, mean, self.law)
             tangent = slopes(x, zero, mean, self.law, bend)[0]
-            tangent = np.maximum(tangent, 1e-6 * self.linear(start)[2])  # an open mesh keeps the matrix regular
+            tangent = np.maximum(tangent, 1e-6 * least)  # an open mesh keeps the matrix regular
             change = _weighted_solve(self.K + self.G.T @ (tangent[:, None] * self.G), away, self.mass)
             q = q + change
             if np.abs(change * np.sqrt(self.mass)).max() <= 1e-11 * np.abs(q * np.sqrt(self.mass)).max() + 1e-30:

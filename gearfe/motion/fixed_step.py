@@ -13,7 +13,7 @@ from .thinned import thinned_pieces
 PIECE = 4096  # steps of a run whose channels are in memory at once
 
 
-def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=False, counts=()):
+def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=False, counts=(), plan=None):
     """Response of a machine over `steps` equal steps.
 
     Parameters
@@ -30,9 +30,10 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
         [s]
     adapt : bool
         Under a law of contact that is not linear, halve steps also where `gearfe.motion.propagator.Plan.allowed` asks for it.
-
     counts : tuple of int
         Of `gearfe.motion.thinned.stages`, their product `every`; none: channels are not filtered.
+    plan : Plan, optional
+        Of these steps, if it is known.
 
     Returns
     -------
@@ -46,8 +47,7 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
     from .loop import run  # loads numba
 
     started, h = time.perf_counter(), duration / steps
-    x = machine.working()
-    plan = propagator.plan(machine, h, x, adapt)
+    plan = plan or propagator.plan(machine, h, machine.working(), adapt)
     looks = 4 * steps + 1 if any(callable(load.value) for load in machine.loads) else 1
     flat = excitation.flatten(machine, start + np.linspace(0.0, duration, looks))
     breaks = np.unique(np.concatenate([np.empty(0), *(load.breaks for load in machine.loads)]))

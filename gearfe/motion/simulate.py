@@ -21,14 +21,16 @@ from .response import Response, all_channels
 from .step_control import (
     WANTED_OPEN,
     Estimate,
-    acceleration_difference,
+    beginning,
     chosen_step,
     default_step,
     difference,
+    differences,
     estimate,
     estimate_along,
     is_rough,
     longest_seen,
+    seen,
     unseen,
 )
 from .thinned import stages, thinned
@@ -244,10 +246,12 @@ class _Runs:
         length = float(self.duration)
         if error:
             finer = self(2 * every)
-            found = Estimate(max(difference(out, finer)), False, length, 0.0, acceleration_difference(out, finer))
+            *moved, shaken = differences(seen(out), seen(finer), self.machine)
+            found = Estimate(max(moved), False, length, 0.0, shaken)
         else:
             try:
-                found = estimate(self.machine, self.duration, out.stats["dt"], self.own, begin=self.start)
+                place, span = beginning(self.machine, self.duration, self.own, self.start)
+                found = estimate(self.machine, out.stats["dt"], span, [place])
             except RuntimeError:  # the stretch, unlike the run, grows beyond all bounds
                 found = Estimate(math.inf, False, length, 0.0, math.inf)
         doubt = max(found.error, unseen(self.machine, self.start, self.duration, out.stats["dt"]))
@@ -280,8 +284,8 @@ class _Runs:
         for _ in range(FINER):
             every *= 2
             finer = self(every, adapt=True)
-            doubt, shaken = max(difference(out, finer)), acceleration_difference(out, finer)
-            out = finer
+            *moved, shaken = differences(seen(out), seen(finer), self.machine)
+            out, doubt = finer, max(moved)
             if doubt <= (ALLOWED if out.stats["losses"] else WHOLE):
                 break
         if doubt <= ALLOWED or not out.stats["losses"]:

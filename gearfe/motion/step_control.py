@@ -10,8 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from . import excitation
 from .fixed_step import fixed_steps
 from .propagator import default_step, is_bent, plan
+from .response import acceleration, mesh_channels
 
 WANTED, WANTED_OPEN = 7e-4, 5e-3  # largest error, as a part of the range, while the meshes stay closed and where contact is lost
 CYCLES = 3.5  # of the slowest mesh, in a stretch
@@ -19,12 +21,38 @@ SPREAD = 4  # stretches on which a run under a law of contact that is not linear
 HALVINGS = 6
 SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to a shorter step: of order four, and where local halving rules
 SEEN = 3e-3  # of the spread of a load that is a function: how well it must be known between the samples of a run
+SAMPLES = 1000  # of a stretch, at which two runs are compared
 PROBES = 50_000  # times at which that is looked at
 TURNS = ("theta", "tilt_x", "tilt_y")
 
 
-def difference(one, two):
-    """Largest difference of two responses at the same times, relative to ranges of the second.
+class Seen(NamedTuple):
+    """What two runs are compared by, at the times kept and as the integrator has it.
+
+    Attributes
+    ----------
+    q : ndarray, shape (t, n)
+        Displacements.
+    force : ndarray, shape (t, m)
+        Of the meshes.
+    acceleration : ndarray, shape (t, n)
+    """
+
+    q: np.ndarray
+    force: np.ndarray
+    acceleration: np.ndarray
+
+
+def seen(response):
+    """`Seen` of a response."""
+    machine, t, q, v = response.machine, response.time, response.q, response.v
+    flat = excitation.flatten(machine, t)
+    meshes = mesh_channels(machine, flat, t, q, v)
+    return Seen(q, meshes[2], acceleration(machine, flat, t, q, v, meshes=meshes))
+
+
+def differences(one, two, machine):
+    """Largest differences of `Seen` of two runs at the same times, relative to ranges of the second.
 
     Returns
     -------
@@ -32,14 +60,20 @@ def difference(one, two):
         Of any translation over the largest range of a translation, or of any rotation over that of a rotation.
     force : float
         Of any mesh force over its own range; forces that vary by less than a millionth of the largest do not count.
+    acceleration : float
+        As of displacements.
     """
-    displacement = _by_kind(one.q, two.q, two.machine)
-    if not two.machine.meshes:
-        return displacement, 0.0
-    force, reference = one.raw.mesh(), two.raw.mesh()
-    size = np.ptp(reference, axis=0)
-    size = np.where(size > 1e-6 * np.abs(reference).max(), size, np.inf)
-    return displacement, float((np.abs(force - reference).max(axis=0) / size).max())
+    moved, shaken = (_by_kind(getattr(one, name), getattr(two, name), machine) for name in ("q", "acceleration"))
+    if not machine.meshes:
+        return moved, 0.0, shaken
+    size = np.ptp(two.force, axis=0)
+    size = np.where(size > 1e-6 * np.abs(two.force).max(), size, np.inf)
+    return moved, float((np.abs(one.force - two.force).max(axis=0) / size).max()), shaken
+
+
+def difference(one, two):
+    """`differences` of the displacements and the mesh forces of two responses."""
+    return differences(seen(one), seen(two), two.machine)[:2]
 
 
 def _by_kind(one, two, machine):
@@ -50,8 +84,8 @@ def _by_kind(one, two, machine):
 
 
 def acceleration_difference(one, two):
-    """Largest difference of the accelerations of two responses at the same times, over ranges as `difference` takes them."""
-    return _by_kind(one.raw.accelerations(), two.raw.accelerations(), two.machine)
+    """`differences` of the accelerations of two responses."""
+    return differences(seen(one), seen(two), two.machine)[2]
 
 
 def unseen(machine, start, duration, h):
@@ -107,6 +141,19 @@ def stretch(machine, duration, begin=0.0):
     return max(begin, min(start, begin + duration - length)), length
 
 
+def wanted(lost):
+    """Largest error of a step that is taken, as a part of the range, where contact is lost or not."""
+    return WANTED_OPEN if lost else WANTED
+
+
+def beginning(machine, duration, initial=None, begin=0.0):
+    """Time and state at the start of the `stretch` of a run, ``(2n,)`` and at rest unless given, and its length [s]."""
+    start, length = stretch(machine, duration, begin)
+    if initial is None:
+        initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
+    return (start, initial), length
+
+
 def chosen_step(machine, duration, initial=None, *, begin=0.0, adapt=False, watch=None, longest=math.inf):
     """Step of the fast path, no longer than `default_step`, whose error on a `stretch` is at most `WANTED` of the range.
 
@@ -138,7 +185,7 @@ def chosen_step(machine, duration, initial=None, *, begin=0.0, adapt=False, watc
 
     def error(h):
         try:
-            assessed = estimate(machine, duration, h, initial, begin=begin, adapt=adapt)
+            assessed = estimate(machine, h, length, [place], adapt=adapt, tried=True)
         except RuntimeError:
             if h < 0.9 * low:
                 raise
@@ -147,11 +194,11 @@ def chosen_step(machine, duration, initial=None, *, begin=0.0, adapt=False, watc
             watch(assessed.cost)
         return assessed
 
-    length = stretch(machine, duration, begin)[1]
+    place, length = beginning(machine, duration, initial, begin)
     h = min(default_step(machine), length, longest)
     low = h / 2**HALVINGS
     assessed = error(h)
-    while assessed.error > (WANTED_OPEN if assessed.lost else WANTED) and h > low:
+    while assessed.error > wanted(assessed.lost) and h > low:
         h *= max(0.25, min(0.8, 0.9 * (WANTED / assessed.error) ** 0.25)) if not assessed.lost else 0.5
         assessed = error(h)
     return h, assessed
@@ -186,28 +233,37 @@ def is_rough(machine):
     return is_bent(machine) or any(mesh.secants for mesh in machine.meshes)
 
 
-def estimate(machine, duration, h, initial=None, *, begin=0.0, adapt=False, at=None):
-    """`Estimate` of the step `h` on a `stretch`, or where ``at``, its start and length, says.
+def estimate(machine, h, length, places, *, adapt=False, tried=False):
+    """`Estimate` of the step `h` on stretches of `length` seconds, each from a time and a state that `places` has; the worst.
 
     Where local halving rules, the error is small or large by where the steps happen to lie, and a shorter one can be the worse:
-    the run is then compared with a third of the step, and so is that of half the step.
+    the run is then compared with a third of the step, and so is that of half the step; of a step that is `tried` not if half of
+    it alone says that it is too long.
     """
-    start, length = at or stretch(machine, duration, begin)
-    if initial is None:
-        initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
-    steps = math.ceil(length / h * (1 - 1e-12))
-    options = {"start": start, "adapt": adapt}
-    rough = adapt and is_rough(machine)
-    runs = [fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in ((1, 2, 3) if rough else (1, 2))]
-    one, two = (run.stats["seconds"] for run in runs[:2])
-    if one >= two:  # the first waited for the compiler, or for the processor
-        one = fixed_steps(machine, length, steps, initial, **options).stats["seconds"]
-    cost = max(two - one, two / 4) / length  # half of `two` but for noise, which may make it nothing
-    *coarse, fine = runs
-    margin = ROUGH if rough else SMOOTH
-    error = margin * max(max(difference(one, fine)) for one in coarse)
-    acceleration = margin * max(acceleration_difference(one, fine) for one in coarse)
-    return Estimate(error, runs[1].stats["losses"] > 0, length, cost, acceleration)
+    count, x, rough = length / h * (1 - 1e-12), machine.working(), adapt and is_rough(machine)
+    every = max(1, int(count / SAMPLES))
+    steps = every * math.ceil(count / every)
+    plans = {c: plan(machine, length / (c * steps), x, adapt) for c in ((1, 2, 3) if rough else (1, 2))}
+
+    def run(c, start, state):
+        return fixed_steps(machine, length, c * steps, state, every=c * every, start=start, adapt=adapt, plan=plans[c])
+
+    def apart(told):
+        found = np.max([differences(each, told[-1], machine) for each in told[:-1]], axis=0)
+        return (ROUGH if rough else SMOOTH) * np.array([max(found[:2]), found[2]])
+
+    worst, lost, cost = np.zeros(2), False, 0.0
+    for place in places:
+        runs = [run(c, *place) for c in (1, 2)]
+        told, opened = [seen(each) for each in runs], runs[1].stats["losses"] > 0
+        if rough and not (tried and apart(told)[0] > wanted(opened)):
+            told.append(seen(run(3, *place)))
+        worst, lost = np.maximum(worst, apart(told)), lost or opened
+        one, two = (each.stats["seconds"] for each in runs)
+        if one >= two:  # the first waited for the compiler, or for the processor
+            one = run(1, *place).stats["seconds"]
+        cost = max(cost, two - one, two / 4)  # half of `two` but for noise, which may make it nothing
+    return Estimate(float(worst[0]), lost, length * len(places), cost / length, float(worst[1]))
 
 
 def estimate_along(response, found):
@@ -226,16 +282,16 @@ def estimate_along(response, found):
         Of its step on one stretch.
     """
     machine, time, h, length = response.machine, response.time, response.stats["dt"], found.length
-    begin, duration, grown = float(time[0]), float(time[-1] - time[0]), 1.0
-    places = [(0, duration)]
+    begin, duration, grown, index = float(time[0]), float(time[-1] - time[0]), 1.0, [0]
     if duration > SPREAD * length:
         index = np.searchsorted(time, begin + np.linspace(0.0, duration - length, SPREAD) * (1 - 1e-12)) - 1
-        places = [(i, length) for i in np.unique(np.maximum(index, 0))]
+        index = np.unique(np.maximum(index, 0))
         values = np.linalg.eigvals(plan(machine, h, machine.working()).levels[0][0])
         left = np.abs(values[values.imag > 0]).max(initial=0.0) ** (2 * length / h)  # of a squared error, after a stretch
         grown = math.sqrt(sum(left**i for i in range(math.ceil(duration / length))))
+    else:
+        length = duration
     state = np.concatenate([response.q, response.v], axis=1)
-    estimates = [estimate(machine, duration, h, state[i], adapt=True, at=(float(time[i]), span)) for i, span in places]
-    error, acceleration = (max(getattr(span, key) for span in (found, *estimates)) * grown for key in ("error", "acceleration"))
-    lost = any(span.lost for span in (found, *estimates))
-    return Estimate(error, lost, sum(span.length for span in estimates), found.cost, acceleration)
+    along = estimate(machine, h, length, [(float(time[i]), state[i]) for i in index], adapt=True)
+    error, acceleration = (max(getattr(along, key), getattr(found, key)) * grown for key in ("error", "acceleration"))
+    return Estimate(error, found.lost or along.lost, along.length, found.cost, acceleration)
