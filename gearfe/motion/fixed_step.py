@@ -44,7 +44,7 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
     RuntimeError
         If the response grows beyond all bounds.
     """
-    from .loop import run  # loads numba
+    from .loop import run  # loads the compiler
 
     started, h = time.perf_counter(), duration / steps
     plan = plan or propagator.plan(machine, h, machine.working(), adapt)

@@ -164,7 +164,7 @@ def simulate(
     if method != "fast":
         return compared(_reference(machine, duration, count, state, method, rtol, start, filtered))
     own = state if initial is not None else None
-    from .loop_parts import announced  # loads numba
+    from .loop_parts import announced  # loads the compiler
 
     run = _Runs(machine, duration, count, state, own, start, filtered, progress)
     with announced(progress):

@@ -161,7 +161,7 @@ class _Flow:
         self.turn = self.coarse.inverse @ self.plan.basis
 
     def __call__(self, z):
-        from .loop import run  # loads numba
+        from .loop import run  # loads the compiler
         from .loop_parts import announced
 
         with announced():
