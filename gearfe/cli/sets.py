@@ -9,6 +9,7 @@ FRAMES = 16  # of a moving picture, in each mesh cycle
 def planetary_set(arguments):
     """``gearfe set``."""
     from ..epicyclic.animation import animate_planetary_set
+    from ..epicyclic.loaded_gears import check_meshable
     from ..epicyclic.of_scene import build_set
     from ..epicyclic.shape import plot_planetary_set
     from ..epicyclic.solve import planetary_stiffness
@@ -22,6 +23,8 @@ def planetary_set(arguments):
         check_moving(arguments.animate)
     scene = load_scene(arguments.scene)
     case = build_set(scene, arguments.case)
+    if arguments.picture or arguments.animate:
+        check_meshable(case)
     at, refine = spread(case, arguments.positions, arguments.cycles), arguments.refine
     with working("loads of all meshes"):
         healthy = planetary_stiffness(build_set(scene), at, refine=refine) if arguments.case else None

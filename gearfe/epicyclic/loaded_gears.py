@@ -21,22 +21,27 @@ from .standing import Standing, directions, standing, tooth_angles
 NEAR = 1.5  # times the approach of a mesh: gaps up to there are pressed together
 
 
+def check_meshable(case: PlanetaryCase) -> None:
+    """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, modified flanks, cracks."""
+    rigid = isinstance(case.ring, RimSupports) and math.isinf(case.ring.radial) and math.isinf(case.ring.tangential)
+    if not (case.ring == "held" or rigid):
+        raise ValueError("the ring is neither held nor on rigid pads, and is not meshed so: give a case with one of these")
+    if case.flanks or case.damage:
+        raise ValueError("modified flanks and cracks of a set are not meshed: give a case without them")
+
+
 def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
     """Case and `Standing` of one position whose gears can be meshed one by one as the set has them.
 
-    ValueError if there is no such position; if the ring is neither held nor on rigid pads; with modified flanks or cracks, which
-    are not meshed; if a mesh carries nothing, so that how far its planet is turned is not known.
+    ValueError as of `check_meshable`, if there is no such position, or if a mesh carries nothing, so that how far its planet is
+    turned is not known.
     """
     if not isinstance(curves, SetCurves):
         raise ValueError(f"curves = {curves!r}, but give what planetary_stiffness gives")
     if whole("at", at, 0) >= curves.position.size:
         raise ValueError(f"at = {at}, but there are {curves.position.size} positions: give 0 to {curves.position.size - 1}")
     case = curves.meta["case"]
-    rigid = isinstance(case.ring, RimSupports) and math.isinf(case.ring.radial) and math.isinf(case.ring.tangential)
-    if not (case.ring == "held" or rigid):
-        raise ValueError("the ring is neither held nor on rigid pads, and is not meshed so: give a case with one of these")
-    if case.flanks or case.damage:
-        raise ValueError("modified flanks and cracks of a set are not meshed: give a case without them")
+    check_meshable(case)
     without = np.flatnonzero((curves.force[:, at] == 0).any(axis=0)).tolist()
     if without:
         raise ValueError(f"planet {without[0]} carries nothing at position {at}, so that its place is not known: choose another")
