@@ -156,19 +156,51 @@ def test_a_recipe_touches_what_the_readme_says_and_no_more(name):
     assert all(any(re.search(rf"\b{one}\b", (ROOT / path).read_text(encoding="utf-8")) for path in edits) for one in names)
 
 
-def test_a_new_scene_and_its_check_know_them(copy):
+LINES = {
+    "check": "check my.toml",
+    "compare": "compare my.toml --pair stage --case banded --phases 4 --refine 0.5",
+    "banded": "stiffness my.toml --case banded --method textbook",
+    "spalled": "stiffness my.toml --case spalled --method textbook",
+    "bent": "stiffness my.toml --pair bent --method equal --forces 2000 --phases 32",
+    "kept": "stiffness my.toml -o k.tsv",
+}
+ALL = """
+import contextlib, io, json, sys
+import gearfe
+from gearfe.cli import main
+said = []
+for line in sys.argv[1:]:
+    out = io.StringIO()
+    with contextlib.redirect_stdout(out):
+        code = main(line.split())
+    if code:
+        raise SystemExit(f"{line}: exit code {code}")
+    said.append(out.getvalue())
+frequencies = gearfe.natural_frequencies(gearfe.build_machine(gearfe.load_scene("my.toml")))[0]
+print(json.dumps([said, list(frequencies)]))
+"""
+
+
+@pytest.fixture(scope="module")
+def told(copy):
+    """What the command of the copy prints by line, and the frequencies of its machine, all in one process."""
+    said, frequencies = json.loads(python(copy, "-c", ALL, *LINES.values()))
+    return dict(zip(LINES, said, strict=True)) | {"frequencies": frequencies}
+
+
+def test_a_new_scene_and_its_check_know_them(copy, told):
     text = (copy / "my.toml").read_text(encoding="utf-8")
     assert "\n#[[band]]\n" in text
     assert "\n#quartic_um = " in text
-    said = gearfe(copy, "check", "my.toml")
+    said = told["check"]
     assert "case banded: band 6 mm wide in the pinion's tooth 0; solved by ritz3d: bands change along the width" in said
     assert "flank of the pinion: quartic 10 um" in said
     assert "machine: turning_pair" in said
 
 
-def test_closed_form_and_damage_are_compared(copy):
+def test_closed_form_and_damage_are_compared(told):
     """A tooth pair of the closed form is two springs 4 / E and the contact 4 (1 - nu**2) / (pi E) over the width that is left."""
-    said = gearfe(copy, "compare", "my.toml", "--pair", "stage", "--case", "banded", "--phases", "4", "--refine", "0.5")
+    said = told["compare"]
     columns = [one.strip() for one in next(line for line in said.splitlines() if "| estimate |" in line).split("|")[1:-1]]
     assert columns[-2] == "equal [N/um]"
     left = (20 - 6) / 20
@@ -177,18 +209,16 @@ def test_closed_form_and_damage_are_compared(copy):
     healthy, banded, loss, doubt, *_ = table(said, "single", "what the damage takes")
     assert 0 < doubt < loss < 100 * (1 - left)
     assert banded < healthy
-    by_outline = [gearfe(copy, "stiffness", "my.toml", "--case", case, "--method", "textbook") for case in ("banded", "spalled")]
-    ours, theirs = ([table(text, row) for row in ("single", "double", "mean", "max")] for text in by_outline)
+    ours, theirs = ([table(told[case], row) for row in ("single", "double", "mean", "max")] for case in ("banded", "spalled"))
     assert ours == theirs  # a band is a spall as high as the tooth
     assert all(damaged < healthy for healthy, damaged, _ in ours)
 
 
-def test_flank_modification_bends_the_unloaded_error(copy):
+def test_flank_modification_bends_the_unloaded_error(told):
     """The least that the flanks lack where a pair of teeth could touch, r; they touch beside it, where less is gone.
 
     Beside it by s along the flank the gap is ``r + r' s + s**2 / (2 rho)``, least ``r - r'**2 rho / 2``.
     """
-    said = gearfe(copy, "stiffness", "my.toml", "--pair", "bent", "--method", "equal", "--forces", "2000", "--phases", "32")
     gear = PAIR.gear_1
     places = np.arange(32) / 32 + np.arange(2)[:, None]
     roll = PAIR.path[0] + places * PAIR.p_bt
@@ -196,20 +226,17 @@ def test_flank_modification_bends_the_unloaded_error(copy):
     slope = 0.01 * 4 * p**3 * rate * gear.r_b / roll
     lacks = 0.01 * p**4 - slope**2 * PAIR.relative_radius(roll, PAIR.mate_roll(roll)) / 2
     least = np.where(places < PAIR.eps_alpha, lacks, np.inf).min(axis=0)
-    assert_allclose(table(said, "unloaded")[0], 1e3 * np.ptp(least), atol=1e-3)
+    assert_allclose(table(told["bent"], "unloaded")[0], 1e3 * np.ptp(least), atol=1e-3)
 
 
-def test_format_holds_the_curve_and_machine_has_its_frequencies(copy):
+def test_format_holds_the_curve_and_machine_has_its_frequencies(copy, told):
     """The natural frequencies of the new machine are those of two discs, a shaft and the mean of the curve in the new file."""
-    gearfe(copy, "stiffness", "my.toml", "-o", "k.tsv")
     head, *lines = (copy / "k.tsv").read_text(encoding="utf-8").splitlines()
     k = np.array([line.split("\t") for line in lines], dtype=float)[:, head.split("\t").index("k [N/m]")].mean()
-    ask = "import gearfe as gf; print(*gf.natural_frequencies(gf.build_machine(gf.load_scene('my.toml')))[0])"
     row = 1e-3 * np.array([PAIR.gear_1.r_b, PAIR.gear_2.r_b])
     inertia = np.diag([gf.disc(gear, 7850.0, 0.0).inertia for gear in (PAIR.gear_1, PAIR.gear_2)])
     squares = eigh(k * np.outer(row, row) + np.diag([1e5, 0.0]), inertia, eigvals_only=True)
-    found = [float(one) for one in python(copy, "-c", ask).split()]
-    assert_allclose(found, np.sqrt(squares) / (2 * math.pi), rtol=1e-3)
+    assert_allclose(told["frequencies"], np.sqrt(squares) / (2 * math.pi), rtol=1e-3)
 
 
 @pytest.mark.slow

@@ -13,7 +13,9 @@ from PIL import Image
 from sets import STEEL, case, gears
 
 import gearfe as gf
+from gearfe.epicyclic import animation
 from gearfe.epicyclic.shape import loaded_shapes
+from gearfe.pictures.set_motion import draw_motion
 
 PAGE = (ROOT / "gearfe" / "docs" / "howto" / "planetary_set.md").read_text(encoding="utf-8")
 SCENE = re.search(r"```toml\n(title.*?)```", PAGE, re.DOTALL)[1]
@@ -112,18 +114,22 @@ def test_files_hold_the_curves(tmp_path):
     assert data["units"]["k"] == "N/m"
 
 
-def test_frames_are_the_pictures_of_their_positions(tmp_path):
+def test_frames_are_the_pictures_of_their_positions(tmp_path, monkeypatch):
     """Gears meshed once for all frames move as those meshed for one position; a file has a frame for each of them."""
     found = gf.planetary_stiffness(case(ring=gf.RimSupports(6, 4.8, first=0.2)), [0.1, 0.6])
-    every = loaded_shapes(found, [0, 1])
-    for at, (shapes, pads) in enumerate(every):
-        ((alone, same),) = loaded_shapes(found, [at])
-        assert_allclose(pads, same, rtol=1e-12)
-        most = [[np.hypot(*shape.moved).max() for shape in one] for one in (shapes, alone)]
-        assert_allclose(*most, rtol=0.01)
+    drawn = []
+    monkeypatch.setattr(
+        animation, "draw_motion", lambda every, *args, **how: drawn.append(every) or draw_motion(every, *args, **how)
+    )
+    path = gf.animate_planetary_set(found, tmp_path / "bent.gif", dpi=20)
+    (every,) = drawn
+    shapes, pads = every[1]  # gears are placed by those of the first position
+    ((alone, same),) = loaded_shapes(found, [1])
+    assert_allclose(pads, same, rtol=1e-12)
+    most = [[np.hypot(*shape.moved).max() for shape in one] for one in (shapes, alone)]
+    assert_allclose(*most, rtol=0.01)
     angles = np.unwrap([np.arctan2(*pads) for _, pads in every], axis=0)
     assert_allclose(np.diff(angles, axis=0), -0.5 * 2 * math.pi / 84, rtol=1e-9)  # the ring turns against the sun
-    path = gf.animate_planetary_set(found, tmp_path / "bent.gif", dpi=20)
     with Image.open(path) as moving:
         assert (moving.n_frames, moving.size) == (2, (160, 160))
 
