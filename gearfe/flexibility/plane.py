@@ -193,23 +193,25 @@ def towards(
     torque: NDArray[np.float64],
     local: float,
 ) -> NDArray[np.float64]:
-    """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts on one tooth whose forces are not along its normals.
+    """Smooth flexibility ``(..., n, n)`` [mm per N/mm] between contacts on one tooth whose forces are not along its normals.
 
     Parameters
     ----------
-    smooth : ndarray, shape (n, n)
+    smooth : ndarray, shape (..., n, n)
         What `Flexibility.within` gives.
-    force : ndarray, shape (2, n)
+    force : ndarray, shape (2, ..., n)
         Each unit load's parts along the involute's normal and along the tangent away from the gear's centre.
-    torque : ndarray, shape (n,)
+    torque : ndarray, shape (..., n)
         Its torque over that of a unit load along the normal.
     local : float
         Taken from S(s, s') for loads of any direction [mm per N/mm]: what else than the half-plane's logarithm is local.
     """
     leans = flexible.yields_across(roll, tooth)
     if leans is None:
-        return np.outer(torque, torque) * (smooth - local)
+        return torque[..., None] * torque[..., None, :] * (smooth - local)
     across, along = leans
-    (normal, tangent), between = force, (along[:, None] + along) / 2
-    mixed = np.outer(normal * across, tangent)
-    return np.outer(normal, normal) * (smooth - local) + mixed + mixed.T + np.outer(tangent, tangent) * (between - local)
+    normal, tangent = force
+    between = (along[..., None] + along[..., None, :]) / 2
+    mixed = (normal * across)[..., None] * tangent[..., None, :]
+    straight = normal[..., None] * normal[..., None, :] * (smooth - local)
+    return straight + mixed + mixed.swapaxes(-1, -2) + tangent[..., None] * tangent[..., None, :] * (between - local)
