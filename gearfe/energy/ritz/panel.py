@@ -152,8 +152,8 @@ def _local(sector, bulges, order, modulus, ratio):
     kept = 2 * (basis.count - basis.inside)
     if not basis.inside:
         return local
-    side = local[:, :kept, kept:]
-    return local[:, :kept, :kept] - side @ np.linalg.solve(local[:, kept:, kept:], side.transpose(0, 2, 1))
+    inside = np.linalg.inv(local[:, kept:, kept:])  # of so few unknowns sooner than a solve
+    return local[:, :kept, :kept] - local[:, :kept, kept:] @ (inside @ local[:, kept:, :kept])
 
 
 def _polar(gear, nodes):
