@@ -246,8 +246,8 @@ def approaches(flexibility, gap, load, possible):
 
 def stacked(arrays):
     """Arrays ``(n,)`` or ``(n, n)`` of different sizes as one, zeros after each."""
-    most = max(array.shape[0] for array in arrays)
-    out = np.zeros((len(arrays), *(most,) * arrays[0].ndim), dtype=arrays[0].dtype)
-    for row, array in zip(out, arrays, strict=True):
-        row[tuple(slice(n) for n in array.shape)] = array
+    sizes = [len(array) for array in arrays]
+    out = np.zeros((len(arrays), *(max(sizes),) * arrays[0].ndim), dtype=arrays[0].dtype)
+    for row, array, n in zip(out, arrays, sizes, strict=True):
+        row[(slice(n),) * array.ndim] = array
     return out

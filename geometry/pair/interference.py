@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..tooth.profile import cartesian, fillet_length, flank, root_curve
+from ..tooth.profile import fillet_length, flank, root_curve
 
 
 def outline(gear, count=60):
