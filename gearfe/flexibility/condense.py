@@ -62,14 +62,15 @@ def condense(local, dofs, centre, load, stays, held=(), *, leaf):
     at, column, force = number[load.coords[0][by_part]], n + 1 + load.coords[1][by_part], load.data[by_part]
     ends = np.append(0, np.cumsum(np.bincount(of_part, minlength=len(sets))))
     place = np.empty(total, dtype=np.int64)
+    stop = np.searchsorted(turns, np.arange((height + 1) << height), side="right").tolist()  # of the numbers of each turn
     fronts = []
     for k, elements in enumerate(sets):
         brought = slice(ends[k], ends[k + 1])
         made = _put_together(local[elements], number[dofs[elements]], (at[brought], column[brought], force[brought]), n, place)
-        fronts.append(_eliminated(*made, turns, k))
+        fronts.append(_eliminated(*made, stop[k]))
     for level in range(1, height + 1):
         pairs = zip(fronts[::2], fronts[1::2], strict=True)
-        fronts = [_eliminated(*_joined(*pair), turns, (level << height) + k) for k, pair in enumerate(pairs)]
+        fronts = [_eliminated(*_joined(*pair), stop[(level << height) + k]) for k, pair in enumerate(pairs)]
     return _filled(*fronts[0], np.concatenate([number[stays], n + 1 + np.arange(columns)]), place)
 
 
@@ -140,9 +141,9 @@ def _widened(matrix, at, size):
     return out
 
 
-def _eliminated(ids, matrix, turns, turn):
-    """Front without the unknowns whose turn it is."""
-    gone = int(np.searchsorted(ids, np.searchsorted(turns, turn, side="right")))
+def _eliminated(ids, matrix, stop):
+    """Front without the unknowns whose turn it is: those of numbers below `stop`."""
+    gone = int(ids.searchsorted(stop))
     if not gone:
         return ids, matrix
     lower, failed = dpotrf(np.asfortranarray(matrix[:gone, :gone]), lower=1, clean=0, overwrite_a=1)

@@ -121,16 +121,14 @@ class Flexibility:
         arc = arc_at(self.gear, np.concatenate(rolls))
         at, depth = np.clip(arc, *self.limits), np.minimum(arc - self.limits[0], 0.0)
         solved = [self if tooth % self.gear.z in self.own else self._whole() for tooth in teeth]
-        rows = {
-            basis: (basis(at), np.outer(depth, basis(self.limits[0], 1))) for basis in {flexible.basis for flexible in solved}
-        }
+        rows = {basis: (basis(at), basis(self.limits[0], 1)) for basis in {flexible.basis for flexible in solved}}
         out, stop = [], 0
         for flexible, roll, tooth in zip(solved, rolls, teeth, strict=True):
             part, values = slice(stop, stop := stop + roll.size), flexible.own.get(tooth % self.gear.z, flexible.own.get(0))
-            here, on = (row[part] for row in rows[flexible.basis])
+            here, ahead = rows[flexible.basis][0][part], rows[flexible.basis][1]
             smooth = here @ values @ here.T
             if depth[part].any():  # in the fillet it goes on straight
-                slope = on @ values @ here.T
+                slope = np.outer(depth[part], ahead @ values @ here.T)
                 smooth = smooth + slope + slope.T
             out.append(smooth)
         return out
