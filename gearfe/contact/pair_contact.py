@@ -143,7 +143,7 @@ class PairContact:
                 carried[:], approach[k], tangent[k] = self._share(contacts, line_load)
             if self.opening is not None and _closing(carried @ contacts["opening"]):
                 closed.append(k)
-                carried[:], approach[k], tangent[k] = self._share_closing(contacts, line_load)
+                carried[:], approach[k], tangent[k] = self._share_closing(contacts, line_load, carried)
             if (contacts["fillet"] & (carried > 0)).any():
                 fillet.append(k)
         line, pressure = np.zeros((2, len(sets), self.found.order.size))
@@ -154,12 +154,15 @@ class PairContact:
         pressure[(line == 0) & np.isnan(pressure)] = 0.0
         return line, pressure, approach, tangent, closed, fillet
 
-    def _share(self, contacts, line_load, weight=None):
+    def _share(self, contacts, line_load, *more):
         values = (contacts[name] for name in ("flexibility", "gap", "coefficient", "radius"))
-        return line_contact(LineContacts(*values, self.modulus, contacts["tilt"]), line_load, weight)
+        return line_contact(LineContacts(*values, self.modulus, contacts["tilt"]), line_load, *more)
 
-    def _share_closing(self, contacts, line_load):
-        """The same contacts with crack faces that can push each other apart but not pass through."""
+    def _share_closing(self, contacts, line_load, carried):
+        """The same contacts with crack faces that can push each other apart but not pass through.
+
+        Those that overlap under the line loads `carried` with open cracks are first taken to touch.
+        """
         faces = block_diag(*(flexible.seam.influence for flexible in self.flexibility if flexible.seam))
         opening = contacts["opening"].T
         m, n = opening.shape
@@ -170,7 +173,8 @@ class PairContact:
             "radius": np.append(contacts["radius"], np.ones(m)),
             "tilt": np.zeros(contacts["tilt"].size + m),  # it is that of open cracks
         }
-        force, approach, tangent = self._share(extended, line_load, np.append(np.ones(n), np.zeros(m)))
+        start = np.append(carried, np.where(opening @ carried < 0, line_load, 0.0))
+        force, approach, tangent = self._share(extended, line_load, np.append(np.ones(n), np.zeros(m)), start)
         return force[:n], approach, tangent
 
     def opening_at(self, roll_1, roll_2, order):

@@ -172,18 +172,31 @@ def hat_rows(contact, at, knots, kernels, host, tips):
         flexible.within([part[k] for part in parts], (sign * order).tolist())
         for k, (flexible, sign) in enumerate(zip(contact.flexibility, (1, -1), strict=True))
     ]
-    made, log = [], np.log(gear.m_n)  # local is what happens within about a module
-    rows = zip(knots, kernels, meets, parts, tips, order.tolist(), *bodies, strict=True)
-    for hats, kernel, on, part, reach, tooth, *within in rows:
-        roll_1, roll_2, gaps, *turns, rate = part[:6]
-        kernel = hat_logarithm(hats[:, on], hats[:, on]) if kernel is None else kernel[np.ix_(on, on)]
-        influence = sum(contact.coefficients) * (kernel + log) / np.outer(rate, rate)
-        leaning = zip(contact.flexibility, within, part[:2], (tooth, -tooth), part[6:].reshape(2, 2, -1), turns, strict=True)
-        for coefficient, (flexible, *row) in zip(contact.coefficients, leaning, strict=True):
-            influence = influence + towards(flexible, *row, coefficient * log)
-        fillet = reach[0] & on_fillet(pair.gear_2, roll_2) | reach[1] & on_fillet(pair.gear_1, roll_1)
-        made.append(Row(roll_1, roll_2, gaps, influence, *turns, fillet))
+    local = sum(contact.coefficients), np.log(gear.m_n)  # what happens within about a module
+    made, alike = [None] * len(parts), {}
+    for k, tooth in enumerate(order.tolist()):
+        alike.setdefault((tooth, parts[k].shape[1]), []).append(k)
+    for (tooth, _), rows in alike.items():  # rows of as many hats on one tooth at once
+        values = np.array([parts[k] for k in rows]).swapaxes(0, 1)
+        (roll_1, roll_2, gaps, *turns, rate), forces = values[:6], values[6:].reshape(2, 2, *values[0].shape)
+        kernel = np.array([_between(knots[k], kernels[k], meets[k]) for k in rows])
+        influence = local[0] * (kernel + local[1]) / (rate[:, :, None] * rate[:, None])
+        leaning = zip(contact.flexibility, (roll_1, roll_2), (tooth, -tooth), forces, turns, strict=True)
+        for coefficient, within, (flexible, *row) in zip(contact.coefficients, bodies, leaning, strict=True):
+            smooth = np.array([within[k] for k in rows])
+            influence = influence + towards(flexible, smooth, *row, coefficient * local[1])
+        reach = np.array([tips[k] for k in rows])[:, :, None]
+        fillet = reach[:, 0] & on_fillet(pair.gear_2, roll_2) | reach[:, 1] & on_fillet(pair.gear_1, roll_1)
+        for k, *row in zip(rows, roll_1, roll_2, gaps, influence, *turns, fillet, strict=True):
+            made[k] = Row(*row)
     return made
+
+
+def _between(knots, kernel, on):
+    """`gearfe.flexibility.hertz.hat_logarithm` of those knots that are `on`; `kernel` is that of all, if it is known."""
+    if kernel is None:
+        return hat_logarithm(knots[:, on], knots[:, on])
+    return kernel if on.all() else kernel[np.ix_(on, on)]
 
 
 def _alone(one):

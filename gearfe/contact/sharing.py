@@ -123,7 +123,7 @@ class LineContacts(NamedTuple):
     tilt: Any = 0.0
 
 
-def line_contact(contacts, load, weight=None):
+def line_contact(contacts, load, weight=None, start=None):
     """Share a line load over line contacts: `share` plus the half-plane logarithm of each contact.
 
     Contact k adds ``coefficient * (ln(2 / a_k) + 1/2) P_k`` to the approach, ``a_k`` its Hertz half width (the mean of the
@@ -138,6 +138,8 @@ def line_contact(contacts, load, weight=None):
         Line load of all contacts together [N/mm].
     weight : ndarray, shape (n,), optional
         As in `share`.
+    start : ndarray, shape (n,), optional
+        Line loads near those wanted, 0 for contacts that are likely open [N/mm]; default: all alike.
 
     Returns
     -------
@@ -146,7 +148,7 @@ def line_contact(contacts, load, weight=None):
     """
     flexibility, gap, coefficient, radius, modulus, tilt = contacts
     weight = np.ones(gap.size) if weight is None else weight
-    force, touch = np.full(gap.size, load / gap.size), None
+    force, touch = (np.full(gap.size, load / gap.size), None) if start is None else (start, start > 0)
     for _ in range(60):
         carried = np.maximum(force, 1e-9 * load)
         total = flexibility + np.diag(coefficient * np.log(2 / half_width(carried, radius, modulus)) - 2 * tilt * carried)
@@ -244,8 +246,8 @@ def approaches(flexibility, gap, load, possible):
 
 def stacked(arrays):
     """Arrays ``(n,)`` or ``(n, n)`` of different sizes as one, zeros after each."""
-    most = max(array.shape[0] for array in arrays)
-    out = np.zeros((len(arrays), *(most,) * arrays[0].ndim), dtype=arrays[0].dtype)
-    for row, array in zip(out, arrays, strict=True):
-        row[tuple(slice(n) for n in array.shape)] = array
+    sizes = [len(array) for array in arrays]
+    out = np.zeros((len(arrays), *(max(sizes),) * arrays[0].ndim), dtype=arrays[0].dtype)
+    for row, array, n in zip(out, arrays, sizes, strict=True):
+        row[(slice(n),) * array.ndim] = array
     return out

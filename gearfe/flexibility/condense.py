@@ -57,18 +57,20 @@ def condense(local, dofs, centre, load, stays, held=(), *, leaf):
     part[np.concatenate(sets)] = np.repeat(np.arange(len(sets)), [elements.size for elements in sets])
     number, first, turns = _numbered(dofs, part, n, stays, held, height)
     total = n + 1 + columns  # numbers in all: unknowns, loads, and n for those that are held
-    by_part = np.argsort(first[load.coords[0]], kind="stable")
-    at, column, force = number[load.coords[0]][by_part], n + 1 + load.coords[1][by_part], load.data[by_part]
-    ends = np.searchsorted(first[load.coords[0]][by_part], np.arange(len(sets) + 1))
+    of_part = first[load.coords[0]].astype(np.min_scalar_type(len(sets)))  # short numbers are sorted several times as fast
+    by_part = np.argsort(of_part, kind="stable")
+    at, column, force = number[load.coords[0][by_part]], n + 1 + load.coords[1][by_part], load.data[by_part]
+    ends = np.append(0, np.cumsum(np.bincount(of_part, minlength=len(sets))))
     place = np.empty(total, dtype=np.int64)
+    stop = np.searchsorted(turns, np.arange((height + 1) << height), side="right").tolist()  # of the numbers of each turn
     fronts = []
     for k, elements in enumerate(sets):
         brought = slice(ends[k], ends[k + 1])
         made = _put_together(local[elements], number[dofs[elements]], (at[brought], column[brought], force[brought]), n, place)
-        fronts.append(_eliminated(*made, turns, k))
+        fronts.append(_eliminated(*made, stop[k]))
     for level in range(1, height + 1):
         pairs = zip(fronts[::2], fronts[1::2], strict=True)
-        fronts = [_eliminated(*_joined(*pair), turns, (level << height) + k) for k, pair in enumerate(pairs)]
+        fronts = [_eliminated(*_joined(*pair), stop[(level << height) + k]) for k, pair in enumerate(pairs)]
     return _filled(*fronts[0], np.concatenate([number[stays], n + 1 + np.arange(columns)]), place)
 
 
@@ -98,7 +100,7 @@ def _numbered(dofs, part, n, stays, held, height):
     level = np.ceil(np.log2((np.minimum(first, last) ^ last) + 1)).astype(np.int64)
     turn = (level << height) + (first >> level)
     turn[stays] = (height + 1) << height
-    order = np.argsort(turn, kind="stable")
+    order = np.argsort(turn.astype(np.min_scalar_type((height + 1) << height)), kind="stable")
     turns = turn[order]
     number = np.empty(n, dtype=np.int64)
     number[order] = np.arange(n)
@@ -127,17 +129,21 @@ def _joined(one, two):
     ids = ids[np.append(True, ids[1:] > ids[:-1])]  # `numpy.unique` takes five times as long on so few
     total = np.zeros((ids.size,) * 2)
     for numbers, matrix in (one, two):
-        padded = np.zeros((numbers.size + 1,) * 2)
-        padded[:-1, :-1] = matrix.T
-        source = np.full(ids.size, numbers.size)
-        source[np.searchsorted(ids, numbers)] = np.arange(numbers.size)
-        total += padded.take(source, axis=0).take(source, axis=1)
+        at = np.searchsorted(ids, numbers)
+        total[at] += _widened(matrix, at, ids.size)
     return ids, total.T
 
 
-def _eliminated(ids, matrix, turns, turn):
-    """Front without the unknowns whose turn it is."""
-    gone = int(np.searchsorted(ids, np.searchsorted(turns, turn, side="right")))
+def _widened(matrix, at, size):
+    """The transpose of a square matrix, its columns put `at` their places among `size`: whole rows move faster than entries."""
+    out = np.zeros((matrix.shape[0], size))
+    out.T[at] = matrix
+    return out
+
+
+def _eliminated(ids, matrix, stop):
+    """Front without the unknowns whose turn it is: those of numbers below `stop`."""
+    gone = int(ids.searchsorted(stop))
     if not gone:
         return ids, matrix
     lower, failed = dpotrf(np.asfortranarray(matrix[:gone, :gone]), lower=1, clean=0, overwrite_a=1)
@@ -154,6 +160,6 @@ def _filled(ids, matrix, wanted, place):
     """The whole matrix of a front between the numbers `wanted`, zero for those that it does not have."""
     out = np.zeros((wanted.size,) * 2)
     place[wanted] = np.arange(wanted.size)
-    whole = np.tril(matrix) + np.tril(matrix, -1).T
-    out[np.ix_(place[ids], place[ids])] = whole
+    whole, at = np.where(np.tri(*matrix.shape, dtype=bool), matrix, matrix.T), place[ids]
+    out[at] = _widened(whole, at, wanted.size)
     return out

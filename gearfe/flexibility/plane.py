@@ -121,16 +121,14 @@ class Flexibility:
         arc = arc_at(self.gear, np.concatenate(rolls))
         at, depth = np.clip(arc, *self.limits), np.minimum(arc - self.limits[0], 0.0)
         solved = [self if tooth % self.gear.z in self.own else self._whole() for tooth in teeth]
-        rows = {
-            basis: (basis(at), np.outer(depth, basis(self.limits[0], 1))) for basis in {flexible.basis for flexible in solved}
-        }
+        rows = {basis: (basis(at), basis(self.limits[0], 1)) for basis in {flexible.basis for flexible in solved}}
         out, stop = [], 0
         for flexible, roll, tooth in zip(solved, rolls, teeth, strict=True):
             part, values = slice(stop, stop := stop + roll.size), flexible.own.get(tooth % self.gear.z, flexible.own.get(0))
-            here, on = (row[part] for row in rows[flexible.basis])
+            here, ahead = rows[flexible.basis][0][part], rows[flexible.basis][1]
             smooth = here @ values @ here.T
             if depth[part].any():  # in the fillet it goes on straight
-                slope = on @ values @ here.T
+                slope = np.outer(depth[part], ahead @ values @ here.T)
                 smooth = smooth + slope + slope.T
             out.append(smooth)
         return out
@@ -193,23 +191,25 @@ def towards(
     torque: NDArray[np.float64],
     local: float,
 ) -> NDArray[np.float64]:
-    """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts on one tooth whose forces are not along its normals.
+    """Smooth flexibility ``(..., n, n)`` [mm per N/mm] between contacts on one tooth whose forces are not along its normals.
 
     Parameters
     ----------
-    smooth : ndarray, shape (n, n)
+    smooth : ndarray, shape (..., n, n)
         What `Flexibility.within` gives.
-    force : ndarray, shape (2, n)
+    force : ndarray, shape (2, ..., n)
         Each unit load's parts along the involute's normal and along the tangent away from the gear's centre.
-    torque : ndarray, shape (n,)
+    torque : ndarray, shape (..., n)
         Its torque over that of a unit load along the normal.
     local : float
         Taken from S(s, s') for loads of any direction [mm per N/mm]: what else than the half-plane's logarithm is local.
     """
     leans = flexible.yields_across(roll, tooth)
     if leans is None:
-        return np.outer(torque, torque) * (smooth - local)
+        return torque[..., None] * torque[..., None, :] * (smooth - local)
     across, along = leans
-    (normal, tangent), between = force, (along[:, None] + along) / 2
-    mixed = np.outer(normal * across, tangent)
-    return np.outer(normal, normal) * (smooth - local) + mixed + mixed.T + np.outer(tangent, tangent) * (between - local)
+    normal, tangent = force
+    between = (along[..., None] + along[..., None, :]) / 2
+    mixed = (normal * across)[..., None] * tangent[..., None, :]
+    straight = normal[..., None] * normal[..., None, :] * (smooth - local)
+    return straight + mixed + mixed.swapaxes(-1, -2) + tangent[..., None] * tangent[..., None, :] * (between - local)

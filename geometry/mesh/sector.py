@@ -74,14 +74,12 @@ class Sector:
         """Bulges by triangle from those by edge."""
         count, values = self.points.shape[1], np.array(list(self.bulge.values()))
         first, second = np.array(list(self.bulge), dtype=np.int64).T
-        out = np.zeros((3, *values.shape[1:], self.triangles.shape[1]))
-        for along, keys in ((values, first * count + second), (values[..., ::-1], second * count + first)):
-            order = np.argsort(keys)
-            for local, (a, b) in enumerate(ENDS):
-                wanted = self.triangles[a].astype(np.int64) * count + self.triangles[b]
-                at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), keys.size - 1)]
-                matches = keys[at] == wanted
-                out[local][..., matches] = np.moveaxis(along[at[matches]], 0, -1)
+        keys, values = np.append(first * count + second, second * count + first), np.concatenate([values, values[..., ::-1]])
+        order = np.argsort(keys)
+        wanted = np.array([self.triangles[a].astype(np.int64) * count + self.triangles[b] for a, b in ENDS])
+        at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), keys.size - 1)]
+        found = np.where((keys[at] == wanted)[..., None, None], values[at], 0.0)
+        out = np.ascontiguousarray(found.transpose(0, 2, 3, 1))
         object.__setattr__(self, "edge_bulges", out)
 
 
@@ -130,7 +128,7 @@ def _attempt(gear, cracks, sizes, refine, finer):
     left, right = (_apart(side, triangles, doubles) for side in (vertices["left"], vertices["right"][::-1]))
     rolls = next(params for name, params, _ in pieces if name == "flank")
     made = Sector(
-        points, triangles, _bulges(pieces, first, doubles), left, right, vertices["held"], vertices["flank"][::-1], rolls[::-1],
+        points, triangles, _bulges(pieces, loop, doubles), left, right, vertices["held"], vertices["flank"][::-1], rolls[::-1],
         tuple(faces),
     )  # fmt: skip
     bulges = made.edge_bulges
@@ -280,17 +278,17 @@ def _rings(centre, radii, taken, lines):
     return points[:, (away > 0.55 * radii[:, None]) & (beside > ON_LINE * radii[:, None])]
 
 
-def _bulges(pieces, first, doubles):
+def _bulges(pieces, loop, doubles):
     """How the boundary edges depart from their chords; edges at a crack's mouth under both numbers of the mouth."""
-    out, gauss = {}, GAUSS[0]
-    for k, (_, params, place) in enumerate(pieces):
-        middle, reach = (params[1:] + params[:-1]) / 2, (params[1:] - params[:-1]) / 2
-        points = place(np.append(params, middle[:, None] + reach[:, None] * gauss))
-        ends, curve = points[:, : params.size], points[:, params.size :].reshape(2, -1, BULGE)
-        chord = (ends[:, :-1, None] * (1 - gauss) + ends[:, 1:, None] * (1 + gauss)) / 2
-        away = ((curve - chord) / (1 - gauss**2)).transpose(1, 0, 2)
-        start = first[k] + np.arange(params.size - 1)
-        out |= zip(zip(start.tolist(), ((start + 1) % first[-1]).tolist(), strict=True), away, strict=True)
-    for (a, b), away in list(out.items()):
-        out |= {(p, q): away for p in {a, doubles.get(a, a)} for q in {b, doubles.get(b, b)}} if {a, b} & doubles.keys() else {}
+    gauss, count = GAUSS[0], loop.shape[1]
+    low, high = (np.concatenate([params[part] for _, params, _ in pieces]) for part in (slice(-1), slice(1, None)))
+    inner = (high + low)[:, None] / 2 + (high - low)[:, None] / 2 * gauss
+    parts = np.split(inner, np.cumsum([params.size - 1 for _, params, _ in pieces])[:-1])
+    curve = np.hstack([place(part.ravel()) for (_, _, place), part in zip(pieces, parts, strict=True)]).reshape(2, -1, BULGE)
+    after = np.roll(np.arange(count), -1)
+    chord = (loop[..., None] * (1 - gauss) + loop[:, after, None] * (1 + gauss)) / 2
+    away = ((curve - chord) / (1 - gauss**2)).transpose(1, 0, 2)
+    out = dict(zip(zip(range(count), after.tolist(), strict=True), away, strict=True))
+    for a, b in [edge for edge in out if doubles and not doubles.keys().isdisjoint(edge)]:
+        out |= {(p, q): out[a, b] for p in {a, doubles.get(a, a)} for q in {b, doubles.get(b, b)}}
     return out

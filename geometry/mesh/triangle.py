@@ -95,6 +95,8 @@ def jacobians(points, triangles, bulges, order):
 
     `points` are ``(2, n)``, `triangles` ``(3, m)``, `bulges` ``(3, 2, BULGE, m)`` as of `geometry.mesh.sector.Sector`.
     """
-    basis = table(order)
+    basis, count = table(order), triangles.shape[1]
     linear = np.einsum("dce,ck->edk", points[:, triangles], basis.corner_slope)[:, :, :, None]
-    return linear + np.einsum("kjqg,jdge->edkq", basis.bulge_slope, bulges, optimize=True)
+    slope = basis.bulge_slope.transpose(0, 2, 1, 3).reshape(-1, 3 * BULGE)  # by coordinate and point
+    curved = slope @ bulges.transpose(0, 2, 1, 3).reshape(3 * BULGE, -1)
+    return linear + curved.reshape(2, -1, 2, count).transpose(3, 2, 0, 1)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..tooth.profile import cartesian, fillet_length, flank, root_curve
+from ..tooth.profile import fillet_length, flank, root_curve
 
 
 def outline(gear, count=60):
@@ -31,10 +31,11 @@ def overlap(pair, nominals):
         towards = -math.copysign(mate.outward, apart)  # cosine of the angle at which the mate is
         widest = towards * (mate.r_a**2 - radius**2 - apart**2) / (2 * radius * apart)  # its cosine where a point may reach it
         reached = math.cos(min(math.acos(np.clip(widest.min(), -1, 1)) + half.max(), math.pi))
-        for turns in turned.T:
-            near = teeth[towards * np.cos(turns[index] + mirror[index] * teeth) >= reached]
-            x, y = _teeth(radius, half, near, turns[index], mirror[index])
-            deepest = max(deepest, _cut(mate, outlines[mate_index], x, y + apart, turns[mate_index], mirror[mate_index]))
+        angle = turned[index][:, None] + mirror[index] * teeth
+        pose, tooth = np.nonzero(towards * np.cos(angle) >= reached)
+        x, y = _teeth(radius, half, angle[pose, tooth])
+        cut = _cut(mate, outlines[mate_index], x, y + apart, turned[mate_index][pose, None], mirror[mate_index])
+        deepest = max(deepest, cut)
     return deepest
 
 
@@ -51,10 +52,11 @@ def radial_assembly(pair):
     return all(_cut(ring, solid, x, y + pair.a - drop, between) <= allowed for drop in drops)
 
 
-def _teeth(radius, half, teeth, turn=0.0, mirror=1):
-    """Points ``(2, n)`` [mm] of whole teeth at angles [rad] on a gear that is turned, from the outline of half a tooth."""
-    angle = (teeth[:, None, None] + np.array([1, -1])[None, :, None] * half).reshape(-1)
-    return cartesian(np.tile(radius, angle.size // radius.size), turn + mirror * angle)
+def _teeth(radius, half, angle):
+    """Points ``(2, teeth, n)`` [mm] of whole teeth at angles ``(teeth,)`` [rad], from the outline of half a tooth."""
+    tooth = np.append(radius, radius) * np.exp(1j * np.append(half, -half))
+    points = np.exp(1j * angle)[:, None] * tooth
+    return points.imag, points.real
 
 
 def _cut(mate, solid, x, y, turn=0.0, mirror=1):
@@ -62,6 +64,7 @@ def _cut(mate, solid, x, y, turn=0.0, mirror=1):
     away, pitch, rising = np.hypot(x, y), 2 * math.pi / mate.z, np.argsort(solid[0])
     low, high = sorted((mate.r_a, mate.r_f))
     near = (away > low) & (away < high)
+    away, turn = away[near], np.broadcast_to(turn, near.shape)[near]
     angle = (mirror * (np.arctan2(x[near], y[near]) - turn) + pitch / 2) % pitch - pitch / 2
-    inside = np.interp(away[near], solid[0][rising], solid[1][rising]) - abs(angle)
-    return float(np.max(inside * away[near], initial=0.0))
+    inside = np.interp(away, solid[0][rising], solid[1][rising]) - abs(angle)
+    return float(np.max(inside * away, initial=0.0))

@@ -85,4 +85,4 @@ def _added(stiffness, loads, out, sign):
 
 def _full(lower):
     """The symmetric matrix of which `lower` has the lower triangle."""
-    return np.tril(lower) + np.tril(lower, -1).T
+    return np.where(np.tri(*lower.shape, dtype=bool), lower, lower.T)

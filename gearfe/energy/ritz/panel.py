@@ -152,8 +152,8 @@ def _local(sector, bulges, order, modulus, ratio):
     kept = 2 * (basis.count - basis.inside)
     if not basis.inside:
         return local
-    side = local[:, :kept, kept:]
-    return local[:, :kept, :kept] - side @ np.linalg.solve(local[:, kept:, kept:], side.transpose(0, 2, 1))
+    inside = np.linalg.inv(local[:, kept:, kept:])  # of so few unknowns sooner than a solve
+    return local[:, :kept, :kept] - local[:, :kept, kept:] @ (inside @ local[:, kept:, :kept])
 
 
 def _polar(gear, nodes):
@@ -254,6 +254,7 @@ def _boundary(sector, bulges):
     """Boundary edges as vertices ``(e,)``, ``(e,)`` with the material on the left, and their bulges ``(2, e, BULGE)``."""
     a, b = np.array([sector.triangles[list(ends)] for ends in ENDS]).transpose(1, 0, 2).reshape(2, -1).astype(np.int64)
     count = sector.points.shape[1]
-    outer = ~np.isin(a * count + b, b * count + a)
+    edge, back = a * count + b, np.sort(b * count + a)
+    outer = back.take(np.searchsorted(back, edge), mode="clip") != edge
     bulges = np.moveaxis(bulges, (1, 2), (0, 1)).reshape(2, BULGE, -1)
     return a[outer], b[outer], bulges[..., outer].transpose(0, 2, 1)
