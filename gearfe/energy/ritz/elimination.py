@@ -166,9 +166,12 @@ def _room(body, plan):
 
 
 def _planned(body, tree, turn, count):
-    """Triangles, numbers that go, numbers that stay, and the same of both halves; `turn` is when each number goes."""
-    triangles = tree[0]
-    parts = [_planned(body, half, turn, count) for half in tree[1:] if half]
+    """Triangles, numbers that go, numbers that stay, and the same of both halves; `turn` is when each number goes.
+
+    The larger half is first: what the other one needs comes on top of what is left of it.
+    """
+    triangles, halves = tree[0], sorted(filter(None, tree[1:]), key=lambda half: -half[0].size)
+    parts = [_planned(body, half, turn, count) for half in halves]
     if parts:
         ids = np.union1d(parts[0][2], parts[1][2])
     else:
