@@ -50,10 +50,10 @@ class Bodies(NamedTuple):
     ahead: Callable[..., Any] | None = None
 
 
-def energy_bodies(order=3, axial=None, refine=1.0, cache=True):
+def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility3d):
     """`Bodies` by `gearfe.energy.ritz.solid`; coarser: a section order less by 1, axial degrees less by a quarter, at least 2.
 
-    (By 2 at any degree would cover ever less of the error of wide gears.)
+    (By 2 at any degree would cover ever less of the error of wide gears.) `solve` is called like `flexibility3d`.
     """
 
     def of(order, less):
@@ -61,7 +61,7 @@ def energy_bodies(order=3, axial=None, refine=1.0, cache=True):
             degree = axial_degree(gear.b, gear.m_n) if axial is None else axial
             degree -= max(2, round(degree / 4)) if less else 0
             options = {"order": order, "axial": degree, "refine": refine, "cache": cache}
-            return flexibility3d(gear, material, cracks, neighbours=neighbours, **options)
+            return solve(gear, material, cracks, neighbours=neighbours, **options)
 
         return flexible
 

@@ -1,4 +1,4 @@
-"""Gears solved before by finite elements: kept in this process, and on disk between processes.
+"""Gears solved before by finite elements or in three dimensions: kept in this process, and on disk between processes.
 
 A stored flexibility is used only if its whole key, spelled out and stored beside it, equals the one asked for: the gear, its
 material and damage, the options, the source code of both packages and the versions of the libraries that made it. A file that is
@@ -18,12 +18,13 @@ from geometry.damage.crack import meshed_path
 
 from ..elements import fe
 from ..elements.fe_gear3d import WholeGear, solid_flexibility
+from ..energy.ritz.solid import flexibility3d
 from ..flexibility.arrays import plane_arrays, plane_from, solid_arrays, solid_from
 from ..flexibility.solved import PROCESS, solved_gears
 from .flexibility_file import read_flexibility, write_flexibility
 
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
-FORMATS = {"section": (plane_arrays, plane_from), "solid": (solid_arrays, solid_from)}
+FORMATS = {"section": (plane_arrays, plane_from), **dict.fromkeys(("solid", "energy"), (solid_arrays, solid_from))}
 
 
 def folder():
@@ -73,6 +74,16 @@ def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options)
         return solid_flexibility(WholeGear(gear, cracks, **options), material, **keywords)
 
     return _kept("solid", gear, _solid_case(material, cracks, options), solve, kept)
+
+
+def solved_energy(gear, material, cracks=(), *, cache=True, **options):
+    """`Flexibility3D` of a gear of finite width by the energy model, from the cache if it is there.
+
+    `cache` as of `solved_gear`, `options` as of `gearfe.energy.ritz.solid.flexibility3d`: neighbours, order, axial, refine.
+    """
+    kept = solved_gears(cache)
+    solve = partial(flexibility3d, gear, material, cracks, cache=kept, **options)
+    return _kept("energy", gear, _solid_case(material, cracks, options), solve, kept)
 
 
 def _solid_case(material, cracks, options):

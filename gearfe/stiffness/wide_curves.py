@@ -10,7 +10,7 @@ from ..contact.bodies import Bodies, energy_bodies
 from ..contact.wide_contact import pair_stiffness3d
 from ..elements.section_error import FINER, finer_section
 from ..steps import part, steps
-from .cache import solved_solid, unsolved
+from .cache import solved_energy, solved_solid, unsolved
 from .curve import StiffnessCurve
 from .estimate import MEAN, fixed_phases
 from .provenance import provenance
@@ -44,7 +44,7 @@ def solid_curves(row, case, how, phase):
     written = {"face": case.runs, "groove": case.groove, "extended": how.extended, "refine": how.refine}
     order = row.order if how.order is None else how.order
     meta = provenance(case, row.name, written | ({"order": order} if row.order else {}))
-    bodies = _bodies(how) if row.brute else energy_bodies(order, refine=how.refine, cache=how.cache)
+    bodies = _bodies(how) if row.brute else energy_bodies(order, refine=how.refine, cache=how.cache, solve=solved_energy)
     options = {"bodies": bodies, "extended": how.extended, "cache": how.cache}
     with part(row.name, 0.0, 1.0), part("contact", 0.0, 0.6 if how.error else 1.0):
         contacts = pair_stiffness3d(replace(case, force=case.forces), phase, error=how.error, **options)

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from checks import line_kernel
 from numpy.polynomial.legendre import leggauss
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 import gearfe as gf
 from gearfe.energy.ritz import depth, elimination, panel3d, short_edges
 from gearfe.energy.ritz import plane as ritz
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.axial import axial
+from gearfe.energy.ritz.dissection import LEAF, dissect
 from gearfe.energy.ritz.join import join
 from gearfe.energy.ritz.panel import SectionModel
 from gearfe.flexibility import halfspace
@@ -51,6 +52,31 @@ def test_loads_act_at_right_angles_to_the_helicoid(gear):
         normal = np.cross(along, trace, axis=0)
         normal *= np.sign((normal[:2] * flank_normal(gear, roll)).sum(axis=0)) / np.linalg.norm(normal, axis=0)
         assert_allclose(force[:, i], -(normal @ share_of), atol=1e-6)
+
+
+def test_the_order_of_elimination_changes_nothing():
+    """Nested halves against halves in the order of the triangles' numbers, and against all triangles at once."""
+    made = sector(GEAR, (gf.Crack(level=0.3),), refine=0.5, sizes=ritz3d.SIZES)
+    every = np.arange(made.triangles.shape[1])
+
+    def halved(own):
+        return (own, (), ()) if own.size <= LEAF else (own, halved(own[: own.size // 2]), halved(own[own.size // 2 :]))
+
+    def checked(tree):
+        own, *halves = tree
+        if any(halves):
+            assert_array_equal(np.sort(np.concatenate([checked(half) for half in halves])), np.sort(own))
+        else:
+            assert 0 < own.size <= LEAF
+        return own
+
+    assert_array_equal(np.sort(checked(dissect(made))), every)
+    model, knots = panel3d.SolidModel(GEAR, STEEL, 2, 4), flexibility3d.hats(GEAR)
+    got, *others = (panel3d.panel3d(model, made, knots, tree=tree) for tree in (None, halved(every), (every, (), ())))
+    for want in others:
+        for name in ("stiffness", "push", "own", "open_own", "open_open"):
+            part = getattr(want, name)
+            assert_allclose(getattr(got, name), part, atol=1e-10 * np.abs(part).max(), err_msg=name)
 
 
 def test_rigid_motions_store_no_energy():

@@ -274,6 +274,21 @@ def test_with_the_cache_a_second_load_solves_no_gear(method):
     assert sorted(map(repr, PROCESS._kept)) == sorted(map(repr, kept))
 
 
+@pytest.mark.parametrize("damage", [{}, {"pinion": [CRACK]}], ids=["healthy", "cracked"])
+def test_another_process_reads_the_gears_of_the_energy_model(damage, monkeypatch):
+    """Of both hands: the pinion's section turns one way along the width, the wheel's the other way."""
+    helical = gf.GearPair(*(replace(gear, beta=math.radians(12)) for gear in (GEAR, replace(GEAR, z=20))))
+    run = {"method": "ritz3d", "phases": 3, "order": 2, "refine": 0.5, "damage": damage}
+    first = gf.mesh_stiffness(helical, 800.0, STEEL, **run)
+    cache.clear()
+    solves = []
+    monkeypatch.setattr(cache, "flexibility3d", lambda *args, **options: solves.append(args))
+    again = gf.mesh_stiffness(helical, 800.0, STEEL, **run)
+    assert not solves
+    assert_array_equal(again.k, first.k)
+    assert again.meta["dofs"] == first.meta["dofs"]
+
+
 def test_what_is_kept_is_bounded_and_what_was_not_asked_for_longest_goes_first():
     gears = SolvedGears(most=3 * 800)
     for k in (0, 1, 2, 0, 3):

@@ -140,7 +140,8 @@ def front(body, tree):
     Triangles are divided until few are left; what only the set touches is eliminated. The loads are carried along as
     unknowns that stay: at the end their block is minus the displacements under each other. Unknowns of a set are in the order in
     which they go, so that lower triangles add up to lower triangles; those to be eliminated, the coupling and the rest are arrays
-    of their own, in which everything happens in place. The arrays of one set after the other lie in the same memory.
+    of their own, in which everything happens in place. A set's arrays are made when its halves are done, and all but the rest
+    lie in the same memory, one set after the other.
     """
     return carried_out(body, *planned(body, tree))
 
@@ -158,16 +159,19 @@ def carried_out(body, plan, turn):
 
 
 def _room(body, plan):
-    """Numbers that `_eliminated` needs room for."""
+    """Largest size of what a set eliminates and its coupling."""
     _, gone, rest, parts = plan
     first, left = int(body.size[gone].sum()), int(body.size[rest].sum())
-    return first**2 + first * left + left**2 + max((_room(body, part) for part in parts), default=0)
+    return max(first**2 + first * left, *(_room(body, part) for part in parts), 0)
 
 
 def _planned(body, tree, turn, count):
-    """Triangles, numbers that go, numbers that stay, and the same of both halves; `turn` is when each number goes."""
-    triangles = tree[0]
-    parts = [_planned(body, half, turn, count) for half in tree[1:] if half]
+    """Triangles, numbers that go, numbers that stay, and the same of both halves; `turn` is when each number goes.
+
+    The larger half is first: what the other one needs comes on top of what is left of it.
+    """
+    triangles, halves = tree[0], sorted(filter(None, tree[1:]), key=lambda half: -half[0].size)
+    parts = [_planned(body, half, turn, count) for half in halves]
     if parts:
         ids = np.union1d(parts[0][2], parts[1][2])
     else:
@@ -184,21 +188,28 @@ def _planned(body, tree, turn, count):
 
 
 def _eliminated(body, plan, turn, room):
-    """Numbers of a set that stay, in the order in which they go, and the lower triangle of the matrix between them in `room`."""
+    """Numbers of a set that stay, in the order in which they go, and the lower triangle of the matrix between them.
+
+    What goes and its coupling are written in `room`, which then is free again.
+    """
     triangles, gone, rest, parts = plan
     gone, rest = (
         numbers[np.lexsort((numbers, body.kind[numbers], numbers >= body.first_load, turn[numbers]))] for numbers in (gone, rest)
     )
     first, left = int(body.size[gone].sum()), int(body.size[rest].sum())
-    blocks, room = _blocks(room, first, left)
+    halves = [_eliminated(body, part, turn, room) for part in parts]
+    inside = room[: first**2].reshape((first, first), order="F")
+    across = room[first**2 : first * (first + left)].reshape((left, first), order="F")
+    matrix = np.zeros((left, left), order="F")
+    inside[:], across[:] = 0.0, 0.0
     if parts:
         ids = np.append(gone, rest)
-        for part in parts:
-            part_ids, matrix = _eliminated(body, part, turn, room)
-            _add(blocks, matrix, places(body, ids, part_ids), first)
+        while halves:
+            part_ids, part = halves.pop()
+            _add((inside, across, matrix), part, places(body, ids, part_ids), first)
+            del part
     else:
-        leaf(body, triangles, gone, rest, blocks)
-    inside, across, matrix = blocks
+        leaf(body, triangles, gone, rest, (inside, across, matrix))
     if first:
         lower, failed = dpotrf(inside, lower=1, clean=0, overwrite_a=1)
         if failed:
@@ -207,16 +218,6 @@ def _eliminated(body, plan, turn, room):
             divide(across, lower)
             matrix = dsyrk(-1.0, across, beta=1.0, c=matrix, lower=1, overwrite_c=1)
     return rest, matrix
-
-
-def _blocks(room, first, left):
-    """Zeros ``(first, first), (left, first), (left, left)`` in `room`, and what is left of it."""
-    out = []
-    for rows, columns in ((first, first), (left, first), (left, left)):
-        out.append(room[: rows * columns].reshape((rows, columns), order="F"))
-        out[-1][:] = 0.0
-        room = room[rows * columns :]
-    return out, room
 
 
 def _add(blocks, part, at, first):

@@ -1,6 +1,7 @@
 """Sectors joined to a whole gear, exactly: whether of the section or of a gear of finite width.
 
-Sectors in a row are all alike where no load is, so that they are joined by doubling.
+A row of sectors is one matrix between its outer sides, first and last, and its loads; that of the loads is minus their
+displacements under each other. Rows that are alike are made once, so that sectors without loads are joined by doubling.
 """
 
 import numpy as np
@@ -21,66 +22,79 @@ def join(gear, panels, healthy):
         By tooth the opening of all facing crack nodes under its loads ``(k, n)``, and under ``"influence"`` that under unit
         forces on them ``(k, k)``.
     """
-    teeth = sorted(panels)
-    segments = []
+    teeth, half = sorted(panels), healthy.stiffness.shape[0] // 2
+    loaded = {id(panel): _loaded(panel) for panel in panels.values()}
+    rows = []
     for tooth, following in zip(teeth, [*teeth[1:], teeth[0] + gear.z], strict=True):
-        segments.append((tooth, panels[tooth].stiffness))
+        rows.append(loaded[id(panels[tooth])])
         if following - tooth > 1:
-            segments.append((None, repeated(healthy.stiffness, following - tooth - 1)))
-    half = healthy.stiffness.shape[0] // 2
-    total = np.zeros((len(segments) * half,) * 2)
-    pushes, loads = {}, []
-    for k, (tooth, stiffness) in enumerate(segments):
-        places = np.concatenate([k * half + np.arange(half), (k + 1) % len(segments) * half + np.arange(half)])
-        total[np.ix_(places, places)] += stiffness
-        if tooth is not None:
-            push = np.zeros((total.shape[0], panels[tooth].push.shape[1] + panels[tooth].open_push.shape[1]))
-            push[places] = np.hstack([panels[tooth].push, panels[tooth].open_push])
-            pushes[tooth] = slice(sum(p.shape[1] for p in loads), sum(p.shape[1] for p in loads) + push.shape[1])
-            loads.append(push)
-    loads = np.hstack(loads)
-    between = _full(_added(total, loads, np.zeros((loads.shape[1],) * 2, order="F"), 1.0))
-    n = healthy.push.shape[1]
-    for tooth in teeth:
-        at, panel = pushes[tooth], panels[tooth]
-        direct = (panel.own + panel.own.T) / 2
-        between[at, at] += np.block([[direct, panel.open_own.T], [panel.open_own, panel.open_open]])
-    index = {t: slice(pushes[t].start, pushes[t].start + n) for t in teeth}
-    faces = np.concatenate([np.arange(pushes[t].start + n, pushes[t].stop) for t in teeth])
+            rows.append(repeated(healthy.stiffness, following - tooth - 1))
+    between = _closed(_in_a_row(rows, half), half)
+    n, stops = healthy.push.shape[1], np.cumsum([loaded[id(panels[tooth])].shape[0] - 2 * half for tooth in teeth]).tolist()
+    starts = [0, *stops[:-1]]
+    index = {tooth: slice(start, start + n) for tooth, start in zip(teeth, starts, strict=True)}
+    faces = np.concatenate([np.arange(start + n, stop) for start, stop in zip(starts, stops, strict=True)])
     influence = {(i, j): between[index[i], index[j]].copy() for i in teeth for j in teeth}
     opening = {t: between[faces, index[t]] for t in teeth}
-    mutual = between[np.ix_(faces, faces)]
-    return influence, opening | {"influence": (mutual + mutual.T) / 2}
+    return influence, opening | {"influence": between[np.ix_(faces, faces)]}
+
+
+def _loaded(panel):
+    """The row of one sector, with its loads and what pushes the faces of its cracks apart; the lower triangle."""
+    loads = np.hstack([panel.push, panel.open_push])
+    m, n = loads.shape
+    out = np.zeros((m + n,) * 2, order="F")
+    out[:m, :m], out[m:, :m] = panel.stiffness, loads.T
+    direct = (panel.own + panel.own.T) / 2
+    out[m:, m:] = -np.block([[direct, panel.open_own.T], [panel.open_own, panel.open_open]])
+    return out
 
 
 def repeated(stiffness, count):
-    """Stiffness between the outer sides of `count` equal sectors in a row, by doubling."""
-    out = None
-    while count:
-        if count % 2:
-            out = stiffness if out is None else side_by_side(out, stiffness)
-        count //= 2
-        stiffness = side_by_side(stiffness, stiffness) if count else stiffness
-    return _full(out)
+    """Stiffness between the outer sides of `count` equal sectors in a row."""
+    return _full(_in_a_row([stiffness] * count, stiffness.shape[0] // 2))
 
 
-def side_by_side(one, two):
-    """Two sectors side by side, their common side eliminated; of all matrices only the lower triangles count."""
-    h = one.shape[0] // 2
-    out = np.zeros(one.shape, order="F")
-    out[:h, :h], out[h:, h:] = one[:h, :h], two[h:, h:]
-    coupling = np.hstack([one[h:, :h], two[h:, :h].T])
-    return _added(one[h:, h:] + two[:h, :h], coupling, out, -1.0)
+def _in_a_row(rows, half):
+    """One row of many, joined two by two."""
+    while len(rows) > 1:
+        pairs = list(zip(rows[::2], rows[1::2], strict=False))
+        alike = {(id(one), id(two)): (one, two) for one, two in pairs}
+        made = {key: side_by_side(*pair, half) for key, pair in alike.items()}
+        rows = [made[id(one), id(two)] for one, two in pairs] + rows[2 * len(pairs) :]
+    return rows[0]
 
 
-def _added(stiffness, loads, out, sign):
-    """``out + sign loads' stiffness**-1 loads``, lower triangles, by Cholesky, forward only; `loads` are used up."""
+def side_by_side(one, two, half):
+    """Two rows side by side, their common side of `half` unknowns eliminated; of all matrices only the lower triangles count."""
+    left, right, loads = slice(half), slice(half, 2 * half), slice(2 * half, None)
+    mine = slice(2 * half, one.shape[0])
+    out = np.zeros((one.shape[0] + two.shape[0] - 2 * half,) * 2, order="F")
+    across = np.empty((out.shape[0], half), order="F")
+    yours = slice(mine.stop, None)
+    out[left, left], out[right, right] = one[left, left], two[right, right]
+    out[mine, left], out[mine, mine] = one[loads, left], one[loads, loads]
+    out[yours, right], out[yours, yours] = two[loads, right], two[loads, loads]
+    across[left], across[right] = one[right, left].T, two[right, left]
+    across[mine], across[yours] = one[loads, right], two[loads, left]
+    return _without(one[right, right] + two[left, left], across, out)
+
+
+def _closed(row, half):
+    """Displacements of the loads of a row under each other when it is closed to a ring: its outer sides are the same."""
+    left, right, loads = slice(half), slice(half, 2 * half), slice(2 * half, None)
+    around = row[left, left] + row[right, right] + row[right, left] + row[right, left].T
+    return -_full(_without(around, row[loads, left] + row[loads, right], np.asfortranarray(row[loads, loads])))
+
+
+def _without(stiffness, across, out):
+    """``out - across stiffness**-1 across'``, lower triangles, by Cholesky, forward only; `across` and `out` are used up."""
     lower, failed = dpotrf(np.asfortranarray(stiffness), lower=1, clean=0, overwrite_a=1)
     if failed:
         raise LinAlgError("the stiffness of the joined sectors is not positive definite")
-    across = np.asfortranarray(loads.T)
+    across = np.asfortranarray(across)
     divide(across, lower)
-    return dsyrk(sign, across, beta=1.0, c=out, lower=1, overwrite_c=1)
+    return dsyrk(-1.0, across, beta=1.0, c=out, lower=1, overwrite_c=1)
 
 
 def _full(lower):
