@@ -5,12 +5,11 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg.blas import dsyrk
+from scipy.linalg.blas import dsyrk, dtrsm
 from scipy.linalg.lapack import dpotrf
 
 from geometry.mesh.triangle import table
 
-from ...flexibility.triangular import divide
 from .bent import BentTriangles
 from .leaf import leaf
 
@@ -215,7 +214,7 @@ def _eliminated(body, plan, turn, room):
         if failed:
             raise RuntimeError("the triangles of the section fold or nearly do: change refine a little")
         if rest.size:
-            divide(across, lower)
+            across = dtrsm(1.0, lower, across, side=1, lower=1, trans_a=1, overwrite_b=1)
             matrix = dsyrk(-1.0, across, beta=1.0, c=matrix, lower=1, overwrite_c=1)
     return rest, matrix
 

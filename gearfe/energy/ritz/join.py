@@ -6,10 +6,8 @@ displacements under each other. Rows that are alike are made once, so that secto
 
 import numpy as np
 from scipy.linalg import LinAlgError
-from scipy.linalg.blas import dsyrk
+from scipy.linalg.blas import dsyrk, dtrsm
 from scipy.linalg.lapack import dpotrf
-
-from ...flexibility.triangular import divide
 
 
 def join(gear, panels, healthy):
@@ -92,8 +90,7 @@ def _without(stiffness, across, out):
     lower, failed = dpotrf(np.asfortranarray(stiffness), lower=1, clean=0, overwrite_a=1)
     if failed:
         raise LinAlgError("the stiffness of the joined sectors is not positive definite")
-    across = np.asfortranarray(across)
-    divide(across, lower)
+    across = dtrsm(1.0, lower, np.asfortranarray(across), side=1, lower=1, trans_a=1, overwrite_b=1)
     return dsyrk(-1.0, across, beta=1.0, c=out, lower=1, overwrite_c=1)
 
 
