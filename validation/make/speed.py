@@ -12,7 +12,7 @@ import gearfe as gf
 from ..shared import machine, page, speed_page
 from ..shared.places import TABLES
 from ..shared.state import replace
-from . import cost_three, dynamics, speed_three
+from . import cost_three, dynamics, limits, speed_three
 
 TABLE = TABLES / "speed.json"
 REFINES = (0.5, 1.0, 2.0, 3.0)
@@ -36,7 +36,12 @@ def run():
     with tempfile.TemporaryDirectory() as folder:
         os.environ["GEARFE_CACHE"] = folder
         found = {"machine": machine.describe(), "sections": sections(), "three": {"rows": speed_three.rows()}}
-        found |= {"cost": cost_three.seconds(), "dynamics": {"rows": dynamics.integrators()}, "steps": dynamics.speeds()}
+        found |= {
+            "cost": cost_three.seconds(),
+            "dynamics": {"rows": dynamics.integrators()},
+            "steps": dynamics.speeds(),
+            "limits": limits.measured(),
+        }
     replace(TABLE, json.dumps(found, indent=1) + "\n")
     speed_page.plot(found)
     page.write("speed", *text())
@@ -94,6 +99,7 @@ def text():
             "",
             *speed_page.steps(found["steps"]),
         ],
+        limits.text(found["limits"]),
     )
 
 
