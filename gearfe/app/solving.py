@@ -3,6 +3,7 @@
 import base64
 import json
 import math
+import os
 import tempfile
 from dataclasses import replace
 from importlib import resources
@@ -247,8 +248,9 @@ TASKS = {
 
 
 def begin() -> None:
-    """Make a new solver process ready: little memory for solved gears; one pair loads what methods load late."""
+    """Make a new solver process ready: little memory for solved gears, no disk; one pair loads what methods load late."""
     PROCESS.most = KEPT
+    os.environ["GEARFE_CACHE"] = ""  # a slider passes thousands of gears that nobody asks for again
     answer("quick", START)
 
 

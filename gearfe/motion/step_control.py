@@ -83,11 +83,6 @@ def _by_kind(one, two, machine):
     return max(float(error / limit) if limit else 0.0 for error, limit in kinds)
 
 
-def acceleration_difference(one, two):
-    """`differences` of the accelerations of two responses."""
-    return differences(seen(one), seen(two), two.machine)[2]
-
-
 def unseen(machine, start, duration, h):
     """How far loads that are functions are from what steps of `h` seconds see of them, over their spread; the worst.
 

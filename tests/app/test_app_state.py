@@ -1,6 +1,9 @@
 """The state of the page is a scene: nothing of it is lost on the way there and back, and what no field holds is refused."""
 
 import json
+import os
+import subprocess
+import sys
 import tomllib
 from importlib import resources
 
@@ -224,3 +227,12 @@ def test_of_a_planetary_set_one_pair_is_shown_and_that_is_said():
     text = page[page.index("title = ") : page.index("```\n\n```sh")]
     _, told = read("my.toml", text, "sun_planet", "")
     assert "not taken from my.toml: the planetary set" in told
+
+
+def test_gears_that_a_slider_passes_are_not_written_to_the_disk(tmp_path):
+    """By a solver process in three dimensions, whose gears other programs keep there."""
+    work = "from gearfe.app.solving import *; begin(); print(answer('solid', START | {'beta': 9.0, 'z_1': 23}).decode())"
+    command = [sys.executable, "-c", work]
+    told = subprocess.run(command, env=os.environ | {"GEARFE_CACHE": str(tmp_path)}, capture_output=True, text=True, check=True)
+    assert json.loads(told.stdout)["method"].startswith("ritz3d")
+    assert list(tmp_path.iterdir()) == []

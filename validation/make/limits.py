@@ -156,13 +156,19 @@ def text(found):
     """Lines of the page."""
     speeds = ", ".join(f"{value:.0f} ({size})" for size, value in found["speed"].items())
     most = max(found["speed"].values())
+    slow = [
+        f"{label} of {name}"
+        for name, rows in found["problems"].items()
+        for label, seconds, work in rows
+        if 0 < work < 0.3e9 * most * seconds
+    ]
     return [
         "## Where the time goes",
         "",
         "Processor seconds of each stage without those that it calls, one run after a first one; floating point operations are",
         f"those of LAPACK and BLAS, and of condensing a section. Products of square matrices: {speeds} billion a second (rows).",
-        "The limit of a problem is what its operations would take at the largest of these. Below 30 % of it are routines on",
-        "matrices of fewer than a hundred rows; stages without a number move and make small arrays: what holds them is Python",
-        "and memory, not arithmetic.",
+        "The limit of a problem is what its operations would take at the fastest of these. Stages without a number move and make",
+        f"small arrays. Routines that do less than 30 % of the fastest: {'; '.join(slow) or 'none'}. On small matrices the product",
+        "itself is slower.",
         *(line for name, rows in found["problems"].items() for line in ("", *stages(name, rows, most))),
     ]
