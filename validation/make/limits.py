@@ -168,7 +168,8 @@ def text(found):
         "Processor seconds of each stage without those that it calls, one run after a first one; floating point operations are",
         f"those of LAPACK and BLAS, and of condensing a section. Products of square matrices: {speeds} billion a second (rows).",
         "The limit of a problem is what its operations would take at the fastest of these. Stages without a number move and make",
-        f"small arrays. Routines that do less than 30 % of the fastest: {'; '.join(slow) or 'none'}. On small matrices the product",
+        f"small arrays. Routines that do less than 30 % of the fastest: {'; '.join(slow) or 'none'}. "
+        "On small matrices the product",
         "itself is slower.",
         *(line for name, rows in found["problems"].items() for line in ("", *stages(name, rows, most))),
     ]
