@@ -11,6 +11,7 @@ import gearfe as gf
 from geometry.pair.contacts import contacts
 from geometry.pair.flanks import flank_forms
 from geometry.pair.modified import flank_contacts
+from validation.make.flanks_wide import against_fe
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -149,32 +150,13 @@ def test_harmonics_need_whole_cycles():
     assert_allclose(made.harmonics(), [[3e-6, 0, 0.5e-6, 0]], atol=1e-18)
 
 
-def seeded_pair(seed):
-    rng = np.random.default_rng(seed)
-    m = float(rng.choice([1.5, 2.0, 3.0]))
-    rack = {"m_n": m, "alpha_n": math.radians(20), "b": 10.0 * m}
-    gears = [gf.Gear(z=int(z), r_bore=0.25 * z * m, **rack) for z in rng.integers(20, 50, 2)]
-    pair = gf.GearPair(*gears)
-    flanks = {}
-    for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2)):
-        length = (gear.roll_a - gear.roll_f) * rng.uniform(0.15, 0.45)
-        exponent = float(rng.choice([1, 1.5, 2]))
-        flanks[name] = gf.Flank(
-            tip_relief=m * rng.uniform(0.001, 0.012), tip_start_roll=gear.roll_a - length, tip_exponent=exponent,
-            crowning=m * rng.uniform(0, 0.002), slope=m * rng.uniform(-0.001, 0.002),
-        )  # fmt: skip
-    return pair, flanks, 10.0 * m * m * rng.uniform(20, 100)
-
-
 @pytest.mark.slow
 def test_ritz_and_fe_agree_on_random_modified_pairs():
-    """Of seeds 100 to 199 (`validation/pages/tables/flanks_fe.csv`) those furthest apart."""
-    for seed in (132, 142, 156, 164, 175, 184, 195):
-        pair, flanks, force = seeded_pair(seed)
-        ritz, fe = (solved(flanks, force=force, pair=pair, method=method, phases=24) for method in ("ritz", "fe"))
-        difference = np.abs(ritz.te - fe.te).max() / fe.lte.mean()
+    """Those of the page `flanks` that are furthest apart."""
+    for seed in (101, 107, 108, 132, 134, 142, 193):
+        difference = against_fe(seed)
         print(f"seed {seed}: transmission error {100 * difference:.3f} % of the deflection")
-        assert difference < 0.002
+        assert difference < 0.001
 
 
 def test_a_plain_sum_carries_what_closes_its_gaps():

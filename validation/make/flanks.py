@@ -1,31 +1,29 @@
 """The page `flanks.md`: modified flanks against CalculiX in nonlinear contact, and tip relief against transmission error.
 
-The CalculiX rows take minutes each; those on file are kept, so that a run can be stopped and continued.
+Rows of CalculiX and of finite elements are kept one by one, those of CalculiX for as long as their decks stay the same.
 """
 
-import csv
 import math
 import shutil
-import subprocess
 import tempfile
 from pathlib import Path
 
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
 
 from ..shared import page
-from ..shared.places import PAGES, TABLES
+from ..shared.decks import calculix, digest
+from ..shared.kept_rows import kept, stored
+from ..shared.places import PAGES
 from . import flanks_three, flanks_wide
 
-CSV, PICTURE = TABLES / "flanks_calculix.csv", PAGES / "flanks_map.png"
+TABLE, PICTURE = "flanks_calculix", PAGES / "flanks_map.png"
 LINE_LOAD = 150.0  # N/mm
 CASES = (  # relief [um] of both gears, its roll length [mm], exponent, phase
     (10.0, 4.7, 1.0, 0.1), (10.0, 4.7, 1.0, 0.55), (10.0, 4.7, 1.0, 0.8), (30.0, 4.0, 1.0, 0.1), (30.0, 4.0, 1.0, 0.55),
     (30.0, 4.0, 2.0, 0.55), (10.0, 4.7, 1.0, 0.3), (30.0, 4.0, 2.0, 0.25),
 )  # fmt: skip
-HEADER = ("relief_um", "length_mm", "exponent", "phase", "approach_um", "calculix_N_per_mm")
 LOADS = (25.0, 50.0, 75.0, 100.0, 125.0, 150.0, 175.0, 200.0, 250.0, 300.0)  # N/mm
 
 
@@ -51,28 +49,38 @@ def solved(amount, length, exponent, phase):
     return gf.mesh_stiffness(gears, LINE_LOAD * 20, steel, method="ritz", phases=[phase], flanks=flanks)
 
 
-def calculix(case):
-    """Approach [um] that `ritz` finds for the line load, and the line load [N/mm] that CalculiX finds for the approach."""
+def told(case):
+    """Name of a case's row."""
+    return f"section, {case[0]:g} um over {case[1]:g} mm, {'linear' if case[2] == 1 else 'parabolic'}, phase {case[3]:g}"
+
+
+def deck_of(folder, case, approach):
+    """Deck of a case closed by an approach [um], in a folder."""
     gears, steel = pair()
+    options = {"flanks": relieved(*case[:3])}
+    return gf.write_contact_inp(folder / "pair.inp", gears, case[3], approach * 1e-3, LINE_LOAD, (steel, steel), **options)
+
+
+def row_of(case):
+    """Approach [um] that `ritz` finds for the line load, and the line load [N/mm] that CalculiX finds for the approach."""
     approach = round(float(solved(*case).te[0]) * 1e6, 4)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        deck = gf.write_contact_inp(
-            folder / "pair.inp", gears, case[3], approach * 1e-3, LINE_LOAD, (steel, steel), flanks=relieved(*case[:3])
-        )
-        done = subprocess.run(["ccx", "-i", "pair"], cwd=folder, capture_output=True, text=True, timeout=1800, check=False)
-        if not (folder / "pair.dat").exists():
-            raise RuntimeError(f"CalculiX gave no result for {case}: {done.stdout[-500:]}")
-        return approach, deck.force(folder / "pair.dat")
+        deck = deck_of(folder, case, approach)
+        calculix(folder, "pair")
+        load = float(f"{deck.force(folder / 'pair.dat'):.8g}")
+        return {"deck": digest(folder / "pair.inp"), "approach": approach, "load": load}
 
 
-def read():
-    """Committed rows of numbers, by case."""
-    if not CSV.is_file():
-        return {}
-    with CSV.open(encoding="utf-8", newline="") as file:
-        rows = [tuple(float(row[name]) for name in HEADER) for row in csv.DictReader(file)]
-    return {row[:4]: row[4:] for row in rows}
+def write_decks(folder):
+    """Write the decks of the rows on file in a folder, one after the other: jobs of their rows and paths."""
+    three = flanks_three.TABLE, flanks_three.RUNS, flanks_three.told, flanks_three.deck_of
+    for table, runs, name_of, write in ((TABLE, CASES, told, deck_of), three):
+        known = stored(table)
+        for run in runs:
+            if row := known.get(name_of(run)):
+                write(folder, run, row["approach"])
+                yield f"flanks --reference {name_of(run)}", folder / "pair.inp"
 
 
 def differences(case, row):
@@ -81,8 +89,7 @@ def differences(case, row):
     CalculiX was turned by an approach and gave a load near the one meant; the tangent stiffness carries it there.
     """
     curve = solved(*case)
-    approach, load = row
-    theirs = approach + (LINE_LOAD - load) * 20 / float(curve.k_tangent[0]) * 1e6
+    theirs = row["approach"] + (LINE_LOAD - row["load"]) * 20 / float(curve.k_tangent[0]) * 1e6
     ours, unloaded = float(curve.te[0]) * 1e6, float(curve.unloaded[0]) * 1e6
     return ours, theirs, ours - unloaded, theirs - unloaded, curve.share[0]
 
@@ -100,11 +107,11 @@ def text():
         "| relief | phase | load shares | error, gearfe [um] | CalculiX [um] | difference in the deflection |",
         "|---|---|---|---|---|---|",
     ]
-    worst = 0.0
-    for case, row in read().items():
-        ours, theirs, deflection, reference, share = differences(case, row)
+    worst, known = 0.0, stored(TABLE)
+    for case in CASES:
+        ours, theirs, deflection, reference, share = differences(case, known[told(case)])
         worst = max(worst, abs(deflection / reference - 1))
-        name = f"{case[0]:g} um over {case[1]:g} mm, {'linear' if case[2] == 1 else 'parabolic'}"
+        name = told(case).removeprefix("section, ").rpartition(",")[0]
         shares = " + ".join(f"{100 * part:.0f} %" for part in share if part > 0)
         lines.append(
             f"| {name} | {case[3]:g} | {shares} | {ours:.3f} | {theirs:.3f} | {100 * (ours - theirs) / reference:+.3f} % |"
@@ -137,35 +144,24 @@ def text():
         "themselves too stiff."
     )
     how = [
-        "`python -m validation flanks` makes this page from `tables/flanks_*.csv` and new solves of gearfe; `... flanks",
-        "--reference`",
-        "computes rows of CalculiX and of hexahedra that are not on file. Shared with CalculiX: the shapes of the flanks and",
-        "where they",
-        "stand.",
+        "`python -m validation flanks` makes this page from `tables/flanks_*` and new solves of gearfe; `... flanks --reference`",
+        "computes rows of CalculiX and of finite elements that are not on file. Shared with CalculiX: the shapes of the flanks",
+        "and where they stand.",
     ]
     return answer, how, lines, flanks_wide.text(), flanks_three.text()
 
 
 def reference():
-    """Compute the rows of CalculiX, if it is installed, and of hexahedra that are not on file."""
-    rows = read()
-    for case in CASES:
-        if case in rows or not shutil.which("ccx"):
-            continue
-        rows[case] = calculix(case)
-        _write(rows)
-        print(f"  CalculiX, {case}: {rows[case][1]:.4f} N/mm", flush=True)
+    """Compute the rows of CalculiX, if it is installed, and of finite elements that are not on file."""
     flanks_wide.reference()
+    if not shutil.which("ccx"):
+        print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
+        return
+    for case in CASES:
+        kept(TABLE, told(case), lambda case=case: row_of(case))
     flanks_three.reference()
 
 
 def run():
     """Write the page: new solves of gearfe beside what is on file."""
     page.write("flanks", *text())
-
-
-def _write(rows):
-    with written(CSV) as name, open(name, "w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(HEADER)
-        out.writerows([f"{value:.8g}" for value in (*case, *row)] for case, row in rows.items())

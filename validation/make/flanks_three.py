@@ -1,21 +1,15 @@
-"""Part of the page `flanks.md`: a helical pair with modified flanks and axes askew, against CalculiX in three dimensions.
+"""Part of the page `flanks.md`: a helical pair with modified flanks and axes askew, against CalculiX in three dimensions."""
 
-The runs take minutes each; rows on file are kept, so that a run can be stopped and continued.
-"""
-
-import csv
-import shutil
 import tempfile
 from pathlib import Path
 
 import gearfe as gf
-from gearfe.files import written
 
 from ..shared import outsider
-from ..shared.places import TABLES
+from ..shared.decks import calculix, digest
+from ..shared.kept_rows import kept, stored
 
-CSV = TABLES / "flanks_three.csv"
-HEADER = ("case", "phase", "per_width", "nodes", "seconds", "te_um", "calculix_N", "forces_apart")
+TABLE = "flanks_three"
 LOAD = 300.0  # N/mm
 RUNS = tuple(
     (case, phase, mesh) for mesh in (1.0, 1.5) for case in ("crowned, relieved, askew", "involutes") for phase in (0.45, 0.1)
@@ -38,50 +32,46 @@ def solved(name, phase):
     return gf.mesh_stiffness(pair, LOAD * pair.gear_1.b, outsider.STEEL, method="ritz3d", phases=[phase], **flanks)
 
 
-def calculix(name, phase, per_width):
-    """Row of the table: the transmission error [um] of `ritz3d` under the load, and the load [N] that CalculiX finds at it."""
+def told(run):
+    """Name of a run's row."""
+    name, phase, per_width = run
+    return f"{per_width:g} edges, {name}, phase {phase:g}"
+
+
+def deck_of(folder, run, approach):
+    """Deck of a run closed by an approach [um], in a folder."""
+    name, phase, per_width = run
     pair, flanks = case_of(name)
-    te = round(1e6 * float(solved(name, phase).te[0]), 4)
+    options = {"face": "helical", "per_width": per_width, **flanks}
+    steels = outsider.STEEL, outsider.STEEL
+    return gf.write_contact_inp(folder / "pair.inp", pair, phase, 1e-3 * approach, LOAD, steels, **options)
+
+
+def row_of(run):
+    """The transmission error [um] of `ritz3d` under the load, and the load [N] that CalculiX finds at it."""
+    approach = round(1e6 * float(solved(*run[:2]).te[0]), 4)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        options = {"face": "helical", "per_width": per_width, **flanks}
-        steels = (outsider.STEEL, outsider.STEEL)
-        deck = gf.write_contact_inp(folder / "pair.inp", pair, phase, 1e-3 * te, LOAD, steels, **options)
-        seconds = outsider.calculix(folder, "pair")
+        deck = deck_of(folder, run, approach)
+        seconds = calculix(folder, "pair")
         first, second = deck.forces(folder / "pair.dat")
-    nodes = sum(part.points.shape[1] for part in deck.parts)
-    return name, phase, per_width, nodes, round(seconds, 1), te, (first + second) / 2, first / second - 1
-
-
-def read():
-    """Committed rows by case, phase and mesh."""
-    if not CSV.is_file():
-        return {}
-    with CSV.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    return {(row["case"], float(row["phase"]), float(row["per_width"])): row for row in rows}
+        nodes = sum(part.points.shape[1] for part in deck.parts)
+        own = {"deck": digest(folder / "pair.inp"), "nodes": nodes, "seconds": round(seconds, 1), "approach": approach}
+    return own | {"load": float(f"{(first + second) / 2:.8g}"), "forces apart": float(f"{first / second - 1:.3g}")}
 
 
 def reference():
-    """Compute the rows that are not on file, if CalculiX is installed."""
-    for case in RUNS:
-        if case in read() or not shutil.which("ccx"):
-            continue
-        row = dict(zip(HEADER, (f"{v:.8g}" if isinstance(v, float) else v for v in calculix(*case)), strict=True))
-        rows = [*read().values(), row]
-        with written(CSV) as name, open(name, "w", encoding="utf-8", newline="") as file:
-            out = csv.DictWriter(file, HEADER, lineterminator="\n")
-            out.writeheader()
-            out.writerows(rows)
-        print(f"  CalculiX, {case}: {row['calculix_N']} N", flush=True)
+    """Compute the rows that are not on file."""
+    for run in RUNS:
+        kept(TABLE, told(run), lambda run=run: row_of(run))
 
 
-def differences(row):
+def differences(run, row):
     """Error under load and deflection [um] by `ritz3d` today and by CalculiX at the same load, and the larger load share."""
-    pair, _ = case_of(row["case"])
-    curve = solved(row["case"], float(row["phase"]))
-    lacking = LOAD * pair.gear_1.b - float(row["calculix_N"])
-    theirs = float(row["te_um"]) + 1e6 * lacking / float(curve.k_tangent[0])
+    pair, _ = case_of(run[0])
+    curve = solved(*run[:2])
+    lacking = LOAD * pair.gear_1.b - row["load"]
+    theirs = row["approach"] + 1e6 * lacking / float(curve.k_tangent[0])
     ours = 1e6 * float(curve.te[0])
     unloaded = 0.0 if curve.unloaded is None else 1e6 * float(curve.unloaded[0])
     return ours, theirs, ours - unloaded, theirs - unloaded, float(curve.share[0].max())
@@ -104,10 +94,12 @@ def text():
         "| flanks | phase | edges per half width | nodes | error, `ritz3d` [um] | CalculiX [um] | its part |",
         "|---|---|---|---|---|---|---|",
     ]
-    for row in read().values():
-        ours, theirs, _, reference, _ = differences(row)
+    rows = stored(TABLE)
+    for run in RUNS:
+        row = rows[told(run)]
+        ours, theirs, _, reference, _ = differences(run, row)
         lines.append(
-            f"| {row['case']} | {float(row['phase']):g} | {float(row['per_width']):g} | {row['nodes']} | "
+            f"| {run[0]} | {run[1]:g} | {run[2]:g} | {row['nodes']} | "
             f"{ours:.3f} | {theirs:.3f} | {100 * (ours - theirs) / reference:+.2f} % |"
         )
     return lines
@@ -115,5 +107,6 @@ def text():
 
 def worst():
     """Largest difference of the deflections, relative."""
-    found = (differences(row) for row in read().values())
+    rows = stored(TABLE)
+    found = (differences(run, rows[told(run)]) for run in RUNS)
     return max(abs((ours - theirs) / reference) for ours, theirs, _, reference, _ in found)

@@ -1,22 +1,17 @@
-"""Part of the page `flanks.md`: flanks modified along the width and axes askew, the energy model against finite elements.
+"""Part of the page `flanks.md`: random modified flanks, the energy model against finite elements, in the section and askew."""
 
-Finite elements of whole gears take minutes; rows on file are kept, so that a run can be stopped and continued.
-"""
-
-import csv
 import math
 
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
 
-from ..shared.places import TABLES
+from ..shared.kept_rows import kept, stored
 from ..shared.solid_pair import solid_contact
 
-CSV, SECTIONS = TABLES / "flanks_fe3d.csv", TABLES / "flanks_fe.csv"
-HEADER = ("seed", "z_1", "z_2", "beta_deg", "b_mm", "force_N", "deflection_um", "difference_percent")
+WIDE, SECTIONS = "flanks_fe3d", "flanks_fe"  # tables
 SEEDS, PHASES, REFINE = range(6), (0.1, 0.43, 0.76), 0.6
+SECTION_SEEDS = range(100, 200)
 STEEL = gf.Material(E=207e3, nu=0.3)
 
 
@@ -47,37 +42,51 @@ def against_fe3d(seed):
     return float(truth.lte.mean()), float(np.abs(found.te - truth.te).max() / truth.lte.mean())
 
 
-def read():
-    """Committed rows by seed."""
-    if not CSV.is_file():
-        return {}
-    with CSV.open(encoding="utf-8", newline="") as file:
-        return {int(row["seed"]): row for row in csv.DictReader(file)}
+def seeded_section(seed):
+    """Spur pair with flanks modified along their profiles, the same along the width: pair, flanks, force."""
+    rng = np.random.default_rng(seed)
+    m = float(rng.choice([1.5, 2.0, 3.0]))
+    rack = {"m_n": m, "alpha_n": math.radians(20), "b": 10.0 * m}
+    pair = gf.GearPair(*(gf.Gear(z=int(z), r_bore=0.25 * z * m, **rack) for z in rng.integers(20, 50, 2)))
+    flanks = {}
+    for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2)):
+        length = (gear.roll_a - gear.roll_f) * rng.uniform(0.15, 0.45)
+        exponent = float(rng.choice([1, 1.5, 2]))
+        flanks[name] = gf.Flank(
+            tip_relief=m * rng.uniform(0.001, 0.012), tip_start_roll=gear.roll_a - length, tip_exponent=exponent,
+            crowning=m * rng.uniform(0, 0.002), slope=m * rng.uniform(-0.001, 0.002),
+        )  # fmt: skip
+    return pair, flanks, 10.0 * m * m * rng.uniform(20, 100)
+
+
+def against_fe(seed):
+    """Largest difference of `ritz` and `fe` in the transmission error over the mean deflection, 24 phases."""
+    pair, flanks, force = seeded_section(seed)
+    ritz, fe = (gf.mesh_stiffness(pair, force, STEEL, method=name, flanks=flanks, phases=24) for name in ("ritz", "fe"))
+    return float(np.abs(ritz.te - fe.te).max() / fe.lte.mean())
+
+
+def wide_row(seed):
+    """Row of a narrow pair: what it is, its deflection [um] by `fe3d`, and how far `ritz3d` is from it."""
+    pair, _, _, force = seeded_pair(seed)
+    lte, away = against_fe3d(seed)
+    one = pair.gear_1
+    known = {"z": [one.z, pair.gear_2.z], "beta": math.degrees(abs(one.beta)), "b": one.b, "force": force}
+    return known | {"deflection": 1e6 * lte, "difference": away}
 
 
 def reference():
     """Compute the rows that are not on file."""
-    rows = read()
+    for seed in SECTION_SEEDS:
+        kept(SECTIONS, f"section, seed {seed}", lambda seed=seed: {"difference": against_fe(seed)})
     for seed in SEEDS:
-        if seed in rows:
-            continue
-        pair, _, _, force = seeded_pair(seed)
-        lte, away = against_fe3d(seed)
-        one = pair.gear_1
-        values = seed, one.z, pair.gear_2.z, math.degrees(abs(one.beta)), one.b, force, 1e6 * lte, 100 * away
-        rows[seed] = dict(zip(HEADER, (f"{value:.6g}" for value in values), strict=True))
-        with written(CSV) as name, open(name, "w", encoding="utf-8", newline="") as file:
-            out = csv.DictWriter(file, HEADER, lineterminator="\n")
-            out.writeheader()
-            out.writerows(rows[key] for key in sorted(rows))
-        print(f"  fe3d, seed {seed}: {100 * away:.2f} %", flush=True)
+        kept(WIDE, f"askew, seed {seed}", lambda seed=seed: wide_row(seed))
 
 
 def text():
     """Lines of the page."""
-    rows = read()
-    with SECTIONS.open(encoding="utf-8", newline="") as file:
-        away = {int(row["seed"]): float(row["difference_percent"]) for row in csv.DictReader(file)}
+    sections, wide = stored(SECTIONS), stored(WIDE)
+    away = {seed: 100 * sections[f"section, seed {seed}"]["difference"] for seed in SECTION_SEEDS}
     worst = max(away, key=lambda seed: away[seed])
     lines = [
         "## Random sections",
@@ -85,24 +94,23 @@ def text():
         f"`ritz` against `fe` on {len(away)} random pairs: tip relief (linear to parabolic), crowning and slope on both gears,",
         "24 phases each: largest difference of the transmission error over the mean deflection. "
         f"Median {np.median(list(away.values())):.3f} %, largest {away[worst]:.3f} % (seed {worst}).",
-        f"Seeds {min(away)} to {max(away)} of `seeded_pair` in `tests/stiffness/test_flanks.py`;",
-        "a slow test there repeats the furthest apart",
-        "([tables/flanks_fe.csv](tables/flanks_fe.csv)).",
+        "Each is on file ([tables/flanks_fe.jsonl](tables/flanks_fe.jsonl)).",
         "",
         "## Along the width",
         "",
         "Random narrow pairs of m 2 with tip relief, lead crowning, helix slope, twist and end relief on both gears and",
         f"misaligned axes, `ritz3d` against hexahedra of whole gears (`fe3d`, refine {REFINE:g}) at three phases; both are asked",
         "the same gaps, so this judges the bodies, not the gaps",
-        "([tables/flanks_fe3d.csv](tables/flanks_fe3d.csv)).",
+        "([tables/flanks_fe3d.jsonl](tables/flanks_fe3d.jsonl)).",
         "",
         "| seed | teeth | helix | width | force | deflection [um] | largest difference of the error |",
         "|---|---|---|---|---|---|---|",
     ]
-    for row in rows.values():
+    for seed in SEEDS:
+        row = wide[f"askew, seed {seed}"]
         lines.append(
-            f"| {row['seed']} | {row['z_1']}/{row['z_2']} | {float(row['beta_deg']):.0f} deg | {float(row['b_mm']):.1f} mm | "
-            f"{float(row['force_N']):.0f} N | {float(row['deflection_um']):.2f} | {float(row['difference_percent']):.2f} % |"
+            f"| {seed} | {row['z'][0]}/{row['z'][1]} | {row['beta']:.0f} deg | {row['b']:.1f} mm | "
+            f"{row['force']:.0f} N | {row['deflection']:.2f} | {100 * row['difference']:.2f} % |"
         )
     return [*lines, *_section(), *_kinks()]
 

@@ -35,7 +35,9 @@ def reference():
 def run(parts=()):
     """Write the page; `parts`: beginnings of the rows of `ritz3d` that are computed anew, or ``all``; or write ``decks``."""
     if "decks" in parts:
-        decks.write(outsider.write_decks, outlines_three.write_decks)
+        from . import flanks  # here, so that no row of this page depends on it
+
+        decks.write(outsider.write_decks, outlines_three.write_decks, flanks.write_decks)
         return
     again = page.anew(parts)
     outsider.refresh(again)
