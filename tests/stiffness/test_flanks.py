@@ -153,10 +153,10 @@ def test_harmonics_need_whole_cycles():
 @pytest.mark.slow
 def test_ritz_and_fe_agree_on_random_modified_pairs():
     """Those of the page `flanks` that are furthest apart."""
-    for seed in (132, 142, 156, 164, 175, 184, 195):
+    for seed in (101, 107, 108, 132, 134, 142, 193):
         difference = against_fe(seed)
         print(f"seed {seed}: transmission error {100 * difference:.3f} % of the deflection")
-        assert difference < 0.002
+        assert difference < 0.001
 
 
 def test_a_plain_sum_carries_what_closes_its_gaps():
