@@ -217,8 +217,13 @@ def record(job, seconds, rows, page, table="", **more):
 
 
 def files_of(line, told):
-    """What was behind a line, as `used` gave it; nothing if unknown. A line of before functions were noted counts files whole."""
-    fact = told[line["files"]] if "files" in line else {}
+    """What was behind a line, as `used` gave it; nothing if unknown. A line of before functions were noted counts files whole.
+
+    A merge of two branches drops a key that one of them no longer needed: then it is unknown.
+    """
+    fact = told.get(line.get("files"), {})
+    if not told.keys() >= set(fact.get("called", {}).values()):
+        return {}
     folders = {folder: dict.fromkeys(stems.split(), WHOLE) for folder, stems in fact.get("files", {}).items()}
     folders |= {folder: told[key]["calls"] for folder, key in fact.get("called", {}).items()}
     return {
