@@ -218,6 +218,14 @@ def test_of_two_lines_of_a_job_the_later_counts(monkeypatch, tmp_path):
     assert state.read()[0]["cracks", ""]["rows"] == 3
 
 
+def test_a_line_whose_key_a_merge_dropped_is_old():
+    code = state.digest(["validation/shared/decks.py"])
+    line, told = {"files": "f", "code": code}, {"f": {"called": {"validation/shared": "k"}}, "k": {"calls": {"decks": "*"}}}
+    assert state.present(line, told)
+    assert not state.present(line, {"f": told["f"], "decks": {"by": {}}})
+    assert not state.present(line, {"decks": {"by": {}}})
+
+
 def test_first_lines_of_pages_agree_with_the_state():
     assert state.stamp(write=False) == [], "run python -m validation --stale"
 
