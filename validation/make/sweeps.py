@@ -75,12 +75,13 @@ def answer(found):
     """The first line."""
     grid, kills, callers = (found[name] for name in ("grid", "kills", "threads of the caller"))
     same = kills["same"] and found["refusals"]["same"] and found["cluster"]["same"] and not callers["failed"]
+    least, most = min(callers["ratios"]), max(callers["ratios"])
     part = grid["case_seconds"] / (grid["parent_seconds"] + grid["worker_seconds"])
     return (
         f"{'Yes' if same else '**Not always**'}: a case costs {1e3 * grid['case_seconds'] / grid['cases']:.0f} ms of one "
         f"processor, {100 * part:.0f} % of all processes' time is in cases, and {len(kills['kills'])} kills, full disks, a lost "
-        f"worker and calls from {threads.THREADS} threads {'changed no bit of a result' if same else 'changed results'}; threads "
-        "gain little, processes do."
+        f"worker and calls from {threads.THREADS} threads {'changed no bit of a result' if same else 'changed results'}. "
+        f"Use processes: {threads.THREADS} threads take {least:.2g} to {most:.2g} times as long as one."
     )
 
 

@@ -151,18 +151,19 @@ def _answer(done):
 
 def callers():
     """Lines of what `RUNS` gave, and what first imports in new processes failed with; RuntimeError if threads change anything."""
-    lines = []
+    lines, ratios = [], []
     for number, (who, method, options, count, often) in enumerate(RUNS):
         code = f"import json; from validation.make.threads import compared; print(json.dumps(compared({number})))"
         one = _answer(_apart(code, {}))
         more = "".join(f", {name} {value}" for name, value in options.items())
         told = f"| {who} | `{method}`{more} | {often} x {count} | 0 | {one['differ']} | "
         lines.append(f"{told}{one['solved']}, {one['twice']} | {one['one']:.3g} | {one['many']:.3g} |")
+        ratios.append(one["many"] / one["one"])
         if one["differ"]:
             raise RuntimeError(f"threads of the caller change something: {lines[-1]}")
     first = [_apart(FIRST, {}) for _ in range(IMPORTS)]
     failed = [one.stderr.splitlines()[-1] for one in first if one.returncode]
-    return {"lines": lines, "imports": IMPORTS, "failed": failed}
+    return {"lines": lines, "ratios": ratios, "imports": IMPORTS, "failed": failed}
 
 
 def callers_told(found):
@@ -175,8 +176,8 @@ def callers_told(found):
         "that two threads ask for it at once. A process that ends, a value with other bits, a gear solved twice: each would be",
         "counted here. From the second repetition on threads change 50 times as often as usual; the seconds are those of the",
         "first.",
-        "gmsh has one model for the whole process, so meshing is done in turns and several threads gain little: use processes",
-        f"(`gearfe.batch`) for speed. On {found['machine'].replace(', one thread used', '')}:",
+        "gmsh has one model for the whole process and Python runs one thread at a time, so threads work in turns and lose time",
+        f"at each: use processes (`gearfe.batch`) for speed. On {found['machine'].replace(', one thread used', '')}:",
         "",
         "| threads by | method | pairs | processes ended | values that differ | solves, twice | clock s, 1 thread | "
         f"{THREADS} threads |",
