@@ -157,7 +157,7 @@ _HOME = {
     "frequency_response": "gearfe.machine.frequency_response",
     "mesh_modulation": "gearfe.signal.mesh_modulation",
     "modal_energy": "gearfe.machine.modal_energy",
-    "with_own_speed": "gearfe.signal.own_speed",
+    "with_own_speed": "gearfe.signal.shaft_speed",
     "write_contact_inp": "gearfe.decks.contact_inp",
     "write_inp": "gearfe.decks.deck",
     "write_line_inp": "gearfe.decks.line_deck",

@@ -110,10 +110,10 @@ from .signal.mesh_modulation import mesh_modulation as mesh_modulation
 from .signal.orders import order_spectrum as order_spectrum
 from .signal.orders import residual_signal as residual_signal
 from .signal.orders import synchronous_average as synchronous_average
-from .signal.own_speed import with_own_speed as with_own_speed
 from .signal.series import Signal as Signal
 from .signal.series import decimate as decimate
 from .signal.series import integrate as integrate
+from .signal.shaft_speed import with_own_speed as with_own_speed
 from .signal.signal_file import read_signal as read_signal
 from .signal.signal_file import read_signals as read_signals
 from .signal.spectra import envelope as envelope

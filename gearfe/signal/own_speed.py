@@ -17,6 +17,8 @@ FINE = 4  # speeds tried for each bin of the highest harmonic
 ROUNDS = 3  # of phase demodulation
 
 
+# `with_own_speed` and `_path` of here are replaced by those of `shaft_speed` and go when the rows of all pages are computed anew:
+# any line changed here would make 2600 rows old whose processes start others, of which only the names of files are known
 def with_own_speed(
     signal: Signal, order: float, speeds: tuple[float, float], *, harmonics: int = 3, seconds: float | None = None
 ) -> Signal:
