@@ -37,18 +37,20 @@ class Solve:
         What each takes is written in one table, `gearfe.stiffness.methods.ROWS`; in words:
         ``ritz``: the converged energy model of the transverse section, milliseconds (`gearfe.energy.ritz.plane`). ``ritz3d``: the
         same in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact
-        (`gearfe.contact.wide_contact`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``; ``meta["why"]`` says
-        why. To compare a damaged curve with the healthy one ask for both by the same method. ``fe``: finite elements of whole
-        sections, the independent reference (`gearfe.elements.fe`).
+        (`gearfe.contact.wide_contact`). ``auto``: ``fe3d`` for shafts that are one piece with
+        their gear, ``ritz3d`` for helical gears and for what changes along the width (pits, spalls, cracks of part of the width,
+        lead, misalignment, hubs that tilt), otherwise ``ritz``; ``meta["why"]`` says why. To compare a damaged curve with the
+        healthy one ask for both by the same method.
+        ``fe``: finite elements of whole sections, the independent reference (`gearfe.elements.fe`).
         ``fe3d``: hexahedra of whole gears of finite width, the same for ``ritz3d``, minutes (`gearfe.elements.fe_gear3d`).
         ``coupled``: closed forms repaired by known means, external healthy gears (`gearfe.energy.closed.coupled`). All with line
         contact, neighbour coupling and load sharing. ``textbook``, ``published``: beam energies and a plain sum of the pairs
         (`gearfe.energy.closed.plain_sum`). An `OwnFlexibility`: your own model of how one gear gives, where ``ritz`` and ``fe``
         stand otherwise.
 
-        Cracks: all but ``coupled``; of part of the width or of a depth that changes along it: ``ritz3d`` and ``fe3d``. Pits:
-        ``ritz3d``, ``fe3d`` and the plain sums. Flanks: all methods; what changes along the width, misalignment too, needs
-        ``ritz3d``, ``fe3d`` or a plain sum. Hubs that tilt: ``ritz3d`` or ``fe3d``.
+        Cracks: all but ``coupled``; of part of the width or of a depth that changes along it: ``ritz3d`` and ``fe3d``. Pits and
+        spalls: ``ritz3d``, ``fe3d`` and the plain sums. Flanks: all methods; what changes along the width, misalignment too,
+        needs ``ritz3d``, ``fe3d`` or a plain sum. Hubs that tilt: ``ritz3d`` or ``fe3d``.
     phases : int or array
         Number of equidistant phases per mesh cycle, or the phases themselves; with pitch deviations those of as many teeth as are
         to be seen.
@@ -75,7 +77,7 @@ class Solve:
         For ``ritz`` and ``fe``, also in three dimensions: estimate the discretisation error of every k from coarser solves (see
         `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.wide_curves.solid_curves`).
     cache : bool
-        Reuse what was solved before in this process; for ``fe`` and ``fe3d`` also in an earlier one (see
+        Reuse what was solved before in this process; for ``ritz3d``, ``fe`` and ``fe3d`` also in an earlier one (see
         `gearfe.stiffness.cache`). False: solve everything anew, keep and displace nothing.
     tell : callable, optional
         For ``fe3d``: gets a line of text before the first of several gears, with the expected seconds of all (with `error` those
