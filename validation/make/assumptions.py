@@ -133,8 +133,9 @@ def text():
     bores = [value[*pair, name] for pair in pairs for name in changes if name.startswith("bores")]
     rest = max(abs(value[*pair, name]) for pair in pairs for name in changes if (*pair, name) in value and "bores" not in name)
     answer = (
-        f"Bores decide: halved to 1.4 times as wide they change the mean stiffness by {min(bores):+.0f} to {max(bores):+.0f} %, "
-        f"everything else by at most {rest:.1f} %; the length and angle of a crack decide what it takes."
+        f"Of the changes tried bores decide: halved to 1.4 times as wide they change the mean stiffness by {min(bores):+.0f} to "
+        f"{max(bores):+.0f} %, the others by at most {rest:.1f} % (not tried: face width, to which k is nearly proportional, and "
+        "centre distance); the length and angle of a crack decide what it takes."
     )
     how = [
         "`python -m validation assumptions` computes these tables (`tables/assumptions*`) anew. Both sides of each comparison",
