@@ -25,6 +25,7 @@ from geometry.tooth.profile import cartesian, flank, flank_normal
 
 RING = gears().planet_ring.gear_2
 SUN = gears().sun
+GEARS = [SUN, pytest.param(RING, marks=pytest.mark.slow)]
 BOTH = (gf.Crack(level=0.4), gf.Crack(level=0.3, side="unloaded", tooth=2))
 
 
@@ -60,7 +61,7 @@ def ours(gear, table, teeth):
     return np.einsum("a,taub,b->tu", row, table[at], row)
 
 
-@pytest.mark.parametrize("gear", [SUN, pytest.param(RING, marks=pytest.mark.slow)], ids=["sun", "ring"])
+@pytest.mark.parametrize("gear", GEARS, ids=["sun", "ring"])
 def test_other_teeth_of_a_cracked_gear_yield_as_by_direct_finite_elements(gear, monkeypatch):
     """From the cracked tooth and past it; a crack on either side."""
     teeth = (0, 1, 3, gear.z - 1)
