@@ -44,7 +44,7 @@ computes rows whose names begin so anew, `... holes all` every one.
 
 
 def row(scene, case):
-    """One layout: what is cut out, and by how much its missing material changes k at most, relative, on its meshes."""
+    """One layout: what is cut out, and what its missing material takes of k by the estimate, at its worst phase, on each mesh."""
     found = gf.load_scene(scene).pair()
     pits = {side: [one for one in own if isinstance(one, gf.Pit)] for side, own in found.damage[case].items()}
     pair, run = found.pair, {"face": found.face or "spur", "groove": found.groove}
@@ -73,7 +73,7 @@ def section(again=()):
     lines = [
         *TEXT.strip().splitlines(),
         "",
-        "| layout | pits | volume [mm3] | cut | meshed | k lost by contact | k lost by material, at most | at phase |",
+        "| layout | pits | volume [mm3] | cut | meshed | k lost by contact | k lost by material, estimated | at phase |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for scene, case in LAYOUTS:
@@ -96,9 +96,9 @@ def answer():
     finest = {name: one for (name, _), one in outsider_three.pitted(outsider.stored()).items()}
     calculix = max(1 - (1 + one["cut"]) / (1 + one["lost"]) for one in finest.values())
     return (
-        f"Missing material takes at most {100 * most['extra'][-1]:.2f} % of k at a phase in {len(rows)} layouts of pits, and "
-        f"{100 * cracked:.2f} % in the mean of cracked teeth, by a linear estimate that is too low; CalculiX, where it solves "
-        f"the contact around two holes of a narrow gear, finds up to {100 * calculix:.1f} %."
+        f"By a linear estimate, which is too low, missing material takes up to {100 * most['extra'][-1]:.2f} % of k at a phase "
+        f"in {len(rows)} layouts of pits, and {100 * cracked:.2f} % in the mean of cracked teeth; CalculiX, where it solves the "
+        f"contact around two holes of a narrow gear, finds up to {100 * calculix:.1f} %."
     )
 
 
