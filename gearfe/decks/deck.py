@@ -54,6 +54,14 @@ def write_inp(
         The same model here.
     load : sparse matrix, shape (2 nodes, 1)
         Its nodal forces [N/mm].
+
+    Raises
+    ------
+    ValueError
+        If `path` has another suffix, is a folder or cannot be written; if `gear` is no `Gear`, `material` no `Material`, or
+        `state` no plane state; if `refine` is not 0.2 to 64; if `radius` is not on the involute flank; if `line_load` is not
+        positive and finite, or above ``E m_n / 20``; if `cracks` are no sequence of `Crack`, two are on one side of a tooth, one
+        changes along the width, or one leaves its tooth.
     """
     check_output(path, "deck")
     check_state(state)

@@ -161,6 +161,19 @@ def compound_planetary(
         [kg/m3]; bodies are rings from bore to reference circle, the carrier as heavy as its planets (assumed).
     **mesh
         Further fields of every `GearMesh`.
+
+    Returns
+    -------
+    Machine
+        In SI units and the frame of the carrier: x and y [m] of all bodies along the same axes, theta [rad] counter-clockwise;
+        both suns, ring, carrier, then the planets ``p`` of stage 1, ``b`` (inner) and ``c`` (outer) of stage 2.
+
+    Raises
+    ------
+    ValueError
+        If the centre distances of stage 2 make no triangle, the planets cannot be assembled with equal spacing, `density` is not
+        positive, a mesh stiffness, `beta` or `zeta` is negative or not finite, `speed` or `torque` is not finite, the phases of a
+        damaged tooth's curve do not rise, or a field of `GearMesh` is out of range.
     """
     turn = carrier_speed(pairs, speed)
     suns = pairs["sun1_p"].gear_1, pairs["sun2_b"].gear_1

@@ -51,6 +51,20 @@ def gear_pair(
     damage : tuple of ToothDamage
     **mesh
         Further fields of `GearMesh`.
+
+    Returns
+    -------
+    Machine
+        In SI units and a frame at rest: x [m] from gear 1 to gear 2, z along the axes, rotations [rad] counter-clockwise; the
+        directions of body 1, then those of body 2.
+
+    Raises
+    ------
+    ValueError
+        If there are not two bodies and two torsional stiffnesses; if a mass or a moment of inertia is not positive, the mesh
+        stiffness or `zeta` is negative or not finite, `speed` or `torque` is not finite, or the times of a history fall; if the
+        phases of a damaged tooth's curve do not rise, or it is longer than the cycles until the tooth returns; if a field of
+        `GearMesh` is out of range.
     """
     layout, (body_1, body_2) = Layout(bodies), bodies
     radii = 1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b

@@ -80,6 +80,17 @@ def pitted_helical(
         Torsional stiffness of the shafts to motor and brake [N m/rad], assumed 1e4 at the pinion, none at the wheel.
     density, zeta, backlash : float
         [kg/m3]; damping ratio of supports, assumed 0.02; play along the line of action [m], assumed 0.1 mm.
+
+    Returns
+    -------
+    Machine
+        As `gear_pair` makes it, of bodies ``pinion`` and ``wheel``: in SI units and a frame at rest.
+
+    Raises
+    ------
+    ValueError
+        If the gears are spur gears, a pit lies below the base circle, `density` or `backlash` is not positive, `damping`, `depth`
+        or `zeta` is negative or not finite, or `speed` or `torque` is not finite.
     """
     width = min(pair.gear_1.b, pair.gear_2.b)
     radii = pair.curvature_radii(pair.pitch_phase)

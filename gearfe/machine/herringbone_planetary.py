@@ -78,6 +78,19 @@ def herringbone_planetary(
         Take in the gyroscopic moments of sun, planets and ring, which tilt; not what else the turning of the carrier does.
     **mesh
         Further fields of every `GearMesh` (``backlash``: half of the article's dead zone lies on either side of 0 there).
+
+    Returns
+    -------
+    Machine
+        In SI units and the frame of the carrier: x, y, z [m], tilt_x, tilt_y and theta [rad] of the halves ``sunL``, ``sunR``,
+        ``planet1L``... and of ``ring``, theta of ``carrier``; axes are the same for all bodies, angles counter-clockwise.
+
+    Raises
+    ------
+    ValueError
+        If a mass, a moment of inertia or `density` is not positive, a mesh stiffness, `zeta` or `mesh_zeta` is negative or not
+        finite, `speed` or `torque` is not finite, the phases of a damaged tooth's curve do not rise, or a field of `GearMesh` is
+        out of range.
     """
     outer, inner, n = stage.sun_planet, stage.planet_ring, stage.n_planets
     sun, planet, ring = outer.gear_1, outer.gear_2, inner.gear_2

@@ -19,7 +19,22 @@ SPACE = "x y z tilt_x tilt_y theta"
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A rigid body: mass [kg], moments of inertia about its axis and across it [kg m2], and the directions it can move in."""
+    """A rigid body: mass [kg], moments of inertia about its axis and across it [kg m2], and the directions it can move in.
+
+    Numbers are taken as they are; a `Machine` of the body refuses masses and moments of inertia that are not positive.
+
+    Parameters
+    ----------
+    name : str
+    mass : float
+        [kg]
+    inertia : float
+        Moment of inertia about its axis [kg m2], that of ``theta``.
+    dofs : str
+        Directions it can move in, of ``x y z tilt_x tilt_y theta``, with blanks between them.
+    across : float
+        Moment of inertia across its axis [kg m2], that of ``tilt_x`` and ``tilt_y``.
+    """
 
     name: str
     mass: float

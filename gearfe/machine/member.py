@@ -30,7 +30,25 @@ class Member:
 
 
 def disc(gear: Gear, density: float, bearing: float, *, width: float | None = None) -> Member:
-    """`Member` of a gear as a ring from its bore (or rim) to its reference circle; `width` in mm, default the gear's."""
+    """`Member` of a gear as a ring from its bore (or rim) to its reference circle.
+
+    Numbers are taken as they are; a `Machine` refuses masses that are not positive.
+
+    Parameters
+    ----------
+    gear : Gear
+    density : float
+        [kg/m3]
+    bearing : float
+        Stiffness of its bearing in x and in y [N/m]; 0: none.
+    width : float, optional
+        [mm]; default: the width of the gear.
+
+    Returns
+    -------
+    Member
+        Mass [kg], moment of inertia about its own axis [kg m2] and base radius [m]; without torsional stiffness.
+    """
     low, high = sorted((gear.held, gear.z * gear.m_n / (2 * math.cos(gear.beta))))
     mass = density * math.pi * (high**2 - low**2) * (width or gear.b) * 1e-9
     return Member(mass, mass * (low**2 + high**2) / 2 * 1e-6, bearing, 1e-3 * gear.r_b)

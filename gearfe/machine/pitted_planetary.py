@@ -66,6 +66,18 @@ def pitted_planetary(
         Take in the gyroscopic and centripetal terms of the turning carrier.
     **mesh
         Further fields of every `GearMesh`: for the impact law ``power=1.5, push=True, depth=1e-4, damping=..., backlash=...``.
+
+    Returns
+    -------
+    Machine
+        As `planetary` makes it: in SI units and the frame of the carrier.
+
+    Raises
+    ------
+    ValueError
+        If `density` is not positive, a mesh stiffness or `zeta` is negative or not finite, `speed` or a torque is not finite, the
+        times of a history fall, the phases of a damaged tooth's curve do not rise, `friction` has not
+        ``0 < v_static < v_dynamic``, or a field of `GearMesh` is out of range.
     """
     outer, inner, n = stage.sun_planet, stage.planet_ring, stage.n_planets
     sun, planet, ring = outer.gear_1, outer.gear_2, inner.gear_2

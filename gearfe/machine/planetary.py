@@ -58,6 +58,19 @@ def planetary(
         Angles of the planets [rad]; default: equal spacing from 0.
     spin : float
         Speed of the carrier [rad/s], whose gyroscopic and centripetal terms are then taken in; 0: they are left out.
+
+    Returns
+    -------
+    Machine
+        In SI units and the frame of the carrier: x and y [m] of all bodies along the same axes, theta [rad] counter-clockwise;
+        sun, ring, carrier, then the planets.
+
+    Raises
+    ------
+    ValueError
+        If the bodies of the planets or their `places` are not `n_planets`; if a mass or a moment of inertia is not positive, a
+        mesh stiffness or `zeta` is negative or not finite, a load is not finite, the times of a history fall, or a field of
+        `GearMesh` is out of range.
     """
     names = [f"planet{i + 1}" for i in range(n_planets)]
     angles = 2 * math.pi * np.arange(n_planets) / n_planets if places is None else np.asarray(places, dtype=float)
@@ -112,6 +125,11 @@ def stage_phases(
         By mesh name: fields of `GearMesh` (``frequency, phase, teeth, first``). Sun teeth are numbered in the order in which they
         enter at planet 1, the teeth of each planet in the order they meet the sun from the pair of sun tooth 0 on, ring teeth
         as planet 1 meets them.
+
+    Raises
+    ------
+    ValueError
+        If a planet cannot be assembled at its place: ``z_sun + z_ring`` times its part of a turn is not whole.
     """
     outer, inner = pairs
     sun, planet, ring = outer.gear_1, outer.gear_2, inner.gear_2

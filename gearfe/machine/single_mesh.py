@@ -23,6 +23,17 @@ def single_mesh(mass: float, stiffness: Stiffness, frequency: float, *, force: H
         Force transmitted [N].
     **mesh
         Further fields of `GearMesh` (``damping``, ``zeta``, ``backlash``, ``error``, ``damage``...).
+
+    Returns
+    -------
+    Machine
+        One degree of freedom, ``pair.x``: the compression along the line of action [m]. In SI units.
+
+    Raises
+    ------
+    ValueError
+        If `mass` is not positive and finite, `stiffness` is negative or not finite, `frequency` or `force` is not finite, the
+        times of a history fall, or a field of `GearMesh` is out of range.
     """
     row = np.ones(1)
     return Machine(

@@ -36,10 +36,19 @@ class Load:
 
     A history holds its first and last values outside; two equal times are a jump. A function must be smooth.
 
+    Parameters
+    ----------
+    name : str
+    row : ndarray, shape (n,)
+        The load acts on the n degrees of freedom of a machine as ``row`` times its value (`Layout.unit`, `Layout.point`).
+    value : float, (ndarray, ndarray) or callable
+        Along its row: a force [N] on displacements, a torque [N m] on rotations. Times are in s.
+
     Raises
     ------
     ValueError
-        If a number or a history is not finite, or the times of a history do not rise.
+        If a number or a history is not finite, if a history is empty or has not as many times as values, or if its times fall. A
+        function is looked at when the load is called: if it gives a value that is not finite.
     """
 
     name: str
@@ -89,6 +98,29 @@ def pulses(
     """History of a load that rises from `base` to `peak` for `width` seconds every `period` seconds, `count` times.
 
     Each flank of a pulse takes the part `rise` of its width. For `Load`.
+
+    Parameters
+    ----------
+    base, peak : float
+        Values between the pulses and on top of them, in the unit of the load: [N] or, of a torque, [N m].
+    period, width : float
+        From the start of a pulse to that of the next, and from the start of a pulse to its end [s].
+    count : int
+        Number of pulses.
+    start : float
+        Start of the first pulse [s].
+    rise : float
+        Part of `width`, up to 0.5.
+
+    Returns
+    -------
+    times, values : ndarray, shape (4 count,)
+        Corners of the pulses: times [s], and values in the unit of the load.
+
+    Raises
+    ------
+    ValueError
+        Unless ``0 < width < period`` and ``0 < rise <= 0.5``.
     """
     if not 0 < width < period or not 0 < rise <= 0.5:
         raise ValueError(f"width = {width} s, rise = {rise}: pulses need 0 < width < period and 0 < rise <= 0.5")
@@ -166,6 +198,14 @@ class Machine:
         Rows of the meshes.
     law : dict of ndarray, shape (m,)
         Parameters of their contact laws by name (`gearfe.machine.contact_law.parameters`).
+
+    Raises
+    ------
+    ValueError
+        If there is not one positive, finite mass for each degree of freedom; if a row of a spring, mesh or load has not n finite
+        numbers; if `k` or `c` of a spring is negative or not finite. With a `spin`: if a body moves in one direction of the plane
+        only, is held to the ground otherwise in x than in y, or tilts and is not among the `rotors`. With `rotors`: if one does
+        not move in two directions, has no ``theta``, or its speed is not finite.
     """
 
     dofs: tuple[str, ...]

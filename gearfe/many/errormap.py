@@ -132,6 +132,18 @@ def error_map(
         Per mesh cycle.
     workers, progress
         As of `gearfe.batch`.
+
+    Returns
+    -------
+    ErrorMap
+        A row for each pair, load and state of damage.
+
+    Raises
+    ------
+    ValueError
+        If `pairs` is no whole number from 1 on, `phases` is below 1, `loads` are empty or one is not positive and finite, or so
+        large that teeth would break, `workers` is no whole number from 1 on, or your own model fails or its k is not finite and
+        positive.
     """
     if pairs != int(pairs) or pairs < 1:
         raise ValueError(f"pairs = {pairs}, but give a number of pairs >= 1")

@@ -138,6 +138,11 @@ def ring_window(radius: float, bending: float, foundation: float) -> Callable[[N
     callable
         Weights at an array of angles [rad].
 
+    Raises
+    ------
+    ValueError
+        If a number is not positive and finite.
+
     References
     ----------
     By the energy of bending ``EI / (2 R**3) integral of (w + w'')**2``: S. P. Timoshenko, Vibration Problems in Engineering, art.

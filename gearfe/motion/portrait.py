@@ -48,7 +48,13 @@ def poincare_section(
     Returns
     -------
     ndarray, shape (points, 2)
-        Displacement and velocity, interpolated between samples.
+        Displacement and velocity, interpolated between samples; in the unit of the signal, and in that unit per second.
+
+    Raises
+    ------
+    ValueError
+        If `frequency` is not between 0 and half of the rate, `start` lies outside the record, the record has fewer than 6
+        samples, or `velocity` differs from it in rate or length.
 
     References
     ----------

@@ -54,6 +54,18 @@ def demodulate(
     band : (float, float), optional
         Band to use instead of the best one [Hz].
 
+    Returns
+    -------
+    Demodulated
+        The kurtogram, the spectrum of the squared envelope over frequency [Hz], and the lines found in it.
+
+    Raises
+    ------
+    ValueError
+        If ``(count + 1) fault_frequency`` is not between 0 and a quarter of the rate; if the record is constant or has fewer than
+        256 samples, or `levels` is not among those that `fast_kurtogram` allows; if `band` is not
+        ``0 <= low < high <= rate / 2``; if the record is so short that no bin lies near a line.
+
     References
     ----------
     J. Antoni, Mech. Syst. Signal Process. 21(1) (2007) 108-124; the way article S2 treats its measured signals.

@@ -50,6 +50,14 @@ def indicator_table(
     -------
     dict of str to dict of str to (float, float)
         ``table[case][indicator]`` is the value and the increment [%], nan where the healthy value is 0.
+
+    Raises
+    ------
+    ValueError
+        If there is no case called `healthy`; if a signal differs from it in unit, rate or length; if a signal is constant. With
+        frequencies also: if only one is given, or one is no positive number of Hz; if the fault frequency is not below the mesh
+        frequency, or less than 4 bins of the spectrum; if a line or a sideband lies above half of the rate, or has no bin within
+        `tolerance`; if the spectrum is zero around the mesh frequency; if scipy does not know `window`.
     """
     if healthy not in signals:
         raise ValueError(f"no case {healthy!r} to compare with; there are {', '.join(signals) or 'none'}: give one as healthy=")

@@ -37,6 +37,18 @@ def spectral_kurtosis(signal: Signal, size: int, *, window: str | tuple[Any, ...
     size : int
         Samples in a frame, fewer than between two impulses; frames overlap by three quarters.
     window : str or tuple
+        A window that `scipy.signal.get_window` knows.
+
+    Returns
+    -------
+    Spectrum
+        Over frequency from 0 to half of the rate [Hz].
+
+    Raises
+    ------
+    ValueError
+        If the signal is constant, `size` is no whole number from 8 to a quarter of the samples, or scipy does not know the
+        window.
 
     References
     ----------

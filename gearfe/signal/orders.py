@@ -51,6 +51,27 @@ def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, windo
 
     `by_turn` resamples to whole turns, so that the orders 1, 2, ... are bins; the resolution is ``1 / turns``.
 
+    Parameters
+    ----------
+    signal : Signal
+        One that has `angle` or `shaft_frequency` of the shaft.
+    samples_per_turn : int, optional
+        See `by_turn`; default: as many as a turn has where the shaft is slowest.
+    window : str or tuple
+        A window that `scipy.signal.get_window` knows.
+
+    Returns
+    -------
+    Spectrum
+        In the unit of the signal, over orders (per turn) from 0 to half of the samples per turn.
+
+    Raises
+    ------
+    ValueError
+        If the signal has neither `angle` nor `shaft_frequency`, covers less than one whole turn or has fewer than 6 samples; if
+        the shaft slows down to less than a sixteenth of its mean speed; if `samples_per_turn` is no whole number, smaller than
+        the samples of a turn where the shaft is slowest, or above 1e8; if scipy does not know the window.
+
     References
     ----------
     K. R. Fyfe, E. D. S. Munck, Mech. Syst. Signal Process. 11(2) (1997) 187-205.
@@ -80,6 +101,14 @@ def synchronous_average(
     periods : int
         How many were averaged; turns at the end that make no whole period are left out.
 
+    Raises
+    ------
+    ValueError
+        If the signal has neither `angle` nor `shaft_frequency`, covers less than one whole turn or has fewer than 6 samples; if
+        the shaft slows down to less than a sixteenth of its mean speed; if `samples_per_turn` is no whole number, smaller than
+        the samples of a turn where the shaft is slowest, or above 1e8; if `turns_per_period` is no whole number from 1 on, or
+        above the number of whole turns.
+
     References
     ----------
     P. D. McFadden, Mech. Syst. Signal Process. 1(1) (1987) 83-95.
@@ -108,6 +137,14 @@ def residual_signal(average: ArrayLike, teeth: int, *, sidebands: int = 0, shaft
     Returns
     -------
     ndarray, shape (n,)
+        In the unit of `average`.
+
+    Raises
+    ------
+    ValueError
+        If `average` is not a row of two or more finite numbers; if `teeth` is no whole number from 2 to ``n / 2``; if `sidebands`
+        or `shaft_orders` are no whole numbers from 0 on, or so many that nothing is left: ``2 sidebands + 1`` or `shaft_orders`
+        not below `teeth`.
 
     References
     ----------

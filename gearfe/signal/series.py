@@ -160,6 +160,16 @@ def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
         What lies below [Hz] is taken out, with the mean: noise there would grow without bound.
     unit : str
         Unit of the result, for example ``m`` for ``m/s^2`` integrated twice.
+
+    Returns
+    -------
+    Signal
+        In `unit`, at the rate and of the length of `signal`, with its shaft.
+
+    Raises
+    ------
+    ValueError
+        If `times` is no whole number from 1 on, `above` is not between 0 and half of the rate, or `unit` is an empty text.
     """
     whole("times", times, 1)
     hertz("above", above)

@@ -122,6 +122,20 @@ def read_signals(
         At which a pulse counts, in the tachometer's unit; default: half its height.
     **stated
         ``rate``, ``header``, ``scale`` of `read_signal`.
+
+    Returns
+    -------
+    dict of str to Signal
+        By the full name of the channel; with a tachometer that of pulses, from its first to its last pulse.
+
+    Raises
+    ------
+    ValueError
+        As `read_signal`; if `columns`, `units` or `tachometer` name no channel of the file, or `columns` is empty where there are
+        several; if `pulses` is no whole number from 1 on, the tachometer has fewer than 4 pulses or lost one, or its speed is not
+        above 0 everywhere.
+    RuntimeError
+        If the library that reads the format is missing.
     """
     recording = channels(path, stated.pop("header", None))
     pulse = None if tachometer is None else _choose(path, recording, tachometer)

@@ -30,6 +30,11 @@ def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spect
     Spectrum
         In the unit of the signal; resolution ``rate / n`` [Hz].
 
+    Raises
+    ------
+    ValueError
+        If scipy does not know the window.
+
     References
     ----------
     G. Heinzel, A. Ruediger, R. Schilling, Spectrum and spectral density estimation by the DFT, AEI (2002).
@@ -58,6 +63,18 @@ def power_spectral_density(
     resolution : float, optional
         Distance of two bins [Hz]; a segment lasts ``1 / resolution``. Default: a sixteenth of the record in one segment.
     window : str or tuple
+        A window that `scipy.signal.get_window` knows.
+
+    Returns
+    -------
+    Spectrum
+        Over frequency from 0 to half of the rate [Hz].
+
+    Raises
+    ------
+    ValueError
+        If `resolution` is not positive, finer than ``1 / duration``, or so coarse that a segment has fewer than 2 samples; if
+        scipy does not know the window.
 
     References
     ----------
@@ -92,7 +109,25 @@ def analytic(signal, band=None):
 
 
 def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
-    """Envelope by Hilbert's transform: modulus of the analytic signal, of `band` = (low, high) [Hz] only if given."""
+    """Envelope by Hilbert's transform: modulus of the analytic signal, of `band` = (low, high) [Hz] only if given.
+
+    Parameters
+    ----------
+    signal : Signal
+        Its mean is taken out.
+    band : (float, float), optional
+        Ends of the band [Hz]; default: from 0 to half of the rate.
+
+    Returns
+    -------
+    Signal
+        In the unit of `signal`, at its rate and of its length, with its shaft. A band that holds no bin gives 0.
+
+    Raises
+    ------
+    ValueError
+        If `band` is not two numbers with ``0 <= low < high <= rate / 2``.
+    """
     return replace(signal, values=np.abs(analytic(signal, band)), name=f"envelope of {signal.name}")
 
 
@@ -102,6 +137,25 @@ def squared_envelope_spectrum(
     """Amplitude spectrum of the squared envelope, unit ``(unit)^2``; best taken of the band that the kurtogram finds.
 
     ``(1 + m cos(2 pi f t))`` times a carrier of amplitude A gives ``2 m A**2`` at f and ``m**2 A**2 / 2`` at 2 f.
+
+    Parameters
+    ----------
+    signal : Signal
+        Its mean is taken out.
+    band : (float, float), optional
+        Ends of the band [Hz]; default: from 0 to half of the rate.
+    window : str or tuple
+        A window that `scipy.signal.get_window` knows.
+
+    Returns
+    -------
+    Spectrum
+        Over frequency from 0 to half of the rate; resolution ``rate / n`` [Hz].
+
+    Raises
+    ------
+    ValueError
+        If `band` is not two numbers with ``0 <= low < high <= rate / 2``, or scipy does not know the window.
 
     References
     ----------

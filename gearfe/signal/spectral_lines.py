@@ -43,6 +43,11 @@ def expected_lines(
     dict of str to float
         ``f_m``, ``2 f_m``, ``f_m - f_fault``, ``f_m + 2 f_fault``, ``f_fault``, ``f_m - f_carrier``, ... [Hz], those above 0.
 
+    Raises
+    ------
+    ValueError
+        If a frequency is no positive number of Hz, `count` is negative, or `harmonics` is below 1.
+
     Examples
     --------
     S0: sun 1000, carrier 200 rpm, z_sun 21, three planets.

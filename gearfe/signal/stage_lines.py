@@ -52,6 +52,14 @@ def stage_lines(
         ``f_m``, ``f_m + f_c``, ``f_m - 2 f_t + f_c``, ... [Hz], above 0; for `gearfe.find_lines`. Lines of the same frequency are
         named once.
 
+    Raises
+    ------
+    ValueError
+        If a number of teeth or of planets is no whole number from 1 on, the ring has no more teeth than the sun,
+        ``(sun + ring) / n_planets`` is not whole, `carrier` is no positive number of Hz, or `damaged` is none of the three gears.
+    TypeError
+        If `highest` has another name.
+
     References
     ----------
     P. D. McFadden, J. D. Smith, Proc. Inst. Mech. Eng. C 199 (1985) 65-70; M. Inalpolat, A. Kahraman, J. Sound Vib. 323 (2009)

@@ -48,11 +48,17 @@ def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[
         Samples in a frame: bins are ``rate / size`` apart, and what is shorter than a frame is smeared. Default: a power of two
         near the square root of 8 times the number of samples, which resolves both alike.
     window : str or tuple
+        A window that `scipy.signal.get_window` knows.
 
     Returns
     -------
     Spectrogram
         Of whole frames only.
+
+    Raises
+    ------
+    ValueError
+        If `size` is no whole number from 8 to half of the samples, or scipy does not know the window.
     """
     n = signal.values.size
     size = 2 ** round(np.log2(8 * n) / 2) if size is None else size

@@ -154,9 +154,17 @@ def solve(case: Case, how: Solve | None = None) -> Any:
     ``k = F / delta``: F the force along the line of action, delta the loaded minus the unloaded transmission error as a
     length on it, bores held, or on supports that give way.
 
+    Parameters
+    ----------
+    case : Case
+        The pair, its load and materials, and what else differs from healthy gears on rigid bores.
+    how : Solve, optional
+        By which method, at which phases, how finely; default: ``Solve()``.
+
     Returns
     -------
     StiffnessCurve, or a list of them if the case has several loads
+        k [N/m] over the mesh phase, and what belongs to it.
 
     Raises
     ------

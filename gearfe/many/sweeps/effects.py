@@ -136,6 +136,18 @@ def told_apart(healthy: Any, damaged: Any) -> float:
 
     0.5: not at all told apart, 1: always; below 0.5 damage makes the value smaller. Mann and Whitney's U over all pairs.
 
+    Parameters
+    ----------
+    healthy : array, shape (m,)
+        Values of healthy gears, in any unit.
+    damaged : array, shape (n,)
+        Values of damaged gears, in the same unit.
+
+    Returns
+    -------
+    float
+        Between 0 and 1; equal values count half. nan if one of the values is nan, or if there are none on one side.
+
     Examples
     --------
     >>> told_apart([1.0, 2.0, 3.0], [2.5, 3.5, 4.5])
