@@ -18,6 +18,7 @@ from . import places, slow, state
 
 STATE = Path("tables/state.jsonl")
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+SLACK = 1.5  # of the clock, for each second of the processor that a job took elsewhere: machines differ, and do other work
 AT_ONCE, A_ROW = 60.0, 5.0  # CPU seconds of rows that one process computes, so that a stop loses little; of one of unknown cost
 
 
@@ -133,8 +134,9 @@ def too_old(found, most):
 def renew(found, minutes, continued, *, processes=1, alone=()):
     """Compute jobs again, those of earlier code first, then the oldest, as many as fit; the names of those that failed.
 
-    A job whose cost is known begins only if that fits into what is left, and all are stopped when the time is over. What is
-    stopped or fails leaves nothing behind: a job writes beside the pages; its files are moved there, each whole, the state last.
+    A job whose cost is known begins only if `SLACK` times that fits into what is left, and all are stopped when the time is
+    over. What is stopped or fails leaves nothing behind: a job writes beside the pages; its files are moved there, each whole,
+    the state last.
 
     Parameters
     ----------
@@ -157,8 +159,8 @@ def renew(found, minutes, continued, *, processes=1, alone=()):
     try:
         while waiting or running:
             left = end - time.monotonic()
-            longer += [one for one in waiting if left <= 0 or (one.seconds or 0.0) > left]
-            waiting = [one for one in waiting if left > 0 and (one.seconds or 0.0) <= left]
+            longer += [one for one in waiting if left <= 0 or SLACK * (one.seconds or 0.0) > left]
+            waiting = [one for one in waiting if left > 0 and SLACK * (one.seconds or 0.0) <= left]
             while len(running) < processes and (job := _next(waiting, [one.page for one in running], alone)):
                 words = _taken(waiting, job, left)
                 running.append(Running(words, len(job.words), continued.get(" ".join(words), ()), processes > 1))
