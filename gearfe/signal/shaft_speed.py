@@ -15,7 +15,9 @@ from .series import Signal
 
 BROAD = 32  # widths of a line over which the median is what resonances and noise hold
 PARTS = 4  # of a record, each of which must show its speed
-CLEAR = 1.2  # times what chance finds: noise alone has 1.09 at most in 160 records, lines that are found 1.4 and more
+# times what chance finds: white noise had 1.09 at most in 160 records, lines that were found 1.4 and more; on records drawn later
+# it refused 300 of 300 of white noise, 113 of 150 of noise through resonances, and none of 150 with lines
+CLEAR = 1.2
 LOOK = "look at gearfe.plot_spectrogram; give a range that the speed does not leave and no other line crosses, or other harmonics"
 GOLDEN = (math.sqrt(5) - 1) / 2
 
@@ -28,7 +30,8 @@ def with_own_speed(
     First a path through a spectrogram: at each time the speed whose harmonics stand highest above what is broader than a line,
     in logarithms, on a path on which no line moves further than it is wide from one window to the next. Then the phase of the
     line along that path, which corrects it (Bonnardot et al.). The path is as good as the line stands out: look at
-    ``gearfe.plot_spectrogram`` first, and give a range of speeds in which no other line has the same course.
+    ``gearfe.plot_spectrogram`` first, and give a range of speeds in which no other line has the same course. White noise alone is
+    refused, but noise through a resonance as narrow as a line looks like one.
 
     Parameters
     ----------
