@@ -14,7 +14,9 @@ SIDES = ("loaded", "unloaded")  # right and left flank
 
 
 def cracked_sector(gear, cracks, *, refine=1.0):
-    """`PeriodicSector` with the cracks ``(Crack, ...)`` of its tooth, whatever tooth they name; one to a side at most.
+    """`PeriodicSector` with the cracks ``(Crack, ...)`` of its tooth, and nodes of their faces as of `Seam`, crack by crack.
+
+    Cracks may name any tooth; there is one to a side at most.
 
     ValueError if a crack is too short, leaves the sector, or shares its side with another.
     """
@@ -35,10 +37,10 @@ def cracked_sector(gear, cracks, *, refine=1.0):
     first = np.cumsum([0, *(part[0].size - 1 for part in parts)]) // 2
     starts = {"loaded": (first[2], right, 1), "unloaded": (first[2], left, -1)}
     chains = [(int(top + sense * one.mark), lines[side]) for side, (top, one, sense) in starts.items() if side in lines]
-    mesh, _ = fill(cartesian(r, a), np.zeros((2, 0)), chains)
+    mesh, faces = fill(cartesian(r, a), np.zeros((2, 0)), chains)
     below, _, _, beyond, held = ((np.arange(first[k], first[k + 1] + 1)) % first[-1] for k in range(5))
     flanks = (first[2] + right.flank)[::-1], (first[2] - left.flank)[::-1]
-    return PeriodicSector(gear, mesh, below, beyond[::-1], held[::-1], flanks, roll)
+    return PeriodicSector(gear, mesh, below, beyond[::-1], held[::-1], flanks, roll), faces
 
 
 def _parts(gear, right, left, refine):

@@ -11,7 +11,6 @@ from ..files import save
 from ..pictures.set_plot import draw_curves
 from ..units import NEWTON_PER_UM
 from .rim import rim_angles, rim_moved
-from .rim_supports import RimSupports
 from .set_file import MESHES, content
 
 if TYPE_CHECKING:
@@ -133,13 +132,17 @@ class SetCurves:
 def _rim_of(of, found):
     """Angles and displacements [mm] of the rim of a ring on supports."""
     rim = of.bodies.rim
-    if not (of.coupled and isinstance(of.case.ring, RimSupports)):
+    if rim.pads is None:
         return np.zeros(0), np.zeros((len(found), 0, 2))
-    moved = []
+    moved, faces, p = [], of.bodies.faces.get("ring"), rim.reaction.shape[0]
     for one in found:
         if of.case.ring.pushes:
             tractions, whole = one.lugs, one.whole
         else:
             tractions, whole = (np.einsum("pta,ta->p", values, one.on_ring) for values in (rim.reaction, rim.moves))
-        moved.append(rim_moved(rim, one.on_ring, tractions, whole))
+            if faces:
+                gripped = rim.grip @ (faces.pads @ one.opened)
+                tractions, whole = tractions + gripped[:p], whole + gripped[p:]
+        by_cracks = (faces.edge @ one.opened).reshape(-1, 2) if faces else 0.0
+        moved.append(rim_moved(rim, one.on_ring, tractions, whole) + by_cracks)
     return rim_angles(rim.whole), np.array(moved)

@@ -9,12 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
 
 from geometry.pair.contacts import near_pitches
 
 from ..contact.kinks import kink_rows, near_kink
-from ..contact.pair_contact import KINK, PairContact, _closing
+from ..contact.pair_contact import KINK, PairContact
 from ..contact.rows import Wanted
 from ..contact.sliding import bounded
 from ..energy.ritz.plane import flexibility
@@ -30,8 +29,7 @@ class Contacts(NamedTuple):
 
     `flexibility` ``(n, n)`` of both gears [mm per N/mm], `gap` [mm], `coefficient`, `radius` and `tilt` as of
     `gearfe.contact.sharing.line_contact`; places `roll_1`, `roll_2` [mm] and torques `turn_1`, `turn_2` on both gears as of
-    `gearfe.contact.rows.Row`; `order` of their pairs. `opening` ``(n, m)`` of cracks under unit loads and `faces` ``(m, m)``
-    under unit forces, None without cracks. `least` is the gap of the first touch.
+    `gearfe.contact.rows.Row`; `order` of their pairs. `least` is the gap of the first touch.
     """
 
     flexibility: NDArray[np.float64]
@@ -44,13 +42,7 @@ class Contacts(NamedTuple):
     turn_1: NDArray[np.float64]
     turn_2: NDArray[np.float64]
     order: NDArray[np.int64]
-    opening: NDArray[np.float64] | None
-    faces: NDArray[np.float64] | None
     least: float
-
-    def closed(self, force: NDArray[np.float64]) -> bool:
-        """Whether faces of cracks overlap under forces ``(n,)``."""
-        return self.opening is not None and bool(_closing(force @ self.opening))
 
 
 class Mesh:
@@ -176,13 +168,10 @@ def _one(contact, i, built, rows, possible, least, reach):
             places.append([row.roll_1, row.roll_2, row.turn_1, row.turn_2])
     values = np.hstack([np.reshape(place, (4, -1)) for place in places])
     near = built["gap"] - least <= reach
-    seams = [flexible.seam for flexible in contact.flexibility if flexible.seam]
     return Contacts(
         built["flexibility"][np.ix_(near, near)],
         *(built[name][near] for name in ("gap", "coefficient", "radius", "tilt")),
         *values[:, near],
         candidates.order[built["column"][near]],
-        built["opening"][near] if seams else None,
-        block_diag(*(seam.influence for seam in seams)) if seams else None,
         float(least),
     )

@@ -13,10 +13,10 @@ from ..steps import steps
 from ..stiffness.limits import FURTHEST
 from .assembly import Bodies, Position, Set
 from .case import PlanetaryCase
-from .cracked import cracked, cracks_of
+from .cracked import cracked_teeth, faces_of
 from .curves import SetCurves
 from .meshes import Meshes, near_load
-from .rim import ring_on
+from .rim import ring_faces, ring_on
 from .standing import standing
 from .whole_gear import PLACES, between_teeth, whole_gear
 
@@ -74,13 +74,13 @@ def planetary_stiffness(
     at, coupled, refine = _positions(positions, cycles), truth("coupled", coupled), checked_refine(refine)
     stand = standing(case.gears, np.array(case.angles), at)
     kept = solved_gears(cache)
-    bodies = bodies_of(case, refine=refine, cache=kept)
+    bodies = bodies_of(case if coupled else case.with_(ring="held"), refine=refine, cache=kept)
     solved = time.perf_counter() - started
-    meshes = Meshes(case, stand, refine, kept)
+    meshes = Meshes(case.with_(damage=None), stand, refine, kept)
     of = Set(case, bodies, stand, coupled)
     solutions = [_position(of, meshes, i) for i in steps(range(at.size))]
     seconds = {"seconds_flexibility": solved, "seconds_contact": time.perf_counter() - started - solved}
-    return SetCurves.of(of, meshes, at, solutions, seconds)
+    return SetCurves.of(of, Meshes(case, stand, refine, kept), at, solutions, seconds)
 
 
 def _positions(positions, cycles):
@@ -111,23 +111,15 @@ def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) ->
     """`Bodies` of a case."""
     gears, kept = (case.gears.sun, case.gears.planet, case.ring_gear), solved_gears(cache)
     sun, planet, ring = (whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True))
-    cracked_gears = {}
+    key = ring.gear, case.material[2], case.ring, case.width, refine
+    rim = kept.get(("rim", *key), lambda: ring_on(ring, case.ring, case.width))
+    faces = {}
     for name, cracks in case.damage.items():
-        if cracks:
-            of = {"sun": sun, "ring": ring}.get(name, planet), tuple(cracks), refine
-            cracked_gears[name] = kept.get(("cracks", of[0].gear, of[0].material, *of[1:]), partial(cracks_of, *of))
-    key = ring.gear, case.material[2], case.ring, case.width, refine, case.damage.get("ring")
-    rim = kept.get(("rim", *key), lambda: ring_on(ring, case.ring, case.width, cracked_gears.get("ring")))
-    planets = {name[1]: _held(gear)[..., PLACES:] for name, gear in cracked_gears.items() if name not in ("sun", "ring")}
+        if not cracks:
+            continue
+        whole = {"sun": sun, "ring": ring}.get(name, planet)
+        of = whole, tuple(cracks), refine
+        teeth = kept.get(("cracks", whole.gear, whole.material, *of[1:]), partial(cracked_teeth, *of))
+        faces[name] = ring_faces(rim, case.ring, teeth) if name == "ring" else faces_of(whole, teeth, whole.held_inverse())
     across = planet.held()[:, :PLACES, PLACES:]
-    return Bodies(_alike(sun, cracked_gears.get("sun")), across, _alike(ring, cracked_gears.get("ring")), rim, planets)
-
-
-def _alike(whole, cracks):
-    """Flexibility ``(z, PLACES, z, PLACES)`` between the right flanks of a gear, its edge held."""
-    return between_teeth(whole.held()) if cracks is None else _held(cracks)[..., :PLACES].copy()
-
-
-def _held(cracks):
-    """That of its right flanks by loads on both."""
-    return cracked(cracks, cracks.whole.held_inverse()).table[:, :PLACES]
+    return Bodies(between_teeth(sun.held()), across, between_teeth(ring.held()), rim, faces)
