@@ -7,17 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.crack import Crack
-from geometry.tooth.gear import Gear
-from geometry.tooth.profile import arc_at
-
-from ..checks import check_length
-from ..elements.fe3d import Patches, mesh_patches, patch_loads
-from ..elements.one_tooth import check_cracks, check_line_load, check_one, load_at
-from ..files import check_output
-from ..material import Material
+from ..core.checks import check_length
+from ..core.files import check_output
+from ..core.material import Material
+from ..flexibility.finite_elements.fe3d import Patches, mesh_patches, patch_loads
+from ..flexibility.finite_elements.one_tooth import check_cracks, check_line_load, check_one, load_at
+from ..geometry.damage.crack import Crack
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.profile import arc_at
 from .pressed import read_rows, write_lines
-from .solid_deck import Part, element_lines, node_lines, part_of
+from .solid_deck import Part, element_lines, node_lines, part_of, set_lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,11 +108,9 @@ def _text(part, material, load):
     yield "*NODE, NSET=ALL"
     yield from node_lines(part, 0)
     yield from element_lines(part, 1, 0, 0, material)
-    yield "*NSET, NSET=HELD"
-    yield from (f"{node}," for node in (part.held + 1).tolist())
+    yield from set_lines("HELD", part.held)
     loaded = np.flatnonzero(load.any(axis=1))
-    yield "*NSET, NSET=LOADED"
-    yield from (f"{node}," for node in (loaded + 1).tolist())
+    yield from set_lines("LOADED", loaded)
     yield "*BOUNDARY\nHELD, 1, 3"
     yield "*STEP\n*STATIC\n*CLOAD"
     for node in loaded.tolist():

@@ -5,14 +5,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.mesh.holed_drawing import on_outline
-from geometry.mesh.holes import Holed
-from geometry.mesh.solid import Solid
-from geometry.tooth.profile import cartesian, flank
-
-from ..elements.folds import check_folds, unfolded
-from ..elements.hexahedron import ORDER, TWENTY
-from ..elements.tetrahedron import nodes_of, second_order
+from ..flexibility.finite_elements.folds import check_folds, unfolded
+from ..flexibility.finite_elements.hexahedron import ORDER, TWENTY
+from ..flexibility.finite_elements.tetrahedron import nodes_of, second_order
+from ..geometry.mesh.holed_drawing import on_outline
+from ..geometry.mesh.holes import Holed
+from ..geometry.mesh.solid import Solid
+from ..geometry.tooth.profile import cartesian, flank
 
 MIRROR = np.array([ORDER.index((node, 2 - level)) for node, level in ORDER])  # bottom and top change places
 MIRRORED = {20: MIRROR, 10: np.array([0, 2, 1, 3, 6, 5, 4, 7, 9, 8])}
@@ -111,15 +110,25 @@ def node_lines(part, first):
     return [f"{first + i}, {x:.12e}, {y:.12e}, {z:.12e}" for i, (x, y, z) in enumerate(part.points.T.tolist(), 1)]
 
 
-def element_lines(part, number, first, element, material):
-    """Elements, numbered from `element` + 1, material and section of body `number`; RuntimeError if some fold."""
+def cell_lines(part, name, first=0, element=0):
+    """Elements of the set `name`, numbered from `element` + 1; RuntimeError if some fold."""
     check_folds(part.points, part.cells)
-    out = [f"*ELEMENT, TYPE={KINDS[len(part.cells)]}, ELSET=G{number}"]
+    out = [f"*ELEMENT, TYPE={KINDS[len(part.cells)]}, ELSET={name}"]
     for j, row in enumerate((part.cells + first + 1).T.tolist(), 1):
         row = [element + j, *row]
         out += [",".join(map(str, row[k : k + ROW])) + ("," if k + ROW < len(row) else "") for k in range(0, len(row), ROW)]
-    out += [f"*MATERIAL, NAME=M{number}\n*ELASTIC\n{material.E!r}, {material.nu!r}"]
-    return [*out, f"*SOLID SECTION, ELSET=G{number}, MATERIAL=M{number}"]
+    return out
+
+
+def element_lines(part, number, first, element, material):
+    """Elements, numbered from `element` + 1, material and section of body `number`."""
+    out = [f"*MATERIAL, NAME=M{number}\n*ELASTIC\n{material.E!r}, {material.nu!r}"]
+    return [*cell_lines(part, f"G{number}", first, element), *out, f"*SOLID SECTION, ELSET=G{number}, MATERIAL=M{number}"]
+
+
+def set_lines(name, nodes):
+    """Node set `name` of `nodes` ``(n,)``, numbered from 0."""
+    return [f"*NSET, NSET={name}", *(f"{node + 1}," for node in nodes.tolist())]
 
 
 def surface_lines(part, name, faces, element):

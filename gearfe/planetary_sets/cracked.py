@@ -1,0 +1,117 @@
+"""Cracks of a gear as openings of their faces: what they do to all its teeth, and how the faces push each other apart.
+
+A gear with all faces held together is the healthy gear. Openings d of the faces act on it as forces on the sides of the cracked
+sectors. With v the unknowns of all sectors, K the healthy block-circulant stiffness, E those of the cracked sectors, loads f of
+the teeth, and forces r that push the faces apart::
+
+    K v = B f - E K_vd d,    r = S d - Q f,    S = K_dd - K_vd' E' K^-1 E K_vd,    u = C f + Q' d
+
+so that the healthy gear, solved once, and one solve for each opening give any cracked one exactly. C is the healthy flexibility.
+Open faces have r = 0; faces in touch push each other along their normal and slide without friction.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+
+from ..geometry.mesh.periodic_sector import periodic_sector
+from .cracked_sector import cracked_sector
+from .whole_gear import PLACES, WholeGear, in_chain, sector_stiffness
+
+
+class CrackedTooth(NamedTuple):
+    """Openings (e of them) of the facing nodes in a tooth: along their normals, then along the faces.
+
+    `sides` ``(N, e)`` are the forces on the N unknowns of the sector and of the next one's side by unit openings, `faces`
+    ``(e, e)`` those on the faces; `loads` ``(e, 2 PLACES)`` the openings' part in the work of the tooth's loads. `touch` are the
+    openings that cannot be negative, `side` the places of a side among the unknowns of a sector.
+    """
+
+    tooth: int
+    side: NDArray[np.int64]
+    sides: NDArray[np.float64]
+    faces: NDArray[np.float64]
+    loads: NDArray[np.float64]
+    touch: NDArray[np.bool_]
+
+
+class Faces(NamedTuple):
+    """All e openings of a gear's cracks, as what holds its edge lets them: S, Q of the module.
+
+    `stiffness` S ``(e, e)``; `by_teeth` Q ``(e, z, 2 PLACES)``; `touch` ``(e,)`` which of them cannot be negative; `edge` ``(z, r,
+    e)`` displacements of the held edge by unit openings. Of a ring on p pads `pads` ``(p, e)`` are theirs, and `released` ``(e, z,
+    PLACES)`` is what its support adds to Q.
+    """
+
+    stiffness: NDArray[np.float64]
+    by_teeth: NDArray[np.float64]
+    touch: NDArray[np.bool_]
+    edge: NDArray[np.float64]
+    pads: NDArray[np.float64]
+    released: NDArray[np.float64]
+
+
+def cracked_teeth(whole: WholeGear, cracks: Any, refine: float) -> tuple[CrackedTooth, ...]:
+    """`CrackedTooth` by tooth, from a sequence of `Crack`, their teeth counted clockwise."""
+    own, next_, side = in_chain(periodic_sector(whole.gear, refine=refine))
+    order = np.concatenate([own, next_])
+    out = []
+    for tooth in sorted({crack.tooth % whole.gear.z for crack in cracks}):
+        sector, seams = cracked_sector(whole.gear, [one for one in cracks if one.tooth % whole.gear.z == tooth], refine=refine)
+        pairs, normal, touch = _pairs(sector.mesh, seams)
+        matrix, load, _ = sector_stiffness(sector, whole.material, pairs)
+        out.append(CrackedTooth(tooth, side, *_opened(matrix, load, normal, order), touch))
+    return tuple(out)
+
+
+def _pairs(mesh, seams):
+    """Facing nodes ``(2, m)`` of all cracks without their tips, normals ``(2, m)``, and which openings ``(2 m,)`` may touch.
+
+    The pair beside a tip lies at a quarter of its edge and is left out, as in `gearfe.elements.fe`.
+    """
+    pairs = np.hstack([faces[:, :-1] for faces in seams])
+    ahead = np.hstack([np.gradient(mesh.doflocs[:, faces[0]], axis=1)[:, :-1] for faces in seams])
+    touch = np.concatenate([np.arange(faces.shape[1] - 1) < faces.shape[1] - 2 for faces in seams])
+    return pairs, np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead), np.append(touch, np.zeros(touch.size, dtype=bool))
+
+
+def _opened(matrix, load, normal, order):
+    """`sides`, `faces` and `loads` of `CrackedTooth` from what `sector_stiffness` gives with facing nodes.
+
+    One face moves by u, the other by u less the openings; u is eliminated.
+    """
+    m, n = normal.shape[1], order.size
+    x, y, k = 2 * np.arange(m), 2 * np.arange(m) + 1, np.arange(m)
+    apart = np.zeros((2 * m, 2 * m))
+    apart[x, k], apart[y, k] = normal
+    apart[x, m + k], apart[y, m + k] = -normal[1], normal[0]
+    to = block_diag(np.eye(n), np.vstack([np.eye(2 * m)] * 2))
+    to = np.hstack([to, np.vstack([np.zeros((n + 2 * m, 2 * m)), -apart])])
+    total, forces = to.T @ matrix @ to, to.T @ load
+    gone, kept = np.arange(n, n + 2 * m), np.append(order, np.arange(n + 2 * m, n + 4 * m))
+    through = np.linalg.solve(total[np.ix_(gone, gone)], np.hstack([total[gone][:, kept], forces[gone]]))
+    rest = np.hstack([total[np.ix_(kept, kept)], forces[kept]]) - total[np.ix_(kept, gone)] @ through
+    return rest[:n, n : n + 2 * m], rest[n:, n : n + 2 * m], rest[n:, n + 2 * m :]
+
+
+def faces_of(whole: WholeGear, teeth: tuple[CrackedTooth, ...], inverse: NDArray[np.complex128]) -> Faces:
+    """`Faces` from the inverses ``(h, n, n)`` of the healthy gear's harmonics, as what holds its edge makes them."""
+    z, n = whole.gear.z, whole.stiffness.shape[1]
+    ends = np.cumsum([0, *(one.faces.shape[0] for one in teeth)])
+    parts = [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    force = np.zeros((z, n, ends[-1]))
+    for one, at in zip(teeth, parts, strict=True):
+        force[one.tooth, :, at] -= one.sides[:n]
+        force[(one.tooth + 1) % z, one.side, at] -= one.sides[n:]
+    waves = inverse @ np.fft.rfft(force, axis=0)
+    moved = np.fft.irfft(waves, n=z, axis=0)
+    by_teeth = np.fft.irfft(np.conj(whole.push.transpose(0, 2, 1)) @ waves, n=z, axis=0).transpose(2, 0, 1)
+    stiffness = block_diag(*(one.faces for one in teeth))
+    for one, at in zip(teeth, parts, strict=True):
+        stiffness[at] += one.sides[:n].T @ moved[one.tooth] + one.sides[n:].T @ moved[(one.tooth + 1) % z, one.side]
+        by_teeth[at, one.tooth] += one.loads
+    touch = np.concatenate([one.touch for one in teeth])
+    stiffness = (stiffness + stiffness.T) / 2
+    return Faces(stiffness, by_teeth, touch, moved[:, : whole.edge], np.zeros((0, ends[-1])), np.zeros_like(by_teeth[..., :PLACES]))
