@@ -70,9 +70,11 @@ class _Block(NamedTuple):
 
 
 class _Cracks(NamedTuple):
-    """All e openings of a position's cracks: `by_loads` ``(e, n)`` under unit contact loads, faces free, and `ease` ``(e, e)``
-    under unit forces on the faces; `more` ``(n, n)`` is what free faces add to the flexibility of the contacts. `touch` ``(e,)``
-    as of `Faces`, `ring` those of the ring.
+    """All e openings of the cracks at a position.
+
+    `by_loads` ``(e, n)`` are those under unit contact loads, faces free, and `ease` ``(e, e)`` those under unit forces on the
+    faces; `more` ``(n, n)`` is what free faces add to the flexibility of the contacts. `touch` ``(e,)`` as of `Faces`; `ring`:
+    those of the ring.
     """
 
     more: NDArray[np.float64]

@@ -40,9 +40,9 @@ class CrackedTooth(NamedTuple):
 class Faces(NamedTuple):
     """All e openings of a gear's cracks, as what holds its edge lets them: S, Q of the module.
 
-    `stiffness` S ``(e, e)``; `by_teeth` Q ``(e, z, 2 PLACES)``; `touch` ``(e,)`` which of them cannot be negative; `edge` ``(z, r,
-    e)`` displacements of the held edge by unit openings. Of a ring on p pads `pads` ``(p, e)`` are theirs, and `released` ``(e, z,
-    PLACES)`` is what its support adds to Q.
+    `stiffness` S ``(e, e)``; `by_teeth` Q ``(e, z, 2 PLACES)``; `touch` ``(e,)`` which of them cannot be negative; `edge`
+    ``(z, r, e)`` displacements of the held edge by unit openings. Of a ring on p pads `pads` ``(p, e)`` are theirs, and
+    `released` ``(e, z, PLACES)`` is what its support adds to Q.
     """
 
     stiffness: NDArray[np.float64]
@@ -113,5 +113,5 @@ def faces_of(whole: WholeGear, teeth: tuple[CrackedTooth, ...], inverse: NDArray
         stiffness[at] += one.sides[:n].T @ moved[one.tooth] + one.sides[n:].T @ moved[(one.tooth + 1) % z, one.side]
         by_teeth[at, one.tooth] += one.loads
     touch = np.concatenate([one.touch for one in teeth])
-    stiffness = (stiffness + stiffness.T) / 2
-    return Faces(stiffness, by_teeth, touch, moved[:, : whole.edge], np.zeros((0, ends[-1])), np.zeros_like(by_teeth[..., :PLACES]))
+    none = np.zeros((0, ends[-1])), np.zeros((ends[-1], z, PLACES))
+    return Faces((stiffness + stiffness.T) / 2, by_teeth, touch, moved[:, : whole.edge], *none)

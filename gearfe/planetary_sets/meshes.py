@@ -15,6 +15,7 @@ from ..contact.pair_contact import KINK, PairContact
 from ..contact.rows import Wanted
 from ..contact.sliding import bounded
 from ..flexibility.energy.ritz.plane import flexibility
+from ..flexibility.section_contact import Solved
 from ..geometry.pair.contacts import near_pitches
 from .faults import faults
 from .standing import DIGITS, Standing
@@ -50,7 +51,7 @@ class Mesh:
     def __init__(self, contact: PairContact) -> None:
         self.contact = contact
         self._found: dict[tuple[int, float], Contacts] = {}
-        self._alone: tuple[float, NDArray[np.float64]] | None = None
+        self._alone: tuple[float, Solved] | None = None
 
     def at(self, wanted: list[int], line_load: float) -> list[Contacts]:
         """Contacts at phases by their number, as many as a load of about `line_load` [N/mm] may close."""
@@ -60,10 +61,10 @@ class Mesh:
             self._found |= {(i, line_load): contacts for i, contacts in zip(new, solved, strict=True)}
         return [self._found[i, line_load] for i in wanted]
 
-    def alone(self, line_load: float) -> NDArray[np.float64]:
-        """How far a load alone closes the pair ``(phases,)`` [mm]."""
+    def alone(self, line_load: float) -> Solved:
+        """The pair under a load of its own."""
         if self._alone is None or self._alone[0] != line_load:
-            self._alone = line_load, self.contact.solve(line_load).closing
+            self._alone = line_load, self.contact.solve(line_load)
         return self._alone[1]
 
 
@@ -78,8 +79,8 @@ class Met(NamedTuple):
 class Meshes:
     """All meshes of a case at the positions of a `Standing`; equal planets share what they have in common."""
 
-    def __init__(self, case: Any, stand: Standing, refine: float, cache: Any) -> None:
-        self.case, self._options = case, {"refine": refine, "cache": cache}
+    def __init__(self, case: Any, stand: Standing, options: dict[str, Any]) -> None:
+        self.case, self._options = case, options
         self._phases = (stand.outer, stand.inner)
         self._firsts = (stand.planet, stand.ring)
         self._mesh: dict[Any, tuple[Mesh, dict[float, int]]] = {}
@@ -98,10 +99,11 @@ class Meshes:
         first = 0 if self._kind[inner, planet][2] else -whole
         return Met(mesh.at([number[phase]], load)[0], first, whole if self._kind[inner, planet][2] else 0)
 
-    def alone(self, i: int, inner: int, planet: int, load: float) -> float:
-        """How far a line load alone closes the pair of a mesh [mm]."""
+    def alone(self, i: int, inner: int, planet: int, load: float) -> tuple[float, float]:
+        """How far a line load alone closes the pair of a mesh [mm], and which part of it the model of contact may be off by."""
         mesh, number, phase, _ = self._of(i, inner, planet)
-        return float(mesh.alone(load)[number[phase]])
+        solved = mesh.alone(load)
+        return float(solved.closing[number[phase]]), float(solved.left_out[number[phase]])
 
     def _of(self, i, inner, planet):
         """`Mesh`, its phases' numbers, phase, and whole cycles of tooth 0 at position i."""

@@ -99,7 +99,7 @@ def ring_faces(rim: Rim, support: "str | RimBed | RimSupports", teeth: tuple[Cra
         return held
     else:
         found = faces_of(whole, teeth, whole.loose_inverse())
-        moved = np.einsum("zrp,zre->pe", rim.pads.load, found.edge, optimize=True)
+        moved = np.einsum("zrp,zre->pe", rim.pads.close, found.edge, optimize=True)
         by_teeth, stiffness = found.by_teeth[..., :PLACES], found.stiffness
         if rim.grip.size:  # pads that push and pull
             pulled = rim.grip[: moved.shape[0]] @ moved

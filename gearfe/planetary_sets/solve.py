@@ -17,9 +17,12 @@ from .cracked import cracked_teeth, faces_of
 from .curves import SetCurves
 from .meshes import Meshes, near_load
 from .rim import ring_faces, ring_on
+from .set_error import set_error
 from .standing import standing
 from .whole_gear import PLACES, between_teeth, whole_gear
 
+CHECKED = 8  # positions of the estimate
+COARSER, ORDER = 0.7, 3  # its resolution relative to that of the curves, and the order of its polynomials
 PASSES = 4  # at most, until the loads for which corners and kinks are resolved are those of the meshes
 
 
@@ -30,6 +33,7 @@ def planetary_stiffness(
     cycles: int = 1,
     coupled: bool = True,
     refine: float = 1.0,
+    error: bool = True,
     cache: Any = True,
 ) -> SetCurves:
     """Load and stiffness of every mesh of a planetary set, loads of its teeth, transmission error, and how the ring bends.
@@ -49,6 +53,8 @@ def planetary_stiffness(
         With False meshes do not feel each other's loads, as if each gear were held between them.
     refine : float
         Divides the edge lengths.
+    error : bool
+        Whether to estimate the error by a coarser solve of some of the positions: ``meta["error"]``, see `set_error`.
     cache : bool or SolvedGears
         See `gearfe.flexibility.solved.solved_gears`.
 
@@ -66,21 +72,31 @@ def planetary_stiffness(
     Notes
     -----
     The load is the same all over the face width. Phases are those of the mean pose of each mesh: its turn under load is shared by
-    both gears (`gearfe.geometry.pair.contacts`). What is left out of cracks: see `PlanetaryCase`.
+    both gears (`gearfe.geometry.pair.contacts`). The faces of all cracks belong to the same contact problem. They push each other
+    apart where they touch, and slide without friction.
     """
-    started = time.perf_counter()
     if not isinstance(case, PlanetaryCase):
         raise ValueError(f"case = {case!r}, but give a PlanetaryCase: what holds the set, and its load")
-    at, coupled, refine = _positions(positions, cycles), truth("coupled", coupled), checked_refine(refine)
+    at, refine, options = _positions(positions, cycles), checked_refine(refine), {"cache": solved_gears(cache)}
+    coupled, error = truth("coupled", coupled), truth("error", error)
+    found = _curves(case, at, coupled, options | {"refine": refine})
+    if error:
+        some = np.unique(np.linspace(0, at.size - 1, CHECKED).round().astype(int))
+        less = _curves(case, at[some], coupled, options | {"refine": COARSER * refine, "order": ORDER})
+        found.meta["error"] = set_error(found, less, some)
+    return found
+
+
+def _curves(case, at, coupled, options):
+    """`SetCurves` without an estimate; `options` are those of `gearfe.flexibility.energy.ritz.plane.flexibility`."""
+    started = time.perf_counter()
     stand = standing(case.gears, np.array(case.angles), at)
-    kept = solved_gears(cache)
-    bodies = bodies_of(case if coupled else case.with_(ring="held"), refine=refine, cache=kept)
+    bodies = bodies_of(case if coupled else case.with_(ring="held"), refine=options["refine"], cache=options["cache"])
     solved = time.perf_counter() - started
-    meshes = Meshes(case.with_(damage=None), stand, refine, kept)
-    of = Set(case, bodies, stand, coupled)
+    of, meshes = Set(case, bodies, stand, coupled), Meshes(case.with_(damage=None), stand, options)
     solutions = [_position(of, meshes, i) for i in steps(range(at.size))]
     seconds = {"seconds_flexibility": solved, "seconds_contact": time.perf_counter() - started - solved}
-    return SetCurves.of(of, Meshes(case, stand, refine, kept), at, solutions, seconds)
+    return SetCurves.of(of, Meshes(case, stand, options) if case.damage else meshes, at, solutions, seconds)
 
 
 def _positions(positions, cycles):
