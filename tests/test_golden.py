@@ -9,9 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.comparison.case_table import case_curve, damage_cycle, printed_cases
 from gearfe.scene import verdicts
 from gearfe.scene.stored import read_curves
-from gearfe.studies.case_table import case_curve, damage_cycle, printed_cases
 from validation import __main__ as main
 from validation import check
 from validation.make import assumptions, herringbone, machines, speed

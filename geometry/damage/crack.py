@@ -40,7 +40,7 @@ class Crack:
         the root circle, or in the middle of the fillet's arc.
     turning : bool
     tooth : int
-        Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0 (`geometry.pair.contacts`).
+        Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0 (`gearfe.geometry.pair.contacts`).
     side : {"loaded", "unloaded"}
         Flank side on which it starts.
     width : (float, float), optional
@@ -210,7 +210,7 @@ def front(crack, b, z):
 
 @lru_cache(maxsize=256)
 def start_arc(gear, crack):
-    """Where the crack starts, as arc of `geometry.tooth.profile.root_curve` [mm]."""
+    """Where the crack starts, as arc of `gearfe.geometry.tooth.profile.root_curve` [mm]."""
     if crack.start == "root":
         return 0.0
     if crack.start == "middle":

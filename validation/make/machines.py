@@ -92,7 +92,7 @@ def text(page):
         f"{scene.source}.",
         "",
         f"Made by `python -m validation {page}` from [tables/{page}.csv](tables/{page}.csv); the printed values",
-        f"are the `[[reference]]` rows of `gearfe/scenes/{PAGES[page]}.toml`, the last statements those of "
+        f"are the `[[reference]]` rows of `gearfe/scene/scenes/{PAGES[page]}.toml`, the last statements those of "
         "`validation/sources/statements.toml`.",
         "Verdicts are computed: *reproduced*: within the tolerance; *after a stated correction*: of the corrected value, "
         "which alone",

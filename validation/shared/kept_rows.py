@@ -6,7 +6,7 @@ Each row has the digest of the sources that computed it. A page that is computed
 import json
 import resource
 
-from gearfe.files import written
+from gearfe.core.files import written
 
 from .places import TABLES, digest
 

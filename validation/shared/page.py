@@ -10,7 +10,7 @@ from datetime import date
 from itertools import groupby
 from pathlib import Path
 
-from gearfe.files import written
+from gearfe.core.files import written
 
 from .places import PAGES, ROOT, digest
 
