@@ -181,7 +181,7 @@ def test_printed_349_8_and_352_9_are_impossible():
 def test_the_page_says_what_the_formulas_do():
     assert [holds for _, holds, _ in centroid.verdicts(centroid.study())] == [False, False, True, False]
     text = (places.PAGES / "planetary_pitting.md").read_text(encoding="utf-8")
-    assert "\n".join(centroid.section()) in text, "remake: python -m validation machines planetary_pitting"
+    assert "\n".join(centroid.section()) in text, "remake: python -m validation PAGE planetary_pitting"
 
 
 @pytest.mark.parametrize("noise", [0.3, 3.0, 30.0])

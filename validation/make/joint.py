@@ -14,9 +14,9 @@ from ..shared.table_rows import read
 NAME = "joint"
 DECIDES = joint_inputs.DRAWS // 4  # draws by which the halves of an input must differ to be called what decides
 HOW = f"""
-`python -m validation joint` makes this page and the sections of the four pages from `tables/joint.jsonl`: a row is one draw;
-`... joint PAGE` computes those of a page anew, `... joint all` every one. The {joint_inputs.DRAWS} draws of a page are a Latin
-hypercube, even in the logarithm of each input; ranges, statements and thresholds were fixed in a commit before the first run
+`python -m validation joint` makes this page and the sections of the four pages from `tables/joint.jsonl`: a row is one draw.
+The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, even in the logarithm of each input; ranges,
+statements and thresholds were fixed in a commit before the first run
 (`validation/shared/joint_inputs.py`). A number without a unit is a factor of what the scene or its machine assumes. Masses and
 curves of stiffness stay; channel and path are crossed with every draw. Whether a statement holds is decided as on its page.
 """
@@ -33,8 +33,8 @@ def rows_of(name):
     return [found[key] for key in sorted(found) if key.startswith(f"{name} ")]
 
 
-def compute(name, again=()):
-    """Rows of a page, those missing or asked for computed."""
+def compute(name, again=False):
+    """Rows of a page; `again`: compute them again."""
     for draw in joint_inputs.draws(name):
         key = f"{name} {draw.number:02d}"
         kept(NAME, key, lambda draw=draw: {"inputs": dict(draw.values)} | home(name).drawn(draw), again)
@@ -186,10 +186,10 @@ def ranges():
     return Table(("input", *names), rows).markdown().splitlines()
 
 
-def run(parts=()):
-    """Compute what is missing, or the rows that begin with `parts`, and write this page and those of the machines."""
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
     for name in joint_inputs.RANGES:
-        compute(name, page.anew(parts))
+        compute(name, again)
     tell()
 
 
@@ -200,3 +200,10 @@ def tell():
     page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges())
     for name in joint_inputs.RANGES:
         home("machines").write_page(name)  # which looks in here for its section
+
+
+def cheap():
+    """Rows that `validation.check` computes again: draws of the cheapest page."""
+    name = "helical_pitting"
+    for draw, row in zip(joint_inputs.draws(name), rows_of(name), strict=True):
+        yield row["row"], row["holds"], lambda draw=draw: home(name).drawn(draw)["holds"]

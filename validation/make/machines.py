@@ -5,16 +5,15 @@ import time
 import tomllib
 import warnings
 from functools import cache
-from pathlib import Path
 
 import gearfe as gf
-from gearfe.core.files import written
 from gearfe.core.table import Table
 from gearfe.scene import verdicts
 from gearfe.scene.references import read_references
 
 from ..shared import places, table_rows
 from ..shared.openings import OPENINGS
+from ..shared.page import put
 from . import joint
 
 FOLDER = places.PAGES
@@ -73,7 +72,7 @@ def computed(page, names):
 
 
 @cache
-def cheap(page):
+def quick_rows(page):
     """Rows of a page that need no simulation, by id, case and pair, computed once."""
     return {row[:3]: row for row in computed(page, set(functions(page, quick=True)))}
 
@@ -94,7 +93,7 @@ def text(page):
         "",
         f"{scene.source}.",
         "",
-        f"Made by `python -m validation machines {page}` from [tables/{page}.csv](tables/{page}.csv); the printed values",
+        f"Made by `python -m validation {page}` from [tables/{page}.csv](tables/{page}.csv); the printed values",
         f"are the `[[reference]]` rows of `gearfe/scene/scenes/{PAGES[page]}.toml`, the last statements those of "
         "`validation/sources/statements.toml`.",
         "Verdicts are computed: *reproduced*: within the tolerance; *after a stated correction*: of the corrected value, "
@@ -174,11 +173,10 @@ def runs_of(page, rows):
 
 def write_page(page):
     """Write the Markdown of a page from its rows."""
-    with written(FOLDER / f"{page}.md") as name:
-        Path(name).write_text(text(page), encoding="utf-8")
+    put(page, text(page))
 
 
-def rebuild(page):
+def compute(page):
     """Compute all rows and pictures of a page and write them."""
     started, rows = time.perf_counter(), []
     for one in references(page):
@@ -191,13 +189,22 @@ def rebuild(page):
     if hasattr(home, "write_more"):
         home.write_more()
     home.draw(FOLDER)
+    print(f"{page}: {verdicts.counts(rows)}", flush=True)
+
+
+def run(page, again=True):
+    """Write a page; `again`: compute its rows again."""
+    if again:
+        compute(page)
     write_page(page)
-    print(f"wrote {page}.md: {verdicts.counts(rows)}", flush=True)
 
 
-def run(pages=()):
-    """Rebuild some pages, or all."""
-    for page in pages or PAGES:
-        if page not in PAGES:
-            raise ValueError(f"{page} is no page of a machine; there is {', '.join(PAGES)}")
-        rebuild(page)
+def cheap(page):
+    """Rows of a page that `validation.check` computes again: those that need no simulation."""
+    known = table_rows.read(page)
+    for name in functions(page, quick=True):
+        yield name, _judged(row for row in known if row.id == name), lambda name=name: _judged(computed(page, {name}))
+
+
+def _judged(rows):
+    return [[row.verdict, row.ours] for row in rows]

@@ -118,7 +118,7 @@ def articles(rows):
     return list(dict.fromkeys(row["article"] for row in rows))
 
 
-def run():
+def run(again=True):
     """Write table and page."""
     rows = ledger()
     with written(CSV) as name, open(name, "w", encoding="utf-8", newline="") as file:
