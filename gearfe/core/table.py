@@ -83,7 +83,7 @@ class Table:
     a|b,12,
     """
 
-    columns: Sequence[Column | str]
+    columns: Sequence[Any]
     rows: Sequence[Sequence[Any]]
     title: str = ""
 
