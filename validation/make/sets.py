@@ -78,12 +78,11 @@ far teeth move under loads on others is that of the energy method, elements of o
 set (`gf.with_set`) has at rest the set's turn of the sun and the set's mesh forces (1e-6), with the ring's motion in k and
 with the ring as a body.
 
-A cracked gear between its meshes, and a cracked ring on pads, are those of finite elements of the whole gear with its crack
-(0.2 and 0.3 % of the largest).
+A cracked gear between its meshes, and a cracked ring on pads, are those of finite elements of the whole gear with its crack, its
+faces free and in contact (0.2 and 0.3 % of the largest).
 
-Left out: friction, changes along the width, and that faces of a crack may touch under the loads of other meshes; the carrier is
-rigid. Where a mesh carries much less than others, its k says little about its teeth: it is mostly how the
-loads of the others move its gears.
+Left out: friction and changes along the width; the carrier is rigid. Where a mesh carries much less than others, its k says
+little about its teeth: it is mostly how the loads of the others move its gears.
 """
 HOW = """
 `python -m validation sets` makes this page and computes the machines of `tables/sets_machines.jsonl`; `... sets --reference` has
