@@ -4,18 +4,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
 
 from ..flexibility.hertz import contact_modulus
 from .balance import Problem, balance
 from .case import PlanetaryCase
+from .crack_contacts import crack_contacts
 from .cracked import Faces
 from .meshes import Met
 from .rim import Rim
 from .standing import Standing, directions
 from .whole_gear import PLACES, carry
-
-OVERLAP = 1e-3  # crack faces that overlap by less than this part of the largest opening are left alone
 
 
 class Bodies(NamedTuple):
@@ -69,21 +67,6 @@ class _Block(NamedTuple):
     spread: tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
-class _Cracks(NamedTuple):
-    """All e openings of the cracks at a position.
-
-    `by_loads` ``(e, n)`` are those under unit contact loads, faces free, and `ease` ``(e, e)`` those under unit forces on the
-    faces; `more` ``(n, n)`` is what free faces add to the flexibility of the contacts. `touch` ``(e,)`` as of `Faces`; `ring`:
-    those of the ring.
-    """
-
-    more: NDArray[np.float64]
-    by_loads: NDArray[np.float64]
-    ease: NDArray[np.float64]
-    touch: NDArray[np.bool_]
-    ring: slice
-
-
 class Set:
     """A case with its flexibilities; solves any of its positions. `coupled` as of `planetary_stiffness`."""
 
@@ -103,13 +86,13 @@ class Set:
         """`Position` i from what its meshes are."""
         blocks = self._blocks(met)
         problem = self._problem(blocks)
-        cracks = self._cracks(blocks, problem.gap.size)
+        cracks = crack_contacts(self.bodies.faces, blocks, problem.gap.size, self._lugs, apart=not self.coupled)
         if cracks is None:
             return self._read(blocks, *balance(problem), problem)
         problem = problem._replace(flexibility=problem.flexibility + cracks.more)
         force, motion = balance(problem)
         opened, shut = cracks.by_loads @ force, False
-        if _overlap(opened, cracks.touch):
+        if cracks.overlap(opened):
             shut, faces = True, cracks.by_loads[cracks.touch]
             total = np.block([[problem.flexibility, faces.T], [faces, cracks.ease[np.ix_(cracks.touch, cracks.touch)]]])
             still = np.zeros((faces.shape[0], problem.closing.shape[1]))
@@ -117,30 +100,6 @@ class Set:
             force, pressed = force[: problem.gap.size], force[problem.gap.size :]
             opened = cracks.by_loads @ force + cracks.ease[:, cracks.touch] @ pressed
         return self._read(blocks, force, motion, problem, opened[cracks.ring], shut)
-
-    def _cracks(self, blocks, n):
-        """`_Cracks` of all gears under n contact loads; None without cracks. Uncoupled, each mesh has its own."""
-        rows, stiffness, touch, ring = [], [], [], slice(0)
-        for name, faces in self.bodies.faces.items():
-            loaded = [(one, *way) for one in blocks if (way := _loads_on(one, name))]
-            for group in [loaded] if self.coupled else [[one] for one in loaded]:
-                row = np.zeros((faces.touch.size, n))
-                for one, which, flank in group:
-                    teeth = one.teeth[which] % faces.by_teeth.shape[1]
-                    row[:, one.at] = faces.by_teeth[:, teeth, flank].reshape(faces.touch.size, -1) @ one.spread[which].T
-                if name == "ring":
-                    ring = slice(start := sum(part.size for part in touch), start + faces.touch.size)
-                    if self._lugs:
-                        row[:, -self._lugs :] = faces.pads.T
-                rows.append(row)
-                stiffness.append(faces.stiffness)
-                touch.append(faces.touch)
-        if not rows:
-            return None
-        ease, by_loads = np.linalg.inv(block_diag(*stiffness)), np.vstack(rows)
-        ease = (ease + ease.T) / 2
-        opened = ease @ by_loads
-        return _Cracks(by_loads.T @ opened, opened, ease, np.concatenate(touch), ring)
 
     def _blocks(self, met):
         out, stop = [], 0
@@ -291,19 +250,3 @@ class Set:
         rim, lugs = self.bodies.rim, self._lugs
         teeth = one.teeth[1] % self.case.gears.ring.z
         return one.spread[1] @ (rim.across[:, teeth].reshape(lugs, -1).T @ force[-lugs:])
-
-
-def _loads_on(block, name):
-    """Which gear of a mesh (0 pinion, 1 wheel) a gear is, and the loads of its flank there; None if it has no part in it."""
-    if name == "sun":
-        return None if block.inner else (0, slice(PLACES))
-    if name == "ring":
-        return (1, slice(PLACES)) if block.inner else None
-    if name[1] != block.planet:
-        return None
-    return (0, slice(PLACES, None)) if block.inner else (1, slice(PLACES))
-
-
-def _overlap(opened, touch):
-    """Whether faces of cracks that may touch overlap."""
-    return opened[touch].min() < -OVERLAP * np.abs(opened).max()

@@ -218,9 +218,9 @@ def cost():
     """A line on CPU seconds: new gears, and a cycle of 32 positions."""
     made, started = SolvedGears(), time.process_time()
     one = small(0.0)
-    gf.planetary_stiffness(one, [AT], cache=made)
+    gf.planetary_stiffness(one, [AT], error=False, cache=made)
     new, started = time.process_time() - started, time.process_time()
-    gf.planetary_stiffness(one, 32, cache=made)
+    gf.planetary_stiffness(one, 32, error=False, cache=made)
     return [
         "## Cost",
         "",
