@@ -5,7 +5,7 @@ import math
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from ..scene.strict import shown
+from ..scene.schema import shown
 
 LONGEST = 200  # characters of a title
 

@@ -23,7 +23,7 @@ from ..flexibility.solved import PROCESS
 from ..geometry.tooth.drawing import outline_points
 from ..scene.assumed import of_stiffness
 from ..scene.load import Scene, scene_names, scene_of
-from ..scene.strict import shown
+from ..scene.schema import shown
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve, solve
 from .fields import START

@@ -88,49 +88,6 @@ def _flank(state, i, side):
     return {"gear": side} | out if out else {}
 
 
-def toml(tables: dict[str, Any]) -> str:
-    """Tables of a scene as a TOML file that `gearfe compare` and all other verbs read.
-
-    >>> print(toml({"title": "t", "pair": {"stage": {"force_N": 2000.0}}, "crack": [{"case": "a"}]}), end="")
-    title = "t"
-    <BLANKLINE>
-    [pair.stage]
-    force_N = 2000.0
-    <BLANKLINE>
-    [[crack]]
-    case = "a"
-    """
-    return "\n\n".join(filter(None, _written(tables, ""))) + "\n"
-
-
-def _written(table, head, mark=""):
-    plain = {key: value for key, value in table.items() if not (_tables(value) or (isinstance(value, dict) and not mark))}
-    lines = [f"{mark or '['}{head}{']]' if mark else ']'}"] if head and (plain or mark) else []
-    yield "\n".join([*lines, *(f"{_key(key)} = {_value(value)}" for key, value in plain.items())])
-    for key, value in table.items():
-        if _tables(value):
-            for row in value:
-                yield from _written(row, key, "[[")
-        elif key not in plain:
-            yield from _written(value, f"{head}.{_key(key)}" if head else _key(key))
-
-
-def _tables(value):
-    return isinstance(value, list) and bool(value) and all(isinstance(entry, dict) for entry in value)
-
-
-def _value(value):
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{_key(key)} = {_value(entry)}" for key, entry in value.items()) + " }" if value else "{}"
-    if isinstance(value, list):
-        return f"[{', '.join(map(_value, value))}]"
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f") if isinstance(value, (str, bool)) else repr(value)
-
-
-def _key(key):
-    return key if key.isascii() and key.replace("_", "").isalnum() else _value(key)
-
-
 def read(name: str, text: str, pair: str | None = None, case: str | None = None) -> tuple[dict[str, Any], list[str]]:
     """State of the page for a scene's text (TOML), and in words what of the scene was left behind because a pair was chosen.
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...geometry.pair.lines import contact_lines, lost_length
-from ...scene.machine_table import IMPACT
+from ...scene.schema import scene_schema
 from .contact_cycle import impact_cycle
 from .contact_law import hertz_coefficient
 from .helical_pair import pitted_helical
@@ -95,7 +95,7 @@ def pits_of(damage):
 
 
 def _options(machine):
-    return {key: default for key, (_, default) in IMPACT.items()} | (machine.get("impact") or {})
+    return {key.name: key.default for key in scene_schema()["impact"].keys.values()} | (machine.get("impact") or {})
 
 
 def _law(options, machine, coefficient):
