@@ -17,7 +17,7 @@ from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.modified import Flank
 from . import assumed, parts
 from .references import Reference, read_references
-from .schema import Reading, located, scene_schema
+from .schema import Reading, arguments, located, scene_schema
 from .set_table import SceneSet, set_of
 from .toml_file import read_toml
 
@@ -115,16 +115,19 @@ def read_tables(name_or_path: str | os.PathLike[str]) -> tuple[str, dict[str, An
 
 def scene_of(file: str, data: dict[str, Any]) -> Scene:
     """Scene of the tables that a file of that name holds; the messages of its errors begin with the name."""
-    reading, tables = Reading(file, scene_schema()), scene_schema()
+    reading = Reading(file, scene_schema())
     rows = reading.row("scene", "top level", data)
     reading.check_references(rows)
-    materials, gears = (
-        {n: located(file, f"{kind}.{n}", lambda r=r: made(**tables[kind].arguments(r)), tables[kind], r) for n, r in rows[kind].items()}
-        for kind, made in (("material", Material), ("gear", Gear))
-    )
+    materials, gears = {}, {}
+    for kind, made, out in (("material", Material, materials), ("gear", Gear, gears)):
+        for name, row in rows[kind].items():
+            with located(file, f"{kind}.{name}", row):
+                out[name] = made(**arguments(kind, row))
     pairs = {name: _pair(file, name, rows, gears, materials) for name in rows["pair"]}
     made = set_of(file, rows, pairs)
-    bodies = {name: (float(row["mass_kg"]), float(row["inertia_kgm2"])) for name, row in (rows["machine"] or {}).get("bodies", {}).items()}
+    run = dict(rows["machine"] or {})
+    if run:
+        run["bodies"] = {name: (float(body["mass_kg"]), float(body["inertia_kgm2"])) for name, body in run["bodies"].items()}
     cases = {kind: _by_case(rows[kind]) for kind in parts.DAMAGE}
     kept, changed, own = assumed.split(file, rows["assumption"], rows["given"], rows | cases)
     title, source = rows["title"], rows["source"]
@@ -132,16 +135,16 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
         title, source = f"{title}, changed", f"own scene; changed from: {source}"
     return Scene(
         file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(rows["later"]),
-        machine=rows["machine"] | {"bodies": bodies} if rows["machine"] else {},
-        references=() if own else read_references(file, rows["reference"]), changed=changed, set=made,
+        machine=run, references=() if own else read_references(file, rows["reference"]), changed=changed, set=made,
     )  # fmt: skip
 
 
 def _pair(file, name, rows, gears, materials):
     """`ScenePair` of the checked tables of a scene."""
-    row, names = rows["pair"][name], [rows["pair"][name][key] for key in ("gear_1", "gear_2")]
-    make = lambda: GearPair(*(gears[gear] for gear in names), row["a_mm"])  # noqa: E731
-    made = located(file, f"pair.{name}", make, scene_schema()["pair"], row)
+    row = rows["pair"][name]
+    names = row["gear_1"], row["gear_2"]
+    with located(file, f"pair.{name}", row):
+        made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
     return ScenePair(
         made,
         materials=tuple(materials[rows["gear"][gear]["material"]] for gear in names),

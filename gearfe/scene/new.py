@@ -8,7 +8,7 @@ from ..core.files import written
 from ..geometry.damage.crack import Crack, crack_path, path_length
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.tooth.gear import Gear
-from .schema import scene_schema
+from .schema import arguments, scene_schema
 from .template import template
 
 HEAD = """\
@@ -110,8 +110,7 @@ def new_scene(
 
 def _gear(row):
     """Gear of a row of a scene."""
-    table = scene_schema()["gear"]
-    return Gear(**table.arguments(dict.fromkeys(table.keys) | row))
+    return Gear(**arguments("gear", dict.fromkeys(scene_schema()["gear"].keys) | row))
 
 
 def _numbers(pair, force):

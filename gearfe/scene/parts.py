@@ -13,7 +13,7 @@ from ..geometry.pair.flanks import Misalignment, tilt_of
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.pit_lines import in_both_halves, pit_line
 from ..geometry.tooth.modified import Flank
-from .schema import check_known, located, scene_schema
+from .schema import arguments, check_known, located
 
 Row = dict[str, Any]
 SIDES = ("pinion", "wheel")
@@ -28,26 +28,27 @@ def sides(file: str, where: str, row: Row, name: str, pairs: dict[str, Row]) -> 
     keys = ("gear_1", "gear_2")
     if row["pair"] is not None and row["gear"] not in (pairs[row["pair"]][key] for key in keys):
         raise ValueError(f"{file} [{where}] pair = {row['pair']!r} has no gear {row['gear']!r}")
-    return [side for side, key in zip(SIDES, keys, strict=True) if pairs[name][key] == row["gear"] and row["pair"] in (None, name)]
+    return [
+        side for side, key in zip(SIDES, keys, strict=True) if pairs[name][key] == row["gear"] and row["pair"] in (None, name)
+    ]
 
 
 def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict[str, list[Damage]]]:
     """Damage of the pair `name` by case and side."""
     out: dict[str, dict[str, list[Damage]]] = {}
     for kind, make in DAMAGE.items():
-        table = scene_schema()[kind]
         for i, row in enumerate(rows[kind]):
             where = f"{kind} {i + 1}"
             for side in sides(file, where, row, name, rows["pair"]):
-                given = row, pair, SIDES.index(side), rows["pair"][name]
-                made = located(file, where, lambda make=make, given=given: make(*given), table, row)
+                with located(file, where, row):
+                    made = make(row, pair, SIDES.index(side), rows["pair"][name])
                 out.setdefault(row["case"], {}).setdefault(side, []).extend(made)
     return out
 
 
 def crack_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     """The crack of a row."""
-    return [Crack(**scene_schema()["crack"].arguments(row))]
+    return [Crack(**arguments("crack", row))]
 
 
 def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
@@ -57,7 +58,7 @@ def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     herringbone gear; every row by the height of its middle, with the pitch from one pit to the next or the span of all.
     """
     first, last, middle, pitch, span = (row[f"{key}_mm"] for key in ("first", "last", "middle", "pitch", "span"))
-    numbers = scene_schema()["pits"].arguments(row, "radius_mm", "axes_mm", "depth_mm", "tooth", "angle_deg")
+    numbers = arguments("pits", row, "radius_mm", "axes_mm", "depth_mm", "tooth", "angle_deg")
     if first is not None:
         if row["along"] != "axis" or pitch is not None or span is not None:
             raise ValueError(
@@ -78,7 +79,7 @@ def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
 
 def spall_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     """The spall of a row, and its mirror image in the other half of a herringbone gear if asked for."""
-    spall = Spall(**scene_schema()["spall"].arguments(row, "radius_mm", "z_mm", "sides_mm", "depth_mm", "corner_mm", "tooth"))
+    spall = Spall(**arguments("spall", row, "radius_mm", "z_mm", "sides_mm", "depth_mm", "corner_mm", "tooth"))
     return [spall, *_other_half(row, [spall], made, which, pair)]
 
 
@@ -97,24 +98,20 @@ def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[st
     """Flanks of the pair `name` by side."""
     out: dict[str, Flank] = {}
     for where, row, side in _placed(file, rows, name, ("flank",), out):
-        gear = gears[row["gear"]]
-        out[side] = located(file, where, lambda row=row, gear=gear: _flank(row, gear), scene_schema()["flank"], row)
+        with located(file, where, row):
+            out[side] = _flank(row, gears[row["gear"]])
     return out
 
 
 def misalignment_of(file: str, name: str, pair: GearPair, row: Row) -> Misalignment | None:
     """Misalignment of the pair `name`, from its row; None if it has none."""
-    table = scene_schema()["pair"]
     amounts = ("F_beta_um", "f_sigma_beta_um", "f_sigma_delta_um")
     if not any(row[amount] for amount in amounts):
         return None
-
-    def make():
-        misalignment = Misalignment(**table.arguments(row, *amounts, "bearing_span_mm"))
+    with located(file, f"pair.{name}", row):
+        misalignment = Misalignment(**arguments("pair", row, *amounts, "bearing_span_mm"))
         tilt_of(pair, misalignment)
-        return misalignment
-
-    return located(file, f"pair.{name}", make, table, row)
+    return misalignment
 
 
 def supports_of(file: str, rows: Row, name: str, materials: dict[str, Any]) -> dict[str, Support | Shaft]:
@@ -124,9 +121,8 @@ def supports_of(file: str, rows: Row, name: str, materials: dict[str, Any]) -> d
     for where, row in ((f"{kind}.{key}", row) for kind in HELD for key, row in rows[kind].items()):
         check_known(file, where, "gear", row["gear"], there, "gear in a pair")
     for where, row, side in _placed(file, rows, name, HELD, out):
-        kind = where.partition(".")[0]
-        table, make = scene_schema()[kind], {"support": _support, "shaft": _shaft}[kind]
-        out[side] = located(file, where, lambda row=row, make=make, table=table: make(table, row, materials), table, row)
+        with located(file, where, row):
+            out[side] = _shaft(row, materials) if where.startswith("shaft") else Support(**arguments("support", row))
     return {side: out[side] for side in SIDES if side in out}
 
 
@@ -136,27 +132,25 @@ def _placed(file: str, rows: Row, name: str, kinds: tuple[str, ...], out: dict[s
         for side in sides(file, where, row, name, rows["pair"]):
             if side in out:
                 raise ValueError(
-                    f"{file} [{where}]: gear {row['gear']!r} has a {' or '.join(kinds)} in pair {name!r} already; give each its pair"
+                    f"{file} [{where}]: gear {row['gear']!r} has {' or '.join(kinds)} in pair {name!r} already; give each its pair"
                 )
             yield where, row, side
 
 
-def _support(table, row, materials):
-    return Support(**table.arguments(row))
-
-
-def _shaft(table, row, materials):
+def _shaft(row, materials):
     columns = [row[key] for key in ("lengths_mm", "diameters_mm", "bores_mm") if row[key] is not None]
     if len({len(column) for column in columns}) > 1:
         raise ValueError(
             f"shaft of {len(columns[0])} lengths: give as many diameters_mm, and bores_mm (0: none) if there are any"
         )
     names = ("bearings_at_mm", "gear_at_mm", "torque_at_mm", "integral", "bearings_N_per_um")
-    return Shaft(segments=list(zip(*columns, strict=True)), material=materials[row["material"]], **table.arguments(row, *names))
+    return Shaft(
+        segments=list(zip(*columns, strict=True)), material=materials[row["material"]], **arguments("shaft", row, *names)
+    )
 
 
 def _flank(row, gear):
-    fields, whole = scene_schema()["flank"].arguments(row), abs(gear.roll_a - gear.roll_f)
+    fields, whole = arguments("flank", row), abs(gear.roll_a - gear.roll_f)
     for end, roll, sense in (("tip", gear.roll_a, -1), ("root", gear.roll_f, 1)):
         length = fields.pop(f"{end}_start_length", None)
         if length is None:
@@ -164,9 +158,7 @@ def _flank(row, gear):
         if row[f"{end}_start_roll_mm"] is not None:
             raise ValueError(f"{end}_start_length_mm and {end}_start_roll_mm: give one start")
         if not length < whole:
-            raise ValueError(
-                f"{end}_start_length_mm = {length}, but the flank is {whole:.4g} mm of roll long: give a part of it"
-            )
+            raise ValueError(f"{end}_start_length_mm = {length}, but the flank is {whole:.4g} mm of roll long: give a part of it")
         fields[f"{end}_start_roll"] = roll + sense * gear.outward * length
     for name, amounts in (("table", "table_removed"), ("wear", "wear")):
         if f"{name}_roll" in fields:

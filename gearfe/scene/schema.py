@@ -8,7 +8,8 @@ import math
 import operator
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
@@ -21,8 +22,8 @@ PLAIN = {"string": str, "boolean": bool, "values": dict, "gear": str, "pair": st
 LISTS = {"numbers": "number", "strings": "string", "tables": "values"}  # type of list: type of its entries
 NAMES = ("gear", "pair", "material")  # types of keys that name a table
 TYPES = {
-    "number": "a number", "integer": "a whole number", "string": "a text", "boolean": "true or false", "numbers": "a list of numbers",
-    "strings": "a list of texts", "values": "a table of values by dotted key", "tables": "a list of tables",
+    "number": "a number", "integer": "a whole number", "string": "a text", "boolean": "true or false",
+    "numbers": "a list of numbers", "strings": "a list of texts", "values": "a table of values by dotted key", "tables": "a list of tables",
 }  # fmt: skip
 UNIT = re.compile(r"_([A-Za-z]+_per_\w+|mm|deg|um|N|MPa|Nm|rpm|s|Hz|kg|kgm2)$")
 IN_PYTHON: dict[str, Callable[[float], float]] = {  # units of TOML in those of the library: mm, N, MPa, rad
@@ -113,12 +114,6 @@ class Table:
     at_most_one: tuple[str, ...] = ()
     together: tuple[tuple[str, str], ...] = ()
 
-    def arguments(self, row: Mapping[str, Any], *names: str) -> dict[str, Any]:
-        """Arguments in Python of the keys of a checked `row` that are given: of these `names`, by default of all but places."""
-        wanted = names or [key.name for key in self.keys.values() if key.type not in NAMES and key.name != "case"]
-        keys = [self.keys[name] for name in wanted if row[name] is not None]
-        return {key.python_name: key.in_python(row[key.name]) for key in keys}
-
     def as_typed(self, row: Mapping[str, Any], text: str) -> str:
         """A message of the library with the keys and values of a `row` as they are typed."""
         for key in self.keys.values():
@@ -126,7 +121,11 @@ class Table:
                 text = re.sub(rf"\b{key.python_name}{QUANTITY}", lambda _, k=key, v=value: f"{k.name} = {shown(v)}", text)
             if "_" in key.python_name:
                 text = re.sub(rf"\b{key.python_name}\b(?! =)", key.name, text)
-        return re.sub(r"([-\d.]+) to ([-\d.]+) rad\b", lambda m: "{:.6g} to {:.6g} degrees".format(*(math.degrees(float(x)) for x in m.groups())), text)
+        return re.sub(
+            r"([-\d.]+) to ([-\d.]+) rad\b",
+            lambda m: "{:.6g} to {:.6g} degrees".format(*(math.degrees(float(x)) for x in m.groups())),
+            text,
+        )
 
     def _rules(self, row):
         """What a row breaks of the rules on which keys go together."""
@@ -143,7 +142,7 @@ class Table:
 
 @dataclass(slots=True)
 class Reading:
-    """The reading of one file by a schema, `tables` by name; `references` collects (place, key, name) of keys that name a table."""
+    """The reading of one file by the `tables` of a schema; `references` are (place, key, name) of keys that name a table."""
 
     file: str
     tables: Mapping[str, Table]
@@ -320,10 +319,21 @@ def check_listed(file: str, kind: str, tables: Any) -> None:
         raise ValueError(f"{file}: {kind} = {shown(tables)}, but give a list of tables: [[{kind}]]")
 
 
-def located(file: str, where: str, make: Callable[[], Any], table: Table | None = None, row: Mapping[str, Any] | None = None) -> Any:
-    """Result of `make`; its ValueErrors begin with file and table, and have the keys of a `row` as typed."""
+@contextmanager
+def located(file: str, where: str, row: Mapping[str, Any] | None = None) -> Iterator[None]:
+    """Context in which ValueErrors begin with file and table of a scene, and have the keys of a `row` as typed."""
     try:
-        return make()
+        yield
     except ValueError as error:
-        text = table.as_typed(row or {}, str(error)) if table else str(error)
+        text = scene_schema()[re.split("[. ]", where)[0]].as_typed(row, str(error)) if row else str(error)
         raise ValueError(f"{file} [{where}]: {text}") from error
+
+
+def arguments(kind: str, row: Mapping[str, Any], *names: str) -> dict[str, Any]:
+    """Arguments in Python, in units of the library, of the keys of a checked `row` of a scene's table that are given.
+
+    Those of these `names`, by default of all but the keys that say where it is.
+    """
+    keys = scene_schema()[kind].keys
+    wanted = names or [key.name for key in keys.values() if key.type not in NAMES and key.name != "case"]
+    return {keys[name].python_name: keys[name].in_python(row[name]) for name in wanted if row[name] is not None}

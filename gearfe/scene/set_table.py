@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..geometry.pair.planetary import PlanetarySet
-from .schema import Reading, check_known, located, scene_schema
+from .schema import Reading, arguments, check_known, located, scene_schema
 
 KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {  # of supports: keys that must be given, keys that may be
     "held": ((), ()),
@@ -55,7 +55,8 @@ def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet |
     if angles == []:
         raise ValueError(f"{file} [set] angles_deg = []: give the angle of each planet, or n_planets")
     count = n if angles is None else len(angles)
-    gears = located(file, "set", lambda: PlanetarySet(outer.gear_1, outer.gear_2, inner.gear_2, n or 1, outer.a))
+    with located(file, "set", row):
+        gears = PlanetarySet(outer.gear_1, outer.gear_2, inner.gear_2, n or 1, outer.a)
     return SceneSet(
         gears,
         names,
@@ -64,7 +65,7 @@ def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet |
         errors=_errors(file, rows["pin"], count),
         damaged_planet=_planet(file, "set", "damaged_planet", row["damaged_planet"], count),
         support=support,
-        **{"angles": None, "pin": math.inf} | scene_schema()["set"].arguments(row, "angles_deg", "pin_N_per_um"),
+        **{"angles": None, "pin": math.inf} | arguments("set", row, "angles_deg", "pin_N_per_um"),
     )
 
 

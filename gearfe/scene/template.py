@@ -36,7 +36,11 @@ def template(stated: Tables, asleep: Tables, numbers: Mapping[str, float], notes
             rows = [(heading, row, "") for heading, row in _rows(key, stated)] + [(h, row, "#") for h, row in _rows(key, asleep)]
             full = next((i for i, (*_, mark) in enumerate(rows) if mark), 0)
             for i, (heading, row, mark) in enumerate(rows):
-                lines += [f"{mark}{heading}", *_lines(table, row, mark, notes, numbers if i == full else None), *([""] if not mark else [])]
+                lines += [
+                    f"{mark}{heading}",
+                    *_lines(table, row, mark, notes, numbers if i == full else None),
+                    *([""] if not mark else []),
+                ]
         elif key.other:
             lines += ["", f"# {_heading(key)}: {key.text}, with {', '.join(scene_schema()[key.of].keys)}"]
     return "\n".join(lines).replace("\n\n\n", "\n\n").strip() + "\n"
@@ -65,7 +69,9 @@ def _lines(table: Table, row: Tables, mark: str, notes: Mapping[str, str], numbe
             note = f"; {notes[key.name]}" if key.name in notes and not mark else ""
             yield f"{mark}{key.name} = {toml_value(row[key.name])}" + (f"  # {key.text}{note}" if numbers or note else "")
         elif numbers and not key.of:
-            value = key.example.format(**numbers) if key.example else "..." if key.default in (None, []) else toml_value(key.default)
+            value = (
+                key.example.format(**numbers) if key.example else "..." if key.default in (None, []) else toml_value(key.default)
+            )
             without = f"; left out: {key.optional}" if key.optional else ""
             yield f"#{' ' if key.other else ''}{key.name} = {value}  # {key.text}{without}"
         elif numbers:

@@ -183,7 +183,10 @@ WORDS = [  # of a scene file, what is said of it
     ("pits = 3", r"pits = 3, but give a list of tables: \[\[pits\]\]"),
     ("[reference]\nid = 'x'", r"write \[\[reference\]\]"),
     ("assumption = 'steel'", r"assumption = 'steel', but give a list of tables"),
-    ("[machine]\nmodel = 'planetary'\nspeed_rpm = 0\ntorque_Nm = 3", r"speed_rpm = 0, but it must lie between 0.001 and 1e\+06 rpm"),
+    (
+        "[machine]\nmodel = 'planetary'\nspeed_rpm = 0\ntorque_Nm = 3",
+        r"speed_rpm = 0, but it must lie between 0.001 and 1e\+06 rpm",
+    ),
     ("[machine]\nmodel = 'planetary'\nspeed_rpm = 1\ntorque_Nm = 3\nbodies = []", r"write \[machine.bodies.NAME\]"),
 ]
 

@@ -41,7 +41,11 @@ def test_as_printed(tmp_path):
     ("old", "new", "message"),
     [
         ("relative = 0.01", "", r"give relative \(tolerance as a part of the printed value\) or absolute"),
-        ("relative = 0.01", "relative = 0.01\nabsolute = 1.0", r"give relative \(tolerance as a part of the printed value\) or absolute"),
+        (
+            "relative = 0.01",
+            "relative = 0.01\nabsolute = 1.0",
+            r"give relative \(tolerance as a part of the printed value\) or absolute",
+        ),
         ("relative = 0.01", "relative = -0.01", "relative = -0.01, but it must be at least 0"),
         ('id = "a"', 'name = "a"', "unknown key 'name'"),
         ('source = "S4"', "", "missing key 'source'"),

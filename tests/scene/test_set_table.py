@@ -60,7 +60,7 @@ def test_assumptions_speak_of_a_set(tmp_path):
     [
         ("[set]", "[sets]", r"unknown key 'sets' \(nearest: 'set'\)"),
         (SCENE[SCENE.index("[set]") : SCENE.index("[ring")], "", r"\[ring\] belongs to a planetary set: add a table \[set\]"),
-        ("[set]\n", "[set]\nplanets = 3\n", r"s.toml \[set\]: unknown key 'planets' \(nearest: 'planet'\); expected n_planets, angles_deg"),
+        ("[set]\n", "[set]\nplanets = 3\n", r"\[set\]: unknown key 'planets' \(nearest: 'planet'\); expected n_planets"),
         ("n_planets = 3 ", "#", r"\[set\]: give n_planets \(number of planets\) or angles_deg"),
         ("n_planets = 3 ", "angles_deg = [] #", r"\[set\] angles_deg = \[\]: give the angle of each planet, or n_planets"),
         ("n_planets = 3 ", "n_planets = 0 #", r"\[set\] n_planets = 0, but it must be at least 1"),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from ...core.markdown import table_row
 from ...scene.schema import schema_of
 from .conditions import Condition
-from .faults import HEALTHY
+from .faults import FAULTS, HEALTHY
 from .plan import SIDES, Plan
 from .windows import COLUMNS, LABELS, samples_of
 
@@ -52,13 +52,14 @@ def card(made: "Dataset", plan: Plan, every: Sequence[Condition]) -> str:
 
 
 def _what(plan, every):
-    window, operation, keys = plan.window, plan.operation, schema_of("gearfe.runs")
+    window, operation = plan.window, plan.operation
+    severity = {kind: schema_of("gearfe.runs")[f"{kind}_fault"].keys["severity"].text for kind in FAULTS}
     speeds, torques, spread = (operation[key] for key in ("speed_rpm", "torque_Nm", "spread"))
     lines = [
         f"{len(every)} conditions, simulated by gearfe on the machine of the scene `{plan.scene}`, each cut into",
         f"{window['count']} windows of {window['seconds']:g} s, {samples_of(plan)} samples at {window['rate_Hz']:g} Hz.",
         "",
-        *(f"- fault `{f['kind']}` at {_listed(f['severity'])}: {keys[f'{f["kind"]}_fault'].keys['severity'].text}" for f in plan.fault),
+        *(f"- fault `{f['kind']}` at {_listed(f['severity'])}: {severity[f['kind']]}" for f in plan.fault),
         f"- speeds {_listed(speeds)} rpm, torques {_listed(torques)} N m, both by a part of {spread:g} more or less",
         *(
             f"- sensor `{s['name']}`: {s['channel'] or 'housing, ' + s['housing']}; noise {_listed(s['noise'])} rms"

@@ -10,8 +10,8 @@ CASE = "fault"  # the case of damage that a fault is in its scene
 class Fault(NamedTuple):
     """A kind of fault.
 
-    Its table has the keys of ``KIND_fault`` in ``gearfe/runs/keys.toml``; `unit` is that of its severity. `enter` puts it into the
-    tables of a scene. `damage`: it is damage of a tooth, a case of the scene, else an error of the machine.
+    Its table has the keys of ``KIND_fault`` in ``gearfe/runs/keys.toml``; `unit` is that of its severity. `enter` puts it into
+    the tables of a scene. `damage`: it is damage of a tooth, a case of the scene, else an error of the machine.
     """
 
     unit: str

@@ -109,9 +109,7 @@ def _check_correlated(file, sample):
     for entry in sample["correlated"]:
         pair = frozenset(entry["between"])
         if len(entry["between"]) != 2 or len(pair) != 2 or not pair <= set(known):
-            raise ValueError(
-                f"{file} [[sample.correlated]] {entry!r}: give two different keys of {', '.join(known)}"
-            )
+            raise ValueError(f"{file} [[sample.correlated]] {entry!r}: give two different keys of {', '.join(known)}")
         if pair in seen:
             raise ValueError(
                 f"{file} [[sample.correlated]]: {' and '.join(entry['between'])} are correlated twice; leave one out"

@@ -32,8 +32,8 @@ INDICATORS = ("crest factor", "kurtosis", "shape factor", "impulse factor", "sid
 class Kind(NamedTuple):
     """A kind of study.
 
-    `options` is their table in ``gearfe/runs/keys.toml``; `fields` are the columns of its results; `work` is called with a `Case` and the
-    options, and gives a row for each of its loads; `block`: cases in a shard, which takes seconds. `whole`: it needs
+    `options` is their table in ``gearfe/runs/keys.toml``; `fields` are the columns of its results; `work` is called with a `Case`
+    and the options, and gives a row for each of its loads; `block`: cases in a shard, which takes seconds. `whole`: it needs
     all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the options.
     """
 
@@ -114,7 +114,10 @@ TE = dict.fromkeys(("te_mean", "te_peak_to_peak", *(f"te_{i + 1}" for i in range
 KINDS = {
     "stiffness": Kind("stiffness", STIFFNESS | {"phase": Field("list"), "k": Field("list", "N/m")}, stiffness, 32),
     "transmission error": Kind(
-        "stiffness", TE | {"k_mean": Field("number", "N/m"), "phase": Field("list"), "te": Field("list", "m")}, transmission_error, 32
+        "stiffness",
+        TE | {"k_mean": Field("number", "N/m"), "phase": Field("list"), "te": Field("list", "m")},
+        transmission_error,
+        32,
     ),
     "set": Kind("planetary_set", MESHES, planetary_set, 4, whole=True),
     "vibration": Kind("vibration", SEEN | {"signal": Field("list", "unit")}, vibration, 4, whole=True),

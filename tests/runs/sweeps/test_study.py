@@ -5,8 +5,8 @@ import pytest
 from scipy import stats
 
 from gearfe.runs.sweeps.blocks import blocks
-from gearfe.scene.dotted_keys import set_values
 from gearfe.runs.sweeps.study import read_study, values
+from gearfe.scene.dotted_keys import set_values
 
 pytestmark = pytest.mark.quick
 
