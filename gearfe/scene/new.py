@@ -8,6 +8,7 @@ from ..core.files import written
 from ..geometry.damage.crack import Crack, crack_path, path_length
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.tooth.gear import Gear
+from .parts import DAMAGE
 from .schema import arguments, scene_schema
 from .template import template
 
@@ -100,7 +101,7 @@ def new_scene(
     keys = {"tip_relief_um": round(numbers["amount"], 1), "tip_start_length_mm": round(numbers["length"], 3)} | relief
     flanks = {side: {"gear": side} | keys for side in ("pinion", "wheel")}
     stated |= {"flank": flanks} if relief else {}
-    asleep = {"crack": [{}], "pits": [{}], "spall": [{}], "support": {"output": {}}, "shaft": {"drive": {}}}
+    asleep = {kind: [{}] for kind in DAMAGE} | {"support": {"output": {}}, "shaft": {"drive": {}}}
     asleep |= ({} if relief else {"flank": flanks}) | ({} if ring else {"machine": {}})
     text = template(stated, asleep, numbers, {"force_N": told_force, "level": told_crack})
     with written(path) as name:

@@ -132,7 +132,7 @@ def _placed(file: str, rows: Row, name: str, kinds: tuple[str, ...], out: dict[s
         for side in sides(file, where, row, name, rows["pair"]):
             if side in out:
                 raise ValueError(
-                    f"{file} [{where}]: gear {row['gear']!r} has {' or '.join(kinds)} in pair {name!r} already; give each its pair"
+                    f"{file} [{where}]: gear {row['gear']!r} has {' or '.join(kinds)} in pair {name!r}; give each its pair"
                 )
             yield where, row, side
 

@@ -23,7 +23,8 @@ LISTS = {"numbers": "number", "strings": "string", "tables": "values"}  # type o
 NAMES = ("gear", "pair", "material")  # types of keys that name a table
 TYPES = {
     "number": "a number", "integer": "a whole number", "string": "a text", "boolean": "true or false",
-    "numbers": "a list of numbers", "strings": "a list of texts", "values": "a table of values by dotted key", "tables": "a list of tables",
+    "numbers": "a list of numbers", "strings": "a list of texts", "tables": "a list of tables",
+    "values": "a table of values by dotted key",
 }  # fmt: skip
 UNIT = re.compile(r"_([A-Za-z]+_per_\w+|mm|deg|um|N|MPa|Nm|rpm|s|Hz|kg|kgm2)$")
 IN_PYTHON: dict[str, Callable[[float], float]] = {  # units of TOML in those of the library: mm, N, MPa, rad
@@ -104,7 +105,7 @@ class Key:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class KeyTable:
     """A table of keys, with the rules on which of them go together."""
 
     name: str
@@ -145,7 +146,7 @@ class Reading:
     """The reading of one file by the `tables` of a schema; `references` are (place, key, name) of keys that name a table."""
 
     file: str
-    tables: Mapping[str, Table]
+    tables: Mapping[str, KeyTable]
     references: list[tuple[str, Key, str]] = field(default_factory=list)
 
     def row(self, name: str, where: str, given: Any) -> dict[str, Any]:
@@ -229,13 +230,13 @@ def checked(package: str, name: str, file: str, where: str, given: Any) -> dict[
 
 
 @cache
-def schema_of(package: str, file: str = "keys.toml") -> dict[str, Table]:
+def schema_of(package: str, file: str = "keys.toml") -> dict[str, KeyTable]:
     """Tables by name of a schema, a file of a package."""
     data = tomllib.loads((resources.files(package) / file).read_text(encoding="utf-8"))
     return {name: _table(name, table) for name, table in data.items()}
 
 
-def scene_schema() -> dict[str, Table]:
+def scene_schema() -> dict[str, KeyTable]:
     """Tables by name of the schema of scenes; ``"scene"`` is the top level of a file."""
     return schema_of("gearfe.scene")
 
@@ -243,7 +244,7 @@ def scene_schema() -> dict[str, Table]:
 def _table(name, data):
     keys = {key: _key(key, stated) for key, stated in data.items() if isinstance(stated, dict)}
     rules = {key: _frozen(stated) for key, stated in data.items() if not isinstance(stated, dict)}
-    return Table(name, rules.pop("about").strip("\n"), keys, **rules)
+    return KeyTable(name, rules.pop("about").strip("\n"), keys, **rules)
 
 
 def _key(name, stated):

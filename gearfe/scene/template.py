@@ -6,7 +6,7 @@ Lines that are keys or tables begin with # and no space; take the # away, and th
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from .schema import Key, Table, scene_schema
+from .schema import Key, KeyTable, scene_schema
 from .toml_file import toml_value
 
 Tables = Mapping[str, Any]
@@ -62,7 +62,9 @@ def _heading(key: Key, place: str = "") -> str:
     return f"[[{name}]]" if key.type == "listed" else f"[{name}.NAME]" if key.type == "named" else f"[{name}]"
 
 
-def _lines(table: Table, row: Tables, mark: str, notes: Mapping[str, str], numbers: Mapping[str, float] | None) -> Iterator[str]:
+def _lines(
+    table: KeyTable, row: Tables, mark: str, notes: Mapping[str, str], numbers: Mapping[str, float] | None
+) -> Iterator[str]:
     """Lines of a table: keys of its `row`, and with `numbers` all others as comments with their examples."""
     for key in table.keys.values():
         if key.name in row:
