@@ -35,7 +35,7 @@ def pits_loss(pair, pits):
 
 def impact_planetary(scene, case):
     """Planetary stage of a scene under the impact law, healthy or with pits on a tooth of the sun."""
-    chosen = {name: scene.pairs[name] for name in ("sun_planet", "planet_ring")}
+    chosen = {name: scene.pair(name) for name in ("sun_planet", "planet_ring")}
     if pits_of(chosen["planet_ring"].damage.get(case, {})):
         raise ValueError("the impact law knows damage of the sun's flanks only: use contact = 'linear'")
     tooth_pits = pits_of(chosen["sun_planet"].damage.get(case, {}))
