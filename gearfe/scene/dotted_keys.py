@@ -6,7 +6,7 @@ A part of a key is the name of a table, the case of a list of damage, or the pla
 import copy
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from .load import read_tables
 from .parts import DAMAGE
@@ -39,7 +39,7 @@ def check_key(dotted: str, tables: Tables, options: Mapping[str, Any]) -> None:
 def find_key(dotted: str, tables: Tables) -> Key:
     """The `Key` that a dotted key names; ValueError if it names no single value of a scene's `tables`."""
     schema, parts = scene_schema(), dotted.split(".")
-    table, home, inner = schema["scene"], tables, None
+    table, home, inner = schema["scene"], cast(Any, tables), cast(Any, None)
     kinds = [name for name, key in table.keys.items() if key.of and name not in PRINTED and (tables.get(name) or "set" in tables)]
     if parts[0] not in kinds:
         raise ValueError(f"{dotted!r}: a key begins with {', '.join(kinds)} or options, or is pair or case")
@@ -100,7 +100,7 @@ def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
     """Tables that one pair in one case of damage needs: the rest would be checked for every case of a sweep, for nothing."""
     chosen = tables["pair"][pair]
     gears = {chosen.get(name) for name in ("gear_1", "gear_2")}
-    out = {name: tables[name] for name in ("title", "source") if name in tables}
+    out: Tables = {name: tables[name] for name in ("title", "source") if name in tables}
     out |= {"pair": {pair: chosen}, "gear": {name: table for name, table in tables["gear"].items() if name in gears}}
     for kind, key in scene_schema()["scene"].keys.items():
         if not key.of or "gear" not in scene_schema()[key.of].keys:

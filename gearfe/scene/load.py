@@ -118,11 +118,13 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     reading = Reading(file, scene_schema())
     rows = reading.row("scene", "top level", data)
     reading.check_references(rows)
-    materials, gears = {}, {}
-    for kind, made, out in (("material", Material, materials), ("gear", Gear, gears)):
+    materials: dict[str, Material] = {}
+    gears: dict[str, Gear] = {}
+    makers: tuple[tuple[str, Any, dict[str, Any]], ...] = (("material", Material, materials), ("gear", Gear, gears))
+    for kind, make, out in makers:
         for name, row in rows[kind].items():
             with located(file, f"{kind}.{name}", row):
-                out[name] = made(**arguments(kind, row))
+                out[name] = make(**arguments(kind, row))
     pairs = {name: _pair(file, name, rows, gears, materials) for name in rows["pair"]}
     made = set_of(file, rows, pairs)
     run = dict(rows["machine"] or {})

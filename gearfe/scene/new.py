@@ -76,7 +76,9 @@ def new_scene(
     if path.exists():
         raise ValueError(f"{path} exists and is not overwritten: give another name, or remove it")
     teeth = teeth or ((21, 63) if ring else (21, 31))
-    rows = [{"z": z, "m_n_mm": float(module), "alpha_n_deg": 20.0, "b_mm": float(width), "x": 0.0} for z in teeth]
+    rows: list[dict[str, Any]] = [
+        {"z": z, "m_n_mm": float(module), "alpha_n_deg": 20.0, "b_mm": float(width), "x": 0.0} for z in teeth
+    ]
     rows[0] |= {"beta_deg": float(helix_deg), **RACK}
     rows[1] |= {"beta_deg": float(helix_deg if ring else -helix_deg) + 0.0, **(RING if ring else RACK)}
     held = ["gear.pinion.r_bore_mm", "gear.wheel.r_rim_mm" if ring else "gear.wheel.r_bore_mm"]
@@ -101,7 +103,7 @@ def new_scene(
     keys = {"tip_relief_um": round(numbers["amount"], 1), "tip_start_length_mm": round(numbers["length"], 3)} | relief
     flanks = {side: {"gear": side} | keys for side in ("pinion", "wheel")}
     stated |= {"flank": flanks} if relief else {}
-    asleep = {kind: [{}] for kind in DAMAGE} | {"support": {"output": {}}, "shaft": {"drive": {}}}
+    asleep: dict[str, Any] = {kind: [{}] for kind in DAMAGE} | {"support": {"output": {}}, "shaft": {"drive": {}}}
     asleep |= ({} if relief else {"flank": flanks}) | ({} if ring else {"machine": {}})
     text = template(stated, asleep, numbers, {"force_N": told_force, "level": told_crack})
     with written(path) as name:

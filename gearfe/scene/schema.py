@@ -119,14 +119,11 @@ class KeyTable:
         """A message of the library with the keys and values of a `row` as they are typed."""
         for key in self.keys.values():
             if (value := row.get(key.name)) is not None and key.python_name != key.name:
-                text = re.sub(rf"\b{key.python_name}{QUANTITY}", lambda _, k=key, v=value: f"{k.name} = {shown(v)}", text)
+                typed = f"{key.name} = {shown(value)}".replace("\\", r"\\")
+                text = re.sub(rf"\b{key.python_name}{QUANTITY}", typed, text)
             if "_" in key.python_name:
                 text = re.sub(rf"\b{key.python_name}\b(?! =)", key.name, text)
-        return re.sub(
-            r"([-\d.]+) to ([-\d.]+) rad\b",
-            lambda m: "{:.6g} to {:.6g} degrees".format(*(math.degrees(float(x)) for x in m.groups())),
-            text,
-        )
+        return re.sub(r"([-\d.]+) to ([-\d.]+) rad\b", _in_degrees, text)
 
     def _rules(self, row):
         """What a row breaks of the rules on which keys go together."""
@@ -239,6 +236,10 @@ def schema_of(package: str, file: str = "keys.toml") -> dict[str, KeyTable]:
 def scene_schema() -> dict[str, KeyTable]:
     """Tables by name of the schema of scenes; ``"scene"`` is the top level of a file."""
     return schema_of("gearfe.scene")
+
+
+def _in_degrees(found):
+    return " to ".join(f"{math.degrees(float(number)):.6g}" for number in found.groups()) + " degrees"
 
 
 def _table(name, data):
