@@ -62,7 +62,7 @@ def test_units_are_those_of_the_keys(tmp_path):
     chosen = loaded(tmp_path, HELD).pair()
     segments, stiff = [(50, 30), (30, 25)], (2e5, 4e5)
     shaft = gf.Shaft(segments=segments, bearings=(0, 50), gear=70, material=STEEL, torque=0, bearing_stiffness=stiff)
-    assert chosen.case()["supports"] == {
+    assert chosen.case().supports == {
         "pinion": shaft,
         "wheel": gf.Support(radial=1.5e5, tilt=2e7, torsion=3e8, coupling=3e-9),
     }
