@@ -29,7 +29,8 @@ class Contacts(NamedTuple):
 
     `flexibility` ``(n, n)`` of both gears [mm per N/mm], `gap` [mm], `coefficient`, `radius` and `tilt` as of
     `gearfe.contact.sharing.line_contact`; places `roll_1`, `roll_2` [mm] and torques `turn_1`, `turn_2` on both gears as of
-    `gearfe.contact.rows.Row`; `order` of their pairs. `least` is the gap of the first touch.
+    `gearfe.contact.rows.Row`; `order` of their pairs. `least` is the gap of the first touch; all are contacts that an approach of
+    up to `reach` beyond it may close.
     """
 
     flexibility: NDArray[np.float64]
@@ -43,6 +44,7 @@ class Contacts(NamedTuple):
     turn_2: NDArray[np.float64]
     order: NDArray[np.int64]
     least: float
+    reach: float
 
 
 class Mesh:
@@ -50,16 +52,15 @@ class Mesh:
 
     def __init__(self, contact: PairContact) -> None:
         self.contact = contact
-        self._found: dict[tuple[int, float], Contacts] = {}
+        self._found: dict[tuple[int, float, float], Contacts] = {}
         self._alone: tuple[float, Solved] | None = None
 
-    def at(self, wanted: list[int], line_load: float) -> list[Contacts]:
-        """Contacts at phases by their number, as many as a load of about `line_load` [N/mm] may close."""
-        new = sorted({i for i in wanted if (i, line_load) not in self._found})
-        if new:
-            solved = _contacts(self.contact, new, line_load)
-            self._found |= {(i, line_load): contacts for i, contacts in zip(new, solved, strict=True)}
-        return [self._found[i, line_load] for i in wanted]
+    def at(self, i: int, line_load: float, reach: float) -> Contacts:
+        """Contacts at a phase by its number, as many as a load of about `line_load` [N/mm] may close, or an approach [mm]."""
+        key = i, line_load, reach
+        if key not in self._found:
+            self._found[key] = _contacts(self.contact, i, line_load, reach)
+        return self._found[key]
 
     def alone(self, line_load: float) -> Solved:
         """The pair under a load of its own."""
@@ -90,14 +91,14 @@ class Meshes:
         differs = faults(self.case, bool(inner), planet, int(self._firsts[inner][planet]))[2]
         return inner, planet, differs, None if differs else self.case.flanks.get(("planet", planet))
 
-    def at(self, i: int, loads: NDArray[np.float64]) -> list[list[Met]]:
-        """`Met` of all meshes at position i by ``[inner][planet]``, made for loads ``(2, planets)`` [N/mm]."""
-        return [[self._met(i, k, p, float(loads[k, p])) for p in range(self.case.planets)] for k in (0, 1)]
+    def at(self, i: int, loads: NDArray[np.float64], reach: NDArray[np.float64]) -> list[list[Met]]:
+        """`Met` of all meshes at position i by ``[inner][planet]``, for loads [N/mm] and least approaches [mm] ``(2, planets)``."""
+        return [[self._met(i, k, p, float(loads[k, p]), float(reach[k, p])) for p in range(self.case.planets)] for k in (0, 1)]
 
-    def _met(self, i, inner, planet, load):
+    def _met(self, i, inner, planet, load, reach):
         mesh, number, phase, whole = self._of(i, inner, planet)
         first = 0 if self._kind[inner, planet][2] else -whole
-        return Met(mesh.at([number[phase]], load)[0], first, whole if self._kind[inner, planet][2] else 0)
+        return Met(mesh.at(number[phase], load, reach), first, whole if self._kind[inner, planet][2] else 0)
 
     def alone(self, i: int, inner: int, planet: int, load: float) -> tuple[float, float]:
         """How far a line load alone closes the pair of a mesh [mm], and which part of it the model of contact may be off by."""
@@ -140,22 +141,22 @@ def near_load(line_load: float, unit: float) -> float:
     return float(unit * np.exp(step * round(np.log(max(line_load, 1e-3 * unit) / unit) / step)))
 
 
-def _contacts(contact: Any, phases: list[int], line_load: float) -> list[Contacts]:
-    """`Contacts` at some phases, chosen as `PairContact.solve` does."""
+def _contacts(contact: Any, i: int, line_load: float, reach: float) -> Contacts:
+    """`Contacts` at phase i, chosen as `PairContact.solve` does; `reach` is the least approach [mm] that they are chosen for."""
     candidates, tilt = contact.found, bounded(contact, line_load)
     least = candidates.gap.min(axis=1)
-    reach = contact._reach(line_load)
-    possible = candidates.gap - least[:, None] < reach[:, None]
+    reaches = np.maximum(contact._reach(line_load), reach)
+    possible = candidates.gap - least[:, None] < reaches[:, None]
     corner, zone, width = contact.corners(line_load, possible)
     kink = near_kink(contact, line_load) & possible & (corner == 0)
-    asked = np.zeros(possible.shape, dtype=bool)
-    asked[phases] = True
-    finest, at = contact.finest(line_load), np.argwhere((corner > 0) & asked).tolist()
-    rows = contact.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), finest, float(width[i, k])) for i, k in at])
-    rows = dict(zip(map(tuple, at), rows, strict=True)) | kink_rows(contact, np.argwhere(kink & asked), line_load)
+    finest, at = contact.finest(line_load), np.flatnonzero(corner[i]).tolist()
+    rows = contact.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), finest, float(width[i, k])) for k in at])
+    here = np.zeros_like(kink)
+    here[i] = kink[i]
+    rows = dict(zip([(i, k) for k in at], rows, strict=True)) | kink_rows(contact, np.argwhere(here), line_load)
     corner = np.where(kink, KINK, corner)
-    sets = contact.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in phases], rows, tilt)
-    return [_one(contact, i, built, rows, possible[i], least[i], reach[i]) for i, built in zip(phases, sets, strict=True)]
+    (built,) = contact.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near])], rows, tilt)
+    return _one(contact, i, built, rows, possible[i], least[i], reaches[i])
 
 
 def _one(contact, i, built, rows, possible, least, reach):
@@ -175,4 +176,5 @@ def _one(contact, i, built, rows, possible, least, reach):
         *values[:, near],
         candidates.order[built["column"][near]],
         float(least),
+        float(reach),
     )

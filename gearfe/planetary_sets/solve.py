@@ -23,7 +23,7 @@ from .whole_gear import PLACES, between_teeth, whole_gear
 
 CHECKED = 8  # positions of the estimate
 COARSER, ORDER = 0.7, 3  # its resolution relative to that of the curves, and the order of its polynomials
-PASSES = 4  # at most, until the loads for which corners and kinks are resolved are those of the meshes
+PASSES = 5  # at most, until corners, kinks and pairs in reach are those of the loads that the meshes have
 
 
 def planetary_stiffness(
@@ -111,15 +111,23 @@ def _positions(positions, cycles):
 
 
 def _position(of: Set, meshes: Meshes, i: int) -> Position:
-    """One position: pressures at corners and kinks are resolved for the nominal load, then for the one that each mesh has."""
-    nominal = of.case.force / of.case.width
-    loads = np.full((2, of.case.planets), nominal)
+    """One position: pressures at corners and kinks are resolved for the nominal load, then for the one that each mesh has.
+
+    Where teeth give way so much that further pairs may touch, these are taken in. RuntimeError if there is no end of them.
+    """
+    nominal, reach = of.case.force / of.case.width, np.zeros((2, of.case.planets))
+    loads = np.full(reach.shape, nominal)
     for _ in range(PASSES):
-        position = of.solved(i, meshes.at(i, loads))
+        met = meshes.at(i, loads, reach)
+        position = of.solved(i, met)
         new = np.array([[near_load(load, nominal) for load in row] for row in position.loads])
-        if (new == loads).all():
-            break
-        loads = new
+        approach = np.where(position.loads > 0, position.closing - position.rim, 0.0)
+        short = approach > np.array([[one.contacts.reach for one in row] for row in met])
+        if not short.any() and (new == loads).all():
+            return position
+        loads, reach = new, np.where(short, 2 * approach, reach)
+    if short.any():
+        raise RuntimeError("the teeth of a mesh give way so much that the contact has no end: give shorter cracks or less load")
     return position
 
 

@@ -76,7 +76,8 @@ def test_random_cracked_sets_err_by_less_than_their_estimate_and_are_softer_than
         given, at = drawn(seed)
         found = planetary_stiffness(given, at)
     except (ValueError, RuntimeError) as error:
-        assert re.search("reaches|leaves|meet|one is enough|give one to each side", str(error))
+        if not re.search("reaches|leaves|meet|give one to each side", str(error)):
+            raise
         return
     fine = planetary_stiffness(given, at, refine=2.0, error=False)
     even, error = found.force.mean(axis=(1, 2), keepdims=True), found.meta["error"]
