@@ -92,7 +92,7 @@ class Meshes:
         return inner, planet, differs, None if differs else self.case.flanks.get(("planet", planet))
 
     def at(self, i: int, loads: NDArray[np.float64], reach: NDArray[np.float64]) -> list[list[Met]]:
-        """`Met` of all meshes at position i by ``[inner][planet]``, for loads [N/mm] and least approaches [mm] ``(2, planets)``."""
+        """`Met` of all meshes at position i by ``[inner][planet]``, for loads [N/mm] and approaches [mm] ``(2, planets)``."""
         return [[self._met(i, k, p, float(loads[k, p]), float(reach[k, p])) for p in range(self.case.planets)] for k in (0, 1)]
 
     def _met(self, i, inner, planet, load, reach):
