@@ -15,7 +15,7 @@ from ..shared import page
 from ..shared.decks import calculix
 from ..shared.kept_rows import kept, stored
 from ..shared.places import PAGES
-from . import sets_dynamics
+from . import sets_cracks, sets_dynamics
 
 TABLE, PICTURE = "sets_calculix", PAGES / "sets_bent.png"
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -260,6 +260,7 @@ def run(again=True):
         [*INTRO.splitlines(), "", *lines, *drawn],
         sets_dynamics.section(),
         outsider(),
+        sets_cracks.section(),
         PROOF.splitlines(),
         cost(),
         HOW.splitlines(),
