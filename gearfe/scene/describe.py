@@ -71,6 +71,9 @@ def _json_table(table: KeyTable) -> dict[str, Any]:
     out["required"] = [key.name for key in table.keys.values() if key.default is REQUIRED]
     if table.one_of:
         out["oneOf"] = [{"required": [name]} for name in table.one_of]
+    never = [pair for pair in table.exclude if all(table.keys[name].default is None for name in pair)]
+    if never:
+        out["not"] = {"anyOf": [{"required": pair} for pair in never]}
     if table.together:
         out["dependencies"] = {one: [two] for pair in table.together for one, two in (pair, pair[::-1])}
     return out

@@ -112,7 +112,7 @@ class KeyTable:
     about: str
     keys: dict[str, Key]
     one_of: tuple[str, ...] = ()
-    at_most_one: tuple[str, ...] = ()
+    exclude: tuple[tuple[str, str], ...] = ()
     together: tuple[tuple[str, str], ...] = ()
 
     def as_typed(self, row: Mapping[str, Any], text: str) -> str:
@@ -127,15 +127,12 @@ class KeyTable:
 
     def _rules(self, row):
         """What a row breaks of the rules on which keys go together."""
-        if self.one_of and len([name for name in self.one_of if row[name] is not None]) != 1:
+        given = {name for name, value in row.items() if value is not None and value != self.keys[name].default}
+        if self.one_of and len(given.intersection(self.one_of)) != 1:
             stated = (f"{name} ({re.split('[;,]', self.keys[name].text)[0]})" for name in self.one_of)
             yield f"give {' or '.join(stated)}, one of them"
-        given = [name for name in self.at_most_one if row[name]]
-        if len(given) > 1:
-            yield f"{' and '.join(given)} exclude each other: give one"
-        for one, two in self.together:
-            if (row[one] is None) != (row[two] is None):
-                yield f"give {one} and {two} together"
+        yield from (f"{one} and {two} exclude each other: give one" for one, two in self.exclude if {one, two} <= given)
+        yield from (f"give {one} and {two} together" for one, two in self.together if (one in given) != (two in given))
 
 
 @dataclass(slots=True)
