@@ -38,13 +38,7 @@ def _places(schema: Mapping[str, KeyTable]) -> dict[str, str]:
     """Where the nested tables of a schema stand in a file, by their name."""
     out: dict[str, str] = {}
     for name, table in schema.items():
-        head = out.get(name, "").strip("[]")
-        for key in table.keys.values():
-            if key.of:
-                place = f"{head}.{key.name}" if head else key.name
-                out[key.of] = (
-                    f"[[{place}]]" if key.type == "listed" else f"[{place}.NAME]" if key.type == "named" else f"[{place}]"
-                )
+        out |= {key.of: key.heading(out.get(name, "").strip("[]")) for key in table.keys.values() if key.of}
     return out
 
 

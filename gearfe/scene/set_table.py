@@ -121,7 +121,7 @@ def _errors(file, pins, count):
         if planet in said:
             raise ValueError(f"{file} [pin.{name}]: the pin of planet {planet} is [pin.{said[planet]}] already; give one of both")
         said[planet] = name
-        out[planet] = row["radial_um"] * 1e-3, row["tangential_um"] * 1e-3
+        out[planet] = tuple(arguments("pin", row, "radial_um", "tangential_um").values())
     return tuple(out)
 
 

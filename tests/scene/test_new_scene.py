@@ -32,7 +32,7 @@ def test_tip_relief_of_both_gears_starts_so_far_below_the_tip(tmp_path):
         assert flank.tip_relief == pytest.approx(0.015)
         assert flank.tip_start_roll == pytest.approx(gear.roll_a - 1.2)
     for wrong in ({"tip_relief_um": 15.0}, {"tip_relief_um": -1.0, "tip_length_mm": 1.0}, RELIEF | {"tip_length_mm": 50.0}):
-        with pytest.raises(ValueError, match="tip relief|tip_start_length_mm = 50"):
+        with pytest.raises(ValueError, match=r"tip relief|tip_start_length_mm = 50"):
             gf.new_scene(tmp_path / "other.toml", **wrong)
 
 
