@@ -43,7 +43,8 @@ def _places(schema: Mapping[str, KeyTable]) -> dict[str, str]:
 
 
 def _kind(key: Key) -> str:
-    return "table" if key.of else f"{key.expected}{f'; must {key.permitted}' if key.permitted else ''}"
+    kinds = f"; of kind {', '.join(key.kinds)}" if key.kinds else ""
+    return "table" if key.of else f"{key.expected}{f'; must {key.permitted}' if key.permitted else ''}{kinds}"
 
 
 def _default(key: Key) -> str:

@@ -60,6 +60,8 @@ class Key:
     argument: str = ""
     of: str = ""
     names: tuple[str, ...] = ()
+    kinds: tuple[str, ...] = ()
+    needed: bool = False
 
     @property
     def unit(self) -> str:
@@ -137,6 +139,12 @@ class KeyTable:
             stated = (f"{name} ({re.split('[;,]', self.keys[name].text)[0]})" for name in self.one_of)
             yield f"give {' or '.join(stated)}, one of them"
         yield from (f"{one} and {two} exclude each other: give one" for one, two in self.exclude if {one, two} <= given)
+        kind, of_kinds = row.get("kind"), [key for key in self.keys.values() if key.kinds]
+        has = ", ".join(key.name for key in of_kinds if kind in key.kinds) or "no other key"
+        missing = (key.name for key in of_kinds if key.needed and kind in key.kinds and key.name not in given)
+        yield from (f"kind = {kind!r} needs {name}" for name in missing)
+        wrong = (key.name for key in of_kinds if kind not in key.kinds and key.name in given)
+        yield from (f"kind = {kind!r} has no {name}; expected {has}" for name in wrong)
         yield from (f"give {one} and {two} together" for one, two in self.together if (one in given) != (two in given))
 
 
