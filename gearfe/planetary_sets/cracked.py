@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from ..geometry.mesh.periodic_sector import periodic_sector
-from .cracked_sector import cracked_sector
 from .whole_gear import PLACES, WholeGear, in_chain, sector_stiffness
 
 
@@ -59,8 +58,8 @@ def cracked_teeth(whole: WholeGear, cracks: Any, refine: float) -> tuple[Cracked
     order = np.concatenate([own, next_])
     out = []
     for tooth in sorted({crack.tooth % whole.gear.z for crack in cracks}):
-        sector, seams = cracked_sector(whole.gear, [one for one in cracks if one.tooth % whole.gear.z == tooth], refine=refine)
-        pairs, normal, touch = _pairs(sector.mesh, seams)
+        sector = periodic_sector(whole.gear, [one for one in cracks if one.tooth % whole.gear.z == tooth], refine=refine)
+        pairs, normal, touch = _pairs(sector.mesh, sector.seams)
         matrix, load, _ = sector_stiffness(sector, whole.material, pairs)
         out.append(CrackedTooth(tooth, side, *_opened(matrix, load, normal, order), touch))
     return tuple(out)

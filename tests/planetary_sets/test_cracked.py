@@ -17,15 +17,13 @@ from gearfe.flexibility.finite_elements.solver import factor
 from gearfe.geometry.mesh import section_mesh
 from gearfe.geometry.mesh.both_flanks import _marked
 from gearfe.geometry.mesh.outline import stations
-from gearfe.geometry.mesh.periodic_sector import periodic_sector
 from gearfe.geometry.mesh.section_mesh import section
 from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal
 from gearfe.planetary_sets.cracked import cracked_teeth, faces_of
-from gearfe.planetary_sets.cracked_sector import cracked_sector
 from gearfe.planetary_sets.rim import rim_angles, rim_moved, ring_faces, ring_on
 from gearfe.planetary_sets.rim_supports import RimBed, RimSupports
 from gearfe.planetary_sets.solve import planetary_stiffness
-from gearfe.planetary_sets.whole_gear import PLACES, between_teeth, carry, sector_stiffness, whole_gear
+from gearfe.planetary_sets.whole_gear import PLACES, between_teeth, carry, whole_gear
 
 RING = gears().planet_ring.gear_2
 SUN = gears().sun
@@ -125,12 +123,6 @@ def test_a_cracked_ring_on_pads_is_that_of_direct_finite_elements(rim, level, mo
     for k, beside in enumerate((sin * x + cos * y, cos * x - sin * y)):
         own = np.interp(angle, rim_angles(whole) % (2 * math.pi), got[:, k], period=2 * math.pi)
         assert_allclose(own[clear], beside[clear], atol=6e-3 * abs(beside).max())
-
-
-def test_a_sector_without_cracks_is_the_periodic_one():
-    for gear in (SUN, RING):
-        plain, want = (sector_stiffness(one, STEEL)[0] for one in (cracked_sector(gear, ())[0], periodic_sector(gear)))
-        assert_allclose(plain, want, atol=1e-12 * abs(want).max())
 
 
 def test_faces_of_rings_on_any_support_resist_and_a_stiff_bed_holds():
