@@ -26,11 +26,12 @@ def set_error(found: Any, coarse: Any, some: Any) -> dict[str, Any]:
     even = force.mean(axis=(1, 2), keepdims=True)
     with np.errstate(divide="ignore", invalid="ignore"):
         k = np.where(force > CARRIES * even, np.abs(coarse.k / found.k[:, some] - 1), np.nan)
+    model = float(found.meta["left_out"].max()) + MODEL  # a planet's load depends on the contact of all others
     te = np.abs(coarse.te - found.te[some]) / np.abs(found.te).mean()
     return {
         "k": _worst(k) + found.meta["left_out"] + MODEL,
-        "force": _worst(np.abs(coarse.force - force) / even) + MODEL,
-        "te": float(te.max() + te.mean() + found.meta["left_out"].max() + MODEL),
+        "force": _worst(np.abs(coarse.force - force) / even) + model,
+        "te": float(te.max() + te.mean() + model),
     }
 
 
