@@ -55,7 +55,7 @@ def _surface(x, y, c):
     return spline
 
 
-MADE = {record.__name__: record for record in (Flexibility, SeamFaces, Flexibility3D, Faces)} | {
+MADE: dict[str, Any] = {record.__name__: record for record in (Flexibility, SeamFaces, Flexibility3D, Faces)} | {
     "dict": lambda *items: dict(items),
     "tuple": lambda *parts: parts,
     "spline": lambda c, x: CubicSpline.construct_fast(c, x, extrapolate=True),
