@@ -50,7 +50,7 @@ from typing import Any
 from ...scene.dotted_keys import check_key, set_values, tables_near
 from ...scene.load import Scene, scene_of
 from ...scene.parts import DAMAGE
-from ...scene.schema import checked
+from ...scene.reading import checked
 from ...scene.toml_file import given_tables
 from ..sweeps.axes import RUNS
 from ..sweeps.samples import check_shape
