@@ -67,6 +67,11 @@ class Key:
         return found[1].replace("_per_", "/") if found and not self.of else ""
 
     @property
+    def label(self) -> str:
+        """Name of the quantity: the beginning of its description."""
+        return self.text.split(";")[0]
+
+    @property
     def python_name(self) -> str:
         """Name of the argument that it is in Python."""
         return self.argument or UNIT.sub("", self.name)
@@ -133,7 +138,7 @@ class KeyTable:
         """What a row breaks of the rules on which keys go together."""
         given = {name for name, value in row.items() if value is not None and value != self.keys[name].default}
         if self.one_of and len(given.intersection(self.one_of)) != 1:
-            stated = (f"{name} ({re.split('[;,]', self.keys[name].text)[0]})" for name in self.one_of)
+            stated = (f"{name} ({self.keys[name].label})" for name in self.one_of)
             yield f"give {' or '.join(stated)}, one of them"
         yield from (f"{one} and {two} exclude each other: give one" for one, two in self.exclude if {one, two} <= given)
         kind, of_kinds = row.get("kind"), [key for key in self.keys.values() if key.kinds]
@@ -185,6 +190,19 @@ def shown(value: Any) -> str:
     except ValueError:  # Python writes no whole numbers of more than 4300 digits
         return "a number of thousands of digits"
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+
+
+def in_words(kind: str, thing: Any, *names: str) -> str:
+    """Finite numbers other than zero of an object of the library, by the keys of a scene's table, of these `names` or all.
+
+    >>> from gearfe import Support
+    >>> in_words("support", Support(radial=2e5, torsion=4e8))
+    'radial stiffness 200 N/um, torsional stiffness 400 Nm/mrad'
+    """
+    keys = scene_schema()[kind].keys
+    values = {keys[name]: getattr(thing, keys[name].python_name, None) for name in names or keys}
+    given = {key: value for key, value in values.items() if isinstance(value, float) and value and math.isfinite(value)}
+    return ", ".join(f"{key.label} {value / key.in_python(1.0):.4g} {key.unit}" for key, value in given.items())
 
 
 def arguments(kind: str, row: Mapping[str, Any], *names: str) -> dict[str, Any]:
