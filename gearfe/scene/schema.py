@@ -1,4 +1,4 @@
-"""Schema of TOML files: what each key is (type, unit, range, default, description), and the check of tables against it.
+"""Schema of TOML files: what each key is (type, unit, range, default, description).
 
 The keys of a scene are defined in ``keys.toml``, those of sweeps and data sets in files of the same form. A value that the schema
 does not permit is a ValueError that names file, table, key and value as typed, and what is permitted.
@@ -8,17 +8,14 @@ import math
 import operator
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from typing import Any
 
 REQUIRED = object()
-LARGEST, MOST = 1e30, 2**63  # no length, force or stiffness is larger, in any unit; whole numbers that arrays can hold
 SHOWN = 60  # characters of a value in a message
-PLAIN = {"string": str, "boolean": bool, "values": dict, "gear": str, "pair": str, "material": str}
 LISTS = {"numbers": "number", "strings": "string", "tables": "values"}  # type of list: type of its entries
 NAMES = ("gear", "pair", "material")  # types of keys that name a table
 TYPES = {
@@ -60,6 +57,8 @@ class Key:
     argument: str = ""
     of: str = ""
     names: tuple[str, ...] = ()
+    kinds: tuple[str, ...] = ()
+    needed: bool = False
 
     @property
     def unit(self) -> str:
@@ -68,9 +67,19 @@ class Key:
         return found[1].replace("_per_", "/") if found and not self.of else ""
 
     @property
+    def label(self) -> str:
+        """Name of the quantity: the beginning of its description."""
+        return self.text.split(";")[0]
+
+    @property
     def python_name(self) -> str:
         """Name of the argument that it is in Python."""
         return self.argument or UNIT.sub("", self.name)
+
+    def heading(self, place: str = "") -> str:
+        """Heading of the tables it holds, in the table at a `place`: ``[gear.NAME]``, ``[[crack]]``, ``[machine.impact]``."""
+        name = f"{place}.{self.name}" if place else self.name
+        return {"listed": f"[[{name}]]", "named": f"[{name}.NAME]"}.get(self.type, f"[{name}]")
 
     @property
     def expected(self) -> str:
@@ -95,6 +104,8 @@ class Key:
         if self.choices:
             return value in self.choices
         numbers = value if isinstance(value, (list, tuple)) else [value]
+        if (self.min, self.above, self.max, self.below) == (None, None, None, None):
+            return True
         rules = ((self.min, operator.ge), (self.above, operator.gt), (self.max, operator.le), (self.below, operator.lt))
         return all(compare(one, bound) for bound, compare in rules if bound is not None for one in numbers)
 
@@ -112,7 +123,7 @@ class KeyTable:
     about: str
     keys: dict[str, Key]
     one_of: tuple[str, ...] = ()
-    at_most_one: tuple[str, ...] = ()
+    exclude: tuple[tuple[str, str], ...] = ()
     together: tuple[tuple[str, str], ...] = ()
 
     def as_typed(self, row: Mapping[str, Any], text: str) -> str:
@@ -127,103 +138,18 @@ class KeyTable:
 
     def _rules(self, row):
         """What a row breaks of the rules on which keys go together."""
-        if self.one_of and len([name for name in self.one_of if row[name] is not None]) != 1:
-            stated = (f"{name} ({re.split('[;,]', self.keys[name].text)[0]})" for name in self.one_of)
+        given = {name for name, value in row.items() if value is not None and value != self.keys[name].default}
+        if self.one_of and len(given.intersection(self.one_of)) != 1:
+            stated = (f"{name} ({self.keys[name].label})" for name in self.one_of)
             yield f"give {' or '.join(stated)}, one of them"
-        given = [name for name in self.at_most_one if row[name]]
-        if len(given) > 1:
-            yield f"{' and '.join(given)} exclude each other: give one"
-        for one, two in self.together:
-            if (row[one] is None) != (row[two] is None):
-                yield f"give {one} and {two} together"
-
-
-@dataclass(slots=True)
-class Reading:
-    """The reading of one file by the `tables` of a schema; `references` are (place, key, name) of keys that name a table."""
-
-    file: str
-    tables: Mapping[str, KeyTable]
-    references: list[tuple[str, Key, str]] = field(default_factory=list)
-
-    def row(self, name: str, where: str, given: Any) -> dict[str, Any]:
-        """Values of the table ``[where]``, that is `given`, with defaults filled in; nested tables too.
-
-        Parameters
-        ----------
-        name : str
-            Of the table in the schema.
-        where : str
-            Its place in the file, for messages; ``"top level"`` is not part of the places below it.
-        given : dict
-
-        Returns
-        -------
-        dict
-            Values by key as typed; None where an optional key is left out.
-
-        Raises
-        ------
-        ValueError
-            If a key is unknown, missing, of another type or out of range, or keys contradict each other.
-        """
-        table = self.tables[name]
-        if not isinstance(given, Mapping):
-            raise ValueError(f"{self.file} [{where}]: expected a table of keys and values, got {shown(given)}")
-        for key in given:
-            if key not in table.keys:
-                raise ValueError(f"{self.file} [{where}]: {unknown(key, table.keys)}")
-        row = {key.name: self._value(key, where, given) for key in table.keys.values()}
-        for broken in table._rules(row):
-            raise ValueError(f"{self.file} [{where}]: {broken}")
-        return row
-
-    def _value(self, key, where, given):
-        place = key.name if where == "top level" else f"{where}.{key.name}"
-        if key.of:
-            return self._nested(key, place, given.get(key.name, key.default))
-        if key.name not in given:
-            if key.default is REQUIRED:
-                raise ValueError(f"{self.file} [{where}]: missing key {key.name!r}; expected {key.expected}")
-            return key.default
-        value = given[key.name]
-        stated = f"{self.file} [{where}] {key.name} = {shown(value)}"
-        if not fits(value, key):
-            raise ValueError(f"{stated}: expected {key.expected}{_limit(value)}")
-        if key.distinct and not 0 < len(set(value)) == len(value):
-            raise ValueError(f"{stated}: give different numbers, one or more")
-        if not key.permits(value):
-            raise ValueError(f"{stated}, but {'each number' if key.type in LISTS else 'it'} must {key.permitted}")
-        if key.type in NAMES:
-            self.references.append((where, key, value))
-        return value
-
-    def _nested(self, key, place, value):
-        if value is None:
-            return None
-        if value is REQUIRED or (key.default is REQUIRED and value in ({}, [])):
-            mark = f"[[{place}]]" if key.type == "listed" else f"[{place}.NAME]" if key.type == "named" else f"[{place}]"
-            raise ValueError(f"{self.file}: no table {mark}; give one at least: {key.text}")
-        if key.type == "table":
-            return self.row(key.of, place, value)
-        if key.type == "listed":
-            check_listed(self.file, place, value)
-            return [self.row(key.of, f"{place} {i + 1}", one) for i, one in enumerate(value)]
-        check_named(self.file, place, value)
-        if key.names and value and set(value) != set(key.names):
-            there = ", ".join(value)
-            raise ValueError(f"{self.file} [{place}]: {there}, but give a table for each of {', '.join(key.names)}, or none")
-        return {name: self.row(key.of, f"{place}.{name}", one) for name, one in value.items()}
-
-    def check_references(self, rows: Mapping[str, Any]) -> None:
-        """Raise ValueError if a key names a table of a scene that is not among its `rows`."""
-        for where, key, name in self.references:
-            check_known(self.file, where, key.name, name, rows[key.type], key.type)
-
-
-def checked(package: str, name: str, file: str, where: str, given: Any) -> dict[str, Any]:
-    """Row of one table of the schema of a package, as `Reading.row` gives it."""
-    return Reading(file, schema_of(package)).row(name, where, given)
+        yield from (f"{one} and {two} exclude each other: give one" for one, two in self.exclude if {one, two} <= given)
+        kind, of_kinds = row.get("kind"), [key for key in self.keys.values() if key.kinds]
+        has = ", ".join(key.name for key in of_kinds if kind in key.kinds) or "no other key"
+        missing = (key.name for key in of_kinds if key.needed and kind in key.kinds and key.name not in given)
+        yield from (f"kind = {kind!r} needs {name}" for name in missing)
+        wrong = (key.name for key in of_kinds if kind not in key.kinds and key.name in given)
+        yield from (f"kind = {kind!r} has no {name}; expected {has}" for name in wrong)
+        yield from (f"give {one} and {two} together" for one, two in self.together if (one in given) != (two in given))
 
 
 @cache
@@ -259,29 +185,6 @@ def _frozen(value):
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-def fits(value: Any, key: Key) -> bool:
-    """Whether a value is of the type of a key."""
-    if key.type in LISTS:
-        kind = LISTS[key.type]
-        return isinstance(value, list) and key.count in (None, len(value)) and all(_fits(one, kind) for one in value)
-    return _fits(value, key.type)
-
-
-def _fits(value, kind):
-    if kind in PLAIN:
-        return isinstance(value, PLAIN[kind])
-    if isinstance(value, bool):
-        return False
-    if isinstance(value, int):
-        return abs(value) < MOST
-    return kind == "number" and isinstance(value, float) and abs(value) < LARGEST
-
-
-def _limit(value):
-    """Part of the message on a value: the largest number allowed, if it is a number that is too large."""
-    return f", below {LARGEST:g}" if isinstance(value, (int, float)) and abs(value) >= MOST else ""
-
-
 def shown(value: Any) -> str:
     """A value for a message: no longer than a line, whatever was given."""
     try:
@@ -291,44 +194,17 @@ def shown(value: Any) -> str:
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 
 
-def unknown(name: Any, names: Iterable[str]) -> str:
-    """Message on an unknown key, with the nearest of the known `names`."""
-    from difflib import get_close_matches
+def in_words(kind: str, thing: Any, *names: str) -> str:
+    """Finite numbers other than zero of an object of the library, by the keys of a scene's table, of these `names` or all.
 
-    near = get_close_matches(str(name), names := list(names), 1)
-    return f"unknown key {shown(name)}{f' (nearest: {near[0]!r})' if near else ''}; expected {', '.join(names)}"
-
-
-def check_known(file: str, where: str, key: str, name: Any, names: Iterable[str], kind: str) -> None:
-    """Raise ValueError for a `name` that is not among `names`."""
-    if name not in names:
-        raise ValueError(f"{file} [{where}] {key} = {shown(name)}: no such {kind}; there is {', '.join(names)}")
-
-
-def check_named(file: str, kind: str, tables: Any) -> None:
-    """Raise ValueError for anything but a table of named tables, as ``[flank.NAME]`` writes them."""
-    if isinstance(tables, list) and all(isinstance(table, dict) for table in tables):
-        raise ValueError(f"{file}: [[{kind}]] is a list of tables, but they have names: write [{kind}.NAME]")
-    if not isinstance(tables, Mapping):
-        raise ValueError(f"{file}: {kind} = {shown(tables)}, but give tables with names: [{kind}.NAME]")
-
-
-def check_listed(file: str, kind: str, tables: Any) -> None:
-    """Raise ValueError for anything but a list of tables, as ``[[crack]]`` writes them."""
-    if isinstance(tables, dict):
-        raise ValueError(f"{file}: [{kind}] is one table, but there may be several: write [[{kind}]]")
-    if not isinstance(tables, list):
-        raise ValueError(f"{file}: {kind} = {shown(tables)}, but give a list of tables: [[{kind}]]")
-
-
-@contextmanager
-def located(file: str, where: str, row: Mapping[str, Any] | None = None) -> Iterator[None]:
-    """Context in which ValueErrors begin with file and table of a scene, and have the keys of a `row` as typed."""
-    try:
-        yield
-    except ValueError as error:
-        text = scene_schema()[re.split("[. ]", where)[0]].as_typed(row, str(error)) if row else str(error)
-        raise ValueError(f"{file} [{where}]: {text}") from error
+    >>> from gearfe import Support
+    >>> in_words("support", Support(radial=2e5, torsion=4e8))
+    'radial stiffness 200 N/um, torsional stiffness 400 Nm/mrad'
+    """
+    keys = scene_schema()[kind].keys
+    values = {keys[name]: getattr(thing, keys[name].python_name, None) for name in names or keys}
+    given = {key: value for key, value in values.items() if isinstance(value, float) and value and math.isfinite(value)}
+    return ", ".join(f"{key.label} {value / key.in_python(1.0):.4g} {key.unit}" for key, value in given.items())
 
 
 def arguments(kind: str, row: Mapping[str, Any], *names: str) -> dict[str, Any]:
