@@ -43,7 +43,7 @@ _HOME = {
     "ToothDamage": "gearfe.dynamics.machine.gear_mesh",
     "batch": "gearfe.runs.batches",
     "cepstrum": "gearfe.signal.time_frequency",
-    "compare": "gearfe.comparison.by_zone",
+    "compare": "gearfe.comparison.compare",
     "curve_bands": "gearfe.runs.sweeps.effects",
     "demodulate": "gearfe.signal.demodulation",
     "contact_pattern": "gearfe.stiffness.pattern",

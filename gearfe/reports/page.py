@@ -8,7 +8,6 @@ from importlib import resources
 from pathlib import Path
 
 from ..comparison.told_scene import told_details, told_load, told_supports
-from ..core.markdown import table_cells
 from ..core.steps import part
 from ..core.table import Column, Table
 from ..scene.load import Scene, scene_names
@@ -20,6 +19,7 @@ from .findings import find
 from .template import page_maker
 from .whole_set import set_section
 
+MARK = 10.0  # errors beyond it are emphasised [%]
 PICTURE, REFINE = (1120, 840), 0.7  # of stress [px], and of its mesh
 
 
@@ -102,25 +102,17 @@ def _pairs(found, figures):
 def _both(found, name):
     """Curves of a pair, healthy and damaged, by the reference and over the same phases."""
     one = found.comparisons[name, found.case]
-    reference = next(iter(one.healthy))
+    reference = one.methods[0]
     return {f"healthy ({reference})": one.healthy[reference], f"{found.case} ({reference})": one.reference}
 
 
 def _comparison(one, case, figures):
-    rows = [
-        {"zone": zone, "truth": truth / 1e6, "doubt": 100 * doubt, "others": [(k / 1e6, 100 * e) for k, e in others.values()]}
-        for zone, truth, doubt, others in one.rows()
-    ]
-    names = list(one.curves)
     return {
         "case": case or "healthy",
-        "headline": one.headline,
-        "definition": one.definition,
-        "losses": _table(one.loss_table()),
-        "reasons": one.reasons(),
-        "names": names,
-        "rows": rows,
-        "seconds": [one.seconds[name] for name in names],
+        "shown": one,
+        "first": one.methods[0],
+        "losses": one.loss_table(),
+        "errors": one.table(mark=MARK),
         "curves": figures(curves_figure(one.curves)),
         "share": figures(share_figure(one.reference)),
         "supports": told_supports(one.reference),
@@ -173,12 +165,6 @@ def _vibration(found, figures):
         "stats": {case: one.stats for case, one in found.responses.items()},
         "machine": repr(next(iter(found.responses.values())).machine).strip("<>"),
     }
-
-
-def _table(markdown):
-    """Rows of a Markdown table, the head first."""
-    rows = [table_cells(line) for line in markdown.splitlines() if line.startswith("|")]
-    return [row for row in rows if not all(set(cell) <= set("-: ") for cell in row)]
 
 
 def _methods(found):

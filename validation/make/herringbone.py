@@ -2,11 +2,16 @@
 
 import csv
 import math
+import time
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 import gearfe as gf
-from gearfe.comparison.case_table import case_curve, case_table, damage_cycle, printed_cases
+from gearfe.comparison.compare import compare_cases, damage_cycle, solve_fitted
+from gearfe.comparison.losses import tooth_stiffness
+from gearfe.comparison.printed_stiffness import printed_cases
 from gearfe.scene.stored import read_curves, stored_file, write_curves
 
 from ..shared import (
@@ -25,6 +30,7 @@ from ..shared.herringbone_page import SCENE, SUMS, TABLES
 from ..shared.kept_rows import begin
 
 REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}  # of the finite elements: 0.2 to 0.55 million unknowns a gear
+METHODS = ("ritz3d", *SUMS)
 EVERY = 4  # of the cycle's phases, for the sensitivities
 VARIATIONS = {
     "as in the scene": {},
@@ -62,7 +68,7 @@ def sensitivity(variation, pair):
     chosen = varied(gf.load_scene(SCENE).pair(pair), **VARIATIONS[variation])
     phase = damage_cycle(chosen)[EVERY // 2 :: EVERY]
     return [
-        [variation, pair, case or "healthy", *(case_curve(chosen.case(case), m, phase).mean for m in ("ritz3d", *SUMS))]
+        [variation, pair, case or "healthy", *(solve_fitted(chosen.case(case), gf.Solve(m, phase)).k.mean() for m in METHODS)]
         for name, case in printed_cases(gf.load_scene(SCENE))
         if name == pair
     ]
@@ -90,10 +96,17 @@ def reference():
             pair = scene.pairs[name]
             phase = damage_cycle(pair)
             # of the ring pair a coarser mesh cannot carry the patches, and a finer one does not fit into 24 GB
-            one = case_curve(pair.case(case), "fe3d", phase, error=name != "planet_ring", refine=REFINE[name], tell=_tell)
-            kept[name, case] = phase, one.k, one.tooth, one.estimate, one.seconds
+            how = gf.Solve("fe3d", phase, error=name != "planet_ring", refine=REFINE[name], tell=_tell)
+            started, one = time.perf_counter(), solve_fitted(pair.case(case), how)
+            seconds, estimate = time.perf_counter() - started, estimate_of(one)
+            kept[name, case] = phase, one.k, tooth_stiffness(one, 0), estimate, seconds
             write_curves(scene, kept, Path(stored_file(scene)))
-            print(f"  {one.seconds:.0f} s, mean {one.mean:.4e} N/m, estimate {100 * one.estimate:.2f} %", flush=True)
+            print(f"  {seconds:.0f} s, mean {one.k.mean():.4e} N/m, estimate {100 * estimate:.2f} %", flush=True)
+
+
+def estimate_of(curve):
+    """Mean relative error estimate of a curve; nan without one."""
+    return math.nan if curve.error is None else float((curve.error / curve.k).mean())
 
 
 def _tell(text):
@@ -104,16 +117,17 @@ def every_case():
     """Compute the table of every case by every method and write it."""
     scene = gf.load_scene(SCENE)
     print("every case by every method")
-    table = case_table(scene, printed_cases(scene), progress=print)
-    rows = []
-    for pair, case in table.cases():
-        for method in table.methods:
-            found = table.curves[pair, case, method]
-            drops = table.drops(pair, case, method) if case else (0.0,) * 3
-            errors = table.errors(pair, case, method)
-            rows.append(
-                [pair, case or "healthy", method, found.mean, found.largest, *errors, *drops, found.estimate, found.seconds]
-            )
+    found, rows = compare_cases(scene, printed_cases(scene)), []
+    for pair, case in found.asked:
+        truth = found.of(pair, case)["fe3d"].k
+        for method, curve in found.of(pair, case).items():
+            whole = found.solved[pair, None, method]
+            tooth, before = (tooth_stiffness(one, 0).mean() for one in (curve, whole))
+            k, most = curve.k.mean(), curve.k.max()
+            drops = ((1 - curve.k / whole.k).max(), 1 - k / whole.k.mean(), 1 - tooth / before) if case else (0.0,) * 3
+            errors = k / truth.mean() - 1, most / truth.max() - 1, np.abs(curve.k / truth - 1).max()
+            numbers = k, most, *errors, *drops, estimate_of(curve), found.seconds[pair, case, method]
+            rows.append([pair, case or "healthy", method, *map(float, numbers)])
     header = ["pair", "case", "method", "mean [N/m]", "max [N/m]", "error of mean", "error of max", "largest error at a phase"]
     header += ["largest drop", "drop of mean", "drop of the damaged tooth", "estimate", "seconds"]
     save(SCENE, header, rows)

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 import gearfe as gf
-from gearfe.comparison.case_table import printed_cases
+from gearfe.comparison.printed_stiffness import printed_cases
 from gearfe.core.case import overlap
 
 from . import herringbone_scan_nodes as nodes

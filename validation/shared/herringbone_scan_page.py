@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import gearfe as gf
-from gearfe.comparison.case_table import damage_cycle
+from gearfe.comparison.compare import damage_cycle
 from gearfe.core.units import NEWTON_PER_UM, in_newton_per_um
 
 from . import herringbone_scan

@@ -51,6 +51,10 @@ def main(argv=None):
     )  # fmt: skip
     add("--plot", metavar="FILE", help="draw all curves: .png, .svg or .pdf")
     add(
+        "-o", "--output", metavar="FILE",
+        help=".csv: k, errors, losses and seconds by pair, case, method and zone; .md or .tex: the table of errors as printed",
+    )  # fmt: skip
+    add(
         "--cases",
         action="store_true",
         help="all pairs in all cases of damage (default: those of a scene whose source prints their stiffness)",

@@ -42,10 +42,7 @@ np.savetxt("cosine.csv", np.transpose([phase, k]), delimiter=",", header="phase,
 # and puts yours beside them.
 
 result = gf.compare(scene, models=[square_wave, gf.PairModel(parabola), "cosine.csv"])
-for zone, fe, _, others in result.rows():
-    print(f"{zone:6s} fe {fe / 1e6:.1f} N/um")
-    for name, (_, error) in others.items():
-        print(f"       {name:12s} {100 * error:+6.1f} %")
+print(result.table())
 
 figure, axes = plt.subplots(layout="constrained")
 for name, curve in result.curves.items():

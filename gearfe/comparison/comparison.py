@@ -1,0 +1,234 @@
+"""`Comparison`: stiffness of pairs in cases of damage by several methods, with errors, losses and cost, and its tables."""
+
+import math
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from numpy.typing import NDArray
+
+from ..core.case import Case
+from ..core.table import Column, Table, stiffness_column
+from ..core.units import NEWTON_PER_UM, in_newton_per_um
+from ..stiffness.curve import StiffnessCurve
+from .losses import LARGEST, headline, kind_of, loss, rounded_up, told_cycle, told_damage, within
+
+ZONES = ("single", "double", "triple", "mean", "max", LARGEST)
+BRIEF = ("mean", "max", LARGEST)  # of many cases
+Key = tuple[str, str | None]  # pair and case of damage; None: healthy
+ERROR = Column("error", "%", "{:+.1f}")
+
+
+class Row(NamedTuple):
+    """One method in one zone: stiffness [N/m] and its cost [s]; nan where there is none.
+
+    `estimate` is the estimated relative discretisation error of k. `error` is that against the reference. `loss` is what the
+    damage takes of the healthy stiffness, and `doubt` the estimated error of the loss.
+    """
+
+    pair: str
+    case: str | None
+    method: str
+    zone: str
+    k: float
+    estimate: float
+    error: float
+    loss: float
+    doubt: float
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Curves by pair, case and method, the first method being the reference.
+
+    Attributes
+    ----------
+    cases : dict of (str, str or None) to Case
+        By the names of pair and case of damage; None is healthy. What is damaged has its healthy pair beside it.
+    asked : tuple of (str, str or None)
+        Those that tables show.
+    solved : dict of (str, str or None, str) to StiffnessCurve
+        By pair, case and method. Of one damaged pair over the whole engagement of the damaged tooth.
+    seconds : dict of (str, str or None, str) to float
+        Imports and estimates of errors are not counted; none where nothing was timed.
+    cycles : dict of (str, str or None) to ndarray
+        The phases that zones, mean and max are over, default all: of a damaged pair the mesh cycle in which the damaged tooth is
+        in the middle of its engagement, so that it is in contact all the time.
+    doubts : dict of (str, str or None) to dict of str to float
+        Estimated error of what damage takes by the reference, by zone, as a part of the healthy stiffness.
+    left_out : dict of str to str
+        Methods without a curve, and why.
+    """
+
+    cases: dict[Key, Case]
+    asked: tuple[Key, ...]
+    solved: dict[tuple[str, str | None, str], StiffnessCurve]
+    seconds: dict[tuple[str, str | None, str], float] = field(default_factory=dict)
+    cycles: dict[Key, NDArray | None] = field(default_factory=dict)
+    doubts: dict[Key, dict[str, float]] = field(default_factory=dict)
+    left_out: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """Names of the methods of what was asked for, the reference first."""
+        return tuple(dict.fromkeys(method for *key, method in self.solved if tuple(key) in self.asked))
+
+    @property
+    def subject(self) -> Key:
+        """Pair and case that the headline is about: the one that loses most of its mean stiffness."""
+        return max(self.asked, key=lambda key: self.losses(key).get(self.methods[0], {}).get("mean", -math.inf))
+
+    @property
+    def curves(self) -> dict[str, StiffnessCurve]:
+        """Curves of the `subject` by method."""
+        return self.of(*self.subject)
+
+    @property
+    def healthy(self) -> dict[str, StiffnessCurve]:
+        """Curves of the same pair without its damage by method, at the same phases; empty of a healthy pair."""
+        pair, case = self.subject
+        return {} if case is None else self.of(pair, None)
+
+    @property
+    def reference(self) -> StiffnessCurve:
+        """The curve the others are compared with, of the `subject`."""
+        return self.curves[self.methods[0]]
+
+    @property
+    def kind(self) -> str:
+        """What the damaged teeth are called: "cracked", "pitted" or "damaged"; empty of healthy pairs."""
+        kinds = {kind_of(case.damage) for key in self.asked if (case := self.cases[key]).damaged}
+        return "damaged" if len(kinds) > 1 else "".join(kinds)
+
+    def of(self, pair: str, case: str | None) -> dict[str, StiffnessCurve]:
+        """Curves of a pair in a case by method."""
+        return {name: curve for (*key, name), curve in self.solved.items() if tuple(key) == (pair, case)}
+
+    def _cut(self, key, over=None):
+        """Curves by method over the phases that zones of `over` (default: the same) are over."""
+        return {name: within(curve, self.cycles.get(over or key)) for name, curve in self.of(*key).items()}
+
+    def losses(self, key: Key | None = None) -> dict[str, dict[str, float]]:
+        """What damage takes of the stiffness [-] by method and zone, and at the phase where it takes most; empty if healthy.
+
+        `key` names pair and case, by default those of the `subject`.
+        """
+        pair, case = key or self.subject
+        if case is None or (pair, None) not in self.cases:
+            return {}
+        healthy, hurt = (self._cut((pair, which), (pair, case)) for which in (None, case))
+        return {name: loss(healthy[name], hurt[name]) for name in hurt if name in healthy}
+
+    def rows(self) -> Iterator[Row]:
+        """All that was asked for, by pair, case, zone and method."""
+        for key in self.asked:
+            curves, losses = self._cut(key), self.losses(key)
+            zones = {name: curve.zones() for name, curve in curves.items()}
+            estimates = {name: curve.zone_errors() for name, curve in curves.items()}
+            truth, doubt = zones[self.methods[0]], self.doubts.get(key, {})
+            largest = [LARGEST] if losses else []
+            for zone in sorted([*truth, *largest], key=lambda zone: ZONES.index(zone) if zone in ZONES else 2):
+                for name in curves:
+                    k, first = zones[name].get(zone, math.nan), name == self.methods[0]
+                    yield Row(
+                        *key, name, zone, k, estimates[name].get(zone, math.nan),
+                        math.nan if first else k / truth.get(zone, math.nan) - 1, losses.get(name, {}).get(zone, math.nan),
+                        doubt.get(zone, math.nan) if first else math.nan, self.seconds.get((*key, name), math.nan),
+                    )  # fmt: skip
+
+    def record(self) -> Table:
+        """`Table` of all `rows`."""
+        parts = [Column(name, "%", "{:.2f}") for name in ("estimate", "error", "loss", "error of the loss")]
+        columns = ("pair", "case", "method", "zone", Column("k", "N/m"), *parts, Column("time", "s", "{:.3g}"))
+        return Table(columns, [
+            [row.pair, row.case or "healthy", row.method, row.zone, row.k, *(100 * part for part in row[5:9]), row.seconds]
+            for row in self.rows()
+        ])  # fmt: skip
+
+    @property
+    def headline(self) -> str:
+        """The answer in one sentence: what damage takes; of a healthy pair its mean stiffness and who is how far off it."""
+        key, case = self.subject, self.cases[self.subject]
+        which = f"{key[0]}, {key[1] or 'healthy'}: " if len(self.asked) > 1 else ""
+        if losses := self.losses(key):
+            words = told_damage(case.pair, case.damage)
+            return which + headline(words, self.kind, losses[self.methods[0]], self.doubts.get(key, {}))
+        first, *others = (row for row in self.rows() if (row.pair, row.case, row.zone) == (*key, "mean"))
+        doubt = f" ± {in_newton_per_um(first.k * first.estimate, 2)}" if math.isfinite(first.estimate) else ""
+        errors = ", ".join(f"{row.method} {100 * row.error:+.1f} %" for row in others)
+        text = f"{which}healthy mesh stiffness {in_newton_per_um(first.k)}{doubt} N/um in the mean by {first.method}"
+        return f"{text}; {errors}" if errors else text
+
+    @property
+    def definition(self) -> str:
+        """What the zones and the mean are over."""
+        return told_cycle(None if len(self.asked) > 1 else self._cut(self.subject)[self.methods[0]].phase, self.kind)
+
+    def reasons(self) -> dict[str, str]:
+        """Methods without a curve by why they have none: names with commas."""
+        whys = dict.fromkeys(self.left_out.values())
+        return {why: ", ".join(name for name, reason in self.left_out.items() if reason == why) for why in whys}
+
+    def _pivot(self, zones: Collection[str] | None) -> tuple[list[str], dict[tuple[str, ...], dict[str, Row]]]:
+        """Labels of rows, and the rows by label and method; pair and case are labels of several cases only."""
+        several = len(self.asked) > 1
+        zones = zones or (BRIEF if several else None)
+        out: dict[tuple[str, ...], dict[str, Row]] = {}
+        for row in self.rows():
+            if not zones or row.zone in zones:
+                out.setdefault((row.pair, row.case or "healthy", row.zone) if several else (row.zone,), {})[row.method] = row
+        return ["pair", "case", "zone"] if several else ["zone"], out
+
+    def table(self, zones: Collection[str] | None = None, *, digits: int = 4, mark: float = math.inf) -> Table:
+        """`Table` of the reference [N/um] and every method with its error, by zone; the last row has the seconds.
+
+        Parameters
+        ----------
+        zones : collection of str, optional
+            Those that are shown; default all, of several cases the mean and the maximum.
+        digits : int
+            Of the stiffness.
+        mark : float
+            Errors of more than `mark` in size are emphasised [%].
+        """
+        labels, rows = self._pivot(zones)
+        first, *others = self.methods
+        rows = {label: by for label, by in rows.items() if label[-1] != LARGEST}
+        shown = [Column("estimate", "%", "± {:.2f}")] if any(row[first].estimate >= 0 for row in rows.values()) else []
+        columns: list[Any] = [*labels, stiffness_column(first, digits), *shown]
+        for name in others:
+            columns += [stiffness_column(name, digits), ERROR._replace(mark=mark)]
+        body = []
+        for label, by in rows.items():
+            cells = [by[first].k / NEWTON_PER_UM, 100 * by[first].estimate][: 1 + len(shown)]
+            for name in others:
+                cells += [by[name].k / NEWTON_PER_UM, 100 * by[name].error] if name in by else ["none", "none"]
+            body.append([*label, *cells])
+        if self.seconds:
+            total = {name: sum(self.seconds.get((*key, name), 0.0) for key in self.asked) for name in self.methods}
+            cells = [(total[first], "{:.3f}"), *([None] * len(shown))]
+            for name in others:
+                cells += [(total[name], "{:.4f}"), None]
+            body.append(["seconds", *([""] * (len(labels) - 1)), *cells])
+        return Table(columns, body, "errors of each method")
+
+    def loss_table(self, zones: Collection[str] | None = None) -> Table | None:
+        """`Table` by zone of the reference [N/um] healthy and damaged, and what damage takes by each method.
+
+        The last row is the phase at which it takes most. None without damage.
+        """
+        labels, rows = self._pivot(zones)
+        first, *others = self.methods
+        lost = Column("", "%", "{:.1f}")
+        shown = [Column("estimate", "%", lambda doubt: f"± {rounded_up(doubt):.1f} %")] if self.doubts else []
+        columns: list[Any] = [*labels, stiffness_column(f"healthy {first}"), stiffness_column(f"{self.kind} {first}")]
+        columns += [lost._replace(name=f"loss by {first}"), *shown, *(lost._replace(name=f"by {name}") for name in others)]
+        body = []
+        for label, by in rows.items():
+            row = by[first]
+            if math.isfinite(row.loss):
+                after = row.k / NEWTON_PER_UM
+                cells = [after / (1 - row.loss), after, 100 * row.loss, *([100 * row.doubt] if shown else [])]
+                body.append([*label, *cells, *(100 * by[name].loss if name in by else "none" for name in others)])
+        return Table(columns, body, "what the damage takes") if body else None
