@@ -4,13 +4,14 @@ import os
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.case import Case, case_of, overlap
+from ..core.case import Case, CaseOptions, case_of, overlap
 from ..core.checks import one_of
+from ..core.material import Material
 from ..core.steps import steps
 from ..geometry.mesh.mesher import gmsh_session
 from ..geometry.pair.gear_pair import GearPair
@@ -32,6 +33,14 @@ STORED = 32  # phases of the cycle of curves on file
 COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # about, of a curve, in CPU seconds: for the time left
 
 
+class OwnPair(CaseOptions, total=False):
+    """Load and material of a pair of one's own, and the options of its `Case`."""
+
+    force: float
+    torque: float
+    material: Material | tuple[Material, Material]
+
+
 def compare(
     scene: Scene | Case | GearPair | str | os.PathLike[str] | None = None,
     pair: str | GearPair | None = None,
@@ -41,7 +50,7 @@ def compare(
     phases: int | ArrayLike = 64,
     refine: float = 1.0,
     reference: str | None = None,
-    **given: Any,
+    **given: Unpack[OwnPair],
 ) -> Comparison:
     """Compare every formulation that models it with the reference, on one pair of a scene or of your own, healthy or damaged.
 

@@ -166,14 +166,14 @@ def test_numbers_of_the_page_are_those_of_mesh_stiffness(kind, tmp_path):
     scene = gf.load_scene(file)
     error = kind == "fine"
     for curve, case in zip(found["curves"], (None, CASE), strict=True):
-        run = scene.pair(PAIR).case(case) | {"phases": curve["at"], "method": "ritz", "error": error}
+        run = scene.pair(PAIR).case(case).as_dict() | {"phases": curve["at"], "method": "ritz", "error": error}
         own = gf.mesh_stiffness(**run)
         assert curve["solved"] == own.k.tolist()
         assert curve["te"] == (own.te * 1e6).tolist()
         assert curve["error"] == ((own.error / 1e6).tolist() if error else [])
     chosen, count = scene.pair(PAIR), 64 if error else 32
     cycle = damage_phases(chosen.case(), count)
-    zones = [gf.mesh_stiffness(**chosen.case(case), phases=cycle, method="ritz").zones() for case in (None, CASE)]
+    zones = [gf.mesh_stiffness(chosen.case(case), phases=cycle, method="ritz").zones() for case in (None, CASE)]
     for zone, *two, _ in found["table"][1:-1]:
         assert two == [in_newton_per_um(one[zone]) for one in zones]
     if error:

@@ -120,7 +120,7 @@ def test_scene_words_and_sweep(tmp_path):
         chosen.pair, {"pinion": [SPALL, gf.Crack(level=0.2)], "wheel": [gf.Pit(31.0, 5.0, (0.4, 0.4), 0.1)] * 2}
     ) == ("1.11 mm crack at 45 degrees (level 0.2), 2 pits and 1.5 x 4 mm spall")
     assert kind_of(damage) == "spalled"
-    curve = gf.mesh_stiffness(**chosen.case("spalled"), phases=[0.8], refine=0.5)
+    curve = gf.mesh_stiffness(chosen.case("spalled"), phases=[0.8], refine=0.5)
     assert (curve.meta["method"], curve.meta["why"]) == ("ritz3d", "spalls change along the width")
     assert curve.meta["damage"]["pinion"] == [
         {"radius": 21.0, "z": 5.0, "sides": (1.5, 4.0), "depth": 0.2, "corner": 0.3, "tooth": 0, "side": "loaded"}

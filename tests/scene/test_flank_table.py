@@ -51,12 +51,12 @@ def loaded(tmp_path, text):
 def test_units_are_those_of_the_keys(tmp_path):
     scene, _ = loaded(tmp_path, RELIEF + "\n[flank.wheel]\ngear = 'wheel'\ncrowning_um = 4\nslope_um = -2\n")
     case = scene.pair().case()
-    assert case["flanks"] == {
+    assert case.flanks == {
         "pinion": gf.Flank(tip_relief=0.010, tip_start_angle=math.radians(24), tip_exponent=2),
         "wheel": gf.Flank(crowning=0.004, slope=-0.002),
     }
-    curve = gf.mesh_stiffness(**case, phases=8)
-    found = gf.transmission_error(case["pair"], [3000.0], case["material"], flanks=case["flanks"], phases=8)
+    curve = gf.mesh_stiffness(case, phases=8)
+    found = gf.transmission_error(case.pair, [3000.0], case.material, flanks=case.flanks, phases=8)
     assert_allclose(curve.te, found.te[0])
 
 
@@ -75,8 +75,8 @@ def test_keys_along_the_width_and_misalignment(tmp_path):
     askew = "F_beta_um = 12\nf_sigma_beta_um = 6\nbearing_span_mm = 90\n"
     scene, _ = loaded(tmp_path, askew + WIDE)
     case = scene.pair().case()
-    assert case["misalignment"] == gf.Misalignment(F_beta=0.012, f_sigma_beta=0.006, length=90)
-    made = case["flanks"]["pinion"]
+    assert case.misalignment == gf.Misalignment(F_beta=0.012, f_sigma_beta=0.006, length=90)
+    made = case.flanks["pinion"]
     assert made == gf.Flank(lead_crowning=0.005, lead_slope=-0.003, twist=0.002, end_relief=(0.004, 0.008), end_length=(2.0, 3.0))
     assert scene.case().why_wide
     assert not loaded(tmp_path, RELIEF)[0].case().why_wide

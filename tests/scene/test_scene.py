@@ -18,7 +18,7 @@ def test_built_in_scene():
     assert scene.pair().pair.eps_alpha == pytest.approx(1.6149, rel=1e-4)
     assert len(scene.assumptions) >= 4
     assert [len(scene.pair().damage[case]["pinion"]) for case in ("mild", "moderate", "severe")] == [5, 10, 15]
-    assert scene.pair().case("mild")["damage"]["pinion"][0].radius == 21.0
+    assert scene.pair().case("mild").damage["pinion"][0].radius == 21.0
     with pytest.raises(ValueError, match="it has mild, moderate, severe"):
         scene.pair().case("broken")
 
@@ -30,7 +30,7 @@ def test_the_other_machines(name, cases):
     pair = gf.load_scene(name).pair()
     assert len(pair.damage) == cases
     for case in pair.damage:
-        run = pair.case(case) | {"face": None}
+        run = pair.case(case).as_dict() | {"face": None}
         curve = gf.mesh_stiffness(**run, method="textbook", variants={"crack_model": "straight"}, phases=4)
         assert (curve.k > 0).all()
 

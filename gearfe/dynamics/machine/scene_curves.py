@@ -6,7 +6,7 @@ from dataclasses import replace
 from ...geometry.pair.planetary import PlanetarySet
 from ...stiffness.solve import Solve, solve
 from .contact_law import force
-from .force_law import force_law
+from .force_law import law_of
 
 IDLE = 1e-3  # of the load that a scene states for a pair: below it a mesh at rest counts as unloaded, and that load is taken
 
@@ -54,7 +54,7 @@ def curves(name, pair, case, options):
             curve = solve(solved, Solve(span=span, **options)).without_supports()
             results.append(replace(curve, meta=curve.meta | {"scene_pair": name}))
         else:
-            results.append(force_law(solved, loads[name][0], force=loads[name][1], span=span, **options))
+            results.append(law_of(replace(solved, force=loads[name][0]), Solve(span=span, **options), loads[name][1]))
     return results[0], results[1] if hurt.damaged else None
 
 
