@@ -110,17 +110,6 @@ def test_an_untyped_function_is_found():
     assert lacking(half) == ["width", "sides", "done", "return"]
 
 
-def test_type_checkers_see_every_public_name():
-    """`gearfe/__init__.pyi` says where each is, since ``__getattr__`` hides it from them: one import of it under its own name."""
-    stub = ast.parse((ROOT / "gearfe/__init__.pyi").read_text(encoding="utf-8"))
-    seen = {}
-    for node in (node for node in stub.body if isinstance(node, ast.ImportFrom)):
-        module = f"gearfe.{node.module}" if node.level else node.module
-        seen |= {alias.asname: module for alias in node.names if alias.name == alias.asname}
-    assert sorted(gearfe._HOME.items() - seen.items()) == []  # add `from .room.file import name as name`
-    assert sorted(seen.items() - gearfe._HOME.items()) == []  # no longer public
-
-
 def test_packages_say_that_they_are_typed():
     assert all((ROOT / package / "py.typed").is_file() for package in ("gearfe", "geometry"))
 

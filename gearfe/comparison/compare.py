@@ -15,8 +15,8 @@ from ..core.material import Material
 from ..core.steps import steps
 from ..geometry.mesh.mesher import gmsh_session
 from ..geometry.pair.gear_pair import GearPair
-from ..scene.damage_tables import DAMAGE
 from ..scene.load import Scene, ScenePair, load_scene
+from ..scene.parts import DAMAGE
 from ..scene.stored import read_curves
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.limits import check_count

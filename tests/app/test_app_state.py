@@ -15,10 +15,11 @@ from hypothesis import strategies as st
 import gearfe as gf
 from gearfe.app.fields import BY_NAME, FIELDS, START, checked_state, form
 from gearfe.app.solving import answer, compared, scene_from
-from gearfe.app.state import CASE, PAIR, SeveralError, read, tables_of, toml
+from gearfe.app.state import CASE, PAIR, SeveralError, read, tables_of
 from gearfe.comparison.losses import damage_phases
 from gearfe.core.units import in_newton_per_um
 from gearfe.scene.load import scene_names
+from gearfe.scene.toml_file import toml
 
 NEW = "new.toml"
 
@@ -90,7 +91,7 @@ def test_a_built_in_scene_is_refused_until_a_pair_and_a_case_are_chosen(scene):
     assert caught.value.choices == {name: ["", *one.damage] for name, one in whole.pairs.items()}
     pair, cases = next(iter(caught.value.choices.items()))
     if scene == "herringbone_contact_line":
-        with pytest.raises(ValueError, match=r"pits\.along = 'contact_line', but the page has 'axis' there"):
+        with pytest.raises(ValueError, match=r"pits\.middle_mm = 15\.0, but the page has None there"):
             read(scene, text, pair, cases[1])
         return
     state, notes = read(scene, text, pair, cases[1])
@@ -208,7 +209,7 @@ def test_what_a_section_cannot_show_is_said():
 
 def test_impossible_gears_are_refused_in_gearfes_words():
     told = json.loads(answer("quick", checked_state({"held_1": 40.0})))["refused"]
-    assert told.startswith("[gear.pinion]: r_bore = 40.0 mm, but the bore must lie inside")
+    assert told.startswith("[gear.pinion]: r_bore_mm = 40.0, but the bore must lie inside")
 
 
 def test_a_crack_of_part_of_the_width_waits_for_three_dimensions():

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.comparison.losses import kind_of, told_damage
-from gearfe.runs.sweeps.keys import check_key, placed
+from gearfe.scene.dotted_keys import check_key, set_values
 from gearfe.scene.load import load_scene, scene_of
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 12.0}
@@ -127,7 +127,7 @@ def test_scene_words_and_sweep(tmp_path):
     ]
     tables = tomllib.loads(SCENE)
     check_key("spall.spalled.sides_mm.1", tables, {})
-    longer = scene_of("longer", placed(tables, {"spall.spalled.sides_mm.1": 6.0}))
+    longer = scene_of("longer", set_values(tables, {"spall.spalled.sides_mm.1": 6.0}))
     assert longer.pair().damage["spalled"]["pinion"] == [replace(SPALL, sides=(1.5, 6.0))]
 
 

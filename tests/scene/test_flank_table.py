@@ -83,7 +83,7 @@ def test_keys_along_the_width_and_misalignment(tmp_path):
     for text, message in (
         ("f_sigma_beta_um = 6\n", r"\[pair.main\]: misalignment: .* give length"),
         ("F_beta_um = 12000\n", r"\[pair.main\]: 600 um of misalignment per mm"),
-        (WIDE.replace("[2, 3]", "[2, 30]"), r"\[flank.wide\]: end_length = 30 mm"),
+        (WIDE.replace("[2, 3]", "[2, 30]"), r"\[flank.wide\]: end_length_mm = \[2, 30\], but the gear of z = 24 is 20 mm wide"),
         (WIDE.replace("[4, 8]", "4"), r"expected two numbers in um"),
     ):
         with pytest.raises(ValueError, match=message):
@@ -103,9 +103,12 @@ def test_a_misaligned_pair_is_compared_in_three_dimensions(tmp_path):
     [
         (RELIEF.replace("_um", "_mm"), r"\[flank.short\]: unknown key 'tip_relief_mm'"),
         (RELIEF.replace("= 10", "= 10000"), r"\[flank.short\]: 10 mm removed"),
-        (RELIEF.replace("= 24", "= 50"), r"\[flank.short\]: tip_start_angle = 0.87\d* rad is not inside the flank"),
+        (
+            RELIEF.replace("= 24", "= 50"),
+            r"\[flank.short\]: tip_start_angle_deg = 50 is not inside the flank of z = 24, 5.99\d* to 32.86\d* degrees",
+        ),
         (RELIEF.replace('"pinion"', '"sun"'), "no such gear; there is pinion, wheel"),
-        (RELIEF + RELIEF.replace("short", "again"), "'pinion' has a flank in pair 'main' already"),
+        (RELIEF + RELIEF.replace("short", "again"), "'pinion' has flank in pair 'main'; give each its pair"),
         ("[flank.a]\ngear = 'wheel'\ntable_roll_mm = [1, 2]\n", "give table_roll_mm and table_removed_um together"),
         ("[flank.a]\ngear = 'wheel'\npitch_um = 3\n", "expected a list of numbers in um"),
     ],

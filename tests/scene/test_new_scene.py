@@ -5,10 +5,7 @@ import pytest
 
 import gearfe as gf
 from gearfe.app.cli import main
-from gearfe.scene.flank_table import FLANK, MISALIGNMENT
-from gearfe.scene.load import DAMAGE, TABLES
-from gearfe.scene.machine_table import BODY, IMPACT, MACHINE
-from gearfe.scene.support_table import SUPPORTS
+from gearfe.scene.schema import scene_schema
 
 RELIEF = {"tip_relief_um": 15.0, "tip_length_mm": 1.2}
 LOADED = {"torque_Nm": 60.0, "crack": (1.5, 60.0)}
@@ -80,9 +77,10 @@ def test_written_scene_runs_on_the_command_line(tmp_path, capsys):
 def test_all_that_a_scene_can_say_stands_in_it_and_holds(options, tmp_path):
     """Every key of the loader is written; with the # taken away from all of them the scene is read."""
     text = gf.new_scene(tmp_path / "my.toml", **options).read_text()
-    keys = [*FLANK, *MISALIGNMENT, *SUPPORTS["support"], *SUPPORTS["shaft"], *DAMAGE["crack"], *DAMAGE["pits"]]
-    keys += [key for key in TABLES["pair"] if key not in ("face", "groove_mm")]
-    keys += [] if options.get("ring") else [*MACHINE, *IMPACT, *BODY]
+    machine = ("machine", "impact", "body")
+    tables = [table for name, table in scene_schema().items() if name not in ("row", "ring_support") and name not in machine]
+    keys = [key for table in tables for key in table.keys if key not in ("given", "later", "machine")]
+    keys += [] if options.get("ring") else [key for name in machine for key in scene_schema()[name].keys]
     assert not [key for key in keys if not re.search(rf"\b{key}\b", text)]
     (tmp_path / "all.toml").write_text(re.sub(r"^#(?=[\w\[])", "", text, flags=re.M))
     scene = gf.load_scene(tmp_path / "all.toml")
