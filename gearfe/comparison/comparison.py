@@ -16,7 +16,6 @@ from .losses import LARGEST, headline, kind_of, loss, rounded_up, told_cycle, to
 ZONES = ("single", "double", "triple", "mean", "max", LARGEST)
 BRIEF = ("mean", "max", LARGEST)  # of many cases
 Key = tuple[str, str | None]  # pair and case of damage; None: healthy
-ERROR = Column("error", "%", "{:+.1f}")
 
 
 class Row(NamedTuple):
@@ -170,15 +169,20 @@ class Comparison:
         whys = dict.fromkeys(self.left_out.values())
         return {why: ", ".join(name for name, reason in self.left_out.items() if reason == why) for why in whys}
 
-    def _pivot(self, zones: Collection[str] | None) -> tuple[list[str], dict[tuple[str, ...], dict[str, Row]]]:
-        """Labels of rows, and the rows by label and method; pair and case are labels of several cases only."""
-        several = len(self.asked) > 1
-        zones = zones or (BRIEF if several else None)
-        out: dict[tuple[str, ...], dict[str, Row]] = {}
+    def _pivot(self, zones, shown, kept):
+        """Columns and rows of a table, a row for each pair, case and zone; pair and case are told of several cases only.
+
+        `shown` are columns by method, each with the number that it shows of a `Row`; `kept` says which rows count.
+        """
+        labels = ("pair", "case", "zone")[-3 if len(self.asked) > 1 else -1 :]
+        zones = zones or (BRIEF if len(self.asked) > 1 else None)
+        rows: dict[tuple[str, ...], dict[str, Row]] = {}
         for row in self.rows():
-            if not zones or row.zone in zones:
-                out.setdefault((row.pair, row.case or "healthy", row.zone) if several else (row.zone,), {})[row.method] = row
-        return ["pair", "case", "zone"] if several else ["zone"], out
+            if kept(row) and (not zones or row.zone in zones):
+                rows.setdefault((row.pair, row.case or "healthy", row.zone)[-len(labels) :], {})[row.method] = row
+        cells = [(name, *part) for name, parts in shown.items() for part in parts]
+        body = [[*at, *(number(by[name]) if name in by else "none" for name, _, number in cells)] for at, by in rows.items()]
+        return [*labels, *(column for _, column, _ in cells)], body
 
     def table(self, zones: Collection[str] | None = None, *, digits: int = 4, mark: float = math.inf) -> Table:
         """`Table` of the reference [N/um] and every method with its error, by zone; the last row has the seconds.
@@ -192,25 +196,17 @@ class Comparison:
         mark : float
             Errors of more than `mark` in size are emphasised [%].
         """
-        labels, rows = self._pivot(zones)
-        first, *others = self.methods
-        rows = {label: by for label, by in rows.items() if label[-1] != LARGEST}
-        shown = [Column("estimate", "%", "± {:.2f}")] if any(row[first].estimate >= 0 for row in rows.values()) else []
-        columns: list[Any] = [*labels, stiffness_column(first, digits), *shown]
-        for name in others:
-            columns += [stiffness_column(name, digits), ERROR._replace(mark=mark)]
-        body = []
-        for label, by in rows.items():
-            cells = [by[first].k / NEWTON_PER_UM, 100 * by[first].estimate][: 1 + len(shown)]
-            for name in others:
-                cells += [by[name].k / NEWTON_PER_UM, 100 * by[name].error] if name in by else ["none", "none"]
-            body.append([*label, *cells])
+        error = Column("error", "%", "{:+.1f}", mark), lambda row: 100 * row.error
+        shown = {name: [(stiffness_column(name, digits), _in_um), error] for name in self.methods}
+        estimate = Column("estimate", "%", "± {:.2f}"), lambda row: 100 * row.estimate
+        shown[self.methods[0]][1:] = [estimate] if any(row.estimate >= 0 for row in self.rows()) else []
+        columns, body = self._pivot(zones, shown, lambda row: row.zone != LARGEST)
         if self.seconds:
-            total = {name: sum(self.seconds.get((*key, name), 0.0) for key in self.asked) for name in self.methods}
-            cells = [(total[first], "{:.3f}"), *([None] * len(shown))]
-            for name in others:
-                cells += [(total[name], "{:.4f}"), None]
-            body.append(["seconds", *([""] * (len(labels) - 1)), *cells])
+            last: list[Any] = ["seconds", *([""] * (columns.index("zone")))]
+            for name, parts in shown.items():
+                total = sum(self.seconds.get((*key, name), 0.0) for key in self.asked)
+                last += [(total, "{:.4f}"), *([None] * (len(parts) - 1))]
+            body.append(last)
         return Table(columns, body, "errors of each method")
 
     def loss_table(self, zones: Collection[str] | None = None) -> Table | None:
@@ -218,17 +214,18 @@ class Comparison:
 
         The last row is the phase at which it takes most. None without damage.
         """
-        labels, rows = self._pivot(zones)
-        first, *others = self.methods
-        lost = Column("", "%", "{:.1f}")
-        shown = [Column("estimate", "%", lambda doubt: f"± {rounded_up(doubt):.1f} %")] if self.doubts else []
-        columns: list[Any] = [*labels, stiffness_column(f"healthy {first}"), stiffness_column(f"{self.kind} {first}")]
-        columns += [lost._replace(name=f"loss by {first}"), *shown, *(lost._replace(name=f"by {name}") for name in others)]
-        body = []
-        for label, by in rows.items():
-            row = by[first]
-            if math.isfinite(row.loss):
-                after = row.k / NEWTON_PER_UM
-                cells = [after / (1 - row.loss), after, 100 * row.loss, *([100 * row.doubt] if shown else [])]
-                body.append([*label, *cells, *(100 * by[name].loss if name in by else "none" for name in others)])
-        return Table(columns, body, "what the damage takes") if body else None
+        first, *others = self.losses() or [""]
+        lost, share = Column("", "%", "{:.1f}"), lambda row: 100 * row.loss
+        before = stiffness_column(f"healthy {first}"), lambda row: _in_um(row) / (1 - row.loss)
+        doubt = Column("estimate", "%", lambda doubt: f"± {rounded_up(doubt):.1f} %"), lambda row: 100 * row.doubt
+        shown = {
+            first: [before, (stiffness_column(f"{self.kind} {first}"), _in_um), (lost._replace(name=f"loss by {first}"), share)]
+        }
+        shown[first] += [doubt] if self.doubts else []
+        shown |= {name: [(lost._replace(name=f"by {name}"), share)] for name in others}
+        columns, body = self._pivot(zones, shown, lambda row: math.isfinite(row.loss))
+        return Table(columns, body, "loss of stiffness by the damage") if body else None
+
+
+def _in_um(row):
+    return row.k / NEWTON_PER_UM
