@@ -103,7 +103,7 @@ def compare(
     for name, model in named.items():
         started = time.perf_counter()
         found.solved[*key, name] = own_curve(name, model, chosen.pair, found.solved[*key, methods[0]])
-        found.seconds[*key, name] = time.perf_counter() - started
+        found.times[*key, name] = time.perf_counter() - started
     return found
 
 
@@ -156,7 +156,7 @@ def beside_health(case: Case, how: Solve, pair: str = "pair") -> Comparison:
     found = _compared(plan, (key,), (row.name,), how, cycle)
     for curve in found.solved.values():
         curve.meta["why"] = why
-    return replace(found, seconds={})
+    return replace(found, times={})
 
 
 def _beside(key, case, phases):

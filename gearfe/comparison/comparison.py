@@ -1,7 +1,8 @@
 """`Comparison`: stiffness of pairs in cases of damage by several methods, with errors, losses and cost, and its tables."""
 
 import math
-from collections.abc import Collection, Iterator
+import warnings
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -16,6 +17,13 @@ from .losses import LARGEST, headline, kind_of, loss, rounded_up, told_cycle, to
 ZONES = ("single", "double", "triple", "mean", "max", LARGEST)
 BRIEF = ("mean", "max", LARGEST)  # of many cases
 Key = tuple[str, str | None]  # pair and case of damage; None: healthy
+
+RENAMED: dict[str, tuple[str, Callable[[Any], Any]]] = {  # what replaces a name of before, and its value
+    "pair_name": ("subject", lambda one: one.subject[0]),
+    "doubt": ("doubts", lambda one: one.doubts.get(one.subject, {})),
+    "cycle": ("cycles", lambda one: one.cycles.get(one.subject)),
+    "damage": ("cases", lambda one: told_damage(one.cases[one.subject].pair, one.cases[one.subject].damage)),
+}
 
 
 class Row(NamedTuple):
@@ -49,8 +57,8 @@ class Comparison:
         Those that tables show.
     solved : dict of (str, str or None, str) to StiffnessCurve
         By pair, case and method. Of one damaged pair over the whole engagement of the damaged tooth.
-    seconds : dict of (str, str or None, str) to float
-        Imports and estimates of errors are not counted; none where nothing was timed.
+    times : dict of (str, str or None, str) to float
+        Seconds by pair, case and method, without imports and estimates of errors; none where nothing was timed.
     cycles : dict of (str, str or None) to ndarray
         The phases that zones, mean and max are over, default all: of a damaged pair the mesh cycle in which the damaged tooth is
         in the middle of its engagement, so that it is in contact all the time.
@@ -63,7 +71,7 @@ class Comparison:
     cases: dict[Key, Case]
     asked: tuple[Key, ...]
     solved: dict[tuple[str, str | None, str], StiffnessCurve]
-    seconds: dict[tuple[str, str | None, str], float] = field(default_factory=dict)
+    times: dict[tuple[str, str | None, str], float] = field(default_factory=dict)
     cycles: dict[Key, NDArray | None] = field(default_factory=dict)
     doubts: dict[Key, dict[str, float]] = field(default_factory=dict)
     left_out: dict[str, str] = field(default_factory=dict)
@@ -93,6 +101,19 @@ class Comparison:
     def reference(self) -> StiffnessCurve:
         """The curve the others are compared with, of the `subject`."""
         return self.curves[self.methods[0]]
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Seconds that the curves of the `subject` took, by method."""
+        return {name: self.times[*self.subject, name] for name in self.curves if (*self.subject, name) in self.times}
+
+    def __getattr__(self, name: str) -> Any:
+        """Names of before, of the `subject`; they leave with the next version."""
+        if name not in RENAMED:
+            raise AttributeError(f"a Comparison has no {name!r}")
+        new, value = RENAMED[name]
+        warnings.warn(f"Comparison.{name} leaves with the next version: use {new}", DeprecationWarning, stacklevel=2)
+        return value(self)
 
     @property
     def kind(self) -> str:
@@ -133,7 +154,7 @@ class Comparison:
                     yield Row(
                         *key, name, zone, k, estimates[name].get(zone, math.nan),
                         math.nan if first else k / truth.get(zone, math.nan) - 1, losses.get(name, {}).get(zone, math.nan),
-                        doubt.get(zone, math.nan) if first else math.nan, self.seconds.get((*key, name), math.nan),
+                        doubt.get(zone, math.nan) if first else math.nan, self.times.get((*key, name), math.nan),
                     )  # fmt: skip
 
     def record(self) -> Table:
@@ -201,10 +222,10 @@ class Comparison:
         estimate = Column("estimate", "%", "± {:.2f}"), lambda row: 100 * row.estimate
         shown[self.methods[0]][1:] = [estimate] if any(row.estimate >= 0 for row in self.rows()) else []
         columns, body = self._pivot(zones, shown, lambda row: row.zone != LARGEST)
-        if self.seconds:
+        if self.times:
             last: list[Any] = ["seconds", *([""] * (columns.index("zone")))]
             for name, parts in shown.items():
-                total = sum(self.seconds.get((*key, name), 0.0) for key in self.asked)
+                total = sum(self.times.get((*key, name), 0.0) for key in self.asked)
                 last += [(total, "{:.4f}"), *([None] * (len(parts) - 1))]
             body.append(last)
         return Table(columns, body, "errors of each method")

@@ -47,14 +47,16 @@ def test_stiffness_of_a_case_is_told_as_compare_tells_it(capsys):
     assert "3.07 mm crack" in text
 
 
-def test_compare_prints_errors_by_zone(capsys):
-    assert main(["compare", "planetary_pitting", "--phases", "8", "--refine", "0.6"]) == 0
+def test_compare_prints_errors_by_zone(tmp_path, capsys):
+    file = tmp_path / "errors.tex"
+    assert main(["compare", "planetary_pitting", "--phases", "8", "--refine", "0.6", "-o", str(file)]) == 0
     text = capsys.readouterr().out
     rows = {line.split("|")[1].strip(): line.split("|")[2:-1] for line in text.splitlines() if line.startswith("| ")}
     assert {"single", "double", "mean", "max", "seconds"} <= rows.keys()
     fe, textbook = float(rows["double"][0]), float(rows["double"][2])
     assert abs(100 * (textbook / fe - 1) - float(rows["double"][3].replace("%", ""))) < 0.1
     assert 0 < float(rows["double"][1].strip("+- %\u00b1")) < 1
+    assert f"double & {fe:.1f} & $\\pm$" in file.read_text(encoding="utf-8")
 
 
 def test_ring_pair_and_error_estimate(capsys):

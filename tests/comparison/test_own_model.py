@@ -158,7 +158,7 @@ def test_compare_gives_the_textbooks_error_row():
     models = {"file": example.EXAMPLE, "total": lambda phase: by_textbook(phase).k, "pairs": gf.PairModel(textbook_pair)}
     result = gf.compare(SCENE, models=models, phases=32, refine=0.5)
     assert list(result.curves) == ["fe", *FORMULATIONS, "file", "total", "pairs"]
-    assert [method for *_, method in result.seconds] == list(result.curves)
+    assert result.seconds.keys() == result.curves.keys()
     for zone in ("single", "double", "mean", "max"):
         others = {row.method: (row.k, row.error) for row in result.rows() if row.zone == zone}
         for name, tolerance in (("file", 1e-9), ("total", 1e-12), ("pairs", 1e-12)):

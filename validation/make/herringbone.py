@@ -126,7 +126,7 @@ def every_case():
             k, most = curve.k.mean(), curve.k.max()
             drops = ((1 - curve.k / whole.k).max(), 1 - k / whole.k.mean(), 1 - tooth / before) if case else (0.0,) * 3
             errors = k / truth.mean() - 1, most / truth.max() - 1, np.abs(curve.k / truth - 1).max()
-            numbers = k, most, *errors, *drops, estimate_of(curve), found.seconds[pair, case, method]
+            numbers = k, most, *errors, *drops, estimate_of(curve), found.times[pair, case, method]
             rows.append([pair, case or "healthy", method, *map(float, numbers)])
     header = ["pair", "case", "method", "mean [N/m]", "max [N/m]", "error of mean", "error of max", "largest error at a phase"]
     header += ["largest drop", "drop of mean", "drop of the damaged tooth", "estimate", "seconds"]
