@@ -238,7 +238,7 @@ class Comparison:
         first, *others = self.losses() or [""]
         lost, share = Column("", "%", "{:.1f}"), lambda row: 100 * row.loss
         before = stiffness_column(f"healthy {first}"), lambda row: _in_um(row) / (1 - row.loss)
-        doubt = Column("estimate", "%", lambda doubt: f"± {rounded_up(doubt):.1f} %"), lambda row: 100 * row.doubt
+        doubt = Column("error of the loss", "%", lambda doubt: f"± {rounded_up(doubt):.1f} %"), lambda row: 100 * row.doubt
         shown = {
             first: [before, (stiffness_column(f"{self.kind} {first}"), _in_um), (lost._replace(name=f"loss by {first}"), share)]
         }
