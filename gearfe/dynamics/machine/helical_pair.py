@@ -14,7 +14,7 @@ from .gear_mesh import ToothDamage
 from .gear_pair import gear_pair
 from .layout import Body
 from .member import disc
-from .scene_curves import curves, speed_of
+from .scene_curves import curves, speed_of, teeth_of
 from .tables import Machine
 
 DENSITY = 7850.0  # kg/m3
@@ -26,11 +26,10 @@ def scene_pair(scene, case, **options):
     """Machine of a scene with linear contact: the stiffness curves of its pair."""
     chosen = scene.pair()
     name = next(name for name, candidate in scene.pairs.items() if candidate is chosen)
-    healthy, hurt = curves(name, chosen, case, options)
-    damage = () if hurt is None else (ToothDamage(0, 0, hurt),)
+    cycle = curves(name, chosen, case, options)
     return gear_pair(
-        chosen.pair, _bodies(chosen.pair, DENSITY), healthy, speed=speed_of(scene), torque=scene.machine["torque_Nm"],
-        support=BEARING, torsion=(SHAFT, 0.0), damage=damage,
+        chosen.pair, _bodies(chosen.pair, DENSITY), cycle.healthy, speed=speed_of(scene), torque=scene.machine["torque_Nm"],
+        support=BEARING, torsion=(SHAFT, 0.0), damage=teeth_of(cycle),
     )  # fmt: skip
 
 

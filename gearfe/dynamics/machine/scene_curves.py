@@ -3,10 +3,14 @@
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from ...geometry.pair.planetary import PlanetarySet
+from ...stiffness.mesh_cycle import like_all, mesh_cycle
 from ...stiffness.solve import Solve, solve
 from .contact_law import force
 from .force_law import force_law
+from .gear_mesh import ToothDamage
 
 IDLE = 1e-3  # of the load that a scene states for a pair: below it a mesh at rest counts as unloaded, and that load is taken
 
@@ -35,7 +39,7 @@ def own_forces(machine):
 
 
 def curves(name, pair, case, options):
-    """Stiffness of a scene's pair over one cycle, and over its damaged tooth's engagement (None if healthy), by one method.
+    """`MeshCycle` of a scene's pair in a case of damage: its healthy cycle, and each tooth that differs, by one method.
 
     `options` are those of `mesh_stiffness`, and ``loads``: by the pair's name the loads [N] it is solved under and the one it
     works at on average. Several make laws of force, one makes curves; None: curves without damage under the load that the scene
@@ -44,18 +48,29 @@ def curves(name, pair, case, options):
     """
     loads = options["loads"]
     hurt = pair.case(case if loads is not None and case in pair.damage else None)
-    options = {key: value for key, value in options.items() if key != "loads"}
-    if options["method"] == "auto":  # one method for both
-        options["method"] = Solve().chosen(hurt)[0].name
-    results = []
-    for solved, span in ((hurt.healthy, "cycle"), (hurt, "tooth"))[: 1 + hurt.damaged]:
-        if loads is None or len(loads[name][0]) == 1:
-            solved = solved if loads is None else replace(solved, force=loads[name][0][0])
-            curve = solve(solved, Solve(span=span, **options)).without_supports()
-            results.append(replace(curve, meta=curve.meta | {"scene_pair": name}))
-        else:
-            results.append(force_law(solved, loads[name][0], force=loads[name][1], span=span, **options))
-    return results[0], results[1] if hurt.damaged else None
+    how = Solve(**{key: value for key, value in options.items() if key != "loads"})
+    if loads is None:
+        hurt = like_all(hurt, (0, 1))
+    elif len(loads[name][0]) == 1:
+        hurt = replace(hurt, force=loads[name][0][0])
+
+    def of_one(solved, at):
+        curve = solve(solved, at).without_supports()
+        return replace(curve, meta=curve.meta | {"scene_pair": name})
+
+    def of_several(solved, at):
+        span = at.span if np.ndim(at.phases) == 0 else "tooth"
+        return force_law(solved, loads[name][0], force=loads[name][1], span=span, phases=at.phases, method=at.method)
+
+    return mesh_cycle(hurt, how, curve=of_one if loads is None or len(loads[name][0]) == 1 else of_several)
+
+
+def teeth_of(cycle):
+    """`ToothDamage` of all parts of a `MeshCycle`, for `GearMesh`: its teeth are numbered in the order they enter."""
+    both = [part for part in cycle.parts if len(part.gears) == 2]
+    alone = [part for part in cycle.parts if len(part.gears) == 1]
+    damage = [ToothDamage(part.gears[0], part.position, part.curve) for part in alone]
+    return (*damage, *(ToothDamage(0, part.position, part.curve, every=part.period) for part in both))
 
 
 def healthy_and_hurt(scene, case, options, kinds):
@@ -64,6 +79,6 @@ def healthy_and_hurt(scene, case, options, kinds):
         if case in scene.pairs[name].damage and not kind.startswith("sun"):
             raise ValueError(f"case {case!r} damages {name}, but in this machine only the sun has damage: use its cases")
     pair_curves = {name: curves(name, scene.pairs[name], case, options) for name in dict.fromkeys(kinds.values())}
-    healthy = {kind: pair_curves[name][0] for kind, name in kinds.items()}
-    hurt = {kind: pair_curves[name][1] for kind, name in kinds.items() if pair_curves[name][1] is not None}
+    healthy = {kind: pair_curves[name].healthy for kind, name in kinds.items()}
+    hurt = {kind: pair_curves[name].parts[0].curve for kind, name in kinds.items() if pair_curves[name].parts}
     return healthy, hurt

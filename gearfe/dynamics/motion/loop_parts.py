@@ -64,6 +64,14 @@ def _cubic(cells, place, count, at):
 
 
 @compiled
+def _slope(cells, place, count, at):
+    """Derivative of `_cubic` by the place in the cells."""
+    cell = min(int(at), count - 1)
+    u, row = at - cell, place + cell
+    return cells[row, 1] + u * (2 * cells[row, 2] + 3 * u * cells[row, 3])
+
+
+@compiled
 def _load(knots, low, high, t):
     """Straight between knots ``low <= i < high``, constant before and after them; a knot twice is a jump, and its end counts."""
     if t >= knots[high - 1, 0]:
@@ -141,6 +149,7 @@ def lookup(flat, now, first, last, origin, h, low, share):
     cells, frequency, phases, place, count = flat.cells, flat.frequency, flat.phase, flat.place, flat.count
     change_mesh, change, change_place, change_count = flat.change_mesh, flat.change, flat.change_place, flat.change_count
     error_mesh, error, twin, knots, knot_place = flat.error_mesh, flat.error, flat.twin, flat.knots, flat.knot_place
+    shift_mesh, shift, shift_place, shift_count = flat.shift_mesh, flat.shift, flat.shift_place, flat.shift_count
     rub_mesh, rub_place, rub_count, pace = flat.rub_mesh, flat.rub_place, flat.rub_count, flat.pace
     m, rub, changes, loads = frequency.size, rub_mesh.size, change_mesh.size, knot_place.size - 1
     shape, lawful, at = flat.shape, flat.secant.size > 0, 3 * frequency.size + rub_mesh.size + knot_place.size - 1
@@ -174,6 +183,14 @@ def lookup(flat, now, first, last, origin, h, low, share):
             i, turn = error_mesh[j], error[j, 1] * turned + error[j, 2]
             now[row, m + i] += error[j, 0] * np.sin(turn)
             now[row, 2 * m + i] += error[j, 0] * error[j, 1] * fast * np.cos(turn)
+        for j in range(shift_mesh.size):
+            i, z, width = shift_mesh[j], shift[j, 0], shift[j, 3]
+            tooth_phase = phases[i] + frequency[i] * turned - shift[j, 1] - shift[j, 2]
+            tooth_phase = (tooth_phase - z * np.floor(tooth_phase / z)) / width
+            if tooth_phase < shift_count[j]:
+                now[row, m + i] += _cubic(cells, shift_place[j], shift_count[j], tooth_phase)
+                steep = _slope(cells, shift_place[j], shift_count[j], tooth_phase)
+                now[row, 2 * m + i] += steep / width * frequency[i] * fast
         for j in range(rub):
             i = rub_mesh[j]
             phase = phases[i] + frequency[i] * turned
