@@ -159,7 +159,7 @@ def long_run():
     return judged(text, got.stats["error"], away, "shooting")
 
 
-def section(again=()):
+def section(again=False):
     """Lines of the page."""
     lines = [
         "## In the dynamics",

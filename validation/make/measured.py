@@ -14,9 +14,8 @@ from gearfe.dynamics.machine.layout import Body
 from gearfe.dynamics.machine.member import disc
 from gearfe.dynamics.machine.scene_curves import stage_of
 
-from ..shared.page import text
-from ..shared.places import PAGES, SOURCES
-from ..shared.state import replace as put
+from ..shared.page import put, text
+from ..shared.places import SOURCES
 
 TREND = "follow as a trend"
 TURNS, SETTLED = 8, 3  # turns of the carrier that are kept, and that are left out before
@@ -304,7 +303,6 @@ def _modes_text():
     ]
 
 
-def run():
+def run(again=True):
     """Write the page."""
-    put(PAGES / "measured.md", page())
-    print("wrote measured.md")
+    put("measured", page())

@@ -35,7 +35,7 @@ def reduction(scene, pair, case):
     }
 
 
-def rows(again=()):
+def rows(again=False):
     """Reductions by (scene, pair, number of the case)."""
     out = {}
     for scene in SCENES:
@@ -73,7 +73,7 @@ def verdicts(found, scene):
     )
 
 
-def section(again=()):
+def section(again=False):
     """Lines of the page."""
     found = rows(again)
     lines = [*TITLE.strip().splitlines(), "", "| scene | pair | case 1 | case 2 | case 3 | case 4 |", "|---|---|---|---|---|---|"]
