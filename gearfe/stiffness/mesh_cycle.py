@@ -1,4 +1,4 @@
-"""`MeshCycle`: mesh stiffness and unloaded transmission error of a pair whose teeth differ, over every mesh cycle until it repeats.
+"""`MeshCycle`: stiffness and unloaded transmission error of a pair whose teeth differ, over all mesh cycles until it repeats.
 
 Two teeth k of pinion and wheel form pair k, which enters at phase -k. A tooth that differs from the others (damage, pitch, scale,
 eccentricity) returns after the z cycles of its gear. Two teeth of both gears meet again after the hunting period. Each distinct
@@ -133,17 +133,21 @@ def mesh_cycle(case: Case, how: Solve | None = None, *, curve: Callable[[Case, S
     if how.method == "auto":  # one method for what is compared
         how = replace(how, method=how.chosen(case)[0].name)
     how = replace(how, span="cycle")
-    healthy = curve(like_all(case, (0, 1)), how)
     both = [_windows(case, side, n) for side in (0, 1)]
+    meetings = _meetings(case, both, n)
+    healthy = curve(like_all(case, (0, 1)), how)
     parts = []
     for side, windows in enumerate(both):
         alone = like_all(case, (1 - side,))
         z = _gears(case)[side].z
         for window in windows:
-            found = _solved(curve, alone, how, n, window.start, window.stop)
-            found = _later(found, -window.position)
+            found = _solved(curve, alone, how, n, (window.start, window.stop), window.position)
             parts.append(Part((side,), window.teeth, window.position, z, found))
-    return MeshCycle(case, n, healthy, (*parts, *_meetings(case, how, curve, both)))
+    hunting = math.lcm(*(gear.z for gear in _gears(case)))
+    for start, stop in meetings:
+        position = 0 if stop - start == hunting * n else -(-start // n)
+        parts.append(Part((0, 1), (), position, hunting, _solved(curve, case, how, n, (start, stop), position)))
+    return MeshCycle(case, n, healthy, tuple(parts))
 
 
 def like_all(case: Case, sides: Sequence[int]) -> Case:
@@ -207,26 +211,17 @@ def _windows(case, side, n):
     return groups
 
 
-def _meetings(case, how, curve, both):
-    """`Part` of both gears for each way in which teeth of both that differ are in mesh at the same time."""
-    n, (z_1, z_2) = check_count(how.phases), (gear.z for gear in _gears(case))
-    cycles, out = math.lcm(z_1, z_2), []
-    spans = {
-        (start, stop)
-        for one in both[0]
-        for two in both[1]
-        for start, stop in _overlaps((one, z_1 * n), (two, z_2 * n), cycles * n)
-    }
+def _meetings(case, both, n):
+    """Samples (start, stop) of the hunting period in which teeth of both gears that differ are in mesh at the same time."""
+    z_1, z_2 = (gear.z for gear in _gears(case))
+    cycles = math.lcm(z_1, z_2)
+    spans = {span for one in both[0] for two in both[1] for span in _overlaps((one, z_1 * n), (two, z_2 * n), cycles * n)}
     if sum(stop - start for start, stop in spans) > MOST:
         raise ValueError(
-            f"teeth of both gears differ, and the same two meet every {cycles} mesh cycles: more than {MOST:g} phases; give fewer "
-            "phases, or deviations of one gear"
+            f"teeth of both gears differ, and the same two meet every {cycles} mesh cycles, more than {MOST:g} phases: give "
+            "fewer phases, or deviations of one gear"
         )
-    for start, stop in sorted(spans):
-        found = _solved(curve, case, how, n, start, stop)
-        position = 0 if stop - start == cycles * n else -(-start // n)
-        out.append(Part((0, 1), (), position, cycles, _later(found, -position)))
-    return out
+    return sorted(spans)
 
 
 def _overlaps(first, second, size):
@@ -249,23 +244,22 @@ def _overlaps(first, second, size):
     return out
 
 
-def _solved(curve, case, how, n, start, stop):
-    """Curve of the samples ``start <= i < stop``, by few mesh cycles at once; of many without the forces by pair."""
-    bounds = [*range(start, stop, AT_ONCE * n), stop]
-    found = [curve(case, replace(how, phases=np.arange(low, high) / n)) for low, high in zip(bounds[:-1], bounds[1:], strict=True)]
-    if len(found) == 1:
-        return found[0]
-    if not all(isinstance(one, StiffnessCurve) for one in found):
+def _solved(curve, case, how, n, samples, position):
+    """Curve of the samples ``start <= i < stop``, phase 0 at mesh cycle `position`.
+
+    Few mesh cycles are solved at once; of many the forces by pair are left out.
+    """
+    bounds = [*range(*samples, AT_ONCE * n), samples[1]]
+    spans = zip(bounds[:-1], bounds[1:], strict=True)
+    found = [curve(case, replace(how, phases=np.arange(low, high) / n, span="tooth")) for low, high in spans]
+    if len(found) > 1 and not all(isinstance(one, StiffnessCurve) for one in found):
         raise ValueError(
             "a law of force over several loads is of single teeth that differ, but here all teeth of a gear do: give one load"
         )
-    bare = [replace(one, order=one.order[:0], force=one.force[:, :0], pressure=one.pressure[:, :0]) for one in found]
-    return joined(bare)
-
-
-def _later(curve, cycles):
-    """The curve, or law of force, with its phases later by a number of mesh cycles."""
-    return replace(curve, phase=curve.phase + cycles)
+    if len(found) > 1:
+        bare = [replace(one, order=one.order[:0], force=one.force[:, :0], pressure=one.pressure[:, :0]) for one in found]
+        found = [joined(bare)]
+    return replace(found[0], phase=found[0].phase - position)
 
 
 def _values(curve, name):

@@ -252,6 +252,8 @@ def dynamics(arguments):
     made = next(iter(found.values())).machine
     for name, value in made.notes.items():
         print(f"  {name}: {_rounded(value)}")
+    for fault in list(found.values())[-1].machine.faults:
+        print(f"  {fault}")
     print(f"  natural frequencies [Hz]: {_rounded(tuple(natural_frequencies(made)[0][:12]))} ...")
     for case, one in found.items():
         stats = one.stats

@@ -298,5 +298,5 @@ def force_law(
         return law
     parts = np.arange(1, BETWEEN + 1) / (BETWEEN + 1)
     extra = (ends[changing, None] + np.diff(ends)[changing, None] * parts).ravel()
-    finer = solve(case, replace(how, phases=extra, span="cycle"))
+    finer = solve(case, replace(how, phases=extra))
     return ForceLaw.of([joined(both).without_supports() for both in zip(curves, finer, strict=True)], force)

@@ -35,6 +35,7 @@ Curve = StiffnessCurve | Samples  # stiffness over the phase
 Stiffness = float | NDArray[np.float64] | Curve | ForceLaw | Table  # what `GearMesh` takes
 Change = tuple[float, float, Table]  # cycles until it returns, the first of them, and the change over the phase from there on
 NOWHERE = 1e-12  # m: smaller shifts of a tooth are rounding
+ALIKE = 1e-6  # of a mesh cycle, of a cell: how far samples of two curves are apart that count as the same
 
 
 def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[Table, Any], Any] = Table.__call__) -> Any:
@@ -45,6 +46,19 @@ def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[Table,
         tooth_phase = running - first - change.start
         tooth_phase = tooth_phase - z * np.floor(tooth_phase / z) + change.start
         out = out + np.where(tooth_phase < change.end, value(change, np.minimum(tooth_phase, change.end)), 0.0)
+    return out
+
+
+def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> NDArray[np.float64] | None:
+    """Coefficients ``(count, 4)`` of the sum of changes in cells from a running phase on; None if theirs are not the same cells."""
+    out = np.zeros((count, 4))
+    for z, first, change in changes:
+        place = (start - first - change.start) / change.width
+        if abs(change.width - width) > ALIKE * width or abs(place - round(place)) > ALIKE:
+            return None
+        cell = (round(place) + np.arange(count)) % round(z / width)
+        inside = cell < len(change.cells)
+        out[inside] += change.cells[cell[inside]]
     return out
 
 
@@ -95,10 +109,11 @@ class ToothDamage:
     curve: Curve | ForceLaw
     every: int | None = None
 
-    def change(self, usual: Callable[[NDArray[np.float64]], NDArray[np.float64]], cycles: int, name: str = "k") -> Table:
-        """`Table` of the difference of `name` from what is `usual` at these phases, zero one cell beyond either end.
+    def change(self, usual: Sequence[Change], first: float, cycles: int, name: str = "k") -> Table:
+        """`Table` of the difference of `name` from the sum of what is `usual`, zero one cell beyond either end.
 
-        `cycles` are those until the tooth returns; a curve that lasts as long repeats.
+        `first` is the running phase at which the tooth enters, `cycles` those until it returns; a curve that lasts as long
+        repeats. Of curves at the same samples the cubics are subtracted: their sum is that through the curve itself.
         """
         curve = Samples(*self.curve.at(self.curve.force)) if isinstance(self.curve, ForceLaw) and name == "k" else self.curve
         phase, values = np.asarray(curve.phase, dtype=float), getattr(curve, name, None)
@@ -108,10 +123,21 @@ class ToothDamage:
         width = np.diff(phase).min()
         count = round((phase[-1] - phase[0]) / width)
         grid = phase[0] + np.arange(count + 1) * (phase[-1] - phase[0]) / max(count, 1)
-        values, width = np.interp(grid, phase, values) - usual(grid), grid[1] - grid[0]
-        if abs((count + 1) * width - cycles) < 1e-6:
-            return table(values, grid[0], width, periodic=True)
-        return table(np.concatenate([[0.0], values, [0.0]]), grid[0] - width, width, periodic=False)
+        values, width = np.interp(grid, phase, values), grid[1] - grid[0]
+        whole = abs((count + 1) * width - cycles) < ALIKE
+        if whole:
+            own = table(values, grid[0], width, periodic=True)
+        else:
+            beyond = width * np.array([-2, -1])
+            before, after = (changed(usual, first + end) for end in (grid[0] + beyond, grid[-1] - beyond[::-1]))
+            own = table(np.concatenate([before, values, after]), grid[0] - 2 * width, width, periodic=False)
+            own = Table(grid[0] - width, width, own.cells[1:-1])
+        cells = cells_of(usual, first + own.start, width, len(own.cells))
+        if cells is not None and isinstance(self.curve, StiffnessCurve):
+            return Table(own.start, width, own.cells - cells)
+        values = values - changed(usual, first + grid)
+        values = values if whole else np.concatenate([[0.0], values, [0.0]])
+        return table(values, grid[0] if whole else grid[0] - width, width, periodic=whole)
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,18 +247,14 @@ class GearMesh:
         if power != 1 and isinstance(self.stiffness, ForceLaw):
             raise ValueError(f"mesh {self.name}: power = {power} besides a law of force, which says itself how force rises")
 
-    def _changes(self, healthy: Callable[[Any], Any], name: str = "k") -> tuple[Change, ...]:
+    def _changes(self, healthy: Table, name: str = "k") -> tuple[Change, ...]:
         """Differences of `name` by damage from a `healthy` cycle; of curves with `every` also from the damage before them."""
         out: list[Change] = []
         for hurt in self.damage:
             z = hurt.every or self.teeth[hurt.body]
-            first, before = float((hurt.tooth - self.first[hurt.body]) % z), out if hurt.every else ()
-
-            def usual(phase: Any, first: float = first, before: Sequence[Change] = tuple(before)) -> Any:
-                return healthy(phase % 1.0) + changed(before, first + phase)
-
-            change = hurt.change(usual, z, name)
-            if change.end - change.start > z + 1e-6:
+            first = float((hurt.tooth - self.first[hurt.body]) % z)
+            change = hurt.change([(1.0, 0.0, healthy), *(out if hurt.every else ())], first, z, name)
+            if change.end - change.start > z + ALIKE:
                 raise ValueError(f"mesh {self.name}: the damaged tooth's curve is longer than the {z} cycles until it returns")
             out.append((float(z), first, change))
         return tuple(out)
@@ -244,8 +266,9 @@ class GearMesh:
             return ()
         given = self.stiffness
         own = given.unloaded if isinstance(given, (StiffnessCurve, ForceLaw)) else None
-        healthy = Samples(np.zeros(1), np.zeros(1)) if own is None else Samples(given.phase, own)
-        found = self._changes(lambda phase: np.interp(phase, *healthy, period=1.0), "unloaded")
+        grid = np.arange(len(self.cycle.cells)) / len(self.cycle.cells)
+        values = np.zeros(grid.size) if own is None else np.interp(grid, given.phase % 1.0, own, period=1.0)
+        found = self._changes(table(values, 0.0, 1 / grid.size, periodic=True), "unloaded")
         return tuple(shift for shift in found if np.abs(shift[2].cells[:, 0]).max() > NOWHERE)
 
     def _secants(self) -> tuple[Secant, ...]:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from .gear_mesh import ToothDamage
 from .gear_pair import gear_pair
 from .layout import Body
 from .member import disc
-from .scene_curves import curves, speed_of, teeth_of
+from .scene_curves import curves, faults_of, speed_of, teeth_of
 from .tables import Machine
 
 DENSITY = 7850.0  # kg/m3
@@ -27,10 +28,11 @@ def scene_pair(scene, case, **options):
     chosen = scene.pair()
     name = next(name for name, candidate in scene.pairs.items() if candidate is chosen)
     cycle = curves(name, chosen, case, options)
-    return gear_pair(
+    made = gear_pair(
         chosen.pair, _bodies(chosen.pair, DENSITY), cycle.healthy, speed=speed_of(scene), torque=scene.machine["torque_Nm"],
         support=BEARING, torsion=(SHAFT, 0.0), damage=teeth_of(cycle),
     )  # fmt: skip
+    return replace(made, faults=faults_of(cycle, ("pinion", "wheel"), made.stages[-1]))
 
 
 def _bodies(pair, density):

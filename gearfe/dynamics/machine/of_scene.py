@@ -86,6 +86,12 @@ def build_machine(
             f"loads = {tuple(loads)}: the impact law has a coefficient and no curves under loads; take contact = 'linear'"
         )
     if contact == "impact":
+        for name, pair in scene.pairs.items():
+            if pair.flanks or pair.misalignment:
+                raise ValueError(
+                    f"[pair.{name}] has flanks or misalignment, but the impact law is of involutes without deviations: use "
+                    "contact = 'linear'"
+                )
         return with_scene_errors(scene, MACHINES[model][contact](scene, case))
     if not len(loads) or not all(math.isfinite(multiple) and multiple > 0 for multiple in loads):
         raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")

@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...geometry.damage.kinds import told
 from ...geometry.pair.planetary import PlanetarySet
-from ...stiffness.mesh_cycle import like_all, mesh_cycle
+from ...stiffness.mesh_cycle import differing, like_all, mesh_cycle
 from ...stiffness.solve import Solve, solve
 from .contact_law import force
 from .force_law import force_law
 from .gear_mesh import ToothDamage
+from .tables import Fault
 
 IDLE = 1e-3  # of the load that a scene states for a pair: below it a mesh at rest counts as unloaded, and that load is taken
 
@@ -71,6 +73,22 @@ def teeth_of(cycle):
     alone = [part for part in cycle.parts if len(part.gears) == 1]
     damage = [ToothDamage(part.gears[0], part.position, part.curve) for part in alone]
     return (*damage, *(ToothDamage(0, part.position, part.curve, every=part.period) for part in both))
+
+
+def faults_of(cycle, bodies, stage):
+    """`Fault` of each tooth of a `MeshCycle` that differs from the others; of an eccentric gear one for all its teeth."""
+    case, out = cycle.case, []
+    for side, (name, body) in enumerate(zip(("pinion", "wheel"), bodies, strict=True)):
+        gear = (case.pair.gear_1, case.pair.gear_2)[side]
+        hurt = (case.damage or {}).get(name, ())
+        teeth = sorted({one.tooth % gear.z for one in hurt})
+        said = {tooth: told({name: gear}, {name: [one for one in hurt if one.tooth % gear.z == tooth]}) for tooth in teeth}
+        others = sorted(set(differing(case, side)) - set(teeth))
+        if others:
+            said[others[0]] = "off its place" if len(others) == 1 else f"off its place, as {len(others) - 1} others"
+        frequency = stage.returns[body if body in stage.returns else body.rstrip("LR0123456789")]
+        out += [Fault(body, tooth, what, frequency, stage.mesh / gear.z) for tooth, what in said.items()]
+    return tuple(out)
 
 
 def healthy_and_hurt(scene, case, options, kinds):

@@ -14,8 +14,8 @@ class Flat(NamedTuple):
 
     `cells` holds the coefficients of all tables one after the other. Of each mesh: place and number of its cycle's cells. Of each
     damaged tooth: its mesh, number of teeth, first cycle, and start, width, place and number of cells of the change. Of each
-    sinusoid of an error: mesh, amplitude, angular frequency, phase. Of each shift of a tooth, an error too, the same as of damage.
-    Of each friction row: mesh, place and number of cells. Of each load: where its knots start and end.
+    sinusoid of an error: mesh, amplitude, angular frequency, phase. Of each tooth off its place the same as of a damaged one. Of
+    each friction row: mesh, place and number of cells. Of each load: where its knots start and end.
     `twin` is the first mesh whose stiffness is always that of a mesh. `pace` are the knots of `machine.speed.Speed`, none
     at a constant speed.
     `secant` holds the tables of all laws of force one after the other; `shape` is, of each mesh and then of each damaged tooth,

@@ -139,6 +139,21 @@ def secant(table, one, place, u, depth):
 
 
 @compiled
+def _shifted(flat, now, row, turned, fast):
+    """Add what teeth off their places open, and its rate, to the errors in a row of `now`."""
+    m = flat.frequency.size
+    for j in range(flat.shift_mesh.size):
+        i, z, first = flat.shift_mesh[j], flat.shift[j, 0], flat.shift[j, 1]
+        start, width = flat.shift[j, 2], flat.shift[j, 3]
+        place = flat.phase[i] + flat.frequency[i] * turned - first - start
+        place = (place - z * np.floor(place / z)) / width
+        if place < flat.shift_count[j]:
+            now[row, m + i] += _cubic(flat.cells, flat.shift_place[j], flat.shift_count[j], place)
+            steep = _slope(flat.cells, flat.shift_place[j], flat.shift_count[j], place) / width
+            now[row, 2 * m + i] += steep * flat.frequency[i] * fast
+
+
+@compiled
 def lookup(flat, now, first, last, origin, h, low, share):
     """Fill in rows ``first <= i < last`` of `now`: what acts at the times ``origin + h (low + share (i - first))``.
 
@@ -149,7 +164,6 @@ def lookup(flat, now, first, last, origin, h, low, share):
     cells, frequency, phases, place, count = flat.cells, flat.frequency, flat.phase, flat.place, flat.count
     change_mesh, change, change_place, change_count = flat.change_mesh, flat.change, flat.change_place, flat.change_count
     error_mesh, error, twin, knots, knot_place = flat.error_mesh, flat.error, flat.twin, flat.knots, flat.knot_place
-    shift_mesh, shift, shift_place, shift_count = flat.shift_mesh, flat.shift, flat.shift_place, flat.shift_count
     rub_mesh, rub_place, rub_count, pace = flat.rub_mesh, flat.rub_place, flat.rub_count, flat.pace
     m, rub, changes, loads = frequency.size, rub_mesh.size, change_mesh.size, knot_place.size - 1
     shape, lawful, at = flat.shape, flat.secant.size > 0, 3 * frequency.size + rub_mesh.size + knot_place.size - 1
@@ -183,14 +197,8 @@ def lookup(flat, now, first, last, origin, h, low, share):
             i, turn = error_mesh[j], error[j, 1] * turned + error[j, 2]
             now[row, m + i] += error[j, 0] * np.sin(turn)
             now[row, 2 * m + i] += error[j, 0] * error[j, 1] * fast * np.cos(turn)
-        for j in range(shift_mesh.size):
-            i, z, width = shift_mesh[j], shift[j, 0], shift[j, 3]
-            tooth_phase = phases[i] + frequency[i] * turned - shift[j, 1] - shift[j, 2]
-            tooth_phase = (tooth_phase - z * np.floor(tooth_phase / z)) / width
-            if tooth_phase < shift_count[j]:
-                now[row, m + i] += _cubic(cells, shift_place[j], shift_count[j], tooth_phase)
-                steep = _slope(cells, shift_place[j], shift_count[j], tooth_phase)
-                now[row, 2 * m + i] += steep / width * frequency[i] * fast
+        if flat.shift_mesh.size > 0:
+            _shifted(flat, now, row, turned, fast)
         for j in range(rub):
             i = rub_mesh[j]
             phase = phases[i] + frequency[i] * turned
