@@ -35,7 +35,7 @@ def new_cracks():
         alone = []
         for level in levels:
             begun = time.process_time()
-            run = pair.case() | {"damage": {"pinion": [gf.Crack(level=float(level))]}, "span": "tooth"}
+            run = pair.case().as_dict() | {"damage": {"pinion": [gf.Crack(level=float(level))]}, "span": "tooth"}
             gf.mesh_stiffness(**run, method="ritz", phases=32)
             alone.append(time.process_time() - begun)
     return {

@@ -7,10 +7,11 @@ import numpy as np
 
 from ...geometry.damage.kinds import told
 from ...geometry.pair.planetary import PlanetarySet
-from ...stiffness.mesh_cycle import differing, like_all, mesh_cycle
+from ...stiffness.curve import StiffnessCurve
+from ...stiffness.mesh_cycle import MeshCycle, differing, like_all, mesh_cycle
 from ...stiffness.solve import Solve, solve
 from .contact_law import force
-from .force_law import force_law
+from .force_law import law_of
 from .gear_mesh import ToothDamage
 from .tables import Fault
 
@@ -24,7 +25,7 @@ def speed_of(scene):
 
 def stage_of(scene):
     """PlanetarySet of a scene with the pairs `sun_planet` and `planet_ring`."""
-    outer, inner = scene.pairs["sun_planet"].pair, scene.pairs["planet_ring"].pair
+    outer, inner = scene.pair("sun_planet").pair, scene.pair("planet_ring").pair
     return PlanetarySet(outer.gear_1, outer.gear_2, inner.gear_2, scene.machine["n_planets"], outer.a)
 
 
@@ -46,9 +47,15 @@ def curves(name, pair, case, options):
     `options` are those of `mesh_stiffness`, and ``loads``: by the pair's name the loads [N] it is solved under and the one it
     works at on average. Several make laws of force, one makes curves; None: curves without damage under the load that the scene
     states.
+    Method None makes flat curves of 1e8 N/m without solving anything, to check a machine.
     Without the part of shafts that hold its gears: a machine has bearings of its own.
     """
     loads = options["loads"]
+    if options["method"] is None:
+        phase = np.arange(options["phases"]) / options["phases"]
+        flat, pairs = np.full(phase.size, 1e8), np.full((phase.size, 1), np.nan)
+        curve = StiffnessCurve(phase, flat, flat, pair.force / flat, np.zeros(1, dtype=int), pairs, pairs)
+        return MeshCycle(pair.case(), options["phases"], curve, ())
     hurt = pair.case(case if loads is not None and case in pair.damage else None)
     how = Solve(**{key: value for key, value in options.items() if key != "loads"})
     if loads is None:
@@ -61,8 +68,7 @@ def curves(name, pair, case, options):
         return replace(curve, meta=curve.meta | {"scene_pair": name})
 
     def of_several(solved, at):
-        span = at.span if np.ndim(at.phases) == 0 else "tooth"
-        return force_law(solved, loads[name][0], force=loads[name][1], span=span, phases=at.phases, method=at.method)
+        return law_of(replace(solved, force=loads[name][0]), at, loads[name][1])
 
     return mesh_cycle(hurt, how, curve=of_one if loads is None or len(loads[name][0]) == 1 else of_several)
 
@@ -94,7 +100,7 @@ def faults_of(cycle, bodies, stage):
 def healthy_and_hurt(scene, case, options, kinds):
     """Healthy curves by kind of mesh, and damage of the sun's tooth 0, from ``kinds[kind]``, a scene pair's name."""
     for kind, name in kinds.items():
-        if case in scene.pairs[name].damage and not kind.startswith("sun"):
+        if case in scene.pair(name).damage and not kind.startswith("sun"):
             raise ValueError(f"case {case!r} damages {name}, but in this machine only the sun has damage: use its cases")
     pair_curves = {name: curves(name, scene.pairs[name], case, options) for name in dict.fromkeys(kinds.values())}
     healthy = {kind: pair_curves[name].healthy for kind, name in kinds.items()}

@@ -197,8 +197,7 @@ def lookup(flat, now, first, last, origin, h, low, share):
             i, turn = error_mesh[j], error[j, 1] * turned + error[j, 2]
             now[row, m + i] += error[j, 0] * np.sin(turn)
             now[row, 2 * m + i] += error[j, 0] * error[j, 1] * fast * np.cos(turn)
-        if flat.shift_mesh.size > 0:
-            _shifted(flat, now, row, turned, fast)
+        _shifted(flat, now, row, turned, fast)
         for j in range(rub):
             i = rub_mesh[j]
             phase = phases[i] + frequency[i] * turned
