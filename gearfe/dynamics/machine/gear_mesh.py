@@ -50,7 +50,7 @@ def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[Table,
 
 
 def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> NDArray[np.float64] | None:
-    """Coefficients ``(count, 4)`` of the sum of changes in cells from a running phase on; None if theirs are not the same cells."""
+    """Coefficients ``(count, 4)`` of the sum of changes in cells from a running phase on; None if their cells are others."""
     out = np.zeros((count, 4))
     for z, first, change in changes:
         place = (start - first - change.start) / change.width
