@@ -174,6 +174,18 @@ def differing(case: Case, side: int) -> tuple[int, ...]:
     return tuple(sorted(teeth))
 
 
+def renumbered(case: Case, by: int) -> Case:
+    """The case with the teeth of the wheel numbered higher, so that tooth k of the pinion meets what was tooth k - `by`."""
+    damage, flanks, z = dict(case.damage or {}), dict(case.flanks or {}), case.pair.gear_2.z
+    if "wheel" in damage:
+        damage["wheel"] = [replace(hurt, tooth=(hurt.tooth + by) % z) for hurt in damage["wheel"]]
+    if "wheel" in flanks:
+        flank = flanks["wheel"]
+        lists = {name: tuple(np.roll(getattr(flank, name), by).tolist()) for name in ("pitch", "tooth_scale")}
+        flanks["wheel"] = replace(flank, eccentric_tooth=flank.eccentric_tooth + by, **lists)
+    return replace(case, damage=damage or None, flanks=flanks or None)
+
+
 def _gears(case):
     return case.pair.gear_1, case.pair.gear_2
 

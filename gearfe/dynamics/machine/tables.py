@@ -191,7 +191,8 @@ class Fault:
     turning: float
 
     def __str__(self) -> str:
-        return f"tooth {self.tooth} of the {self.gear}: {self.what}; it meshes at {self.frequency:.4g} Hz"
+        gear = f"the {self.gear}" if self.gear.isalpha() else self.gear
+        return f"tooth {self.tooth} of {gear}: {self.what}; it meshes at {self.frequency:.4g} Hz"
 
 
 @dataclass(frozen=True, slots=True)
