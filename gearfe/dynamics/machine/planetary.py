@@ -180,8 +180,7 @@ def teeth_damaged(damage, meshes):
             if not isinstance(tooth, Integral) or isinstance(tooth, bool):
                 raise ValueError(f"damage of {gear!r}: tooth {tooth!r}, but give the number of a tooth, a whole one")
             for kind, curve in curves.items():
-                there = {mesh.pair for mesh in meshes.values() if gear in mesh.bodies}
-                check_named(f"damage of {gear!r}: mesh", kind, there if kind in kinds else kinds)
+                check_named(f"damage of {gear!r}: mesh", kind, kinds)
                 for name, mesh in meshes.items():
                     if mesh.pair == kind and gear in mesh.bodies:
                         out[name] += (ToothDamage(mesh.bodies.index(gear), int(tooth), curve),)
