@@ -91,10 +91,13 @@ def build_machine(
     return with_scene_errors(scene, with_flanks(out.with_meshes(backlash=1e-6 * play) if play else out))
 
 
-def check_machine(scene: Scene, case: str | None = None) -> None:
-    """Raise ValueError if `build_machine` refuses the machine of a scene; nothing is solved."""
+def flat_machine(scene: Scene, case: str | None = None) -> Machine:
+    """The machine of a scene with a constant mesh stiffness, for its frequencies and faults; nothing is solved.
+
+    ValueError if `build_machine` refuses it.
+    """
     build, contact = _builder(scene, case)
-    build(scene, case, **({} if contact == "impact" else {"phases": ROUGH, "method": None, "loads": None}))
+    return build(scene, case, **({} if contact == "impact" else {"phases": ROUGH, "method": None, "loads": None}))
 
 
 def _builder(scene, case):

@@ -330,6 +330,14 @@ class Machine:
         names = {body, body.rstrip("LR"), body.rstrip("LR0123456789")}
         return next((stage for stage in reversed(self.stages) if names & set(stage.returns)), self.stages[-1])
 
+    def fault_frequencies(self) -> tuple[Stage, float, float]:
+        """Stage of the first fault, how often its tooth meshes and its gear turns [Hz]; without, those of the driving gear."""
+        if self.faults:
+            first = self.faults[0]
+            return self.stage_of(first.gear), first.frequency, first.turning
+        stage = self.stages[-1]
+        return stage, stage.fault or stage.turning, stage.turning
+
     def mean_stiffness(self) -> NDArray[np.float64]:
         """Mean of each mesh's stiffness over its healthy cycle ``(m,)`` [N/m^power]."""
         return np.array([m.cycle.mean for m in self.meshes])

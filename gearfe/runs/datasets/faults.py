@@ -20,14 +20,19 @@ class Fault(NamedTuple):
 
 
 def _crack(tables, severity, keys):
-    row = {"case": CASE, "gear": keys["gear"], "level": severity, "angle_deg": keys["angle_deg"], "start": keys["start"]}
-    tables.setdefault("crack", []).append(row)
+    row = {"level": severity, "angle_deg": keys["angle_deg"], "start": keys["start"]}
+    tables.setdefault("crack", []).append(row | _place(keys))
 
 
 def _pits(tables, severity, keys):
-    names = ("gear", "count", "radius_mm", "first_mm", "last_mm", "depth_mm")
-    row = {"case": CASE, "axes_mm": [severity, severity]} | {name: keys[name] for name in names if keys[name] is not None}
-    tables.setdefault("pits", []).append(row)
+    names = ("count", "radius_mm", "first_mm", "last_mm", "depth_mm")
+    row = {"axes_mm": [severity, severity]} | {name: keys[name] for name in names if keys[name] is not None}
+    tables.setdefault("pits", []).append(row | _place(keys))
+
+
+def _place(keys):
+    """Whose tooth is damaged, and on which flank."""
+    return {"case": CASE} | {name: keys[name] for name in ("gear", "tooth", "pair", "body") if keys[name] is not None}
 
 
 def _error(key):
