@@ -252,7 +252,7 @@ def _overlaps(first, second, size):
         for begin in (gap, gap - turn_2):
             low, high = max(begin, 0), min(begin + two.stop - two.start, one.stop - one.start)
             if low < high:
-                out.add((start + low, start + high))
+                out.add((start + low, start + max(high, low + 2)))
     return out
 
 
