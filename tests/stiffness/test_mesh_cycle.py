@@ -11,8 +11,8 @@ import gearfe as gf
 
 pytestmark = pytest.mark.quick
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
-PAIR = gf.GearPair(gf.Gear(z=17, r_bore=10.9, **RACK), gf.Gear(z=20, r_bore=13.0, **RACK))
-CASE = gf.Case(PAIR, 1669.3, gf.Material(E=206e3, nu=0.3))
+PAIR = gf.GearPair(gf.Gear(z=11, x=0.45, r_bore=5.5, **RACK), gf.Gear(z=13, x=0.35, r_bore=7.0, **RACK))
+CASE = gf.Case(PAIR, 1000.0, gf.Material(E=206e3, nu=0.3))
 PHASES = 8
 PITCH = (0.0,) * 3 + (0.02,)
 
@@ -33,25 +33,25 @@ CASES = {
     "two teeth apart": {"damage": {"pinion": [crack(0), crack(5, 3.0)]}},
     "two teeth side by side": {"damage": {"pinion": [crack(2), crack(3)]}},
     "three teeth of both gears": {"damage": {"pinion": [crack(0), crack(5, 3.0)], "wheel": [crack(4)]}},
-    "pitch of one tooth": {"flanks": {"pinion": with_pitch(17)}},
-    "pitch of one, a crack in another": {"flanks": {"pinion": with_pitch(17)}, "damage": {"pinion": [crack(9)]}},
-    "pitch of both gears": {"flanks": {"pinion": with_pitch(17), "wheel": with_pitch(20)}},
+    "pitch of one tooth": {"flanks": {"pinion": with_pitch(11)}},
+    "pitch of one, a crack in another": {"flanks": {"pinion": with_pitch(11)}, "damage": {"pinion": [crack(9)]}},
+    "pitch of both gears": {"flanks": {"pinion": with_pitch(11), "wheel": with_pitch(13)}},
     "an eccentric pinion, a cracked wheel": {
         "flanks": {"pinion": gf.Flank(eccentricity=0.01, eccentric_tooth=2.0)},
         "damage": {"wheel": [crack(1)]},
     },
-    "teeth of several scales": {"flanks": {"wheel": gf.Flank(slope=0.01, tooth_scale=(1.0,) * 6 + (1.6,) + (1.0,) * 13)}},
+    "teeth of several scales": {"flanks": {"wheel": gf.Flank(slope=0.01, tooth_scale=(1.0,) * 6 + (1.6,) + (1.0,) * 6)}},
 }
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_every_cycle_of_the_hunting_period_is_that_of_the_teeth_that_meet(name):
-    """Brute force: the contact of the teeth that really meet, at every phase of the hunting period of 340 cycles."""
+    """Brute force: the contact of the teeth that really meet, at every phase of the hunting period of 143 cycles."""
     case = replace(CASE, **CASES[name])
     cycle = gf.mesh_cycle(case, gf.Solve(phases=PHASES))
-    period = 340 if len({side for part in cycle.parts for side in part.gears}) == 2 else cycle.cycles
+    period = 143 if len({side for part in cycle.parts for side in part.gears}) == 2 else cycle.cycles
     assert cycle.cycles == period
-    span = "revolution" if period == 17 else "hunting"
+    span = "revolution" if period == 11 else "hunting"
     want = gf.solve(case, gf.Solve(phases=PHASES, span=span))
     again = want.k.size // cycle.sampled().size
     assert_allclose(np.tile(cycle.sampled(), again), want.k, rtol=1e-7)
@@ -61,7 +61,7 @@ def test_every_cycle_of_the_hunting_period_is_that_of_the_teeth_that_meet(name):
     assert_allclose(np.tile(te, again), want.te, atol=1e-12)
 
 
-@pytest.mark.parametrize(("side", "tooth"), [("pinion", 5), ("pinion", 16), ("wheel", 11)])
+@pytest.mark.parametrize(("side", "tooth"), [("pinion", 5), ("pinion", 10), ("wheel", 8)])
 def test_a_tooth_is_tooth_0_at_another_time(side, tooth):
     """The curve of tooth n is that of tooth 0, n mesh cycles earlier."""
     one, other = (gf.mesh_cycle(replace(CASE, damage={side: [crack(k)]}), gf.Solve(phases=PHASES)) for k in (0, tooth))
@@ -70,16 +70,16 @@ def test_a_tooth_is_tooth_0_at_another_time(side, tooth):
 
 
 def test_changes_add_where_engagements_do_not_overlap():
-    """Cracks five teeth apart: the changes of k add within the estimated error of k; those of neighbours do not."""
+    """Cracks five teeth apart: the changes of k add within the estimated error of k; those of neighbours add less well."""
     how = gf.Solve(phases=PHASES)
 
     def change(*teeth):
         cycle = gf.mesh_cycle(replace(CASE, damage={"pinion": [crack(k) for k in teeth]}), how)
         return cycle.sampled() - np.tile(cycle.healthy.k, cycle.cycles)
 
-    error = gf.solve(CASE, replace(how, error=True)).error.max()
-    assert np.abs(change(0) + change(5) - change(0, 5)).max() < error
-    assert np.abs(change(0) + change(1) - change(0, 1)).max() > error
+    apart, beside = (np.abs(change(0) + change(tooth) - change(0, tooth)).max() for tooth in (5, 1))
+    assert apart < gf.solve(CASE, replace(how, error=True)).error.max()
+    assert beside > 3 * apart
 
 
 def test_neighbours_of_a_cracked_tooth_are_softer():
