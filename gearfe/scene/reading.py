@@ -60,13 +60,8 @@ class Reading:
                 raise ValueError(f"{self.file} [{where}]: missing key {key.name!r}; expected {key.expected}")
             return key.default
         value = given[key.name]
-        stated = f"{self.file} [{where}] {key.name} = {shown(value)}"
-        if not fits(value, key.type, key.count):
-            raise ValueError(f"{stated}: expected {key.expected}{_limit(value)}")
-        if key.distinct and not 0 < len(set(value)) == len(value):
-            raise ValueError(f"{stated}: give different numbers, one or more")
-        if not key.permits(value):
-            raise ValueError(f"{stated}, but {'each number' if key.type in LISTS else 'it'} must {key.permitted}")
+        if wrong := _wrong(key, value):
+            raise ValueError(f"{self.file} [{where}] {key.name} = {shown(value)}{wrong}")
         if key.type in NAMES:
             self.references.append((where, key, value))
         return value
@@ -108,6 +103,15 @@ def fits(value: Any, kind: str, count: int | None = None) -> bool:
     if isinstance(value, int):
         return not isinstance(value, bool) and abs(value) < MOST
     return kind == "number" and isinstance(value, float) and abs(value) < LARGEST
+
+
+def _wrong(key, value):
+    """What the schema says against a value; empty if it is permitted."""
+    if not fits(value, key.type, key.count):
+        return f": expected {key.expected}{_limit(value)}"
+    if key.distinct and not 0 < len(set(value)) == len(value):
+        return ": give different numbers, one or more"
+    return "" if key.permits(value) else f", but {'each number' if key.type in LISTS else 'it'} must {key.permitted}"
 
 
 def _limit(value):

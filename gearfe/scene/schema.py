@@ -104,6 +104,8 @@ class Key:
         if self.choices:
             return value in self.choices
         numbers = value if isinstance(value, (list, tuple)) else [value]
+        if (self.min, self.above, self.max, self.below) == (None, None, None, None):
+            return True
         rules = ((self.min, operator.ge), (self.above, operator.gt), (self.max, operator.le), (self.below, operator.lt))
         return all(compare(one, bound) for bound, compare in rules if bound is not None for one in numbers)
 
