@@ -23,7 +23,7 @@ from ..stiffness.limits import check_count
 from ..stiffness.methods import METHODS, RING_FOUNDATIONS, ROWS, SUMS, Method, fitted
 from ..stiffness.solve import Solve, solve
 from .comparison import Comparison, Key
-from .losses import damage_phases, engaged_phases, kind_of, loss_errors, within
+from .losses import damage_phases, engaged_phases, kind_of, loss_errors, told_damage, told_teeth, within
 from .own_model import OwnModel, own_curve, own_models
 
 REFERENCE, REFERENCE_SOLID = "fe", "ritz3d"  # of sections, and where the third dimension is needed
@@ -93,13 +93,13 @@ def compare(
     chosen, key = _chosen(scene, pair, case, given)
     methods, left_out = _methods(chosen, reference)
     named = own_models(models, taken=(REFERENCE, *FORMULATIONS))
-    plan, cycle = _beside(key, chosen, phases)
+    plan, cycles = _beside(key, chosen, phases)
     for method in methods:  # what they and gmsh load is no part of their seconds
         METHODS[method].load()
     with gmsh_session():
         pass
     how = Solve(refine=refine, error=True)
-    found = _compared(plan, (key,), methods, how, cycle, fresh=True, left_out=left_out)
+    found = _compared(plan, (key,), methods, how, cycles, fresh=True, left_out=left_out)
     for name, model in named.items():
         started = time.perf_counter()
         found.solved[*key, name] = own_curve(name, model, chosen.pair, found.solved[*key, methods[0]])
@@ -152,23 +152,24 @@ def beside_health(case: Case, how: Solve, pair: str = "pair") -> Comparison:
     Of a damaged pair a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth.
     """
     key = (pair, kind_of(case.damage) if case.damaged else None)
-    (plan, cycle), (row, why) = _beside(key, case, how.phases), how.chosen(case)
-    found = _compared(plan, (key,), (row.name,), how, cycle)
+    (plan, cycles), (row, why) = _beside(key, case, how.phases), how.chosen(case)
+    found = _compared(plan, (key,), (row.name,), how, cycles)
     for curve in found.solved.values():
         curve.meta["why"] = why
     return replace(found, times={})
 
 
 def _beside(key, case, phases):
-    """Case and phases by key, those of the healthy pair too; and the phases that zones are over, None for all."""
-    cycle = None
+    """Case and phases by key, those of the healthy pair too; and the phases that zones are over by damaged tooth in words."""
+    cycles = {}
     if case.damaged and np.ndim(phases) == 0:
         count = check_count(phases)
-        phases, cycle = engaged_phases(case, count), damage_phases(case, count)
-    return {key: (case, phases)} | ({(key[0], None): (case.healthy, phases)} if case.damaged else {}), cycle
+        cycles = {words: damage_phases(case, count, number) for number, words in told_teeth(case).items()}
+        phases = engaged_phases(case, count)
+    return {key: (case, phases)} | ({(key[0], None): (case.healthy, phases)} if case.damaged else {}), cycles
 
 
-def _compared(plan, asked, methods, how, cycle=None, *, fresh=False, known=None, left_out=None):
+def _compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None, left_out=None):
     """`Comparison` of cases at their phases (`plan`, by key), the first of the `methods` being the reference.
 
     `how` is a `Solve` without method and phases; `fresh`: what is `asked` is timed without gears that are solved already, and
@@ -199,15 +200,15 @@ def _compared(plan, asked, methods, how, cycle=None, *, fresh=False, known=None,
             continue
         if not again:
             seconds[place] = time.perf_counter() - started
-    doubts = {}
-    for pair, case in asked if how.error else ():
-        if case is not None:
+    teeth = {}
+    for pair, case in asked:
+        hurt, phases = plan[pair, case]
+        for words, cycle in (cycles or dict.fromkeys([told_damage(hurt.pair, hurt.damage)])).items() if case else ():
             curves = (within(solved[pair, which, reference], cycle) for which in (None, case))
-            hurt, phases = plan[pair, case]
             rough = replace(how, method=reference, phases=phases if cycle is None else cycle, error=False)
-            doubts[pair, case] = loss_errors(*curves, hurt, rough)
-    cases = {key: case for key, (case, _) in plan.items()}
-    return Comparison(cases, asked, solved, seconds, dict.fromkeys(asked, cycle), doubts, left_out)
+            doubt = loss_errors(*curves, hurt, rough) if how.error else {}
+            teeth.setdefault((pair, case), {})[words] = cycle, doubt
+    return Comparison({key: case for key, (case, _) in plan.items()}, asked, solved, seconds, teeth, left_out)
 
 
 def solve_fitted(case: Case, how: Solve) -> StiffnessCurve:

@@ -3,7 +3,7 @@
 import math
 import warnings
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from ..core.case import Case
 from ..core.table import Column, Table, stiffness_column
 from ..core.units import NEWTON_PER_UM, in_newton_per_um
 from ..stiffness.curve import StiffnessCurve
-from .losses import LARGEST, headline, kind_of, loss, rounded_up, told_cycle, told_damage, within
+from .losses import LARGEST, headline, kind_of, loss, rounded_up, told_cycle, within
 
 ZONES = ("single", "double", "triple", "mean", "max", LARGEST)
 BRIEF = ("mean", "max", LARGEST)  # of many cases
@@ -20,9 +20,9 @@ Key = tuple[str, str | None]  # pair and case of damage; None: healthy
 
 RENAMED: dict[str, tuple[str, Callable[[Any], Any]]] = {  # what replaces a name of before, and its value
     "pair_name": ("subject", lambda one: one.subject[0]),
-    "doubt": ("doubts", lambda one: one.doubts.get(one.subject, {})),
-    "cycle": ("cycles", lambda one: one.cycles.get(one.subject)),
-    "damage": ("cases", lambda one: told_damage(one.cases[one.subject].pair, one.cases[one.subject].damage)),
+    "damage": ("teeth", lambda one: one.first_tooth()[0]),
+    "cycle": ("teeth", lambda one: one.first_tooth()[1]),
+    "doubt": ("teeth", lambda one: one.first_tooth()[2]),
 }
 
 
@@ -59,11 +59,11 @@ class Comparison:
         By pair, case and method. Of one damaged pair over the whole engagement of the damaged tooth.
     times : dict of (str, str or None, str) to float
         Seconds by pair, case and method, without imports and estimates of errors; none where nothing was timed.
-    cycles : dict of (str, str or None) to ndarray
-        The phases that zones, mean and max are over, default all: of a damaged pair the mesh cycle in which the damaged tooth is
-        in the middle of its engagement, so that it is in contact all the time.
-    doubts : dict of (str, str or None) to dict of str to float
-        Estimated error of what damage takes by the reference, by zone, as a part of the healthy stiffness.
+    teeth : dict of (str, str) to dict of str to (ndarray or None, dict)
+        Of damaged pairs, by damaged tooth in words: the phases that zones, mean and max are over, None for all, and by zone the
+        estimated error of the loss by the reference, as a part of the healthy stiffness. The phases are those of the mesh cycle
+        in which the damaged tooth is in the middle of its engagement, so that it is in contact all the time. Tables are of the
+        first tooth, see `by_tooth`.
     left_out : dict of str to str
         Methods without a curve, and why.
     """
@@ -72,8 +72,7 @@ class Comparison:
     asked: tuple[Key, ...]
     solved: dict[tuple[str, str | None, str], StiffnessCurve]
     times: dict[tuple[str, str | None, str], float] = field(default_factory=dict)
-    cycles: dict[Key, NDArray | None] = field(default_factory=dict)
-    doubts: dict[Key, dict[str, float]] = field(default_factory=dict)
+    teeth: dict[Key, dict[str, tuple[NDArray | None, dict[str, float]]]] = field(default_factory=dict)
     left_out: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -121,13 +120,25 @@ class Comparison:
         kinds = {kind_of(case.damage) for key in self.asked if (case := self.cases[key]).damaged}
         return "damaged" if len(kinds) > 1 else "".join(kinds)
 
+    def by_tooth(self) -> list["Comparison"]:
+        """Comparisons by damaged tooth of the `subject`, each over its own mesh cycle; of several cases this one alone."""
+        teeth = self.teeth.get(self.subject, {})
+        if len(self.asked) > 1 or not teeth:
+            return [self]
+        return [replace(self, teeth={self.subject: {words: one}}) for words, one in teeth.items()]
+
+    def first_tooth(self, key: Key | None = None) -> tuple[str, NDArray | None, dict[str, float]]:
+        """First damaged tooth of a pair in a case (default: the `subject`) in words, its phases and its doubts, see `teeth`."""
+        words, (cycle, doubt) = next(iter(self.teeth.get(key or self.subject, {"": (None, {})}).items()))
+        return words, cycle, doubt
+
     def of(self, pair: str, case: str | None) -> dict[str, StiffnessCurve]:
         """Curves of a pair in a case by method."""
         return {name: curve for (*key, name), curve in self.solved.items() if tuple(key) == (pair, case)}
 
     def _cut(self, key, over=None):
         """Curves by method over the phases that zones of `over` (default: the same) are over."""
-        return {name: within(curve, self.cycles.get(over or key)) for name, curve in self.of(*key).items()}
+        return {name: within(curve, self.first_tooth(over or key)[1]) for name, curve in self.of(*key).items()}
 
     def losses(self, key: Key | None = None) -> dict[str, dict[str, float]]:
         """What damage takes of the stiffness [-] by method and zone, and at the phase where it takes most; empty if healthy.
@@ -146,7 +157,7 @@ class Comparison:
             curves, losses = self._cut(key), self.losses(key)
             zones = {name: curve.zones() for name, curve in curves.items()}
             estimates = {name: curve.zone_errors() for name, curve in curves.items()}
-            truth, doubt = zones[self.methods[0]], self.doubts.get(key, {})
+            truth, doubt = zones[self.methods[0]], self.first_tooth(key)[2]
             largest = [LARGEST] if losses else []
             for zone in sorted([*truth, *largest], key=lambda zone: ZONES.index(zone) if zone in ZONES else 2):
                 for name in curves:
@@ -169,11 +180,11 @@ class Comparison:
     @property
     def headline(self) -> str:
         """The answer in one sentence: what damage takes; of a healthy pair its mean stiffness and who is how far off it."""
-        key, case = self.subject, self.cases[self.subject]
+        key = self.subject
         which = f"{key[0]}, {key[1] or 'healthy'}: " if len(self.asked) > 1 else ""
-        if losses := self.losses(key):
-            words = told_damage(case.pair, case.damage)
-            return which + headline(words, self.kind, losses[self.methods[0]], self.doubts.get(key, {}))
+        if self.losses(key):
+            teeth = ((one.first_tooth(key), one.losses(key)[self.methods[0]]) for one in self.by_tooth())
+            return which + "; ".join(headline(words, self.kind, lost, doubt) for (words, _, doubt), lost in teeth)
         first, *others = (row for row in self.rows() if (row.pair, row.case, row.zone) == (*key, "mean"))
         doubt = f" ± {in_newton_per_um(first.k * first.estimate, 2)}" if math.isfinite(first.estimate) else ""
         errors = ", ".join(f"{row.method} {100 * row.error:+.1f} %" for row in others)
@@ -242,7 +253,7 @@ class Comparison:
         shown = {
             first: [before, (stiffness_column(f"{self.kind} {first}"), _in_um), (lost._replace(name=f"loss by {first}"), share)]
         }
-        shown[first] += [doubt] if self.doubts else []
+        shown[first] += [doubt] if self.first_tooth()[2] else []
         shown |= {name: [(lost._replace(name=f"by {name}"), share)] for name in others}
         columns, body = self._pivot(zones, shown, lambda row: math.isfinite(row.loss))
         return Table(columns, body, "loss of stiffness by the damage") if body else None

@@ -44,8 +44,38 @@ def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
 
 
 def engaged_phases(case: Case, phases: int) -> NDArray:
-    """Phases ``(n,)`` of the damaged tooth's engagement and a quarter of a cycle at its ends, in steps of ``1 / phases``."""
-    return phase_array(phases, "tooth", case.pair, case.overlap()) - (case.first_tooth or 0)
+    """Phases ``(n,)`` of the damaged teeth's engagements and a quarter of a cycle at their ends, in steps of ``1 / phases``."""
+    one = phase_array(phases, "tooth", case.pair, case.overlap())
+    numbers = np.unique([np.round((one - pair) * phases) for pair in damaged_pairs(case) or (0,)])
+    return np.asarray(numbers / phases, dtype=np.float64)
+
+
+def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
+    """Damage by number of the tooth pair that it is in, and by side; tooth k of both gears is in pair k."""
+    out: dict[int, dict[str, list[Damage]]] = {}
+    for side, found in (case.damage or {}).items():
+        for hurt in found:
+            out.setdefault(hurt.tooth, {}).setdefault(side, []).append(hurt)
+    return out
+
+
+def told_teeth(case: Case) -> dict[int, str]:
+    """Damage in words by number of the tooth pair; teeth are named unless the only one is tooth 0 of the pinion.
+
+    Examples
+    --------
+    >>> import gearfe as gf
+    >>> rack = dict(m_n=2.0, alpha_n=0.349, b=20.0)
+    >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
+    >>> cracks = [gf.Crack(length=2.0, angle=1.05), gf.Crack(length=1.5, angle=1.05, tooth=5)]
+    >>> list(told_teeth(gf.Case(pair, 1000.0, gf.Material(), damage={"wheel": cracks})).values())
+    ['tooth 0 of the wheel: 2 mm crack at 60.2 degrees', 'tooth 5 of the wheel: 1.5 mm crack at 60.2 degrees']
+    """
+    found = damaged_pairs(case)
+    if [list(sides) for sides in found.values()] == [["pinion"]] and 0 in found:
+        return {0: told_damage(case.pair, found[0])}
+    named = {pair: " and ".join(f"tooth {pair} of the {side}" for side in sides) for pair, sides in found.items()}
+    return {pair: f"{name}: {told_damage(case.pair, found[pair])}" for pair, name in named.items()}
 
 
 def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:

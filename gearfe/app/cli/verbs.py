@@ -61,8 +61,8 @@ def stiffness(arguments):
         found = beside_health(case, how)
     curve, meta = found.reference, found.reference.meta
     print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:\n")
-    if losses := found.loss_table():
-        print(f"{found.headline}\n\n{losses}\n")
+    for one in found.by_tooth() if case.damaged else ():
+        print(f"{one.headline};\n{one.definition}\n\n{one.loss_table()}\n")
     print(f"{found.definition}\n\n{found.table(digits=5)}")
     if soft := told_supports(curve):
         print(f"\n{soft}")
@@ -132,8 +132,8 @@ def compare(arguments):
     print(f"{names}: mesh stiffness along the line of action{load};\n{result.definition}")
     if soft := told_supports(result.reference):
         print(soft)
-    if losses := result.loss_table():
-        print(f"\nloss of stiffness by the damage\n\n{losses}")
+    for one in result.by_tooth() if result.healthy else ():
+        print(f"\nloss of stiffness by the damage; {one.definition}\n\n{one.loss_table()}")
     print(f"\nerrors against {reference}; the estimate is its own discretisation error\n")
     table = result.table(digits=5 if several else 4)
     print(table)
@@ -245,6 +245,8 @@ def dynamics(arguments):
     made = next(iter(found.values())).machine
     for name, value in made.notes.items():
         print(f"  {name}: {_rounded(value)}")
+    for fault in list(found.values())[-1].machine.faults:
+        print(f"  {fault}")
     print(f"  natural frequencies [Hz]: {_rounded(tuple(natural_frequencies(made)[0][:12]))} ...")
     for case, one in found.items():
         stats = one.stats
