@@ -1,4 +1,7 @@
-"""What a gear tooth looks like: curves, pairs, gmsh meshes. No loads, no material."""
+"""What a gear tooth looks like: curves, pairs, gmsh meshes. No loads, no material. It is imported as `gearfe.geometry`."""
+
+if __name__ == "geometry":  # from the top of a checkout: a second copy of every class would not be the first
+    raise ImportError("geometry is a part of gearfe: import gearfe.geometry, or take the names from gearfe")
 
 from .pair.gear_pair import GearPair
 from .tooth.gear import Gear

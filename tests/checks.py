@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from gearfe.flexibility.halfspace import pair_kernel
-from geometry.tooth.profile import fillet, flank, form_point
+from gearfe.geometry.tooth.profile import fillet, flank, form_point
 
 
 def form_mismatch(gear):

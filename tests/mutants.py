@@ -113,7 +113,7 @@ def copy(folder):
     """Copy of the repository in a folder, with the times of its files, for which its bytecode holds."""
     for name in COPIED:
         there = Path(folder) / name
-        shutil.copytree(ROOT / name, there) if (ROOT / name).is_dir() else shutil.copy2(ROOT / name, there)
+        shutil.copytree(ROOT / name, there, symlinks=True) if (ROOT / name).is_dir() else shutil.copy2(ROOT / name, there)
     return Path(folder)
 
 

@@ -2,7 +2,7 @@
 
 from numpy.testing import assert_allclose
 
-from gearfe.motion.simulate import simulate
+from gearfe.dynamics.motion.simulate import simulate
 from validation.make import dynamics, hard_dynamics
 from validation.shared.kept_rows import kept, stored
 from validation.shared.places import PAGES

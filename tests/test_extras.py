@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from gearfe import extras
-from gearfe.cli.machine_info import OPTIONAL, advice
+from gearfe.app.cli.machine_info import OPTIONAL, advice
+from gearfe.core import extras
 
 ROOT = Path(__file__).resolve().parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]

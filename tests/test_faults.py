@@ -14,9 +14,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.cli import main
-from gearfe.elements import fe
-from gearfe.files import suffixes
+from gearfe.app.cli import main
+from gearfe.core.files import suffixes
+from gearfe.flexibility.finite_elements import fe
 from gearfe.stiffness import cache
 from gearfe.stiffness.flexibility_file import read_flexibility, write_flexibility
 
@@ -24,9 +24,9 @@ ROOT = Path(gf.__file__).parents[1]
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
 WRITER = """
 import os, signal, sys, time, numpy as np
-from gearfe.files import Content, save
+from gearfe.core.files import Content, save
 from matplotlib.figure import Figure
-from gearfe.files import save_figure
+from gearfe.core.files import save_figure
 values = np.arange(30_000.0)
 content = Content("test", {"x [m]": values}, {"x": values}, {"why": "test"}, {"x": "m"})
 figure = Figure(figsize=(4, 4))
@@ -68,7 +68,7 @@ def test_a_killed_writer_leaves_the_old_file_or_a_new_one(tmp_path):
 
 FULL = """
 import os, resource, signal, sys
-from gearfe.cli import main
+from gearfe.app.cli import main
 import matplotlib.figure, gearfe.stiffness.solve, scipy.io, matplotlib.font_manager
 work = ["stiffness", "planetary_pitting", "--method", "textbook"]
 main(work)  # what it computes is there when each run begins

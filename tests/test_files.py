@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from gearfe.files import FORMATS, Content, check_output, read, save, save_figure, suffix_of, suffixes, written
+from gearfe.core.files import FORMATS, Content, check_output, read, save, save_figure, suffix_of, suffixes, written
 from gearfe.signal.signal_file import READERS
 
 CONTENT = Content(
@@ -103,7 +103,7 @@ def test_a_file_system_that_refuses_is_found_out(tmp_path, monkeypatch):
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("gearfe.files.os.open", full)
+    monkeypatch.setattr("gearfe.core.files.os.open", full)
     with pytest.raises(ValueError, match="No space left on device"):
         check_output(tmp_path / "k.csv", "curve")
 

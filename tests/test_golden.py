@@ -9,9 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.comparison.case_table import case_curve, damage_cycle, printed_cases
 from gearfe.scene import verdicts
 from gearfe.scene.stored import read_curves
-from gearfe.studies.case_table import case_curve, damage_cycle, printed_cases
 from validation import __main__ as pages
 from validation.make import assumptions, herringbone, machines, speed
 from validation.shared import herringbone_page, places, state, table_rows
@@ -48,6 +48,7 @@ def test_cheap_rows_are_what_the_table_says(page):
         assert_allclose(row.ours, old.ours, rtol=machines.GOLDEN_RTOL, atol=1e-12, err_msg=f"{row.id}, {row.case}")
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("page", PAGES)
 def test_verdicts_follow_from_the_numbers(page):
     rows = table_rows.read(page)

@@ -41,6 +41,7 @@ def test_root_stress(row, table):
     assert_allclose(reference.root_stress(row), row["value"], rtol=table["tolerance"], err_msg=table["source"])
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("method", ["fe", "ritz"])
 @pytest.mark.parametrize(("row", "table"), rows("healthy"))
 def test_healthy_curves(row, table, method):
@@ -55,6 +56,7 @@ def test_few_teeth_on_a_plain_rim_are_too_soft():
     assert 0.0005 < loss < 0.004, f"5 teeth: {100 * loss:.2f} % softer"
 
 
+@pytest.mark.quick
 def test_beam_code_with_its_conventions():
     got = reference.beam_code()
     for row in TABLES["beam_code"]["rows"]:
@@ -74,6 +76,7 @@ def test_error_of_the_textbook_moves_with_the_load(row, table):
     assert 1.0 < whole - composed < 2.5, "the source's own truth is stiffer than the whole contact"
 
 
+@pytest.mark.quick
 def test_iso_stiffness():
     got = reference.iso()
     for row, rtol in zip(TABLES["iso"]["rows"], (1e-5, 1e-4, 1e-4), strict=True):
@@ -107,6 +110,7 @@ def printed():
                 yield pytest.param(page, row, by_id[row.id], id=name)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(("page", "row", "source"), list(printed()))
 def test_verdict_on_a_printed_number(page, row, source):
     found = now(page, row.id)

@@ -15,11 +15,11 @@ from checks import together
 from numpy.testing import assert_array_equal
 
 import gearfe as gf
+from gearfe.core.threads import Shared, own_warnings
 from gearfe.flexibility.solved import PROCESS, SolvedGears
+from gearfe.geometry.kept import keeping
+from gearfe.geometry.mesh import mesher
 from gearfe.stiffness import cache
-from gearfe.threads import Shared, own_warnings
-from geometry.kept import keeping
-from geometry.mesh import mesher
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 CRACK = {"pinion": [gf.Crack(level=0.3)]}
@@ -190,8 +190,8 @@ def test_results_that_are_kept_are_never_changed():
 
 
 def test_files_take_the_rights_of_new_files_and_the_mask_is_not_touched(tmp_path, monkeypatch):
-    from gearfe.files import written
-    from gearfe.many.store.folder import durable
+    from gearfe.core.files import written
+    from gearfe.runs.store.folder import durable
 
     (tmp_path / "plain").touch()
     monkeypatch.setattr(os, "umask", None)
@@ -203,7 +203,7 @@ def test_files_take_the_rights_of_new_files_and_the_mask_is_not_touched(tmp_path
 
 
 def test_batches_that_overlap_leave_the_environment_as_it_was(monkeypatch):
-    from gearfe.many import processes
+    from gearfe.runs import processes
 
     monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
     main, inside, leave = sys.modules["__main__"], threading.Event(), threading.Event()

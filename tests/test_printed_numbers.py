@@ -27,7 +27,7 @@ def test_what_is_said_of_a_printed_number(row):
 
 def test_places_that_are_not_there_are_found():
     with pytest.raises(TypeError):
-        printed.put_in("gearfe/machine/impact.py: no such words")
+        printed.put_in("gearfe/dynamics/machine/impact.py: no such words")
     with pytest.raises(KeyError):
         printed.put_in("herringbone: gear.sun.teeth")
     with pytest.raises(ValueError, match="none of verdict, used, unused"):

@@ -62,7 +62,7 @@ import json
 from dataclasses import replace
 import numpy as np
 import gearfe as gf
-from gearfe.machine.laws.lankarani import Lankarani
+from gearfe.dynamics.machine.laws.lankarani import Lankarani
 from machines import WAVE, two_masses
 
 hit = gf.single_mesh(1.0, 1e9, 0.0, force=1e-3, backlash=np.inf, film=0.0, law=Lankarani(0.95, 0.1))
@@ -105,7 +105,7 @@ def copy(tmp_path_factory):
     """Folder with both packages and all recipes in them, and with a scene that uses them."""
     folder = tmp_path_factory.mktemp("copy")
     for name in ("gearfe", "geometry"):
-        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("docs", "__pycache__"))
+        shutil.copytree(ROOT / name, folder / name, symlinks=True, ignore=shutil.ignore_patterns("docs", "__pycache__"))
     for recipe in RECIPES.values():
         for new in recipe.get("new", ()):
             assert not (folder / new["path"]).exists()
@@ -167,7 +167,7 @@ LINES = {
 ALL = """
 import contextlib, io, json, sys
 import gearfe
-from gearfe.cli import main
+from gearfe.app.cli import main
 said = []
 for line in sys.argv[1:]:
     out = io.StringIO()

@@ -7,8 +7,8 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import gearfe as gf
+from gearfe.core.threads import CHOSEN, one_thread, single
 from gearfe.stiffness.phases import phase_array
-from gearfe.threads import CHOSEN, one_thread, single
 
 
 def counts():

@@ -14,6 +14,8 @@ from conftest import ROOT
 
 import gearfe
 
+pytestmark = pytest.mark.quick
+
 OURS = ("geometry.", "gearfe.")
 BARE = (np.ndarray, tuple, list, dict)  # without what is in them they say too little
 SPECIAL = ("__init__", "__call__", "__getitem__", "__iter__", "__len__")

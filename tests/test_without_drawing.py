@@ -17,7 +17,7 @@ class Missing:
 
 sys.meta_path.insert(0, Missing())
 import gearfe
-from gearfe.cli import main
+from gearfe.app.cli import main
 done = []
 for line in sys.argv[1:]:
     out, error = io.StringIO(), io.StringIO()

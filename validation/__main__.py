@@ -38,7 +38,7 @@ ROWS = (
 )  # parts: rows, by beginnings
 ALONE = ("speed", "sweeps")  # pages that say what time things take
 CONTINUED = {  # tables that a job continues where they lie: it counts as computed only if it begins without them
-    "herringbone --reference": (str(places.ROOT / "gearfe/scenes/herringbone_fe3d.csv"),),  # where gearfe reads it: by hand
+    "herringbone --reference": (str(places.ROOT / "gearfe/scene/scenes/herringbone_fe3d.csv"),),  # where gearfe reads it: by hand
     "outlines arbiter": ("outlines.csv", "outlines_fresh.csv", "outlines_plane.csv", "outlines_unloaded.csv"),
     "three --reference": ("pairs_three.csv",),
 }

@@ -3,9 +3,9 @@
 from dataclasses import fields
 from typing import Any
 
+from ..comparison.losses import damage_phases
 from ..scene.load import Scene
 from ..stiffness.solve import Solve
-from ..studies.losses import damage_phases
 
 TEXT = """\
 import numpy as np

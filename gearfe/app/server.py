@@ -10,7 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..extras import missing
+from ..core.extras import missing
 
 try:
     import uvicorn

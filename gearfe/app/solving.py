@@ -12,21 +12,20 @@ from typing import Any
 
 import numpy as np
 
-from geometry.tooth.drawing import outline_points
-
+from ..comparison.by_zone import Comparison
+from ..comparison.losses import damage_phases, engaged_phases, kind_of, loss_errors, told_damage, within
+from ..core.markdown import table_cells
+from ..core.threads import own_warnings
+from ..core.units import NEWTON_PER_UM
+from ..figures.pair_plot import NEAR
+from ..figures.stiffness_plots import closed
 from ..flexibility.solved import PROCESS
-from ..markdown import table_cells
-from ..pictures.pair_plot import NEAR
-from ..pictures.stiffness_plots import closed
+from ..geometry.tooth.drawing import outline_points
 from ..scene.assumed import of_stiffness
 from ..scene.load import Scene, scene_names, scene_of
 from ..scene.strict import shown
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve, solve
-from ..studies.by_zone import Comparison
-from ..studies.losses import damage_phases, engaged_phases, kind_of, loss_errors, told_damage, within
-from ..threads import own_warnings
-from ..units import NEWTON_PER_UM
 from .fields import START
 from .program import program
 from .state import CASE, SeveralError, read, tables_of, title_of, toml
@@ -159,7 +158,7 @@ def picture(scene: Scene) -> dict[str, Any]:
 
 def stress(state: dict[str, Any]) -> dict[str, Any]:
     """Picture of von Mises stress (PNG)."""
-    from ..stress.render import render_stress
+    from ..strength.render import render_stress
 
     scene = scene_from(state)
     case = scene.case(case=CASE if scene.pair().damage else None)
@@ -173,7 +172,7 @@ def stress(state: dict[str, Any]) -> dict[str, Any]:
 
 def spectrum(state: dict[str, Any]) -> dict[str, Any]:
     """Spectra of the mesh force, healthy and damaged, with the lines that are expected."""
-    from ..studies.vibration import analysis, in_words, responses
+    from ..comparison.vibration import analysis, in_words, responses
 
     if not state["speed"]:
         raise ValueError("speed of the pinion = 0 rpm, but a vibration needs one: give it a speed under Load")
@@ -196,7 +195,7 @@ def load(given: dict[str, Any]) -> dict[str, Any]:
     """State of a scene's text, or of a built-in one by its name; the choices if it is more than one pair in one case."""
     name, text = str(given.get("name")), given.get("text")
     if text is None and name in scene_names():
-        text = (resources.files("gearfe.scenes") / f"{name}.toml").read_text(encoding="utf-8")
+        text = (resources.files("gearfe.scene.scenes") / f"{name}.toml").read_text(encoding="utf-8")
     if not isinstance(text, str):
         raise ValueError(
             f"no scene {shown(name)}: give the text of one, or the name of a built-in one: {', '.join(scene_names())}"

@@ -13,11 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.linalg import block_diag
 
-from geometry.damage.crack import check_single
-from geometry.damage.front import crack_in_band
-
-from ..energy.ritz.solid import axial_degree, flexibility3d
-from ..steps import steps
+from ..core.steps import steps
+from ..flexibility.energy.ritz.solid import axial_degree, flexibility3d
+from ..geometry.damage.crack import check_single
+from ..geometry.damage.front import crack_in_band
 
 
 def seen_gears(pair, face, groove):
@@ -51,7 +50,7 @@ class Bodies(NamedTuple):
 
 
 def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility3d):
-    """`Bodies` by `gearfe.energy.ritz.solid`; coarser: a section order less by 1, axial degrees less by a quarter, at least 2.
+    """`Bodies` by `energy.ritz.solid`; coarser: a section order less by 1, axial degrees less by a quarter, at least 2.
 
     (By 2 at any degree would cover ever less of the error of wide gears.) `solve` is called like `flexibility3d`.
     """

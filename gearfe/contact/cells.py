@@ -6,11 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.mesh.outline import spaced
-from geometry.pair.contacts import touching
-from geometry.pair.gear_pair import GearPair
-from geometry.pair.modified import first_touch
-
+from ..geometry.mesh.outline import spaced
+from ..geometry.pair.contacts import touching
+from ..geometry.pair.gear_pair import GearPair
+from ..geometry.pair.modified import first_touch
 from .pieces import cut
 
 BESIDE = 0.25  # modules from an end face: edge contact
@@ -77,7 +76,7 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
     Parameters
     ----------
     bands : list
-        Of `geometry.pair.lines.bands_of`.
+        Of `gearfe.geometry.pair.lines.bands_of`.
     slope : float
         Of the abscissa over the depth, ``tan(beta_b)``.
     sizes : list of (float, float)

@@ -14,16 +14,15 @@ from functools import partial
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from geometry.pair.contacts import TIP, end_corners, touching
-from geometry.tooth.profile import arc_at
-from geometry.tooth.side import on_fillet
-
-from ..energy.ritz.plane import flexibility
-from ..energy.ritz.plane_strain import plane_hats
+from ..flexibility.energy.ritz.plane import flexibility
+from ..flexibility.energy.ritz.plane_strain import plane_hats
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
+from ..geometry.pair.contacts import TIP, end_corners, touching
+from ..geometry.tooth.profile import arc_at
+from ..geometry.tooth.side import on_fillet
 from .pair_contact import BEYOND, CORNER, PairContact
 from .pieces import AT_END, cut
 from .rows import LEAST, RESOLVED, Wanted, finest_hat

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.pair.contacts import approach
-from geometry.tooth.side import side
+from ..geometry.pair.contacts import approach
+from ..geometry.tooth.side import side
 
 
 class Direction(NamedTuple):

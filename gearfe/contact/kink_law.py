@@ -11,12 +11,11 @@ from functools import partial
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from geometry.pair.modified import flank_contacts
-from geometry.tooth.profile import arc_at
-
-from ..energy.ritz.plane import flexibility
+from ..flexibility.energy.ritz.plane import flexibility
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solved import solved_gears
+from ..geometry.pair.modified import flank_contacts
+from ..geometry.tooth.profile import arc_at
 from .corner import pressed
 from .kinks import REACH, kink_rows
 from .pair_contact import PairContact

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from geometry.tooth.profile import arc_at
-
 from ..flexibility.hertz import half_width
+from ..geometry.tooth.profile import arc_at
 from .rows import hat_rows
 
 REACH = 1.3  # a contact with a kink within this many half widths of the whole load is resolved hat by hat

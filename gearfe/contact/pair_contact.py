@@ -10,12 +10,11 @@ import math
 import numpy as np
 from scipy.linalg import block_diag
 
-from geometry.pair.modified import flank_contacts
-from geometry.tooth.profile import arc_at
-
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, peak_pressure
 from ..flexibility.section_contact import Solved
+from ..geometry.pair.modified import flank_contacts
+from ..geometry.tooth.profile import arc_at
 from .directions import leaning
 from .kinks import kink_rows, near_kink
 from .rows import LEAST, RESOLVED, SHARP, Row, Wanted, corner_rows, finest_hat

@@ -6,12 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.pair.contacts import TIP, touching
-from geometry.pair.lines import bands_of
-from geometry.pair.modified import first_touch
-
+from ..core.steps import steps
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
-from ..steps import steps
+from ..geometry.pair.contacts import TIP, touching
+from ..geometry.pair.lines import bands_of
+from ..geometry.pair.modified import first_touch
 from .bodies import between, faces_of, mirrors_of
 from .cell_sharing import SharedLines
 from .cells import SETTLED, TIMES, Cells, carrying, cells_of

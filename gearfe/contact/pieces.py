@@ -1,7 +1,7 @@
 """Contact lines of one phase in pieces: what pits leave of them (`geometry.pair.lines`), and where corners may touch beyond.
 
 On the path of contact a line runs across both flanks. Where the plane of action has left it, sections may still touch: a corner
-of one gear on the other's side, with a gap that is exact kinematics of the section (`geometry.pair.contacts.contacts`).
+of one gear on the other's side, with a gap that is exact kinematics of the section (`gearfe.geometry.pair.contacts.contacts`).
 """
 
 import math
@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.kept import keeping
-from geometry.pair.contacts import FORM, end_corners, near_pitches, touching
-from geometry.pair.lines import covered
+from ..geometry.kept import keeping
+from ..geometry.pair.contacts import FORM, end_corners, near_pitches, touching
+from ..geometry.pair.lines import covered
 
 SAMPLES = 400  # of the gap beyond the path, over a base pitch
 AT_END = (2, 3), (1, 4)  # numbers of the corners that touch at the start and at the end of the path
@@ -82,7 +82,7 @@ def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0), closing=0.0)
     pits : (sequence of Pit, sequence of Pit)
         In each gear's own frame.
     bands : list
-        Of `geometry.pair.lines.bands_of`.
+        Of `gearfe.geometry.pair.lines.bands_of`.
     further : (float, float)
         Of `beyond`.
     closing : float

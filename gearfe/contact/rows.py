@@ -11,14 +11,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.kept import keeping
-from geometry.pair.contacts import TIP
-from geometry.tooth.profile import arc_at, roll_at_arc
-from geometry.tooth.side import on_fillet
-
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import hat_logarithm
 from ..flexibility.plane import towards
+from ..geometry.kept import keeping
+from ..geometry.pair.contacts import TIP
+from ..geometry.tooth.profile import arc_at, roll_at_arc
+from ..geometry.tooth.side import on_fillet
 from .directions import met
 
 FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # of hats: next to a corner and at most [m_n], and how they grow per length

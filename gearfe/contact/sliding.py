@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 
-from geometry.tooth.profile import arc_at, roll_at_arc
-
 from ..flexibility.hertz import half_width
+from ..geometry.tooth.profile import arc_at, roll_at_arc
 
 MOST = 0.05  # largest approach by sliding, as a part of what the pair yields: more would not be small strains
 STEP = 0.01  # along the flank, over which the change of a flexibility is taken [m_n]

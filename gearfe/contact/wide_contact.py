@@ -1,7 +1,7 @@
 """A pair of gears of finite width in contact along its true contact lines: spur, helical or herringbone, with pits and cracks.
 
 Every contact line is cut into short cells, pits taken out exactly, so that nothing jumps when a pit or the phase moves. The
-flexibility between all cells of all pairs is that of both bodies (by default `gearfe.energy.ritz.solid`) and the half-space along
+flexibility between all cells of all pairs is that of both bodies (by default `energy.ritz.solid`) and the half-space along
 the line; each cell on itself is a strip of Hertz's pressure, as in the plane.
 """
 
@@ -12,10 +12,9 @@ from functools import lru_cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.hollow import check_hollows
-
+from ..core.steps import part, steps
 from ..flexibility.solved import solved_gears
-from ..steps import part, steps
+from ..geometry.damage.hollow import check_hollows
 from .bodies import bodies_of, energy_bodies
 from .cells import Cells
 from .corner import in_fillet

@@ -7,16 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.mesh.outline import stations
-from geometry.mesh.relieved import relieved
-from geometry.mesh.section_mesh import section
-from geometry.pair.modified import flank_contacts
-from geometry.tooth.profile import arc_at
-
-from ..case import Case
-from ..elements.fe import EDGES
-from ..elements.one_tooth import edge_lengths
+from ..core.case import Case
+from ..flexibility.finite_elements.fe import EDGES
+from ..flexibility.finite_elements.one_tooth import edge_lengths
 from ..flexibility.hertz import contact_modulus, half_width
+from ..geometry.mesh.outline import stations
+from ..geometry.mesh.relieved import relieved
+from ..geometry.mesh.section_mesh import section
+from ..geometry.pair.modified import flank_contacts
+from ..geometry.tooth.profile import arc_at
 from .deck import held_nodes
 from .pressed import Sections, pressing, read_rows, write_lines
 from .pressing import Pressing
@@ -41,7 +40,7 @@ class ContactDeck:
         return moment[0] / self.r_b[0], abs(moment[1]) / self.r_b[1]
 
     def force(self, path: str | os.PathLike[str]) -> float:
-        """Force along the line of action per width [N/mm], the mean of `forces` (see `geometry.pair.contacts`)."""
+        """Force along the line of action per width [N/mm], the mean of `forces` (see `gearfe.geometry.pair.contacts`)."""
         return sum(self.forces(path)) / 2
 
 

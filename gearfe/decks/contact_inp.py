@@ -3,11 +3,10 @@
 import os
 from typing import Any
 
-from geometry.pair.gear_pair import GearPair
-
-from ..case import Case, case_of
-from ..files import suffix_of
-from ..material import Material
+from ..core.case import Case, case_of
+from ..core.files import suffix_of
+from ..core.material import Material
+from ..geometry.pair.gear_pair import GearPair
 from .contact_deck import ContactDeck, write_contact_section
 from .contact_solid import write_contact_solid
 from .pressing import Pressing
@@ -62,8 +61,8 @@ def write_contact_inp(
     pose : {"mean", "pinion", "wheel"}
         Whether both gears turn by half the approach, or one of them against the held other.
     flanks : dict, optional
-        Modifications, as of `mesh_stiffness`: the mesh carries them (`geometry.mesh.relieved`, with `face`
-        `geometry.mesh.relieved_solid`); `approach` is the transmission error under load, its unloaded part included.
+        Modifications, as of `mesh_stiffness`: the mesh carries them (`gearfe.geometry.mesh.relieved`, with `face`
+        `gearfe.geometry.mesh.relieved_solid`); `approach` is the transmission error under load, its unloaded part included.
     misalignment : Misalignment, optional
         With `face`: of the axes, as of `mesh_stiffness`; the flanks lie askew, the axes stay.
     per_width : float, optional

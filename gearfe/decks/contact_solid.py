@@ -8,28 +8,27 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.kinds import split
-from geometry.mesh.holes import SIZES as HOLES
-from geometry.mesh.holes import filled, holed_sector
-from geometry.mesh.relieved_solid import relieved_points
-from geometry.mesh.solid import solid
-from geometry.pair.contacts import FORM, Contacts, contacts
-from geometry.pair.gear_pair import GearPair
-from geometry.pair.modified import first_touch
-from geometry.tooth.gear import Gear
-from geometry.tooth.profile import arc_at, cartesian, flank
-from geometry.tooth.side import on_fillet
-
-from ..case import Case
+from ..core.case import Case
 from ..flexibility.hertz import contact_modulus, half_width
+from ..geometry.damage.kinds import split
+from ..geometry.mesh.holes import SIZES as HOLES
+from ..geometry.mesh.holes import filled, holed_sector
+from ..geometry.mesh.relieved_solid import relieved_points
+from ..geometry.mesh.solid import solid
+from ..geometry.pair.contacts import FORM, Contacts, contacts
+from ..geometry.pair.gear_pair import GearPair
+from ..geometry.pair.modified import first_touch
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.profile import arc_at, cartesian, flank
+from ..geometry.tooth.side import on_fillet
 from .contact_deck import ContactDeck, posed
 from .pressed import pressing, write_lines
 from .pressing import Pressing
 from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, placed, surface_lines
 
-# edge lengths in modules, see `geometry.mesh.quads.SIZES`
+# edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "far": 3.0, "crack": 0.3, "crack tip": 0.08}
-TETS = {"far": 1.4, "tooth": 0.7, "flank": 0.6, "fillet": 0.25}  # see `geometry.mesh.holes.SIZES`
+TETS = {"far": 1.4, "tooth": 0.7, "flank": 0.6, "fillet": 0.25}  # see `gearfe.geometry.mesh.holes.SIZES`
 STRETCH = 2.0  # length of tets along the width over that in the section
 RIM = 0.6  # edges at pits' rims against those along the contact lines
 SECTIONS = 33  # transverse sections at which the contacts are looked for
@@ -147,7 +146,7 @@ def _modified(pair, found, heights, forms):
 def write_contact_solid(path: str | os.PathLike[str], case: Case, phase: float, approach: float, how: Pressing) -> SolidDeck:
     """The deck of `contact_inp.write_contact_inp` for gears of finite width.
 
-    Nodes lie on modified flanks (`geometry.mesh.relieved_solid`); axes askew are among them.
+    Nodes lie on modified flanks (`gearfe.geometry.mesh.relieved_solid`); axes askew are among them.
     """
     pair, forms, fineness = case.pair, case.forms, (how.per_width or SOLID) * how.refine
     common = min(pair.gear_1.b, pair.gear_2.b)

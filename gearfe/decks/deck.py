@@ -7,14 +7,21 @@ from pathlib import Path
 import numpy as np
 from scipy.sparse import spmatrix
 
-from geometry.damage.crack import Crack
-from geometry.tooth.gear import Gear
-
-from ..elements.elasticity import Body
-from ..elements.fe import EDGES
-from ..elements.one_tooth import NARROW, check_cracks, check_line_load, check_one, edge_lengths, load_at, narrow_section
-from ..files import check_output, written
-from ..material import Material, check_state
+from ..core.files import check_output, written
+from ..core.material import Material, check_state
+from ..flexibility.finite_elements.elasticity import Body
+from ..flexibility.finite_elements.fe import EDGES
+from ..flexibility.finite_elements.one_tooth import (
+    NARROW,
+    check_cracks,
+    check_line_load,
+    check_one,
+    edge_lengths,
+    load_at,
+    narrow_section,
+)
+from ..geometry.damage.crack import Crack
+from ..geometry.tooth.gear import Gear
 
 
 def write_inp(

@@ -7,15 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.crack import Crack
-from geometry.tooth.gear import Gear
-from geometry.tooth.profile import arc_at
-
-from ..checks import check_length
-from ..elements.fe3d import Patches, mesh_patches, patch_loads
-from ..elements.one_tooth import check_cracks, check_line_load, check_one, load_at
-from ..files import check_output
-from ..material import Material
+from ..core.checks import check_length
+from ..core.files import check_output
+from ..core.material import Material
+from ..flexibility.finite_elements.fe3d import Patches, mesh_patches, patch_loads
+from ..flexibility.finite_elements.one_tooth import check_cracks, check_line_load, check_one, load_at
+from ..geometry.damage.crack import Crack
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.profile import arc_at
 from .pressed import read_rows, write_lines
 from .solid_deck import Part, element_lines, node_lines, part_of
 

@@ -5,15 +5,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.damage.kinds import NAMES, Damage, are, split
-from geometry.mesh.holes import holed_sector
-from geometry.mesh.solid import solid
-from geometry.tooth.gear import Gear
-
-from ..checks import checked_refine
-from ..elements.folds import check_folds
-from ..elements.one_tooth import check_gear
-from ..files import check_output, suffix_of, written
+from ..core.checks import checked_refine
+from ..core.files import check_output, suffix_of, written
+from ..flexibility.finite_elements.folds import check_folds
+from ..flexibility.finite_elements.one_tooth import check_gear
+from ..geometry.damage.kinds import NAMES, Damage, are, split
+from ..geometry.mesh.holes import holed_sector
+from ..geometry.mesh.solid import solid
+from ..geometry.tooth.gear import Gear
 from .solid_deck import Part, holed_part, part_of
 
 KINDS = {"tetrahedra": "tetra10", "hexahedra": "hexahedron20"}

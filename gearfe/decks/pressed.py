@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..elements.elasticity import edge_nodes
-from ..files import written
+from ..core.files import written
+from ..flexibility.finite_elements.elasticity import edge_nodes
 from .deck import element_nodes
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..checks import one_of
+from ..core.checks import one_of
 
 PINION = {"mean": 0.5, "pinion": 1.0, "wheel": 0.0}  # part of the approach that the pinion turns
 PITS = ("cut", "lost", "filled")

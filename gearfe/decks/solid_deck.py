@@ -5,14 +5,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.mesh.holed_drawing import on_outline
-from geometry.mesh.holes import Holed
-from geometry.mesh.solid import Solid
-from geometry.tooth.profile import cartesian, flank
-
-from ..elements.folds import check_folds, unfolded
-from ..elements.hexahedron import ORDER, TWENTY
-from ..elements.tetrahedron import nodes_of, second_order
+from ..flexibility.finite_elements.folds import check_folds, unfolded
+from ..flexibility.finite_elements.hexahedron import ORDER, TWENTY
+from ..flexibility.finite_elements.tetrahedron import nodes_of, second_order
+from ..geometry.mesh.holed_drawing import on_outline
+from ..geometry.mesh.holes import Holed
+from ..geometry.mesh.solid import Solid
+from ..geometry.tooth.profile import cartesian, flank
 
 MIRROR = np.array([ORDER.index((node, 2 - level)) for node, level in ORDER])  # bottom and top change places
 MIRRORED = {20: MIRROR, 10: np.array([0, 2, 1, 3, 6, 5, 4, 7, 9, 8])}

@@ -6,7 +6,7 @@ from pathlib import Path
 from matplotlib import cycler
 from sphinx_gallery.scrapers import figure_rst
 
-from gearfe.pictures.look import COLOURS, DASHES
+from gearfe.figures.look import COLOURS, DASHES
 
 STYLE = {
     "axes.prop_cycle": cycler(color=COLOURS) + cycler(linestyle=DASHES),

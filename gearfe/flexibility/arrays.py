@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BivariateSpline, CubicSpline
 
-from geometry.tooth.gear import Gear
-
+from ..geometry.tooth.gear import Gear
 from .plane import Flexibility, SeamFaces
 from .solid import PLACES, Faces, Flexibility3D
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.tooth.gear import Gear
-from geometry.tooth.profile import arc_at
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.profile import arc_at
 
 NEAREST = 0.001  # added to distances from a tip corner before their logarithm is taken [m_n]
 TILT = 0.2  # of the two loads, at each of four places, from which it is found how a tooth yields across its normal [rad]

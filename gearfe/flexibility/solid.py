@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from geometry.kept import keeping
-from geometry.tooth.gear import Gear
-from geometry.tooth.profile import arc_at, roll_at_arc
-
+from ..geometry.kept import keeping
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.profile import arc_at, roll_at_arc
 from .end_faces import edge_factor, mirrored_patches
 from .halfspace import half_space, hat_points, modes, patch_kernel
 from .solved import solved_gears

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ..pictures.look import COLOURS
-from ..pictures.stiffness_plots import closed
-from ..units import NEWTON_PER_UM
+from ..core.units import NEWTON_PER_UM
+from ..figures.look import COLOURS
+from ..figures.stiffness_plots import closed
 from .tooth import shown_tooth, towards_flank
 
 DASH = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")

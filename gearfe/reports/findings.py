@@ -4,12 +4,12 @@ import contextlib
 import time
 from dataclasses import dataclass, field
 
+from ..comparison.by_zone import compare
+from ..comparison.vibration import Analysis, analysis, check_run, responses
+from ..core.steps import part, steps
+from ..core.threads import own_warnings
 from ..scene.load import Scene, load_scene
-from ..steps import part, steps
-from ..stress.holed import pressed_tooth, tooth_field
-from ..studies.by_zone import compare
-from ..studies.vibration import Analysis, analysis, check_run, responses
-from ..threads import own_warnings
+from ..strength.holed import pressed_tooth, tooth_field
 from .whole_set import find_set
 
 
@@ -19,7 +19,7 @@ class Findings:
 
     scene: Scene
     case: str | None  # of damage, shown beside healthy
-    comparisons: dict = field(default_factory=dict)  # `gearfe.studies.by_zone.Comparison` by (pair, case or None)
+    comparisons: dict = field(default_factory=dict)  # `gearfe.comparison.by_zone.Comparison` by (pair, case or None)
     tooth: tuple | None = None  # (name of the pair, `Pressed`, `Field`): the tooth in three dimensions
     vibration: Analysis | None = None
     responses: dict = field(default_factory=dict)  # `Response` by case

@@ -7,13 +7,13 @@ import time
 from importlib import resources
 from pathlib import Path
 
-from ..markdown import table_cells
+from ..comparison.told_scene import told_details, told_load, told_supports
+from ..core.markdown import table_cells
+from ..core.steps import part
 from ..scene.load import Scene, scene_names
-from ..steps import part
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import versions
-from ..stress.render import enlarged, render_stress, rounded_up
-from ..studies.told_scene import told_details, told_load, told_supports
+from ..strength.render import enlarged, render_stress, rounded_up
 from .figures import cases_figure, curves_figure, part_of_page, share_figure, spectra_figure, tooth_figure
 from .findings import find
 from .template import page_maker

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..many.sweeps.effects import curve_bands, main_effects
-from ..many.sweeps.runs import Runs, open_runs
+from ..runs.sweeps.effects import curve_bands, main_effects
+from ..runs.sweeps.runs import Runs, open_runs
 from .figures import BAND, blank, part_of_page, style
 from .template import page_maker
 

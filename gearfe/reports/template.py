@@ -5,7 +5,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..files import check_output, written
+from ..core.files import check_output, written
 
 
 def page_maker(path: str | os.PathLike[str], name: str) -> Any:

@@ -7,13 +7,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..epicyclic.case import PlanetaryCase
-from ..epicyclic.curves import SetCurves
-from ..epicyclic.of_scene import build_set
-from ..epicyclic.shape import plot_planetary_set
-from ..epicyclic.solve import planetary_stiffness
+from ..comparison.told_set import set_headline, set_table, spread, told_set, told_span
+from ..planetary_sets.case import PlanetaryCase
+from ..planetary_sets.curves import SetCurves
+from ..planetary_sets.of_scene import build_set
+from ..planetary_sets.shape import plot_planetary_set
+from ..planetary_sets.solve import planetary_stiffness
 from ..scene.load import Scene
-from ..studies.told_set import set_headline, set_table, spread, told_set, told_span
 
 POSITIONS = 32
 DPI = {"loads": 90, "bent": 110}

@@ -4,13 +4,12 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from geometry.damage.crack import Crack
-from geometry.damage.kinds import Damage
-from geometry.damage.pit import pit_row
-from geometry.damage.spall import Spall
-from geometry.pair.gear_pair import GearPair
-from geometry.pair.pit_lines import in_both_halves, pit_line
-
+from ..geometry.damage.crack import Crack
+from ..geometry.damage.kinds import Damage
+from ..geometry.damage.pit import pit_row
+from ..geometry.damage.spall import Spall
+from ..geometry.pair.gear_pair import GearPair
+from ..geometry.pair.pit_lines import in_both_halves, pit_line
 from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TRUTH, TWO, WHOLE
 
 

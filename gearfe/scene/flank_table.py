@@ -2,9 +2,8 @@
 
 import math
 
-from geometry.pair.flanks import Misalignment, tilt_of
-from geometry.tooth.modified import Flank
-
+from ..geometry.pair.flanks import Misalignment, tilt_of
+from ..geometry.tooth.modified import Flank
 from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TWO, placed, sides
 
 RELIEFS = {

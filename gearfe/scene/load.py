@@ -7,16 +7,15 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from geometry.damage.kinds import Damage
-from geometry.pair.flanks import Misalignment
-from geometry.pair.gear_pair import GearPair
-from geometry.tooth.gear import Gear
-from geometry.tooth.modified import Flank
-
-from ..case import Case
-from ..material import Material
-from ..supports.shaft import Shaft
-from ..supports.support import Support
+from ..core.case import Case
+from ..core.material import Material
+from ..core.supports.shaft import Shaft
+from ..core.supports.support import Support
+from ..geometry.damage.kinds import Damage
+from ..geometry.pair.flanks import Misalignment
+from ..geometry.pair.gear_pair import GearPair
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.modified import Flank
 from . import assumed, damage_tables, strict
 from .damage_tables import DAMAGE
 from .flank_table import FLANK, MISALIGNMENT, flanks_of, misalignment_of
@@ -88,7 +87,7 @@ class ScenePair:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A machine: `gears` and `pairs` by name, what had to be assumed, and what `gearfe.machine.of_scene` needs to run it.
+    """A machine: `gears` and `pairs` by name, what had to be assumed, and what `machine.of_scene` needs to run it.
 
     `references` are what its sources print, `gearfe.scene.references.Reference`; none in a copy whose given values were changed.
     `changed` says which values are no longer those of the original (see `gearfe.scene.assumed`).
@@ -104,7 +103,7 @@ class Scene:
     machine: dict[str, Any] = field(default_factory=dict)
     references: tuple[Reference, ...] = ()
     changed: tuple[str, ...] = ()
-    set: SceneSet | None = None  # a whole planetary set, `gearfe.epicyclic.of_scene.build_set` gives its case
+    set: SceneSet | None = None  # a whole planetary set, `gearfe.planetary_sets.of_scene.build_set` gives its case
 
     def pair(self, name: str | None = None) -> ScenePair:
         """The pair called `name`; the first one if None. ValueError if there is no such pair."""
@@ -124,7 +123,9 @@ class Scene:
 
 def scene_names() -> list[str]:
     """Names of the built-in scenes."""
-    return sorted(f.name.removesuffix(".toml") for f in resources.files("gearfe.scenes").iterdir() if f.name.endswith(".toml"))
+    return sorted(
+        f.name.removesuffix(".toml") for f in resources.files("gearfe.scene.scenes").iterdir() if f.name.endswith(".toml")
+    )
 
 
 def load_scene(name_or_path: str | os.PathLike[str]) -> Scene:
@@ -141,7 +142,7 @@ def load_scene(name_or_path: str | os.PathLike[str]) -> Scene:
 def read_tables(name_or_path: str | os.PathLike[str]) -> tuple[str, dict[str, Any]]:
     """Name and unchecked tables of a scene's file, as `scene_of` takes them."""
     if isinstance(name_or_path, str) and name_or_path in scene_names():
-        file = resources.files("gearfe.scenes") / f"{name_or_path}.toml"
+        file = resources.files("gearfe.scene.scenes") / f"{name_or_path}.toml"
     else:
         file = Path(name_or_path)
         if not file.is_file():

@@ -2,7 +2,7 @@
 
 ``[machine]``
 
-- ``model, speed_rpm, torque_Nm, n_planets``: see `gearfe.machine.of_scene`.
+- ``model, speed_rpm, torque_Nm, n_planets``: see `gearfe.dynamics.machine.of_scene`.
 - ``contact``: ``"linear"`` (stiffness curves of the pairs) or ``"impact"`` (``F = K delta**1.5`` with K from Hertz's theory and
   STEP damping, pits as lost contact line; planetary and helical_pair).
 - ``backlash_um``: play along the line of action; default: none, the mesh never opens (impact law: 100).

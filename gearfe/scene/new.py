@@ -4,11 +4,10 @@ import math
 from pathlib import Path
 from typing import Any
 
-from geometry.damage.crack import Crack, crack_path, path_length
-from geometry.pair.gear_pair import GearPair
-from geometry.tooth.gear import Gear
-
-from ..files import written
+from ..core.files import written
+from ..geometry.damage.crack import Crack, crack_path, path_length
+from ..geometry.pair.gear_pair import GearPair
+from ..geometry.tooth.gear import Gear
 from .vocabulary import vocabulary
 
 TEXT = """\

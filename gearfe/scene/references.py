@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from ..checks import one_of
-from ..units import NEWTON_PER_UM
+from ..core.checks import one_of
+from ..core.units import NEWTON_PER_UM
 from .strict import NUMBER, REQUIRED, TABLES, TEXT, TRUTH, checked, known, listed_tables
 
 KINDS = ("input", "arithmetic", "model")

@@ -21,8 +21,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from geometry.pair.planetary import PlanetarySet
-
+from ..geometry.pair.planetary import PlanetarySet
 from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TRUTH, WHOLE, checked, known, named_tables, placed, shown
 
 SET = {

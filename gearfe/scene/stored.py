@@ -31,7 +31,7 @@ def _plain(value):
 
 def stored_file(scene):
     """Where the curves of a built-in scene are; it may not exist."""
-    return resources.files("gearfe.scenes") / f"{scene.name}_fe3d.csv"
+    return resources.files("gearfe.scene.scenes") / f"{scene.name}_fe3d.csv"
 
 
 def read_curves(scene, file=None):

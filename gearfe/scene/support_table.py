@@ -2,8 +2,8 @@
 
 import math
 
-from ..supports.shaft import Shaft
-from ..supports.support import Support
+from ..core.supports.shaft import Shaft
+from ..core.supports.support import Support
 from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TRUTH, TWO, known, placed, sides
 
 SUPPORTS = {

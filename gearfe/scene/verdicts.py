@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
-from ..markdown import table_row
-from ..units import NEWTON_PER_UM
+from ..core.markdown import table_row
+from ..core.units import NEWTON_PER_UM
 
 REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
 NOT, NEVER, FORMULA = "not reproduced", "not reproducible", "no number printed"

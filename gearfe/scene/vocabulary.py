@@ -6,8 +6,7 @@ Lines that are keys or tables begin with # and no space; text begins with # and 
 import math
 import re
 
-from geometry.pair.gear_pair import GearPair
-
+from ..geometry.pair.gear_pair import GearPair
 from .damage_tables import TABLES
 from .flank_table import MATE_WORDS, WORDS
 

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..extras import needing
-from ..files import read
-from ..matlab_file import MOST_PACKED, Unread
+from ..core.extras import needing
+from ..core.files import read
+from ..core.matlab_file import MOST_PACKED, Unread
 from .found import ANGLES, TIMES, Found, numeric, plain
 
 PARTS = 64  # entries of a cell array or a struct array, and columns of a matrix, that are taken for channels

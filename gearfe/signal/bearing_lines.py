@@ -2,7 +2,7 @@
 
 import math
 
-from ..checks import whole
+from ..core.checks import whole
 from .given import hertz
 
 

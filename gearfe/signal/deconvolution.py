@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, solve_toeplitz
 from scipy.signal import correlate, lfilter
 
-from ..checks import whole
+from ..core.checks import whole
 from .given import hertz
 from .series import Signal
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import fft, ifft, rfft
 
-from ..markdown import table_row
+from ..core.markdown import table_row
 from .given import oscillation, samples
 from .orders import residual_signal, synchronous_average
 from .series import Signal

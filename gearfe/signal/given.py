@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import is_number
+from ..core.checks import is_number
 
 SMALLEST, LARGEST = 1e-30, 1e30  # of the largest value of a record, in any unit: eighth powers neither vanish nor overflow
 HERTZ = (1e-12, 1e15)  # frequencies that clocks have

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ..markdown import table_row
+from ..core.markdown import table_row
 from .series import Signal
 
 LABELS = {  # in tables: words; rms may be larger than the peak, of a signal with a mean

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import fft, ifft
 
-from ..checks import whole
+from ..core.checks import whole
 from .given import samples
 
 EMPTY = 1e-9  # part of the average below which a mesh line is rounding

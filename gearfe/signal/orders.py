@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft, rfft
 from scipy.interpolate import make_interp_spline
 
-from ..checks import whole
+from ..core.checks import whole
 from .given import samples
 from .series import Signal
 from .spectrum import Spectrum, amplitudes

@@ -8,7 +8,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.ndimage import maximum_filter1d
 from scipy.signal import fftconvolve, get_window, stft
 
-from ..checks import whole
+from ..core.checks import whole
 from .given import hertz
 from .series import Signal
 

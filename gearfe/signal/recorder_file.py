@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..extras import needing
-from ..threads import Shared, own_warnings
+from ..core.extras import needing
+from ..core.threads import Shared, own_warnings
 from .found import TIMES, Found, numeric, plain
 from .text_table import named
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.signal import resample_poly
 
-from ..checks import whole
+from ..core.checks import whole
 from .given import hertz, samples
 from .indicators import both_given, of_lines, of_values
 from .spectrum import amplitudes

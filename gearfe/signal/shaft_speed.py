@@ -8,7 +8,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.ndimage import maximum_filter1d, median_filter
 from scipy.signal import stft
 
-from ..checks import whole
+from ..core.checks import whole
 from .given import hertz
 from .own_speed import FINE, ROUNDS, WIDTH, _between, _lag, _straight_ends
 from .series import Signal

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files import read, suffix_of
+from ..core.files import read, suffix_of
 from .array_file import array_file, hdf_file
 from .found import ANGLES, RATES, SHAFTS, TIMES, Found
 from .recorder_file import parquet_file, tdms_file, uff_file, wav_file

@@ -2,7 +2,7 @@
 
 import math
 
-from ..checks import whole
+from ..core.checks import whole
 from .given import hertz
 
 HIGHEST = {"harmonics": 1, "turns": 3, "window": 1}

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ..checks import whole
+from ..core.checks import whole
 from .series import Signal
 
 SPEEDS = {"rpm": 1 / 60, "1/min": 1 / 60, "min^-1": 1 / 60, "U/min": 1 / 60, "tr/min": 1 / 60}  # turns per second, by unit

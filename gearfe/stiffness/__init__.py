@@ -1,4 +1,4 @@
 """`mesh_stiffness`: from a gear pair to its stiffness curve, with its error estimate.
 
-Inputs are checked here, methods chosen, solved gears kept, curves given to `gearfe.files` and read back.
+Inputs are checked here, methods chosen, solved gears kept, curves given to `gearfe.core.files` and read back.
 """

@@ -13,14 +13,12 @@ from functools import lru_cache, partial
 from importlib.metadata import version
 from pathlib import Path
 
-import geometry
-from geometry.damage.crack import meshed_path
-
-from ..elements import fe
-from ..elements.fe_gear3d import WholeGear, solid_flexibility
-from ..energy.ritz.solid import flexibility3d
 from ..flexibility.arrays import plane_arrays, plane_from, solid_arrays, solid_from
+from ..flexibility.energy.ritz.solid import flexibility3d
+from ..flexibility.finite_elements import fe
+from ..flexibility.finite_elements.fe_gear3d import WholeGear, solid_flexibility
 from ..flexibility.solved import PROCESS, solved_gears
+from ..geometry.damage.crack import meshed_path
 from .flexibility_file import read_flexibility, write_flexibility
 
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
@@ -40,7 +38,7 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
     """Flexibility of a gear's section by finite elements, from the cache if it is there.
 
     `cache` as of `gearfe.flexibility.solved.solved_gears`; False: solve anew, store nothing. Only with the results of this
-    process is the disk used. `options` as of `gearfe.elements.fe.flexibility`: neighbours, state, refine, teeth.
+    process is the disk used. `options` as of `finite_elements.fe.flexibility`: neighbours, state, refine, teeth.
     """
     kept = solved_gears(cache)
 
@@ -57,7 +55,7 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
 def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options):
     """`Flexibility3D` of a gear of finite width by finite elements of all of it, from the cache if it is there.
 
-    `cache` as of `solved_gear`, `options` as of `gearfe.elements.fe_gear3d.WholeGear`: neighbours, degree, less, refine, section,
+    `cache` as of `solved_gear`, `options` as of `finite_elements.fe_gear3d.WholeGear`: neighbours, degree, less, refine, section,
     shaft. `tell` gets one line of text before each solve: which gear, the unknowns, the expected seconds and memory.
     """
     kept = solved_gears(cache)
@@ -79,7 +77,7 @@ def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options)
 def solved_energy(gear, material, cracks=(), *, cache=True, **options):
     """`Flexibility3D` of a gear of finite width by the energy model, from the cache if it is there.
 
-    `cache` as of `solved_gear`, `options` as of `gearfe.energy.ritz.solid.flexibility3d`: neighbours, order, axial, refine.
+    `cache` as of `solved_gear`, `options` as of `energy.ritz.solid.flexibility3d`: neighbours, order, axial, refine.
     """
     kept = solved_gears(cache)
     solve = partial(flexibility3d, gear, material, cracks, cache=kept, **options)
@@ -91,7 +89,7 @@ def _solid_case(material, cracks, options):
 
 
 def unsolved(gear, material, cracks=(), *, cache=True, **options):
-    """`gearfe.elements.solver.Plan` by key of what `solved_solid` would solve now, without what is kept or on the disk.
+    """`finite_elements.solver.Plan` by key of what `solved_solid` would solve now, without what is kept or on the disk.
 
     RuntimeError, with the numbers, if one of them does not fit into memory.
     """
@@ -149,8 +147,8 @@ def program() -> dict[str, str]:
 
 def sources():
     """Source files of both packages."""
-    packages = (Path(geometry.__file__).parent, Path(__file__).parents[1])
-    return [source for package in packages for source in sorted(package.rglob("*.py"))]
+    home = Path(__file__).parents[1]  # in a checkout `geometry` is a link, which rglob does not follow
+    return sorted({source.resolve() for folder in (home, home / "geometry") for source in folder.rglob("*.py")})
 
 
 def clear():

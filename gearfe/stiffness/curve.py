@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..extras import missing
-from ..files import save, save_as
+from ..core.extras import missing
+from ..core.files import save, save_as
+from ..core.units import NEWTON_PER_UM
+from ..figures.inline import line_svg
+from ..figures.stiffness_plots import plot_curves
 from ..flexibility.section_contact import MARKS
-from ..pictures.inline import line_svg
-from ..pictures.stiffness_plots import plot_curves
-from ..units import NEWTON_PER_UM
 from .curve_file import content, read_fields
 
 if TYPE_CHECKING:

@@ -1,10 +1,10 @@
-"""What a stiffness curve puts into a file, and how its CSV table is read back; the formats are those of `gearfe.files`."""
+"""What a stiffness curve puts into a file, and how its CSV table is read back; the formats are those of `gearfe.core.files`."""
 
 import json
 
 import numpy as np
 
-from ..files import Content, read_text
+from ..core.files import Content, read_text
 
 COLUMNS = {"phase": "-", "k": "N/m", "k_tangent": "N/m", "lte": "m"}
 OPTIONAL = {"error": "N/m", "unloaded": "m", "lte_supports": "m"}

@@ -35,7 +35,7 @@ def estimate(phase, periodic, k, coarse, finer=()):
     finer hats vanishes with the error itself. It is added at its own phase.
 
     That two solves and a sum are needed was found on the 31 random cases of seeds 0 to 39 in ``tests/stiffness/test_error.py``
-    (all covered) and is judged on others there; ``ritz`` was looked at on seeds 0 to 39 of ``tests/energy/test_ritz.py``, its
+    (all covered) and is judged on others there; ``ritz`` was looked at on seeds 0 to 39 of ``test_ritz.py``, its
     hats on ring pairs of seeds 0 to 259 of ``tests/stiffness/test_error_rings.py``, and is judged on others there.
 
     `k` ``(n + m,)`` [N/m] is at `phase` ``(n,)`` and then at its `fixed_phases`; `coarse` are the same from coarser solves, the

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from ..files import written
+from ..core.files import written
 
 KEY = "key"
 LARGEST = 2**30  # [bytes]; gears of 3-D finite elements take some megabytes

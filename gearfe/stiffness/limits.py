@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import is_number
-from ..memory import free_memory
+from ..core.checks import is_number
+from ..core.memory import free_memory
 
 MOST_PHASES = 100_000  # of a cycle: k changes by less than 1e-4 between two of them even where teeth enter
 FURTHEST = 1e6  # cycles: beyond, rounding moves contacts by more than 1e-10 of a pitch

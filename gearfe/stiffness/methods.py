@@ -3,10 +3,10 @@
 A row answers for itself: `Method.refuses` what it does not model of a case, `Method.curves` the stiffness. The command line's
 help, `compare`, `case_table` and `error_map` list its names. It imports nothing heavy.
 
-To add a closed form, write one file in ``gearfe/energy/closed/`` and one row in `ROWS`:
+To add a closed form, write one file in ``gearfe/flexibility/energy/closed/`` and one row in `ROWS`:
 
 - kind "sum", if it describes one tooth and the pairs are springs side by side: the file has ``components(gear, material, roll,
-  *, damage=ToothDamage(), ...)``, which gives `gearfe.energy.closed.beam.Components`, as ``textbook.py``;
+  *, damage=ToothDamage(), ...)``, which gives `gearfe.flexibility.energy.closed.beam.Components`, as ``textbook.py``;
   its other keywords become the variants of the method. ``DEFAULTS``, if it is there, holds its contact law and root profile;
 - kind "section", if it describes what a whole gear gives to all its contacts: the file has ``flexibility(gear, material, *,
   neighbours, state)``, which gives `gearfe.flexibility.plane.Flexibility`, as ``coupled.py``.
@@ -16,12 +16,12 @@ from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from ..threads import loading
+from ..core.threads import loading
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..case import Case
+    from ..core.case import Case
 
 SPUR = ("spur",)
 FACES = ("spur", "helical", "herringbone")  # how teeth run
@@ -121,13 +121,13 @@ def _loaded(home):
 
 ROWS = (
     Method(
-        "ritz", "converged energy model of the transverse section", "section", "gearfe.energy.ritz.plane:flexibility",
+        "ritz", "converged energy model of the transverse section", "section", "gearfe.flexibility.energy.ritz.plane:flexibility",
         "milliseconds", converged=True, cracks="through", error=True, extended=True, flanks=True,
         order=4, kept="process",
     ),
     Method(
         "ritz3d", "converged energy model of gears of finite width: helical, herringbone, pits", "solid",
-        "gearfe.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="any", pits=True, faces=FACES,
+        "gearfe.flexibility.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="any", pits=True, faces=FACES,
         error=True, extended=True, flanks=True, order=3, kept="process",
     ),
     Method(
@@ -142,16 +142,16 @@ ROWS = (
     ),
     Method(
         "coupled", "closed form: tapered beams on a common annulus, neighbours coupled; healthy external gears", "section",
-        "gearfe.energy.closed.coupled:flexibility", "milliseconds", rings="no", flanks=True, kept="process",
+        "gearfe.flexibility.energy.closed.coupled:flexibility", "milliseconds", rings="no", flanks=True, kept="process",
     ),
     Method(
         "textbook", "closed form: beams on Sainsot's foundation, plain sum of tooth pairs", "sum",
-        "gearfe.energy.closed.textbook", "milliseconds", cracks="through", pits=True, rings="external", faces=FACES,
+        "gearfe.flexibility.energy.closed.textbook", "milliseconds", cracks="through", pits=True, rings="external", faces=FACES,
         variants=True, flanks=True, crack_models=("constant", "straight", "parabola"),
     ),
     Method(
         "published", "closed form: the beams of the article, as printed and corrected, plain sum of tooth pairs", "sum",
-        "gearfe.energy.closed.published", "milliseconds", cracks="through", pits=True, rings="printed", faces=FACES,
+        "gearfe.flexibility.energy.closed.published", "milliseconds", cracks="through", pits=True, rings="printed", faces=FACES,
         variants=True, flanks=True, crack_models=("constant",),
     ),
 )  # fmt: skip

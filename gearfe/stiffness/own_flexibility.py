@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.tooth.gear import Gear
-
-from ..checks import one_of
-from ..energy.closed import coupled
-from ..energy.closed.beam import Components
+from ..core.checks import one_of
+from ..core.material import Material
+from ..flexibility.energy.closed import coupled
+from ..flexibility.energy.closed.beam import Components
 from ..flexibility.plane import singly
-from ..material import Material
+from ..geometry.tooth.gear import Gear
 from .methods import METHODS, SUMS, having
 
 GIVEN = ("bulk", "smooth")
@@ -39,7 +38,7 @@ class OwnFlexibility:
     dent is yours therefore is a question of where you cut, and `given` says it:
 
     - ``bulk``: your values hold beam, shear, compression and body, and no dent, as closed forms do. gearfe adds Weber's whole
-      local deflection down to the tooth's centre-line (`gearfe.energy.closed.coupled.local_remainder`).
+      local deflection down to the tooth's centre-line (`gearfe.flexibility.energy.closed.coupled.local_remainder`).
     - ``smooth``: your values hold everything but the half-plane's logarithm: the displacement u(r) at a distance r from a
       unit line load, plus ``c ln r`` (r in mm), for r to 0. So do those of `ritz` and finite elements.
 

@@ -4,11 +4,10 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from geometry.pair.gear_pair import GearPair
-
-from ..case import Case, case_of
 from ..contact.wide_contact import Contact3D, pair_stiffness3d
-from ..threads import single
+from ..core.case import Case, case_of
+from ..core.threads import single
+from ..geometry.pair.gear_pair import GearPair
 from .phases import phase_array
 from .supported import check_integral
 

@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.pair.gear_pair import GearPair
-
-from ..checks import numbers, one_of
+from ..core.checks import numbers, one_of
+from ..geometry.pair.gear_pair import GearPair
 from .limits import check_count, check_range
 from .turns import check_length, cycles_in
 

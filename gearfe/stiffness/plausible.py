@@ -14,11 +14,10 @@ import warnings
 
 import numpy as np
 
-from geometry.pair.gear_pair import GearPair
-
+from ..core.material import Material
+from ..core.supports.held import REFUSE
 from ..flexibility.hertz import contact_modulus
-from ..material import Material
-from ..supports.held import REFUSE
+from ..geometry.pair.gear_pair import GearPair
 from .curve import StiffnessCurve
 
 WARN = 0.05  # approach, of the module

@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.pair.modified import flank_contacts
-
 from ..flexibility.section_contact import MARKS
+from ..geometry.pair.modified import flank_contacts
 
 SHIFT = {"mean": 0.0, "pinion": 0.5, "wheel": -0.5}  # of the phase, in approaches over the base pitch
 SETTLED, PART = 1e-7, 1e-3  # largest last change of a phase, and as a part of the shift by the elastic approach (light loads)

@@ -4,7 +4,7 @@ from dataclasses import asdict, replace
 from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 
-from ..case import SIDES
+from ..core.case import SIDES
 
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 

@@ -4,10 +4,9 @@ import math
 from inspect import signature
 from itertools import chain
 
-from geometry.damage.crack import check_through
-
-from ..checks import is_number, one_of
-from ..energy.closed.plain_sum import plain_sum
+from ..core.checks import is_number, one_of
+from ..flexibility.energy.closed.plain_sum import plain_sum
+from ..geometry.damage.crack import check_through
 from .limits import check_section, check_teeth
 from .methods import METHODS, RING_FOUNDATIONS, having
 from .supported import check_integral, check_tilt

@@ -7,12 +7,11 @@ from dataclasses import asdict, replace
 
 import numpy as np
 
-from geometry.pair.contacts import near_pitches
-
-from ..case import SIDES
 from ..contact.pair_contact import PairContact
-from ..energy.closed.plain_sum import plain_sum
-from ..steps import part, steps
+from ..core.case import SIDES
+from ..core.steps import part, steps
+from ..flexibility.energy.closed.plain_sum import plain_sum
+from ..geometry.pair.contacts import near_pitches
 from .curve import StiffnessCurve
 from .estimate import coarser, estimate, finer_hats, fixed_phases
 from .own_flexibility import flexibility_of

@@ -8,13 +8,12 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.pair.gear_pair import GearPair
-
-from ..case import NAMES, Case, case_of
-from ..checks import checked_refine, is_number, one_of, truth
+from ..core.case import NAMES, Case, case_of
+from ..core.checks import checked_refine, is_number, one_of, truth
+from ..core.material import check_state
+from ..core.threads import one_thread
 from ..flexibility.solved import SolvedGears, solved_gears
-from ..material import check_state
-from ..threads import one_thread
+from ..geometry.pair.gear_pair import GearPair
 from .curve import StiffnessCurve
 from .methods import METHODS, Method
 from .methods import NAMES as METHOD_NAMES
@@ -35,17 +34,17 @@ class Solve:
     ----------
     method : {"auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", "textbook", "published"} or OwnFlexibility
         What each takes is written in one table, `gearfe.stiffness.methods.ROWS`; in words:
-        ``ritz``: the converged energy model of the transverse section, milliseconds (`gearfe.energy.ritz.plane`). ``ritz3d``: the
+        ``ritz``: the converged energy model of the transverse section, milliseconds (`energy.ritz.plane`). ``ritz3d``: the
         same in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact
         (`gearfe.contact.wide_contact`). ``auto``: ``fe3d`` for shafts that are one piece with
         their gear, ``ritz3d`` for helical gears and for what changes along the width (pits, spalls, cracks of part of the width,
         lead, misalignment, hubs that tilt), otherwise ``ritz``; ``meta["why"]`` says why. To compare a damaged curve with the
         healthy one ask for both by the same method.
-        ``fe``: finite elements of whole sections, the independent reference (`gearfe.elements.fe`).
-        ``fe3d``: hexahedra of whole gears of finite width, the same for ``ritz3d``, minutes (`gearfe.elements.fe_gear3d`).
-        ``coupled``: closed forms repaired by known means, external healthy gears (`gearfe.energy.closed.coupled`). All with line
+        ``fe``: finite elements of whole sections, the independent reference (`gearfe.flexibility.finite_elements.fe`).
+        ``fe3d``: hexahedra of whole gears of finite width, the same for ``ritz3d``, minutes (`finite_elements.fe_gear3d`).
+        ``coupled``: closed forms repaired by known means, external healthy gears (`energy.closed.coupled`). All with line
         contact, neighbour coupling and load sharing. ``textbook``, ``published``: beam energies and a plain sum of the pairs
-        (`gearfe.energy.closed.plain_sum`). An `OwnFlexibility`: your own model of how one gear gives, where ``ritz`` and ``fe``
+        (`energy.closed.plain_sum`). An `OwnFlexibility`: your own model of how one gear gives, where ``ritz`` and ``fe``
         stand otherwise.
 
         Cracks: all but ``coupled``; of part of the width or of a depth that changes along it: ``ritz3d`` and ``fe3d``. Pits and
@@ -71,7 +70,7 @@ class Solve:
     teeth : int, optional
         For ``fe``: number of teeth that are modelled, on a plain rim; default: all.
     variants : dict, optional
-        For ``textbook`` and ``published``: options of `gearfe.energy.closed.plain_sum.plain_sum` and of the formulas'
+        For ``textbook`` and ``published``: options of `gearfe.flexibility.energy.closed.plain_sum.plain_sum` and of the formulas'
         ``components`` (``root``, ``foot``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``lost``).
     error : bool
         For ``ritz`` and ``fe``, also in three dimensions: estimate the discretisation error of every k from coarser solves (see

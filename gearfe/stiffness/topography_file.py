@@ -4,7 +4,7 @@ import csv
 import os
 from pathlib import Path
 
-from ..checks import one_of
+from ..core.checks import one_of
 
 UNITS = {"um": 1e-3, "mm": 1.0}
 

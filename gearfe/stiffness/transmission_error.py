@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.pair.gear_pair import GearPair
-
-from ..case import Case
-from ..pictures.error_plots import plot_transmission_error
+from ..core.case import Case
+from ..figures.error_plots import plot_transmission_error
+from ..geometry.pair.gear_pair import GearPair
 from .curve import StiffnessCurve
 from .solve import Loads, asked, solve
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..contact.bodies import Bodies, energy_bodies
 from ..contact.wide_contact import pair_stiffness3d
-from ..elements.section_error import FINER, finer_section
-from ..steps import part, steps
+from ..core.steps import part, steps
+from ..flexibility.finite_elements.section_error import FINER, finer_section
 from .cache import solved_energy, solved_solid, unsolved
 from .curve import StiffnessCurve
 from .estimate import MEAN, fixed_phases
@@ -22,7 +22,7 @@ LESS = 2  # axial degrees less in that estimate
 # one resolution to the next those at a hat may stay as they are
 ORDER = {"layers": 2, "section": 1}
 # P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 where two meshes are compared (layers), 1.25 where the order was seen (of
-# sections on three resolutions: tests/elements/test_section_error.py)
+# sections on three resolutions: tests/flexibility/test_section_error.py)
 SAFETY = {"layers": 3.0, "section": 1.25}
 
 
@@ -32,7 +32,7 @@ def solid_curves(row, case, how, phase):
     The estimate of the discretisation error (``how.error``) is made of longer cells along the contact lines and of other bodies,
     each on its own, the differences added. Of the energy model: an order and a quarter of the axial degrees less. Of finite
     elements: layers of `COARSER` resolution with `LESS` axial degrees less, and what the section lacks in plane strain against
-    one of `gearfe.elements.section_error.FINER` times its resolution. (Both apart, because the quads of a section do not get
+    one of `finite_elements.section_error.FINER` times its resolution. (Both apart, because the quads of a section do not get
     coarser in proportion: gmsh fills an outline, and the error stands still or jumps.) From a difference d between edges h and r
     h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the coarser, with p of `ORDER`; times `SAFETY`.
     The estimate at a phase is that of k there, or, because that can vanish by chance, the mean of those at the fixed phases of

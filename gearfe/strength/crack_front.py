@@ -7,19 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.crack import Crack, check_apart, deepest, meshed_path
-from geometry.damage.front import open_part, shallowest, whole
-from geometry.damage.kinds import check_crack
-from geometry.mesh.solid import solid
-from geometry.tooth.gear import Gear
-
-from ..elements.line_load import check_spread, contact_line, strip, under_line
-from ..elements.one_tooth import check_load_along, check_one
-from ..material import Material
-from ..threads import single
+from ..core.material import Material
+from ..core.threads import single
+from ..flexibility.finite_elements.line_load import check_spread, contact_line, strip, under_line
+from ..flexibility.finite_elements.one_tooth import check_load_along, check_one
+from ..geometry.damage.crack import Crack, check_apart, deepest, meshed_path
+from ..geometry.damage.front import open_part, shallowest, whole
+from ..geometry.damage.kinds import check_crack
+from ..geometry.mesh.solid import solid
+from ..geometry.tooth.gear import Gear
 from .front_integral import front_intensity
 
-# edge lengths in modules, see `geometry.mesh.quads.SIZES`
+# edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.2, "root": 0.4, "near": 0.7, "far": 2.0, "crack": 0.25}
 LAYER, LAYERS, END_LAYER = 0.5, 12, 0.25  # height of the layers [m_n], least number of them, height at the ends against that
 SHALLOW = 0.25  # part of the largest depth below which a front that runs out has no room for the tubes

@@ -5,14 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.damage.crack import Crack
-from geometry.damage.kinds import check_crack
-from geometry.tooth.gear import Gear
-
-from ..elements.fe import EDGES
-from ..elements.one_tooth import NARROW, check_line_load, check_one, edge_lengths, load_at, narrow_section
-from ..material import Material
-from ..threads import single
+from ..core.material import Material
+from ..core.threads import single
+from ..flexibility.finite_elements.fe import EDGES
+from ..flexibility.finite_elements.one_tooth import NARROW, check_line_load, check_one, edge_lengths, load_at, narrow_section
+from ..geometry.damage.crack import Crack
+from ..geometry.damage.kinds import check_crack
+from ..geometry.tooth.gear import Gear
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +84,7 @@ def tip_intensity(body, moved, faces):
     ``K = E' / 2 int (s_ij w_i,1 + t_ij u_i,1 - s_kl e_kl delta_1j) q,j dA``, with u, s the displacement and stress found, w, t, e
     displacement, stress and strain of the unit singular field, axis 1 along the crack, q falling from 1 at half the ring's radius
     to 0. The ring ends before the crack's mouth or bend and before any other boundary. `moved` ``(2 nodes,)`` is the displacement
-    of a `Body` [mm], `faces` ``(2, n)`` as in `geometry.mesh.section_mesh.Seam`.
+    of a `Body` [mm], `faces` ``(2, n)`` as in `gearfe.geometry.mesh.section_mesh.Seam`.
 
     References
     ----------

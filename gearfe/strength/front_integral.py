@@ -16,7 +16,7 @@ from types import SimpleNamespace
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from ..elements.hexahedron import gauss, shapes, slopes_at
+from ..flexibility.finite_elements.hexahedron import gauss, shapes, slopes_at
 from .fracture import _singular
 
 BLOCK = 400  # elements at a time

@@ -6,15 +6,14 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from skfem import MeshTri
 
-from geometry.tooth.gear import Gear
-from geometry.tooth.profile import flank, roll_at_arc
-
-from ..checks import check_length
-from ..elements.elasticity import edge_nodes, edge_shapes
-from ..elements.fe import EDGES
-from ..elements.one_tooth import NARROW, check_line_load, check_one, edge_lengths, load_at, narrow_section
-from ..material import Material
-from ..threads import single
+from ..core.checks import check_length
+from ..core.material import Material
+from ..core.threads import single
+from ..flexibility.finite_elements.elasticity import edge_nodes, edge_shapes
+from ..flexibility.finite_elements.fe import EDGES
+from ..flexibility.finite_elements.one_tooth import NARROW, check_line_load, check_one, edge_lengths, load_at, narrow_section
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.profile import flank, roll_at_arc
 
 STRESS_EDGES = {"flank": 0.1, "fillet": 0.01, "near": 0.4, "far": 0.9}  # in modules; the fillet decides
 COARSER = (0.5, 0.7)  # resolutions that the estimated error compares with
@@ -44,7 +43,7 @@ def tooth_flexibility(
     at : {"centreline", "surface"}
         Where the displacement is taken: where the load line crosses the tooth centre-line (the local contact
         deformation is left out, as in Weber's analysis), or the smooth part S(s, s) at the surface, which has the
-        half-plane logarithm removed (see `gearfe.elements.fe`).
+        half-plane logarithm removed (see `gearfe.flexibility.finite_elements.fe`).
     state : {"plane strain", "plane stress"}
     refine : float
         Divides the edge lengths.
@@ -62,7 +61,7 @@ def tooth_flexibility(
     arc = load_at(gear, radius)
     roll = float(roll_at_arc(gear, arc))
     if at == "surface":
-        from ..elements.fe import flexibility
+        from ..flexibility.finite_elements.fe import flexibility
 
         return float(flexibility(gear, material, neighbours=0, state=state, refine=refine).matrix(np.array([roll]), [0])[0, 0])
     if at != "centreline":

@@ -4,15 +4,14 @@ from numbers import Integral
 
 import numpy as np
 
-from geometry.pair.gear_pair import GearPair
-
-from ..case import Case
 from ..contact.bodies import seen_gears
 from ..contact.wide_contact import Contact3D
-from ..elements.line_load import check_spread
-from ..elements.one_tooth import check_one
-from ..material import Material
-from ..threads import single
+from ..core.case import Case
+from ..core.material import Material
+from ..core.threads import single
+from ..flexibility.finite_elements.line_load import check_spread
+from ..flexibility.finite_elements.one_tooth import check_one
+from ..geometry.pair.gear_pair import GearPair
 from .root_stress import RootStress, stress_under_line
 
 SAMPLES = 2001  # heights at which the load is added up

@@ -6,17 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.mesh.solid import Solid, solid
-from geometry.tooth.gear import Gear
-
-from ..elements.hexahedron import face_shapes
-from ..elements.line_load import check_spread, contact_line, strip, under_line
-from ..elements.one_tooth import check_line_load, check_one
-from ..material import Material
-from ..threads import single
+from ..core.material import Material
+from ..core.threads import single
+from ..flexibility.finite_elements.hexahedron import face_shapes
+from ..flexibility.finite_elements.line_load import check_spread, contact_line, strip, under_line
+from ..flexibility.finite_elements.one_tooth import check_line_load, check_one
+from ..geometry.mesh.solid import Solid, solid
+from ..geometry.tooth.gear import Gear
 from .loaded_tooth import _peak
 
-# edge lengths in modules, see `geometry.mesh.quads.SIZES`; the fillet decides
+# edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`; the fillet decides
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.06, "root": 0.4, "near": 0.7, "far": 2.0}
 LAYER, LAYERS, END = 0.8, 8, 0.25  # height of the layers [m_n], least number of them, height at the end faces against that
 GAUSS = np.array([-1.0, 1.0]) / math.sqrt(3)  # places of a face where derivatives are most accurate

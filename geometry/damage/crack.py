@@ -41,7 +41,7 @@ class Crack:
         gears and at 60 degrees on rings. The default is 30 degrees on both.
     turning : bool
     tooth : int
-        Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0 (`geometry.pair.contacts`).
+        Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0 (`gearfe.geometry.pair.contacts`).
     side : {"loaded", "unloaded"}
         Flank side on which it starts.
     width : (float, float), optional
@@ -212,7 +212,7 @@ def front(crack, b, z):
 
 @lru_cache(maxsize=256)
 def start_arc(gear, crack):
-    """Where the crack starts, as arc of `geometry.tooth.profile.root_curve` [mm]."""
+    """Where the crack starts, as arc of `gearfe.geometry.tooth.profile.root_curve` [mm]."""
     if crack.start == "root":
         return 0.0
     if crack.start == "middle":

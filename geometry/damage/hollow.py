@@ -8,7 +8,7 @@ the axial distance from its centre along the tooth trace. A kind of hollow (`Pit
 - ``covers(u, w)``: whether places are in it; ``span(u)``: between which w it lies at u; ``crossing(gear, roll, z)``: where a
   straight contact line runs through it; ``along(p, q, dp, dq)``: where straight lines do, in units of its half extents;
 - `kinks`: u and w (two tuples) where its outline is not smooth between its ends; ``edge()``: its outline;
-- ``drawn(centre, axes)``: its outline in space by curves, as `geometry.mesh.tetrahedra.tetrahedra` takes them.
+- ``drawn(centre, axes)``: its outline in space by curves, as `gearfe.geometry.mesh.tetrahedra.tetrahedra` takes them.
 """
 
 import math
@@ -19,7 +19,7 @@ from ..tooth.profile import arc_at, cartesian, flank, roll_at_arc
 
 
 def centre_arc(gear, hollow):
-    """Arc of the hollow's centre [mm], as `geometry.tooth.profile.arc_at` counts it."""
+    """Arc of the hollow's centre [mm], as `gearfe.geometry.tooth.profile.arc_at` counts it."""
     return gear.outward * (hollow.radius**2 - gear.r_b**2) / (2 * gear.r_b)
 
 
@@ -117,7 +117,7 @@ def intervals(gear, hollows, arc):
     gear : Gear
     hollows : sequence of Pit
     arc : ndarray
-        As of `geometry.tooth.profile.arc_at` [mm]; nan is off the flank.
+        As of `gearfe.geometry.tooth.profile.arc_at` [mm]; nan is off the flank.
 
     Returns
     -------

@@ -48,7 +48,7 @@ class Pit:
     ------
     ValueError
         If the description is contradictory; a pit beside its flank is refused when it meets its gear, see
-        `geometry.damage.hollow.check_hollows`.
+        `gearfe.geometry.damage.hollow.check_hollows`.
 
     >>> Pit(radius=21.0, z=10.0, axes=(1.0, 2.0), depth=0.2).reach
     (1.0, 2.0)

@@ -45,7 +45,7 @@ class Spall:
     ------
     ValueError
         If the description is contradictory; a spall beside its flank is refused when it meets its gear, see
-        `geometry.damage.hollow.check_hollows`.
+        `gearfe.geometry.damage.hollow.check_hollows`.
 
     >>> Spall(radius=21.0, z=10.0, sides=(1.5, 6.0), depth=0.2, corner=0.3).reach
     (0.75, 3.0)
@@ -165,7 +165,7 @@ class Spall:
     def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
         """Ranges of t in which a straight contact line is in it, between places where it meets a side or a corner's circle.
 
-        The line as of `geometry.damage.hollow.on_line`.
+        The line as of `gearfe.geometry.damage.hollow.on_line`.
         """
         (u, ranges), reach, unit = on_line(gear, self, roll, z), self.axes[1], np.array([1.0, 0.0, 0.0])
         inner = [half - self.corner for half in self.axes]

@@ -1,6 +1,6 @@
-"""A whole gear in twisted 20-node hexahedra: the section of `geometry.mesh.quads`, extruded along the width.
+"""A whole gear in twisted 20-node hexahedra: the section of `gearfe.geometry.mesh.quads`, extruded along the width.
 
-The transverse section at z = 0 is that of `geometry.tooth.profile`; at height z it is turned clockwise by ``w z``,
+The transverse section at z = 0 is that of `gearfe.geometry.tooth.profile`; at height z it is turned clockwise by ``w z``,
 ``w = tan(beta) / r``, with the sign of the gear's beta. Nodes, also those in the middle of edges, lie exactly on the helicoid. A
 ring's own section is seen in the mirror (`gearfe.GearPair.turn`): like an external wheel, it meshes with a pinion of the
 opposite beta.
@@ -92,7 +92,7 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     layer : float
         Height of the element layers [mm].
     loaded, cracks, patches, sizes
-        As of `geometry.mesh.quads.quad_section`.
+        As of `gearfe.geometry.mesh.quads.quad_section`.
     refine : float
         Divides all edge lengths, along the width too.
     fine : sequence of (float, float, float)

@@ -93,7 +93,7 @@ def _modes(x, y, order):
 def jacobians(points, triangles, bulges, order):
     """Derivatives of the curved maps at the quadrature points of `order`: ``(m, 2, 2, q)``, place by reference coordinate.
 
-    `points` are ``(2, n)``, `triangles` ``(3, m)``, `bulges` ``(3, 2, BULGE, m)`` as of `geometry.mesh.sector.Sector`.
+    `points` are ``(2, n)``, `triangles` ``(3, m)``, `bulges` ``(3, 2, BULGE, m)`` as of `gearfe.geometry.mesh.sector.Sector`.
     """
     basis, count = table(order), triangles.shape[1]
     linear = np.einsum("dce,ck->edk", points[:, triangles], basis.corner_slope)[:, :, :, None]

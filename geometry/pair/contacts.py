@@ -104,7 +104,7 @@ class Met(NamedTuple):
 
 
 def contacts(pair: GearPair, phase: ArrayLike, *, extended: bool = True) -> Contacts:
-    """Contacts of all tooth pairs of a `GearPair`, flanks unmodified (others: `geometry.pair.modified.flank_contacts`).
+    """Contacts of all tooth pairs of a `GearPair`, flanks unmodified (others: `gearfe.geometry.pair.modified.flank_contacts`).
 
     On the path of contact the gap is zero, unless a tip cuts into its mate's fillet at the same time. Off the path a corner of
     one tooth touches the other's whole outline: a tip corner on the flank, on the edge of the other tip or in the fillet, or
@@ -211,14 +211,14 @@ def approach(
     ----------
     pair : GearPair
     roll : float or ndarray
-        Place on the pinion's side (``driver=True``) or the wheel's, flank or fillet, as of `geometry.tooth.side` [mm].
+        Place on the pinion's side (``driver=True``) or the wheel's, flank or fillet, as of `gearfe.geometry.tooth.side` [mm].
     nominal : ndarray
         Abscissa of the pair's contact on the line of action [mm]; off the path of contact, where it would be.
     driver : bool
     start : float or ndarray
         First guess of the approach [mm].
     flanks : (FlankForm, FlankForm), optional
-        Modifications of pinion and wheel (`geometry.tooth.modified`); the point is then one of the modified flank.
+        Modifications of pinion and wheel (`gearfe.geometry.tooth.modified`); the point is then one of the modified flank.
     order : int or ndarray
         Number of the pair, whose teeth have their own pitch deviations.
 

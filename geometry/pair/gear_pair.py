@@ -242,7 +242,7 @@ class GearPair:
         """Clockwise angles [rad] of tooth 0 of both gears for a contact at `nominal` [mm] on the line of action.
 
         Gear 1's centre is the origin, gear 2's at ``(0, centre_2)``. A ring's loaded flank faces the other way: its own
-        frame (`geometry.tooth.profile`) is mirrored in place.
+        frame (`gearfe.geometry.tooth.profile`) is mirrored in place.
         """
         along = np.asarray(nominal) - self.gear_1.r_b * math.tan(self.alpha_w)
         x, y = along * math.cos(self.alpha_w), self.pitch_radius_1 + along * math.sin(self.alpha_w)

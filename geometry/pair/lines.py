@@ -46,7 +46,7 @@ class Lines:
     bands : tuple of Band
     phase : ndarray, shape (phases,)
     order : ndarray, shape (pairs,)
-        Numbers of the tooth pairs, as of `geometry.pair.contacts.Contacts`.
+        Numbers of the tooth pairs, as of `gearfe.geometry.pair.contacts.Contacts`.
     low, high : ndarray, shape (phases, pairs, bands)
         Heights [mm] between which a pair touches; equal where it does not.
     roll_0 : ndarray, shape (phases, pairs, bands)

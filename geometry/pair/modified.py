@@ -34,7 +34,7 @@ FLATTER = 20.0  # largest relative radius, in those of the involutes: beyond it 
 def flank_contacts(
     pair: GearPair, phase: ArrayLike, *, extended: bool = True, flanks: tuple[FlankForm, FlankForm] | None = None
 ) -> Contacts:
-    """`contacts` of a pair whose flanks may be modified, as of `geometry.pair.flanks.flank_forms`.
+    """`contacts` of a pair whose flanks may be modified, as of `gearfe.geometry.pair.flanks.flank_forms`.
 
     Gaps can be negative where a tooth is ahead of its place. ValueError if flanks are so hollow that they would conform.
     """

@@ -36,7 +36,7 @@ def pit_line(
     radius, middle : float
         Of the middle of the row: distance from the gear's axis and height [mm], as of a `Pit`.
     face, groove
-        How the teeth run, as in `geometry.pair.lines.bands_of`. A contact line is that of the half that `middle` is in.
+        How the teeth run, as in `gearfe.geometry.pair.lines.bands_of`. A contact line is that of the half that `middle` is in.
     both : bool
         Whether its mirror image is in the other half of a herringbone gear too.
     mirrored : bool
@@ -52,10 +52,10 @@ def pit_line(
     ------
     ValueError
         If what is asked for cannot be, or a row along a contact line leaves its half. Pits off their flank are refused when they
-        meet their gear, see `geometry.damage.hollow.check_hollows`.
+        meet their gear, see `gearfe.geometry.damage.hollow.check_hollows`.
 
-    >>> from geometry.tooth.gear import Gear
-    >>> from geometry.pair.gear_pair import GearPair
+    >>> from gearfe.geometry.tooth.gear import Gear
+    >>> from gearfe.geometry.pair.gear_pair import GearPair
     >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), beta=math.radians(16), b=60.0)
     >>> pair = GearPair(Gear(z=18, r_bore=8.1, **rack), Gear(z=27, r_bore=12.8, **rack))
     >>> row = dict(radius=18.73, middle=15.0, face="herringbone", axes=(0.5, 0.5), depth=0.2)

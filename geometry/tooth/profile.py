@@ -28,7 +28,7 @@ def flank(gear, roll):
 def arc_at(gear, roll):
     """Place on the flank as an arc length [mm] that rises from root to tip, zero at the base circle (negative on rings).
 
-    Negative roll lengths are names of places below (`geometry.tooth.side`).
+    Negative roll lengths are names of places below (`gearfe.geometry.tooth.side`).
     """
     return gear.outward * roll * np.abs(roll) / (2 * gear.r_b)
 

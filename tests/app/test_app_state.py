@@ -16,9 +16,9 @@ import gearfe as gf
 from gearfe.app.fields import BY_NAME, FIELDS, START, checked_state, form
 from gearfe.app.solving import answer, compared, scene_from
 from gearfe.app.state import CASE, PAIR, SeveralError, read, tables_of, toml
+from gearfe.comparison.losses import damage_phases
+from gearfe.core.units import in_newton_per_um
 from gearfe.scene.load import scene_names
-from gearfe.studies.losses import damage_phases
-from gearfe.units import in_newton_per_um
 
 NEW = "new.toml"
 
@@ -83,7 +83,7 @@ def test_a_new_scene_opens_whole(tmp_path):
 
 @pytest.mark.parametrize("scene", scene_names())
 def test_a_built_in_scene_is_refused_until_a_pair_and_a_case_are_chosen(scene):
-    text = (resources.files("gearfe.scenes") / f"{scene}.toml").read_text(encoding="utf-8")
+    text = (resources.files("gearfe.scene.scenes") / f"{scene}.toml").read_text(encoding="utf-8")
     with pytest.raises(SeveralError, match="choose a pair and case") as caught:
         read(scene, text)
     whole = gf.load_scene(scene)

@@ -17,11 +17,11 @@ import pytest
 
 pytest.importorskip("starlette")
 from gearfe.app import workers
+from gearfe.app.cli import main
 from gearfe.app.fields import START
 from gearfe.app.guard import AWAY, LARGEST, Limits
 from gearfe.app.server import application, opened, running, serve
 from gearfe.app.workers import Pool
-from gearfe.cli import main
 
 NAME = "gears.example.org"
 

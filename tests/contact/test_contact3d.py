@@ -15,10 +15,10 @@ from gearfe.contact.cells import cells_of
 from gearfe.contact.joined_lines import System
 from gearfe.contact.pieces import pieces_of
 from gearfe.contact.sharing import share
-from gearfe.energy.ritz.solid import flexibility3d
 from gearfe.flexibility import halfspace
+from gearfe.flexibility.energy.ritz.solid import flexibility3d
 from gearfe.flexibility.hertz import half_width
-from geometry.tooth.profile import cartesian, flank
+from gearfe.geometry.tooth.profile import cartesian, flank
 from validation.shared.solid_pair import solid_contact
 
 STEEL = gf.Material(E=207e3, nu=0.3)

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.contact import pieces as lines3d
 from gearfe.contact.corner import CornerLaw
-from geometry.pair.contacts import touching
+from gearfe.geometry.pair.contacts import touching
 from validation.shared.solid_pair import solid_contact
 
 STEEL = gf.Material(E=207e3, nu=0.3)

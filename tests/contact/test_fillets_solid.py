@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.contact.pieces import cut
 from gearfe.contact.rows import _apart
-from geometry.pair.contacts import contacts
+from gearfe.geometry.pair.contacts import contacts
 from validation.shared.solid_pair import solid_contact
 
 STEEL = gf.Material(E=207e3, nu=0.3)

@@ -12,9 +12,9 @@ from gearfe.contact import kink_law
 from gearfe.contact.kinks import _nearest, kink_rows, near_kink
 from gearfe.contact.pair_contact import PairContact
 from gearfe.contact.sharing import share
-from gearfe.energy.ritz.plane import flexibility
-from geometry.pair.flanks import flank_forms
-from geometry.tooth.profile import arc_at, cartesian, flank
+from gearfe.flexibility.energy.ritz.plane import flexibility
+from gearfe.geometry.pair.flanks import flank_forms
+from gearfe.geometry.tooth.profile import arc_at, cartesian, flank
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))

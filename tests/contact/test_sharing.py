@@ -7,6 +7,8 @@ from numpy.testing import assert_allclose
 from gearfe.contact import sharing
 from gearfe.contact.sharing import LineContacts, approaches, line_contact, line_contacts, share, stacked
 
+pytestmark = pytest.mark.quick
+
 
 def brute_force(flexibility, gap, load):
     """Try every set of touching contacts; the one that satisfies all conditions is the solution."""

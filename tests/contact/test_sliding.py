@@ -10,8 +10,8 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.contact.pair_contact import OVERLAP, _closing
 from gearfe.contact.sliding import sliding
-from geometry.pair.contacts import contacts
-from geometry.tooth.profile import arc_at
+from gearfe.geometry.pair.contacts import contacts
+from gearfe.geometry.tooth.profile import arc_at
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 

@@ -9,9 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.many.sweeps.keys import check_key, placed
+from gearfe.comparison.losses import kind_of, told_damage
+from gearfe.runs.sweeps.keys import check_key, placed
 from gearfe.scene.load import load_scene, scene_of
-from gearfe.studies.losses import kind_of, told_damage
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 12.0}
 STEEL = gf.Material(E=207e3, nu=0.3)

@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.decks.solid_deck import sides_of
-from geometry.tooth.profile import arc_at
-from geometry.tooth.side import place
+from gearfe.geometry.tooth.profile import arc_at
+from gearfe.geometry.tooth.side import place
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 APPROACH, LOAD = 0.03, 600.0  # mm, N/mm

@@ -10,10 +10,10 @@ import pytest
 import gearfe as gf
 from gearfe.decks.contact_solid import SolidDeck, _uncovered
 from gearfe.decks.solid_deck import FACES, TWENTY, sides_of
-from gearfe.elements.hexahedron import gauss, shapes
-from geometry.mesh.relieved_solid import relieved_points
-from geometry.pair.flanks import flank_forms
-from geometry.tooth.profile import flank
+from gearfe.flexibility.finite_elements.hexahedron import gauss, shapes
+from gearfe.geometry.mesh.relieved_solid import relieved_points
+from gearfe.geometry.pair.flanks import flank_forms
+from gearfe.geometry.tooth.profile import flank
 from validation.make import three
 from validation.shared import outsider, page, state
 from validation.shared.decks import digest

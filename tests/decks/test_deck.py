@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import gearfe as gf
-from gearfe.elements.elasticity import Body
+from gearfe.flexibility.finite_elements.elasticity import Body
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 import gearfe as gf
-from gearfe.cli import main
-from geometry.mesh.holes import holed_sector
+from gearfe.app.cli import main
+from gearfe.geometry.mesh.holes import holed_sector
+
+pytestmark = pytest.mark.quick
 
 GEAR = gf.Gear(z=13, x=0.3, r_bore=8.0, b=6.0, m_n=2.0, alpha_n=math.radians(20), beta=math.radians(15))
 PIT = gf.Pit(radius=14.0, z=2.0, axes=(0.4, 0.4), depth=0.2)

@@ -10,9 +10,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.studies.harris import harris, harris_table
-from gearfe.studies.pattern import pattern_of
-from gearfe.studies.root_iso import told_root
+from gearfe.comparison.harris import harris, harris_table
+from gearfe.comparison.pattern import pattern_of
+from gearfe.comparison.root_iso import told_root
 from validation.make.readme import outputs
 
 ROOT = Path(__file__).parents[2]

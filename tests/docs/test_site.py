@@ -7,6 +7,8 @@ import pytest
 
 import gearfe as gf
 
+pytestmark = pytest.mark.quick
+
 ROOT = Path(__file__).parents[2]
 SITE = ROOT / "gearfe" / "docs"
 PAGES = sorted(path for path in SITE.glob("**/*.md") if "_made" not in path.parts)

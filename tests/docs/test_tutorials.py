@@ -30,6 +30,7 @@ FEWER = {  # of scripts that print nothing: what is repeated, and how often here
 }
 
 
+@pytest.mark.quick
 def test_scripts_are_found():
     assert len(SCRIPTS) >= 39
     assert {path.stem for path in RECORD.glob("*.txt")} <= {path.stem for path in SCRIPTS}

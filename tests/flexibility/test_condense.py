@@ -8,8 +8,10 @@ from skfem import BilinearForm, ElementTriP2, ElementVector, MeshTri, MeshTri2
 from skfem.helpers import ddot, div, sym_grad
 
 import gearfe as gf
-from gearfe.elements.elasticity import Body
 from gearfe.flexibility.condense import condense
+from gearfe.flexibility.finite_elements.elasticity import Body
+
+pytestmark = pytest.mark.quick
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 

@@ -11,6 +11,8 @@ from numpy.testing import assert_allclose
 
 from gearfe.flexibility import halfspace
 
+pytestmark = pytest.mark.quick
+
 
 def hats_apart(knots, others, u):
     """Integral over s of hat(s) hat'(s - u) for every u, piecewise quadratic."""

@@ -10,6 +10,8 @@ from gearfe.flexibility.halfspace import hat_points
 from gearfe.flexibility.hats import hat_knots, wider
 from gearfe.flexibility.hertz import hat_logarithm
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.mark.parametrize("apart", [0.0, 0.7, 3.0])
 def test_hat_logarithm_equals_its_integral(apart):

@@ -7,12 +7,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.elements import fe
-from gearfe.elements.elasticity import Body
-from gearfe.energy.ritz import plane as ritz
+from gearfe.flexibility.energy.ritz import plane as ritz
+from gearfe.flexibility.finite_elements import fe
+from gearfe.flexibility.finite_elements.elasticity import Body
 from gearfe.flexibility.hertz import half_plane, hat_logarithm
 from gearfe.flexibility.plane import towards
-from geometry.tooth.profile import roll_at_arc
+from gearfe.geometry.tooth.profile import roll_at_arc
 
 STEEL = gf.Material(E=206e3, nu=0.3)
 GEARS = [

@@ -11,7 +11,7 @@ from collections import Counter
 import numpy as np
 
 import gearfe as gf
-from gearfe.cli import main
+from gearfe.app.cli import main
 
 CLEAR, TRACEBACK, HANG, NONSENSE = "clear answer", "traceback", "hang", "silent nonsense"
 LIMIT = 20  # seconds of an input before it counts as a hang

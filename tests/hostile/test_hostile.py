@@ -60,6 +60,7 @@ def gear_inputs():
     return rows
 
 
+@pytest.mark.quick
 def test_gears():
     found = asked(gear_inputs(), lambda **own: gf.Gear(**({"z": 21, "r_bore": 7.4} | RACK | own)))
     found |= asked([("a", [*[v for v in NO_NUMBER if v is not None], *NOT_FINITE, -52.0, 0.0, 1.0, 60.0, 1e30], None, True)],
@@ -72,6 +73,7 @@ def test_gears():
     assert counts == {CLEAR: len(found)}, wrong
 
 
+@pytest.mark.quick
 def test_damage(small):
     crack = [("level", [*[v for v in NO_NUMBER if v is not None], *NOT_FINITE, -0.3, 0.0, 1.5, 1e30], None, True),
              ("angle", [*NO_NUMBER, *NOT_FINITE, 45.0, -2.0], None, True),

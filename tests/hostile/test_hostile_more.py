@@ -7,7 +7,7 @@ import pytest
 from judge import CLEAR, judged, judged_command, tally
 
 import gearfe as gf
-from gearfe.many.sweeps.study import read_study
+from gearfe.runs.sweeps.study import read_study
 from gearfe.scene.load import read_tables, scene_of
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
@@ -157,7 +157,7 @@ def test_more_command_lines(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("name", ["x\x1b[31m", "x\x9b2J", "x\u202e"])
 def test_names_that_steer_a_terminal(name, tmp_path, capsys):
-    from gearfe.cli import main
+    from gearfe.app.cli import main
 
     assert main(["signal", str(tmp_path / f"{name}.csv")]) == 1
     assert name not in capsys.readouterr().err

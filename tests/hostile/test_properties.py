@@ -181,7 +181,7 @@ def test_anything_in_place_of_a_number():
     run(check, 70, name=st.sampled_from(sorted(calls)), value=ANY)
 
 
-SCENE = (resources.files("gearfe.scenes") / "planetary_pitting.toml").read_text(encoding="utf-8")
+SCENE = (resources.files("gearfe.scene.scenes") / "planetary_pitting.toml").read_text(encoding="utf-8")
 LINES = [k for k, line in enumerate(SCENE.splitlines()) if " = " in line]
 
 

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.colors import to_rgb
 
 import gearfe as gf
-from gearfe.pictures.look import COLOURS
+from gearfe.figures.look import COLOURS
 from gearfe.reports.findings import Findings, _tooth, find
 
 pytest.importorskip("plotly")
@@ -140,6 +140,7 @@ def test_the_tooth_is_shown_with_some_of_its_body():
         np.testing.assert_allclose(mises, shown[1] - 0.25)
 
 
+@pytest.mark.quick
 def test_unknown_case_and_suffix_are_refused_before_work(tmp_path):
     with pytest.raises(ValueError, match="no case 'worn'"):
         find("planetary_pitting", "worn")

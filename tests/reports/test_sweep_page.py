@@ -5,8 +5,8 @@ import re
 import pytest
 
 import gearfe as gf
-from gearfe.many.sweeps.kinds import KINDS
 from gearfe.reports.sweep_page import SHOWN
+from gearfe.runs.sweeps.kinds import KINDS
 
 pytest.importorskip("plotly")
 pytest.importorskip("jinja2")

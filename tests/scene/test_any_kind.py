@@ -10,12 +10,12 @@ from functools import cache
 import pytest
 
 import gearfe as gf
+from gearfe.geometry.pair import gear_pair
+from gearfe.geometry.pair.interference import overlap
 from gearfe.scene.load import ASSUMPTION, DAMAGE, TABLES, TOP, scene_of
 from gearfe.scene.machine_table import BODIES, BODY, IMPACT, MACHINE
 from gearfe.scene.references import REFERENCE, ROW
 from gearfe.scene.strict import shown
-from geometry.pair import gear_pair
-from geometry.pair.interference import overlap
 
 RACK = {"m_n_mm": 2.0, "alpha_n_deg": 20.0, "b_mm": 20.0, "material": "steel", "beta_deg": 0.0, "x": 0.0, "z_cutter": 20}
 RACK |= {"addendum": 1.0, "dedendum": 1.25, "tip_radius": 0.2}

@@ -6,7 +6,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.cli.arguments import main
+from gearfe.app.cli.arguments import main
 
 SCENE = """
 title = "A pair with tip relief"

@@ -4,7 +4,7 @@ import re
 import pytest
 
 import gearfe as gf
-from gearfe.cli import main
+from gearfe.app.cli import main
 from gearfe.scene.flank_table import FLANK, MISALIGNMENT
 from gearfe.scene.load import DAMAGE, TABLES
 from gearfe.scene.machine_table import BODY, IMPACT, MACHINE

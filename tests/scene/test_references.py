@@ -7,7 +7,9 @@ import pytest
 import gearfe as gf
 from gearfe.scene.references import printed_stiffness
 
-TEXT = (resources.files("gearfe.scenes") / "herringbone.toml").read_text(encoding="utf-8")
+pytestmark = pytest.mark.quick
+
+TEXT = (resources.files("gearfe.scene.scenes") / "herringbone.toml").read_text(encoding="utf-8")
 FIRST = """
 [[reference]]
 id = "a"

@@ -6,7 +6,9 @@ import pytest
 import gearfe as gf
 from gearfe.scene.load import scene_names
 
-TEXT = (resources.files("gearfe.scenes") / "planetary_pitting.toml").read_text()
+pytestmark = pytest.mark.quick
+
+TEXT = (resources.files("gearfe.scene.scenes") / "planetary_pitting.toml").read_text()
 
 
 def test_built_in_scene():
@@ -180,7 +182,7 @@ LINE = 'along = "contact_line"\nmiddle_mm = 15.0\n'
 )
 def test_rows_of_pits_about_their_middle(tmp_path, row, message):
     """The outer ends of herringbone halves touch first: on the sun contact lines fall from there to the root."""
-    file, text = tmp_path / "mine.toml", (resources.files("gearfe.scenes") / "herringbone.toml").read_text()
+    file, text = tmp_path / "mine.toml", (resources.files("gearfe.scene.scenes") / "herringbone.toml").read_text()
     assert text.count(ROW) > 3
     file.write_text(text.replace("count = 3\n" + ROW, "count = 3\n" + row, 1))
     if message:

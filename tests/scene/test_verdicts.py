@@ -80,7 +80,7 @@ def test_kinds_are_known(tmp_path):
 def test_every_reference_of_the_scenes_states_its_kind(name):
     from importlib import resources
 
-    text = (resources.files("gearfe.scenes") / f"{name}.toml").read_text(encoding="utf-8")
+    text = (resources.files("gearfe.scene.scenes") / f"{name}.toml").read_text(encoding="utf-8")
     for table in text.split("[[reference]]")[1:]:
         head = table.split("rows = [")[0]
         assert re.search(r'^kind = "(input|arithmetic|model)"$', head, re.M), head

@@ -8,7 +8,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.cli import main
+from gearfe.app.cli import main
+
+pytestmark = pytest.mark.quick
 
 RATE, FAULT = 20480.0, 18.2
 

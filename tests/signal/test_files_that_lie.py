@@ -16,7 +16,7 @@ from scipy.io import loadmat, savemat
 from scipy.sparse import csc_array
 
 import gearfe as gf
-from gearfe.matlab_file import Unread, variables
+from gearfe.core.matlab_file import Unread, variables
 from gearfe.signal.signal_file import channels
 
 X = np.sin(np.arange(400) / 9.0)

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import gearfe as gf
-from gearfe.cli import main
+from gearfe.app.cli import main
 from gearfe.signal.time_axis import rounding, step_of
 
 RATE = 5120.0

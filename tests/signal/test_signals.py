@@ -6,6 +6,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import gearfe as gf
 
+pytestmark = pytest.mark.quick
+
 RATE = 5120.0
 
 

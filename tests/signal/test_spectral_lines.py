@@ -6,6 +6,8 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 
+pytestmark = pytest.mark.quick
+
 RATE, N = 5120.0, 51200  # 10 s, bins 0.1 Hz apart
 F_M, F_FAULT = 280.0, 40.0  # of S0's machine
 TIME = np.arange(N) / RATE

@@ -16,8 +16,8 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import gearfe as gf
-from gearfe.elements import fe
 from gearfe.flexibility.arrays import plane_arrays, plane_from, solid_arrays, solid_from
+from gearfe.flexibility.finite_elements import fe
 from gearfe.flexibility.plane import Flexibility
 from gearfe.flexibility.solved import PROCESS, SolvedGears, memory, solved_gears
 from gearfe.stiffness import cache
@@ -196,7 +196,7 @@ def test_sections_come_back_to_the_last_bit(tmp_path, cracks):
 
 
 def test_solids_come_back_to_the_last_bit():
-    from gearfe.energy.ritz.solid import flexibility3d
+    from gearfe.flexibility.energy.ritz.solid import flexibility3d
 
     found = flexibility3d(GEAR, STEEL, (CRACK,), order=2, axial=4)  # with faces of cracks, healthy gear and all
     again = solid_from(GEAR, solid_arrays(found))
@@ -214,7 +214,12 @@ def test_solids_come_back_to_the_last_bit():
 
 def test_the_key_knows_every_source_file():
     names = {source.relative_to(Path(gf.__file__).parents[1]).as_posix() for source in cache.sources()}
-    assert {"gearfe/elements/fe.py", "gearfe/flexibility/plane.py", "gearfe/__init__.py", "geometry/tooth/gear.py"} <= names
+    assert {
+        "gearfe/flexibility/finite_elements/fe.py",
+        "gearfe/flexibility/plane.py",
+        "gearfe/__init__.py",
+        "geometry/tooth/gear.py",
+    } <= names
 
 
 WRITER = """

@@ -7,6 +7,8 @@ from scipy.io import loadmat
 
 import gearfe as gf
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.fixture(scope="module")
 def curve(pair, steel):

@@ -8,9 +8,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.pair.contacts import contacts
-from geometry.pair.flanks import flank_forms
-from geometry.pair.modified import flank_contacts
+from gearfe.geometry.pair.contacts import contacts
+from gearfe.geometry.pair.flanks import flank_forms
+from gearfe.geometry.pair.modified import flank_contacts
 from validation.make.flanks_wide import against_fe
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}

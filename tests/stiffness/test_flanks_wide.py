@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.pair.flanks import tilt_of
+from gearfe.geometry.pair.flanks import tilt_of
 from validation.shared.solid_pair import solid_contact
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}

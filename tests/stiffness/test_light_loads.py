@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 import gearfe as gf
-from geometry.pair.flanks import flank_forms
-from geometry.pair.modified import flank_contacts
+from gearfe.geometry.pair.flanks import flank_forms
+from gearfe.geometry.pair.modified import flank_contacts
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)

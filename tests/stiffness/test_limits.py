@@ -11,9 +11,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe import memory
-from gearfe.cli import main
-from gearfe.files import read
+from gearfe.app.cli import main
+from gearfe.core import memory
+from gearfe.core.files import read
 from gearfe.stiffness import limits
 
 
@@ -98,7 +98,7 @@ def test_memory_is_that_of_the_smallest_limit(tmp_path, monkeypatch):
 
 
 def test_a_limit_of_the_shell_is_seen():
-    code = "from gearfe.memory import free_memory; print(free_memory())"
+    code = "from gearfe.core.memory import free_memory; print(free_memory())"
     limit = 6 * 10**9
 
     def held():
@@ -110,7 +110,7 @@ def test_a_limit_of_the_shell_is_seen():
 
 def test_the_section_estimate_is_that_of_meshes(pair):
     """Unknowns of two real meshes, within a third."""
-    from gearfe.elements.fe import mesh_gear
+    from gearfe.flexibility.finite_elements.fe import mesh_gear
 
     for refine in (1.0, 2.0):
         mesh = mesh_gear(pair.gear_1, read=(1, 2), refine=refine)
@@ -119,7 +119,7 @@ def test_the_section_estimate_is_that_of_meshes(pair):
 
 
 def test_versions(capsys):
-    from gearfe.cli import main
+    from gearfe.app.cli import main
 
     with pytest.raises(SystemExit):
         main(["--version"])

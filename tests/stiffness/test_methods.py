@@ -10,13 +10,13 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 
 import gearfe as gf
-from gearfe.cli import main
-from gearfe.energy.closed import coupled, textbook
-from gearfe.energy.ritz import plane as ritz
+from gearfe.app.cli import main
+from gearfe.comparison.own_model import own_models
+from gearfe.flexibility.energy.closed import coupled, textbook
+from gearfe.flexibility.energy.ritz import plane as ritz
+from gearfe.geometry.pair import lines
+from gearfe.geometry.tooth.profile import roll_at_arc
 from gearfe.stiffness.methods import FACES, METHODS, NAMES, RING_FOUNDATIONS, ROWS, fitted
-from gearfe.studies.own_model import own_models
-from geometry.pair import lines
-from geometry.tooth.profile import roll_at_arc
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 2.0}
 BETA = math.radians(16)
@@ -141,7 +141,7 @@ def test_one_rule_for_what_a_method_gets():
 
 
 def test_a_herringbone_scene_with_a_groove_by_the_section(tmp_path, capsys):
-    text = (resources.files("gearfe.scenes") / "herringbone.toml").read_text()
+    text = (resources.files("gearfe.scene.scenes") / "herringbone.toml").read_text()
     path, out = tmp_path / "grooved.toml", tmp_path / "k.csv"
     path.write_text(text.replace('face = "herringbone"', 'face = "herringbone"\ngroove_mm = 4.0'))
     assert main(["stiffness", str(path), "--method", "ritz", "--phases", "4", "-o", str(out)]) == 0

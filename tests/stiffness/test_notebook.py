@@ -8,8 +8,8 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import gearfe as gf
-from gearfe.pictures.stiffness_plots import closed
-from geometry.tooth.drawing import gear_svg, outline_points
+from gearfe.figures.stiffness_plots import closed
+from gearfe.geometry.tooth.drawing import gear_svg, outline_points
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.energy.ritz.plane import flexibility
+from gearfe.flexibility.energy.ritz.plane import flexibility
 
 
 def test_a_relief_on_gears_that_are_known_at_single_places():

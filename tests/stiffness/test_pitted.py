@@ -9,12 +9,12 @@ from machines import SHAPE, STEEL, herringbone, tooth
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.machine.contact_cycle import contact_line, ellipse_loss, impact_cycle, line_cycle
-from gearfe.machine.contact_law import hertz_coefficient
-from gearfe.machine.helical_pair import pitted_helical
-from gearfe.machine.pitted_planetary import pitted_planetary
-from gearfe.machine.tables import pulses
-from gearfe.motion.simulate import simulate
+from gearfe.dynamics.machine.contact_cycle import contact_line, ellipse_loss, impact_cycle, line_cycle
+from gearfe.dynamics.machine.contact_law import hertz_coefficient
+from gearfe.dynamics.machine.helical_pair import pitted_helical
+from gearfe.dynamics.machine.pitted_planetary import pitted_planetary
+from gearfe.dynamics.machine.tables import pulses
+from gearfe.dynamics.motion.simulate import simulate
 
 
 def test_every_carrier_of_a_damaged_tooth_returns_at_its_interval(herringbone_stage):

@@ -9,8 +9,8 @@ from checks import form_mismatch
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.pair.contacts import contacts
-from geometry.tooth.profile import cartesian, fillet, flank, form_point
+from gearfe.geometry.pair.contacts import contacts
+from gearfe.geometry.tooth.profile import cartesian, fillet, flank, form_point
 from validation.shared import reference
 from validation.shared.full_contact import full_contact
 

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.elements.fe_gear3d import WholeGear, solid_flexibility
+from gearfe.flexibility.finite_elements.fe_gear3d import WholeGear, solid_flexibility
 
 STEEL = gf.Material(206e3, 0.3)
 PHASES = np.array([0.05, 0.3, 0.62, 0.9, 0.98])

@@ -8,8 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.elements import fe
-from gearfe.elements.elasticity import Body
+from gearfe.flexibility.finite_elements import fe
+from gearfe.flexibility.finite_elements.elasticity import Body
 from validation.shared.full_contact import full_contact
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
@@ -97,6 +97,7 @@ def test_corner_contact_is_within_one_percent_of_full_contact(pair, steel):
     assert_allclose(fast.lte[0] * 1e3, full.approach, rtol=0.01)
 
 
+@pytest.mark.quick
 def test_load_stiffens_the_single_pair_by_about_three_percent_per_doubling(pair, steel):
     low, high = gf.mesh_stiffness(pair, [1000.0, 2000.0], steel, phases=[0.8])
     assert 1.015 < high.k[0] / low.k[0] < 1.045

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.supports.held import REFUSE, supports_of
+from gearfe.core.supports.held import REFUSE, supports_of
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
 STEEL = gf.Material(E=207e3, nu=0.3)

@@ -7,10 +7,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.pair.contacts import approach
-from geometry.pair.flanks import flank_forms
-from geometry.pair.modified import flank_contacts
-from geometry.tooth.profile import cartesian, flank, flank_normal
+from gearfe.geometry.pair.contacts import approach
+from gearfe.geometry.pair.flanks import flank_forms
+from gearfe.geometry.pair.modified import flank_contacts
+from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal
 from validation.shared.full_contact import full_contact
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}

@@ -8,11 +8,11 @@ from numpy.testing import assert_allclose
 from scipy.special import ellipe
 
 import gearfe as gf
-from gearfe.elements.hexahedron import assemble, face_shapes
-from gearfe.elements.solver import factor, plan
+from gearfe.flexibility.finite_elements.hexahedron import assemble, face_shapes
+from gearfe.flexibility.finite_elements.solver import factor, plan
+from gearfe.geometry.mesh.solid import HEX
 from gearfe.strength.crack_front import SHALLOW, TUBE
 from gearfe.strength.front_integral import front_intensity
-from geometry.mesh.solid import HEX
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 WIDEST = TUBE[1] * SHALLOW  # tube around a front that runs out, as in gears: in the largest depth, which is 1

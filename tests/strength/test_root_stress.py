@@ -5,7 +5,7 @@ import math
 import pytest
 
 import gearfe as gf
-from gearfe.elements.line_load import contact_line
+from gearfe.flexibility.finite_elements.line_load import contact_line
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}

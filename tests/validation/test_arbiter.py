@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.pair.contacts import approach
+from gearfe.geometry.pair.contacts import approach
 from validation.shared.arbiter.cases import LOADED, loaded_case, random_pair
 from validation.shared.arbiter.cutting import Space
 from validation.shared.arbiter.elements import gradients, solver, stiffness
@@ -30,6 +30,7 @@ def answer(undercut):
     return pressed(undercut, None, 100.0, np.array([0.6, 0.9]), STEEL)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     "held", [{"z": 24, "r_bore": 15.0, "x": 0.3}, {"z": 13, "r_bore": 8.0}, {"z": 60, "r_rim": 95.0, "tip_radius": 0.2}]
 )

@@ -5,8 +5,8 @@ import pytest
 
 import gearfe as gf
 from gearfe.contact.pair_contact import PairContact
-from gearfe.energy.ritz.plane import flexibility
-from geometry.pair.flanks import flank_forms
+from gearfe.flexibility.energy.ritz.plane import flexibility
+from gearfe.geometry.pair.flanks import flank_forms
 from validation.shared.arbiter.beside import beside
 from validation.shared.arbiter.cases import random_pair
 

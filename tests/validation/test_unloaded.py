@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.tooth.profile import cartesian, flank
+from gearfe.geometry.tooth.profile import cartesian, flank
 from validation.shared.arbiter.cases import random_pair
 from validation.shared.arbiter.outline import Outline
 from validation.shared.arbiter.unloaded import unloaded

@@ -6,12 +6,12 @@ import warnings
 from dataclasses import replace
 
 import gearfe as gf
-from gearfe.files import written
+from gearfe.core.files import written
+from gearfe.core.units import in_newton_per_um
+from gearfe.geometry.damage.crack import start_arc
+from gearfe.geometry.pair.gear_pair import GearPair
+from gearfe.geometry.tooth.profile import cartesian, root_curve
 from gearfe.scene.load import scene_names
-from gearfe.units import in_newton_per_um
-from geometry.damage.crack import start_arc
-from geometry.pair.gear_pair import GearPair
-from geometry.tooth.profile import cartesian, root_curve
 
 from ..shared import page, reference
 from ..shared.kept_rows import kept

@@ -85,7 +85,7 @@ def mating_time():
 
 def crack_step():
     """Length of 20 % of a crack that reaches the centre-line with 50 % [mm], by where it starts."""
-    from geometry.damage.crack import crack_path
+    from gearfe.geometry.damage.crack import crack_path
 
     sun = scene(NAME).gears["sun"]
     half = sun.r_b * math.sin(sun.base_half_angle)  # the source's tooth below the base circle is a prism

@@ -9,9 +9,9 @@ import numpy as np
 from scipy.signal import resample_poly
 
 import gearfe as gf
-from gearfe.files import written
-from gearfe.machine.compound_planetary import compound_planetary
-from gearfe.units import in_newton_per_um
+from gearfe.core.files import written
+from gearfe.core.units import in_newton_per_um
+from gearfe.dynamics.machine.compound_planetary import compound_planetary
 
 from ..shared.joint_inputs import Draw, changed, noise, through_mode
 from ..shared.laws import beside, tables
@@ -262,8 +262,8 @@ PICTURES = {
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.pictures.stiffness_plots import plot_curves
-    from gearfe.pictures.vibration_plots import plot_spectra
+    from gearfe.figures.stiffness_plots import plot_curves
+    from gearfe.figures.vibration_plots import plot_spectra
 
     from ..shared.plots import plot_waves
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.studies.vibration import analyse
+from gearfe.comparison.vibration import analyse
 
 from ..shared.kept_rows import kept
 from . import dataset

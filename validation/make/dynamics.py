@@ -9,9 +9,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import gearfe as gf
-from gearfe.motion import excitation
-from gearfe.motion.response import acceleration
-from gearfe.motion.simulate import simulate
+from gearfe.dynamics.motion import excitation
+from gearfe.dynamics.motion.response import acceleration
+from gearfe.dynamics.motion.simulate import simulate
 
 from ..shared import page
 from ..shared.kept_rows import check, kept, stored

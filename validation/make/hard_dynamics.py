@@ -7,15 +7,15 @@ from functools import partial
 import numpy as np
 
 import gearfe as gf
-from gearfe.machine.gear_mesh import Samples, ToothDamage, cycle_table
-from gearfe.machine.gear_pair import gear_pair
-from gearfe.machine.layout import Body
-from gearfe.machine.member import disc
-from gearfe.machine.modes import natural_frequencies
-from gearfe.machine.single_mesh import single_mesh
-from gearfe.motion.simulate import simulate
-from gearfe.motion.steady import steady_state
-from gearfe.motion.step_control import chosen_step, difference
+from gearfe.dynamics.machine.gear_mesh import Samples, ToothDamage, cycle_table
+from gearfe.dynamics.machine.gear_pair import gear_pair
+from gearfe.dynamics.machine.layout import Body
+from gearfe.dynamics.machine.member import disc
+from gearfe.dynamics.machine.modes import natural_frequencies
+from gearfe.dynamics.machine.single_mesh import single_mesh
+from gearfe.dynamics.motion.simulate import simulate
+from gearfe.dynamics.motion.steady import steady_state
+from gearfe.dynamics.motion.step_control import chosen_step, difference
 
 from ..shared.kept_rows import kept
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearfe.machine.contact_law import hertz_coefficient
-from geometry.pair.lines import total_length
+from gearfe.dynamics.machine.contact_law import hertz_coefficient
+from gearfe.geometry.pair.lines import total_length
 
 from ..shared.simulated import scene
 

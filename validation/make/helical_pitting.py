@@ -205,7 +205,7 @@ PICTURES = {"helical_pitting_spectra": "Mesh force under the article's own law, 
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.pictures.vibration_plots import plot_spectra
+    from gearfe.figures.vibration_plots import plot_spectra
 
     lines = gf.expected_lines(frequencies()["f_m"], frequencies()["f_r"], count=2)
     spectra = {case: _found(case) for case in ("healthy", *CASES)}

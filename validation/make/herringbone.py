@@ -6,8 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import gearfe as gf
+from gearfe.comparison.case_table import case_curve, case_table, damage_cycle, printed_cases
 from gearfe.scene.stored import read_curves, stored_file, write_curves
-from gearfe.studies.case_table import case_curve, case_table, damage_cycle, printed_cases
 
 from ..shared import (
     herringbone_contact_line,
@@ -132,7 +132,7 @@ def text():
     how = [
         "`python -m validation herringbone` makes this page from `tables/herringbone*.csv`; `... herringbone all` computes",
         "them anew.",
-        "The finite elements, in `gearfe/scenes/herringbone_fe3d.csv`, are computed by `... herringbone --reference`.",
+        "The finite elements, in `gearfe/scene/scenes/herringbone_fe3d.csv`, are computed by `... herringbone --reference`.",
     ]
     layouts, readings = herringbone_layouts_page.section(), herringbone_scan_page.section()
     said = herringbone_statements.section()

@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
-from gearfe.machine.of_scene import with_scene_errors
+from gearfe.core.files import written
+from gearfe.dynamics.machine.of_scene import with_scene_errors
 
 from ..shared.laws import beside, tables
 from ..shared.places import TABLES
@@ -252,7 +252,7 @@ PICTURES = {
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.pictures.vibration_plots import plot_spectra
+    from gearfe.figures.vibration_plots import plot_spectra
 
     from ..shared.plots import plot_phases
 

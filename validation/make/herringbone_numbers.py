@@ -3,7 +3,7 @@
 import math
 
 from gearfe import Pit
-from gearfe.energy.closed.beam import SAINSOT
+from gearfe.flexibility.energy.closed.beam import SAINSOT
 
 from ..shared.simulated import scene
 

@@ -1,8 +1,8 @@
 """A part of the page `holes`: pits cut out of cracked teeth, the damaged rows of article S4 with holes and crack in the tooth."""
 
 import gearfe as gf
-from gearfe.stress.holed import pressed_tooth
-from gearfe.studies.case_table import damage_cycle, printed_cases
+from gearfe.comparison.case_table import damage_cycle, printed_cases
+from gearfe.strength.holed import pressed_tooth
 
 from ..shared.herringbone_page import SCENE
 from ..shared.kept_rows import kept

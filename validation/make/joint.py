@@ -5,7 +5,7 @@ import importlib
 import numpy as np
 
 import gearfe as gf
-from gearfe.markdown import table_row
+from gearfe.core.markdown import table_row
 
 from ..shared import joint_inputs, page
 from ..shared.kept_rows import kept, stored

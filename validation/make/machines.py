@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 import gearfe as gf
-from gearfe.files import written
+from gearfe.core.files import written
 from gearfe.scene import verdicts
 from gearfe.scene.references import read_references
 
@@ -93,7 +93,7 @@ def text(page):
         f"{scene.source}.",
         "",
         f"Made by `python -m validation machines {page}` from [tables/{page}.csv](tables/{page}.csv); the printed values",
-        f"are the `[[reference]]` rows of `gearfe/scenes/{PAGES[page]}.toml`, the last statements those of "
+        f"are the `[[reference]]` rows of `gearfe/scene/scenes/{PAGES[page]}.toml`, the last statements those of "
         "`validation/sources/statements.toml`.",
         "Verdicts are computed: *reproduced*: within the tolerance; *after a stated correction*: of the corrected value, "
         "which alone",

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 import gearfe as gf
-from gearfe.many.errormap import CRACKED, HEALTHY, LOADS, ZONES, build
+from gearfe.runs.errormap import CRACKED, HEALTHY, LOADS, ZONES, build
 
 from ..shared import page
 from ..shared.kept_rows import check, kept

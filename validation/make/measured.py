@@ -7,12 +7,12 @@ from itertools import product
 import numpy as np
 
 import gearfe as gf
-from gearfe.machine.gear_mesh import Samples, ToothDamage, cycle_table
-from gearfe.machine.gear_pair import gear_pair
-from gearfe.machine.layout import Body
-from gearfe.machine.member import disc
-from gearfe.machine.scene_curves import stage_of
-from gearfe.studies.vibration import recorded
+from gearfe.comparison.vibration import recorded
+from gearfe.dynamics.machine.gear_mesh import Samples, ToothDamage, cycle_table
+from gearfe.dynamics.machine.gear_pair import gear_pair
+from gearfe.dynamics.machine.layout import Body
+from gearfe.dynamics.machine.member import disc
+from gearfe.dynamics.machine.scene_curves import stage_of
 
 from ..shared.page import text
 from ..shared.places import PAGES, SOURCES
@@ -300,7 +300,7 @@ def _modes_text():
             planetary sets back to back, compared there with a model of lumped masses of the kind of `gf.planetary`."""),
         _line("""**Verdict: not comparable.** The masses, stiffnesses, frequencies and even the tooth numbers of its tables could
             not be obtained as text, so that there is no scene: a simulation would be fitted, not compared. The same model meets
-            the natural frequencies that J. Lin, R. G. Parker (1999) print to 5e-4 (`tests/machine/test_models.py`)."""),
+            the natural frequencies that J. Lin, R. G. Parker (1999) print to 5e-4 (`tests/dynamics/test_models.py`)."""),
     ]
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
+from gearfe.core.files import written
 
 from ..shared.places import PAGES
 

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
-from geometry.damage.pit import pit_row
+from gearfe.core.files import written
+from gearfe.geometry.damage.pit import pit_row
 
 from ..shared.kept_rows import kept
 from ..shared.places import TABLES

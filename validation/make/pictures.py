@@ -5,9 +5,9 @@ import os
 from concurrent.futures import ProcessPoolExecutor
 
 import gearfe as gf
+from gearfe.core.units import in_newton_per_um
 from gearfe.scene.load import scene_names
-from gearfe.stress.render import render_contact, render_stress
-from gearfe.units import in_newton_per_um
+from gearfe.strength.render import render_contact, render_stress
 
 from ..shared import page
 from ..shared.places import PAGES

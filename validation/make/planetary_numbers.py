@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 
 import gearfe as gf
-from gearfe.machine.contact_law import hertz_coefficient
-from geometry.damage.pit import Pit
-from geometry.pair.lines import total_length
+from gearfe.dynamics.machine.contact_law import hertz_coefficient
+from gearfe.geometry.damage.pit import Pit
+from gearfe.geometry.pair.lines import total_length
 
 from ..shared.simulated import scene
 

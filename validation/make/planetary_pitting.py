@@ -225,7 +225,7 @@ PICTURES = {
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.pictures.vibration_plots import plot_spectra
+    from gearfe.figures.vibration_plots import plot_spectra
 
     from ..shared.plots import plot_lengths
 

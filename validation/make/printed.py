@@ -6,8 +6,8 @@ import tomllib
 from importlib import import_module, resources
 
 import gearfe as gf
-from gearfe.files import written
-from gearfe.markdown import table_row
+from gearfe.core.files import written
+from gearfe.core.markdown import table_row
 
 from ..shared import page
 from ..shared.places import ROOT, SOURCES, TABLES
@@ -65,7 +65,7 @@ def _found(place):
             if word == "count"
             else [one.level for one in damage if isinstance(one, gf.Crack)]
         )
-    value = tomllib.loads((resources.files("gearfe.scenes") / f"{home}.toml").read_text(encoding="utf-8"))
+    value = tomllib.loads((resources.files("gearfe.scene.scenes") / f"{home}.toml").read_text(encoding="utf-8"))
     for part in what.split("."):
         if isinstance(value, list):
             value = value[int(part)] if part.isdigit() else next(one for one in value if one["case"] == part)

@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import gearfe as gf
-from gearfe.files import save_figure
-from gearfe.machine.member import disc
-from gearfe.machine.of_scene import with_flanks
+from gearfe.core.files import save_figure
+from gearfe.dynamics.machine.member import disc
+from gearfe.dynamics.machine.of_scene import with_flanks
 
 from ..shared import page
 from ..shared.kept_rows import check, kept

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
+from gearfe.core.files import written
 
 from ..shared import page
 from ..shared.places import TABLES

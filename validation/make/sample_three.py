@@ -12,8 +12,8 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.contact.wide_contact import STEP
-from gearfe.energy.ritz.solid import axial_degree
-from geometry.damage.crack import crack_path
+from gearfe.flexibility.energy.ritz.solid import axial_degree
+from gearfe.geometry.damage.crack import crack_path
 
 from ..shared.kept_rows import kept
 from ..shared.solid_pair import solid_contact

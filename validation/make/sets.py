@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.epicyclic.standing import standing, tooth_angles
 from gearfe.flexibility.solved import SolvedGears
+from gearfe.planetary_sets.standing import standing, tooth_angles
 
 from ..shared import page
 from ..shared.decks import calculix
@@ -70,7 +70,7 @@ edge moves, {AWAY:g} mm and more away from the pads: the largest difference over
 PROOF = """
 ## What else was checked
 
-`tests/epicyclic`, largest relative differences in brackets: meshes that do not feel each other are isolated pairs (1e-6, tip
+`tests/planetary_sets`, largest relative differences in brackets: meshes that do not feel each other are isolated pairs (1e-6, tip
 corners included); forces on sun, planets and pads are in balance (1e-10); equal planets carry the same (1e-9); planets on elastic
 pins with position errors are springs in series; very stiff springs are rigid; teeth touch at the places, and with the numbers,
 that the set names; the ring on pads is that of finite elements of the whole ring (0.2 % of what the pads let it give way); how

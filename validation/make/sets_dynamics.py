@@ -7,7 +7,7 @@ from unittest.mock import patch
 import numpy as np
 
 import gearfe as gf
-from gearfe.epicyclic.standing import standing
+from gearfe.planetary_sets.standing import standing
 
 from ..shared.joint_inputs import Draw
 from ..shared.kept_rows import kept, stored

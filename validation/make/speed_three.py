@@ -11,8 +11,8 @@ import time
 import numpy as np
 
 import gearfe as gf
-from gearfe.energy.ritz import solid as ritz3d
-from geometry.damage.pit import pit_row
+from gearfe.flexibility.energy.ritz import solid as ritz3d
+from gearfe.geometry.damage.pit import pit_row
 
 from ..shared.places import ROOT
 from ..shared.solid_pair import solid_contact

@@ -12,9 +12,9 @@ from math import radians
 import numpy as np
 
 import gearfe as gf
+from gearfe.core.threads import CHOSEN
 from gearfe.flexibility.solved import SolvedGears
 from gearfe.stiffness import cache
-from gearfe.threads import CHOSEN
 
 from ..shared.places import ROOT
 

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 import gearfe as gf
-from gearfe.elements.elasticity import Body
-from gearfe.files import written
-from gearfe.units import in_newton_per_um
+from gearfe.core.files import written
+from gearfe.core.units import in_newton_per_um
+from gearfe.flexibility.finite_elements.elasticity import Body
 
 from ..shared import page, reference
 from ..shared.places import PAGES, TABLES

@@ -23,7 +23,7 @@ from . import places
 WHOLE = "*"
 SILENT = {"ctx", "kind", "type_comment"}  # fields of a syntax tree that follow from the rest
 NOTE = "__called__"  # a builtin while functions are noted
-COMPILED = ("gearfe/machine/laws/",)  # whose functions numba compiles although they do not speak of it
+COMPILED = ("gearfe/dynamics/machine/laws/",)  # whose functions numba compiles although they do not speak of it
 called: set[str] = set()  # path below the root, colon, name
 noted: set[str] = set()  # modules whose functions are noted, as paths below the root
 

@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from gearfe.files import written
+from gearfe.core.files import written
 
 from . import places
 

@@ -11,14 +11,14 @@ import numpy as np
 from scipy.sparse import hstack
 
 from gearfe.contact.sharing import share
-from gearfe.elements.elasticity import Body
-from gearfe.elements.fe import EDGES, flank_load
+from gearfe.flexibility.finite_elements.elasticity import Body
+from gearfe.flexibility.finite_elements.fe import EDGES, flank_load
 from gearfe.flexibility.hertz import contact_modulus, half_width
-from geometry.mesh.outline import stations
-from geometry.mesh.section_mesh import section
-from geometry.pair.contacts import approach, opposite
-from geometry.pair.modified import flank_contacts
-from geometry.tooth.profile import arc_at, roll_at_arc
+from gearfe.geometry.mesh.outline import stations
+from gearfe.geometry.mesh.section_mesh import section
+from gearfe.geometry.pair.contacts import approach, opposite
+from gearfe.geometry.pair.modified import flank_contacts
+from gearfe.geometry.tooth.profile import arc_at, roll_at_arc
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class ContactZone:
     arc : tuple of ndarray
         Arcs of their tops on the pinion from the base circle [mm].
     order : ndarray, shape (pairs,)
-        As in `geometry.pair.contacts.Contacts`.
+        As in `gearfe.geometry.pair.contacts.Contacts`.
     """
 
     approach: float
@@ -83,7 +83,7 @@ def full_contact(
         Divides the edge lengths away from the zone.
     extended : bool
     flanks : (FlankForm, FlankForm), optional
-        Modifications of pinion and wheel, `geometry.pair.flanks.flank_forms`; the meshed teeth are the unmodified ones.
+        Modifications of pinion and wheel, `gearfe.geometry.pair.flanks.flank_forms`; the meshed teeth are the unmodified ones.
 
     Returns
     -------

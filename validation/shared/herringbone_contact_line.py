@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 import gearfe as gf
-from gearfe.case import overlap
+from gearfe.core.case import overlap
 from gearfe.scene.verdicts import judge, text
 from gearfe.stiffness.methods import fitted
 

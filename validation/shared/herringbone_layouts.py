@@ -17,10 +17,10 @@ from scipy.optimize import least_squares
 from scipy.stats import qmc
 
 import gearfe as gf
-from gearfe.case import by_gear, overlap
+from gearfe.core.case import by_gear, overlap
 from gearfe.flexibility.solved import SolvedGears
-from geometry.damage.pit import pit_row
-from geometry.pair.pit_lines import in_both_halves, pit_line
+from gearfe.geometry.damage.pit import pit_row
+from gearfe.geometry.pair.pit_lines import in_both_halves, pit_line
 
 from . import herringbone_scan_nodes as nodes
 from .herringbone_scan_nodes import PAIRS, SCENE

@@ -5,9 +5,9 @@ import math
 from dataclasses import replace
 
 import gearfe as gf
+from gearfe.comparison.case_table import printed_beside
+from gearfe.core.units import in_newton_per_um
 from gearfe.scene.verdicts import judge, text
-from gearfe.studies.case_table import printed_beside
-from gearfe.units import in_newton_per_um
 
 from .herringbone_section import said
 from .kept_rows import stored

@@ -15,8 +15,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 import gearfe as gf
-from gearfe.case import overlap
-from gearfe.studies.case_table import printed_cases
+from gearfe.comparison.case_table import printed_cases
+from gearfe.core.case import overlap
 
 from . import herringbone_scan_nodes as nodes
 from .herringbone_scan_closed import LEVELS, closed, closed_curve

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 import gearfe as gf
-from gearfe.energy.closed import published, textbook
-from gearfe.energy.closed.section import ToothDamage
-from gearfe.energy.closed.slices import stations
+from gearfe.flexibility.energy.closed import published, textbook
+from gearfe.flexibility.energy.closed.section import ToothDamage
+from gearfe.flexibility.energy.closed.slices import stations
 from gearfe.flexibility.hertz import linear_hertz
 
 from . import herringbone_scan_nodes as nodes
@@ -24,7 +24,7 @@ LEVELS = {"1": (0.1, "3 pits"), "2": (0.3, "7 pits"), "3": (0.6, "7 pits, deep c
 class Closed:
     """`published` or `textbook` of a pair of a group for any bores and crack length; pits left out.
 
-    The plain sum of `gearfe.energy.closed.plain_sum`, with the beams at its stations kept, which no bore changes.
+    The plain sum of `gearfe.flexibility.energy.closed.plain_sum`, with the beams at its stations kept, which no bore changes.
     """
 
     def __init__(self, formulas, pair, group):

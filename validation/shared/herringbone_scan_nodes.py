@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 import gearfe as gf
-from gearfe.case import by_gear, overlap
-from geometry.damage.crack import start_arc
-from geometry.damage.pit import pit_row
-from geometry.tooth.profile import cartesian, root_curve
+from gearfe.core.case import by_gear, overlap
+from gearfe.geometry.damage.crack import start_arc
+from gearfe.geometry.damage.pit import pit_row
+from gearfe.geometry.tooth.profile import cartesian, root_curve
 
 from .places import TABLES
 from .solid_pair import solid_contact

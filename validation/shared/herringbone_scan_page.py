@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import gearfe as gf
-from gearfe.studies.case_table import damage_cycle
-from gearfe.units import NEWTON_PER_UM, in_newton_per_um
+from gearfe.comparison.case_table import damage_cycle
+from gearfe.core.units import NEWTON_PER_UM, in_newton_per_um
 
 from . import herringbone_scan
 from .herringbone_scan import GROUPS, NAME, RANGES, READINGS, SCENE, Reading, load, table

@@ -5,8 +5,8 @@ from functools import partial
 
 import numpy as np
 
-from gearfe.elements.section_error import plane_hats
-from gearfe.energy.ritz.solid import flexibility3d
+from gearfe.flexibility.energy.ritz.solid import flexibility3d
+from gearfe.flexibility.finite_elements.section_error import plane_hats
 from gearfe.flexibility.solved import SolvedGears
 
 from .solid_pair import solid_contact

@@ -3,7 +3,7 @@
 import numpy as np
 
 import gearfe as gf
-from gearfe.case import overlap
+from gearfe.core.case import overlap
 
 from .herringbone_contact_line import OFFSETS
 from .kept_rows import kept

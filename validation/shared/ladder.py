@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearfe.contact.pair_contact import PairContact
-from gearfe.energy.closed import coupled, textbook
-from gearfe.material import Material
+from gearfe.core.material import Material
+from gearfe.flexibility.energy.closed import coupled, textbook
+from gearfe.geometry.pair.contacts import contacts
 from gearfe.stiffness.solve import mesh_stiffness
-from geometry.pair.contacts import contacts
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,8 @@
 """The three sentences that open the page of a machine: what the article claims, what gearfe finds, what decides it."""
 
 from gearfe import load_scene
+from gearfe.core.units import NEWTON_PER_UM
 from gearfe.scene.verdicts import REPRODUCED, TREND
-from gearfe.units import NEWTON_PER_UM
 
 from .places import TABLES
 from .table_rows import rows_of

@@ -15,10 +15,10 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.decks.contact_solid import SolidDeck
-from gearfe.energy.ritz import solid as ritz3d
-from gearfe.energy.ritz.join import join
-from gearfe.energy.ritz.panel3d import SolidModel
 from gearfe.flexibility import solid as flexibility3d
+from gearfe.flexibility.energy.ritz import solid as ritz3d
+from gearfe.flexibility.energy.ritz.join import join
+from gearfe.flexibility.energy.ritz.panel3d import SolidModel
 
 from . import kept_rows
 from .decks import calculix, digest

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from gearfe.files import save_figure
-from gearfe.pictures.look import COLOURS, SQUASHED, look
+from gearfe.core.files import save_figure
+from gearfe.figures.look import COLOURS, SQUASHED, look
 
 STATES = ("#0072b2", "#e69f00", "#cc3311", "#009e73")  # of states of a gear, told apart by the colour-blind, too
 

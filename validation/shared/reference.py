@@ -7,12 +7,12 @@ import warnings
 import numpy as np
 
 import gearfe as gf
-from gearfe.energy.closed import textbook
-from gearfe.energy.closed.beam import load_angle
+from gearfe.dynamics.machine.member import Member
+from gearfe.dynamics.machine.planetary import planetary
+from gearfe.flexibility.energy.closed import textbook
+from gearfe.flexibility.energy.closed.beam import load_angle
 from gearfe.flexibility.hertz import half_plane, linear_hertz, weber_line
-from gearfe.machine.member import Member
-from gearfe.machine.planetary import planetary
-from geometry.tooth.profile import flank
+from gearfe.geometry.tooth.profile import flank
 
 from .iso import theoretical_stiffness, virtual_teeth
 from .places import SOURCES

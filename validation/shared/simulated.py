@@ -7,9 +7,9 @@ from functools import cache
 import numpy as np
 
 import gearfe as gf
-from gearfe.machine.tables import pulses
-from gearfe.motion.step_control import default_step
-from gearfe.motion.thinned import REACH
+from gearfe.dynamics.machine.tables import pulses
+from gearfe.dynamics.motion.step_control import default_step
+from gearfe.dynamics.motion.thinned import REACH
 
 PHASES = {"herringbone": 32}  # per mesh cycle of its stiffness curves, which are smooth
 

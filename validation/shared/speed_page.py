@@ -5,8 +5,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from gearfe.files import written
-from gearfe.pictures.look import MARKS, look
+from gearfe.core.files import written
+from gearfe.figures.look import MARKS, look
 
 from .places import PAGES
 

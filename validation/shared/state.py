@@ -159,7 +159,7 @@ def read(folder=None):
 
 
 def replace(path, text):
-    """Write a file so that it is whole at every moment; `gearfe.files.written` would load numpy for it."""
+    """Write a file so that it is whole at every moment; `gearfe.core.files.written` would load numpy for it."""
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     beside.write_text(text, encoding="utf-8")
     os.replace(beside, path)

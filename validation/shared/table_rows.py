@@ -2,7 +2,7 @@
 
 import csv
 
-from gearfe.files import written
+from gearfe.core.files import written
 from gearfe.scene.verdicts import COLUMNS, Row
 
 from .places import TABLES

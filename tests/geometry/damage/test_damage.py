@@ -9,14 +9,14 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.elements import fe
-from gearfe.energy.ritz import plane as ritz
+from gearfe.flexibility.energy.ritz import plane as ritz
+from gearfe.flexibility.finite_elements import fe
+from gearfe.geometry.damage.crack import check_apart, crack_path, start_arc
+from gearfe.geometry.damage.front import crack_in_band, open_part
+from gearfe.geometry.mesh.outline import stations
+from gearfe.geometry.mesh.section_mesh import section
+from gearfe.geometry.tooth.profile import cartesian, root_curve
 from gearfe.stiffness import cache
-from geometry.damage.crack import check_apart, crack_path, start_arc
-from geometry.damage.front import crack_in_band, open_part
-from geometry.mesh.outline import stations
-from geometry.mesh.section_mesh import section
-from geometry.tooth.profile import cartesian, root_curve
 from validation.shared import reference
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 1.0}

@@ -8,9 +8,11 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 import gearfe as gf
-from geometry.damage.hollow import centre_arc, check_hollows, intervals, lost_width, rolls, takes_all, union_length
-from geometry.damage.pit import pit_row
-from geometry.tooth.profile import arc_at
+from gearfe.geometry.damage.hollow import centre_arc, check_hollows, intervals, lost_width, rolls, takes_all, union_length
+from gearfe.geometry.damage.pit import pit_row
+from gearfe.geometry.tooth.profile import arc_at
+
+pytestmark = pytest.mark.quick
 
 GEAR = gf.Gear(z=21, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=7.4)
 RING = gf.Gear(z=72, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_rim=90.0, tip_radius=0.3)

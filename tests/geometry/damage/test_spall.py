@@ -7,13 +7,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.energy.closed.section import section
-from geometry.damage.hollow import centre_arc, check_hollows, flank_edge, intervals, lost_width, takes_all
-from geometry.damage.hollow_volume import removed_volume
-from geometry.mesh.holes import holed_sector
-from geometry.pair.gear_pair import GearPair
-from geometry.pair.lines import contact_lines, lost_length
-from geometry.tooth.profile import arc_at
+from gearfe.flexibility.energy.closed.section import section
+from gearfe.geometry.damage.hollow import centre_arc, check_hollows, flank_edge, intervals, lost_width, takes_all
+from gearfe.geometry.damage.hollow_volume import removed_volume
+from gearfe.geometry.mesh.holes import holed_sector
+from gearfe.geometry.pair.gear_pair import GearPair
+from gearfe.geometry.pair.lines import contact_lines, lost_length
+from gearfe.geometry.tooth.profile import arc_at
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)

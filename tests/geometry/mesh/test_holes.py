@@ -10,11 +10,11 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 import gearfe as gf
-from geometry.damage.hollow import centre_arc
-from geometry.damage.hollow_volume import hollow_frame, removed_volume
-from geometry.mesh import holes
-from geometry.mesh.holes import filled, holed_sector
-from geometry.tooth.profile import cartesian, flank, flank_normal, roll_at_arc
+from gearfe.geometry.damage.hollow import centre_arc
+from gearfe.geometry.damage.hollow_volume import hollow_frame, removed_volume
+from gearfe.geometry.mesh import holes
+from gearfe.geometry.mesh.holes import filled, holed_sector
+from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal, roll_at_arc
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 GEAR = gf.Gear(z=18, r_bore=9.0, **RACK)

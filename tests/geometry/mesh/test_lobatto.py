@@ -3,7 +3,7 @@ import pytest
 from numpy.polynomial import legendre
 from numpy.testing import assert_allclose
 
-from geometry.mesh import triangle
+from gearfe.geometry.mesh import triangle
 
 
 @pytest.mark.parametrize("kind", [float, complex], ids=["numpy before 2.5", "numpy from 2.5 on"])

@@ -9,9 +9,9 @@ from numpy.testing import assert_allclose
 from skfem import Basis, ElementTriP2
 
 import gearfe as gf
-from gearfe.elements.fe import mesh_gear
-from geometry.mesh import mesher, outline, section_mesh
-from geometry.tooth.profile import cartesian, fillet_length, flank, root_curve, root_half_angle
+from gearfe.flexibility.finite_elements.fe import mesh_gear
+from gearfe.geometry.mesh import mesher, outline, section_mesh
+from gearfe.geometry.tooth.profile import cartesian, fillet_length, flank, root_curve, root_half_angle
 
 GEAR = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 
@@ -67,7 +67,7 @@ def test_session_is_closed_after_an_error():
 @pytest.mark.skipif(os.name != "posix", reason="no signals to keep")
 def test_a_closed_pipe_is_an_error_after_a_session_as_before():
     """gmsh takes back that Python ignores SIGPIPE: a killed worker of a sweep then ended the whole program without a word."""
-    code = "import os; from geometry.mesh import mesher\nwith mesher.gmsh_session():\n    pass\n"
+    code = "import os; from gearfe.geometry.mesh import mesher\nwith mesher.gmsh_session():\n    pass\n"
     code += "one, two = os.pipe(); os.close(one); os.write(two, b'x')"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 1

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import gearfe as gf
-from geometry.mesh.outline import stations
-from geometry.mesh.section_mesh import section
-from geometry.mesh.sector import sector
+from gearfe.geometry.mesh.outline import stations
+from gearfe.geometry.mesh.section_mesh import section
+from gearfe.geometry.mesh.sector import sector
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 12.0}
 GEAR = gf.Gear(z=18, r_bore=3.0, **RACK)

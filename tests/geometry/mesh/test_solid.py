@@ -9,11 +9,11 @@ from numpy.testing import assert_allclose
 from skfem import Basis, ElementHexS2, MeshHex
 
 import gearfe as gf
-from gearfe.elements.hexahedron import gauss, shapes, slopes_at
-from geometry.damage.crack import crack_path
-from geometry.mesh.quads import Cut, jacobian, quad_section
-from geometry.mesh.solid import HEX, extrude, layers, solid
-from geometry.tooth.profile import cartesian, fillet_length, flank, root_curve, root_half_angle
+from gearfe.flexibility.finite_elements.hexahedron import gauss, shapes, slopes_at
+from gearfe.geometry.damage.crack import crack_path
+from gearfe.geometry.mesh.quads import Cut, jacobian, quad_section
+from gearfe.geometry.mesh.solid import HEX, extrude, layers, solid
+from gearfe.geometry.tooth.profile import cartesian, fillet_length, flank, root_curve, root_half_angle
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 GEAR = gf.Gear(z=12, x=0.3, r_bore=5.0, **RACK)

@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.pair import contacts
-from geometry.tooth.profile import cartesian
-from geometry.tooth.side import place, side
+from gearfe.geometry.pair import contacts
+from gearfe.geometry.tooth.profile import cartesian
+from gearfe.geometry.tooth.side import place, side
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 10.0, "tip_radius": 0.2}
 ONE = gf.Gear(z=20, r_bore=8.0, **RACK)

@@ -10,11 +10,11 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import gearfe as gf
-from gearfe.energy.closed.slices import stations
-from geometry.damage.hollow import lost_width
-from geometry.pair.contacts import contacts
-from geometry.pair.lines import contact_lines, face_bands, lost_length, removed, total_length
-from geometry.tooth.profile import arc_at
+from gearfe.flexibility.energy.closed.slices import stations
+from gearfe.geometry.damage.hollow import lost_width
+from gearfe.geometry.pair.contacts import contacts
+from gearfe.geometry.pair.lines import contact_lines, face_bands, lost_length, removed, total_length
+from gearfe.geometry.tooth.profile import arc_at
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 PHASES = np.linspace(0, 1, 4001)[:-1] + 1e-4

@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.pair.contacts import approach, contacts, facing
-from geometry.pair.flanks import flank_forms
-from geometry.pair.modified import flank_contacts
+from gearfe.geometry.pair.contacts import approach, contacts, facing
+from gearfe.geometry.pair.flanks import flank_forms
+from gearfe.geometry.pair.modified import flank_contacts
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))

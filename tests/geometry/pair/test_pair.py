@@ -5,9 +5,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.pair.contacts import contacts
-from geometry.tooth.profile import cartesian, flank
+from gearfe.geometry.pair.contacts import contacts
+from gearfe.geometry.tooth.profile import cartesian, flank
 from validation.shared import reference
+
+pytestmark = pytest.mark.quick
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 

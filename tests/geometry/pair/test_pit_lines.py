@@ -8,9 +8,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.damage.hollow import centre_arc
-from geometry.pair.lines import bands_of, covered
-from geometry.pair.pit_lines import pit_line
+from gearfe.geometry.damage.hollow import centre_arc
+from gearfe.geometry.pair.lines import bands_of, covered
+from gearfe.geometry.pair.pit_lines import pit_line
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 40.0}
 SIZE = {"axes": (0.4, 0.4), "depth": 0.2}

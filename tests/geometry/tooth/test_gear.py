@@ -6,7 +6,9 @@ from checks import form_mismatch
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.tooth.profile import cartesian, fillet, flank, flank_normal, form_point, root_curve, tangent_point
+from gearfe.geometry.tooth.profile import cartesian, fillet, flank, flank_normal, form_point, root_curve, tangent_point
+
+pytestmark = pytest.mark.quick
 
 RACK = {"m_n": 1.0, "alpha_n": math.radians(20), "b": 1.0, "r_bore": 0.1}
 

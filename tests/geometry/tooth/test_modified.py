@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.pair.flanks import flank_forms
+from gearfe.geometry.pair.flanks import flank_forms
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)

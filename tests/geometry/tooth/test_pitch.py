@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.tooth.pitch import pitch_tolerances
+from gearfe.geometry.tooth.pitch import pitch_tolerances
 
 GEAR = gf.Gear(z=35, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=20.0)
 

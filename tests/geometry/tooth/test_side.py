@@ -7,8 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.tooth import profile
-from geometry.tooth.side import form_corner, on_fillet, place, side
+from gearfe.geometry.tooth import profile
+from gearfe.geometry.tooth.side import form_corner, on_fillet, place, side
 
 RACK = {"m_n": 2.5, "alpha_n": math.radians(20), "b": 10.0, "tip_radius": 0.3}
 GEARS = [

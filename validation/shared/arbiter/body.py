@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
-from geometry.damage.seam import open_seam
-from geometry.mesh.mesher import triangulate
+from gearfe.geometry.damage.seam import open_seam
+from gearfe.geometry.mesh.mesher import triangulate
 
 from .cracks import crack_length, crack_line, crack_start
 from .elements import gradients, solver, stiffness

@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 
 import gearfe as gf
-from geometry.pair.contacts import contacts
+from gearfe.geometry.pair.contacts import contacts
 
 FIRST, COUNT = 260_000, 1000  # seeds of the unloaded comparison: pairs of these seeds, those refused left out, until so many
 PHASES = np.arange(48) / 48

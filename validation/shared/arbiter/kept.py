@@ -4,7 +4,7 @@ import csv
 
 import numpy as np
 
-from gearfe.files import written
+from gearfe.core.files import written
 
 from ..places import TABLES
 from .cases import LOADED, loaded_case

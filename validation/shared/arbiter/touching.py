@@ -50,7 +50,7 @@ class Touch:
 
 
 def stand(pair, phase, order):
-    """Tooth pairs `order` (numbers as of `geometry.pair.contacts`) at `phase`: what the definition of a phase says."""
+    """Tooth pairs `order` (numbers as of `gearfe.geometry.pair.contacts`) at `phase`: what the definition of a phase says."""
     phase, order = np.broadcast_arrays(np.asarray(phase, dtype=float), np.asarray(order))
     nominal = pair.path[0] + (phase + order) * pair.p_bt
     turn_1, turn_2 = pair.turn(nominal)

@@ -1,4 +1,4 @@
-"""Gaps of `geometry.pair.contacts` beside those of whole outlines, where either is near contact."""
+"""Gaps of `gearfe.geometry.pair.contacts` beside those of whole outlines, where either is near contact."""
 
 import math
 import time
@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 
-from geometry.pair.modified import flank_contacts
+from gearfe.geometry.pair.modified import flank_contacts
 
 from .cases import PHASES, random_pair
 from .outline import Outline

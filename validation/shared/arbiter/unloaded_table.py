@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from gearfe.files import written
+from gearfe.core.files import written
 
 from ..places import TABLES
 from .cases import COUNT, FIRST

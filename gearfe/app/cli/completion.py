@@ -1,0 +1,48 @@
+"""A script that completes verbs, options, choices and scene names in a shell; made from the parser, without heavy imports."""
+
+from importlib import resources
+
+BASH = """\
+# gearfe: completion of verbs, options and scenes.  eval "$(gearfe completion bash)"
+_gearfe() {{
+  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" found=""
+  COMPREPLY=()
+  if [ "$COMP_CWORD" -eq 1 ]; then
+    COMPREPLY=($(compgen -W "{verbs}" -- "$word"))
+    return
+  fi
+  case "${{COMP_WORDS[1]}} $before" in
+{choices}
+  esac
+  case "${{COMP_WORDS[1]}}" in
+{options}
+  esac
+  if [ "$COMP_CWORD" -eq 2 ]; then
+    case "${{COMP_WORDS[1]}}" in {with_scene}) found="$found {scenes}" ;; esac
+  fi
+  COMPREPLY=($(compgen -W "$found" -- "$word"))
+}}
+complete -o default -F _gearfe gearfe
+"""
+ZSH = '# gearfe: completion in zsh, by its reading of bash completions.  eval "$(gearfe completion zsh)"\n'
+ZSH += "autoload -Uz compinit bashcompinit\n(( $+functions[compdef] )) || compinit\nbashcompinit\n"
+
+
+def script(shell, verbs):
+    """Completion script for `shell`, ``bash`` or ``zsh``, of argparse's parsers by verb."""
+    places = (resources.files("gearfe.scene.scenes")).iterdir()
+    scenes = sorted(place.name.removesuffix(".toml") for place in places if place.name.endswith(".toml"))
+    options, choices, with_scene = [], [], []
+    for name, parser in verbs.items():
+        flags = [text for action in parser._actions for text in action.option_strings]
+        plain = [str(c) for action in parser._actions if not action.option_strings for c in action.choices or ()]
+        options.append(f'    {name}) found="{" ".join([*plain, *flags])}" ;;')
+        with_scene += [name for action in parser._actions if action.dest == "scene"]
+        for action in parser._actions:
+            if action.choices and action.option_strings:
+                when = "|".join(f'"{name} {text}"' for text in action.option_strings)
+                values = " ".join(map(str, action.choices))
+                choices.append(f'    {when}) COMPREPLY=($(compgen -W "{values}" -- "$word")); return ;;')
+    parts = {"verbs": " ".join(verbs), "choices": "\n".join(choices), "options": "\n".join(options)}
+    bash = BASH.format(**parts, with_scene="|".join(with_scene), scenes=" ".join(scenes))
+    return bash if shell == "bash" else ZSH + bash

@@ -1,0 +1,52 @@
+"""The verbs that fill folders: ``gearfe sweep``, all cases of a study, and ``gearfe dataset``, labelled vibration windows."""
+
+from .progress import working
+
+
+def sweep(arguments):
+    """``gearfe sweep``."""
+    from ...runs.sweeps.plan import plan_sweep
+    from ...runs.sweeps.run import sweep as run
+
+    if arguments.dry_run:
+        with working("trying one block"):
+            plan = plan_sweep(arguments.study, arguments.output, workers=arguments.workers)
+        print(plan.text())
+        return
+    options = {"workers": arguments.workers, "scheduler": arguments.scheduler, "mixed": arguments.mixed}
+    with working("sweep"):
+        runs = run(arguments.study, arguments.output, **options)
+    table = runs.table(["status", "error", "seconds"])
+    count = table["status"].value_counts()
+    print(f"{runs.about['title']}: {len(table)} cases, {', '.join(f'{n} {name}' for name, n in count.items())}")
+    print(f"processor time {table['seconds'].sum():.4g} s, median of a case {table['seconds'].median():.3g} s")
+    for text, n in table["error"].value_counts().head(3).items():
+        print(f"  {n} times: {text}")
+    print(f"written: {arguments.output}")
+    print(f"  in Python: gearfe.open_runs({str(arguments.output)!r}).table()")
+    print(f"  gearfe report {arguments.output} -o runs.html")
+
+
+def dataset(arguments):
+    """``gearfe dataset``."""
+    from ...runs.datasets.make import dataset as run
+    from ...runs.datasets.size import size_of
+
+    if arguments.dry_run:
+        with working("trying one condition"):
+            size = size_of(arguments.plan)
+        print(size.text(arguments.workers))
+        return
+    with working("data set"):
+        data_set = run(arguments.plan, arguments.output, also=arguments.also, workers=arguments.workers)
+    labels = data_set.labels()
+    print(f"{data_set.about['title']}: {len(labels)} windows of {labels['condition'].nunique()} conditions")
+    for (fault, severity), part in labels.groupby(["fault", "severity"]):
+        sides = ", ".join(f"{(part['side'] == side).sum()} {side}" for side in ("train", "validation", "test"))
+        label = fault if fault == "healthy" else f"{fault} {severity:g}"
+        print(f"  {label:16s} {sides}; largest loss of stiffness {100 * part['loss_max'].mean():.1f} %")
+    lost = data_set.failed()
+    if lost:
+        print(f"  {len(lost)} conditions could not be simulated, the first: {next(iter(lost.values()))}")
+    print(f"written: {arguments.output}, described in card.md")
+    print(f"  in Python: gearfe.open_dataset({str(arguments.output)!r}).windows({{'side': 'train'}})")

@@ -1,0 +1,86 @@
+"""What this machine has, for ``gearfe info``: versions, threads, memory, solvers, renderer, cache; and what it lacks."""
+
+import importlib.metadata
+import importlib.util
+import os
+import platform
+import shutil
+
+from ...core.extras import command, requirements
+
+OPTIONAL = {  # package: (module, what it is good for); of the project's extras
+    "pandas": ("pandas", "curve.to_pandas()"),
+    "xarray": ("xarray", "curve.to_xarray()"),
+    "h5py": ("h5py", "signals in HDF5 and MATLAB 7.3"),
+    "pyuff": ("pyuff", "signals in universal files (UFF58)"),
+    "npTDMS": ("nptdms", "signals in TDMS"),
+    "pyarrow": ("pyarrow", "sweeps, and signals in Parquet"),
+    "dask": ("dask", "sweeps on a cluster"),
+    "distributed": ("distributed", "sweeps on a cluster"),
+    "starlette": ("starlette", "gearfe app"),
+    "uvicorn": ("uvicorn", "gearfe app"),
+}
+
+
+def lines():
+    """Lines of text, one thing each."""
+    from ...core.memory import free_memory
+    from ...flexibility.finite_elements.solver import dissects
+    from ...stiffness.cache import folder
+
+    yield f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
+    yield from (f"{name} {version(name) or 'is not installed'}" for name in ("gearfe", *requirements().get("", ())))
+    yield from (f"{name} {installed}" for name in OPTIONAL if (installed := version(name)))
+    yield f"threads: {os.environ.get('OMP_NUM_THREADS', 'all')} of {os.cpu_count()} cores (OMP_NUM_THREADS)"
+    yield f"memory: {free_memory() / 1e9:.1f} GB free"
+    ordered = "by METIS" if dissects() else "by least degree: pip install pymetis, where there is one, for an order twice as good"
+    yield f"solvers: sections dense Cholesky and SuperLU (scipy); three dimensions CHOLMOD (cvxopt), ordered {ordered}"
+    yield mesher()
+    yield renderer()
+    yield f"CalculiX for decks: {shutil.which('ccx') or 'ccx is not installed'}"
+    yield cache(folder())
+    yield from advice()
+
+
+def version(name):
+    """Version of an installed package, None if it is not."""
+    try:
+        return importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return None
+
+
+def mesher():
+    """Whether gmsh starts."""
+    from ...geometry.mesh.mesher import gmsh_session
+
+    try:
+        with gmsh_session():
+            return "mesher: gmsh starts"
+    except RuntimeError as error:
+        return f"mesher: {error}"
+
+
+def renderer():
+    """What draws stress pictures."""
+    from ...strength.window import renderer_name
+
+    try:
+        return f"renderer: {renderer_name()}"
+    except RuntimeError as error:
+        return f"renderer: none, only 'gearfe render' and the stress pictures of a report need one: {error}"
+
+
+def cache(place):
+    """Where solved gears are kept, and how much they take."""
+    if place is None:
+        return "cache of solved gears: switched off (GEARFE_CACHE is empty)"
+    sizes = [file.stat().st_size for file in place.glob("*.npz")] if place.is_dir() else []
+    return f"cache of solved gears: {place}, {len(sizes)} files, {sum(sizes) / 1e6:.1f} MB (GEARFE_CACHE sets the place)"
+
+
+def advice():
+    """Lines on what would make gearfe faster on this machine, or what it cannot do yet."""
+    for name, (module, good) in OPTIONAL.items():
+        if importlib.util.find_spec(module) is None:
+            yield f"not installed: {name}, for {good}: {command(name)}"

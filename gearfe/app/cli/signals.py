@@ -1,0 +1,122 @@
+"""The verb ``gearfe signal``: channels of files, what they show by frequency, and what a gear shows by its turns."""
+
+from dataclasses import replace
+
+
+def signal(arguments):
+    """``gearfe signal``."""
+    from ...comparison.vibration import analyse
+    from ...core.markdown import aligned
+    from ...core.steps import part
+    from .progress import working
+    from .verbs import _check_outputs, _print_analysis
+
+    _check_outputs(arguments, plot="picture", kurtogram="picture", cepstrum="picture", spectrogram="picture", orders="picture")
+    if arguments.list:
+        _print_channels(arguments)
+        return
+    for option in ("teeth", "orders"):
+        if getattr(arguments, option) is not None and arguments.shaft is None and arguments.tacho is None:
+            raise ValueError(f"--{option} needs the turns of that gear's shaft: give --shaft HZ or --tacho COLUMN")
+    if arguments.pulses < 1:
+        raise ValueError(f"--pulses {arguments.pulses}: a tachometer gives one or more in a turn")
+    with working("reading"):
+        with part("", 0.0, 0.5):
+            signals = _read(arguments)
+        with part("spectra and indicators", 0.5, 1.0):
+            analysed = analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=", ".join(signals))
+    for record in signals.values():
+        print(_told(record))
+    _print_analysis(analysed, arguments)
+    if arguments.teeth is not None:
+        from ...signal.gear_indicators import gear_indicator_table, gear_table_text
+
+        table = gear_indicator_table(signals, arguments.teeth)
+        print(f"\ngear of {arguments.teeth} teeth, from the average of its turns\n\n{aligned(gear_table_text(table))}")
+    _draw(list(signals.values())[-1], arguments)
+    if arguments.orders:
+        _draw_orders(signals, arguments)
+
+
+def _told(one):
+    """One line on a record: samples, rate, length, and the turns of its shaft."""
+    import numpy as np
+
+    text = f"{one.name}: {one.values.size} samples at {one.rate:.7g} Hz, {one.duration:.4g} s"
+    if one.angle is None:
+        return text
+    turns = float(one.angle[-1] - one.angle[0]) / (2 * np.pi)
+    if turns < 2:
+        return f"{text}; shaft {turns:.2g} turns"
+    whole = np.interp(one.angle[0] + 2 * np.pi * np.arange(int(turns) + 1), one.angle, one.time)
+    speed = 1 / np.diff(whole)
+    text += f"; shaft {speed.min():.4g} to {speed.max():.4g} turns per second, {turns:.1f} turns"
+    smeared = (speed.max() - speed.min()) * turns > speed.mean()  # the first order leaves its bin
+    return f"{text}; lines are smeared in Hz, not by turns (--orders)" if smeared else text
+
+
+def _print_channels(arguments):
+    """What each file holds."""
+    from ...signal.found import ANGLES, TIMES
+    from ...signal.signal_file import channels
+
+    for file in arguments.file:
+        recording = channels(file, arguments.header)
+        print(file)
+        for name in recording.channels():
+            rate = f", {recording.rates[name]:g} Hz" if name in recording.rates else ""
+            print(f"  {name} [{recording.units.get(name) or 'no unit'}]: {recording.vectors[name].size} samples{rate}")
+        for name in [*recording.axes(TIMES), *recording.axes(ANGLES)]:
+            values = recording.vectors[name]
+            print(f"  {name} [{recording.units.get(name) or 'no unit'}]: from {values[0]:.9g} to {values[-1]:.9g}")
+        for name, value in recording.stated.items():
+            print(f"  stated: {name} = {value}")
+        for text in recording.other:
+            print(f"  not read: {text}")
+
+
+def _read(arguments):
+    """The chosen channel of every file by name, with the angle of the shaft or its frequency if they are known."""
+    from ...core.steps import steps
+    from ...signal.signal_file import read_signals
+
+    out = {}
+    for file in steps(arguments.file, lambda file: f"reading {file}"):
+        channels = read_signals(
+            file, None if arguments.column is None else [arguments.column], units=arguments.unit, rate=arguments.rate,
+            header=arguments.header, scale=arguments.scale, tachometer=arguments.tacho, pulses=arguments.pulses,
+            level=arguments.level,
+        )  # fmt: skip
+        if len(channels) > 1:
+            raise ValueError(f"{file}: {len(channels)} channels, {', '.join(map(repr, channels))}: choose one by --column")
+        (channel,) = channels.values()
+        if channel.name in out:
+            raise ValueError("two files have the same name: their cases could not be told apart; rename one")
+        turns = {"shaft_frequency": arguments.shaft} if arguments.shaft is not None and channel.angle is None else {}
+        out[channel.name] = replace(channel, **turns)
+    return out
+
+
+def _draw(one, arguments):
+    """Cepstrum and spectrogram of the last case."""
+    from ...figures.vibration_plots import plot_cepstrum, plot_spectrogram
+    from ...signal.time_frequency import cepstrum, spectrogram
+
+    pictures = (arguments.cepstrum, plot_cepstrum, cepstrum), (arguments.spectrogram, plot_spectrogram, spectrogram)
+    for path, draw, of in pictures:
+        if path:
+            draw(of(one), path, one.name)
+            print(f"written: {path}")
+
+
+def _draw_orders(signals, arguments):
+    """Spectra by turns of the shaft, with the lines of the gear's mesh if its teeth are given."""
+    from ...figures.vibration_plots import plot_spectra
+    from ...signal.orders import order_spectrum
+    from ...signal.spectral_lines import expected_lines
+
+    lines = expected_lines(arguments.teeth, 1.0, count=2, harmonics=2) if arguments.teeth else {"f_fault": 1.0}
+    named = {name.replace("f_m", "mesh").replace("f_fault", "turn"): order for name, order in lines.items()}
+    spectra = {name: order_spectrum(record) for name, record in signals.items()}
+    plot_spectra(spectra, named, arguments.orders, top=None if arguments.teeth else spectra[next(iter(spectra))].frequency[-1])
+    print(f"written: {arguments.orders}")

@@ -1,0 +1,81 @@
+"""Verbs around the computing: a page of a scene, a scene to start from, completion, what this machine has."""
+
+import os
+
+from .progress import working
+
+
+def report(arguments):
+    """``gearfe report``."""
+    from ...core.files import check_output
+    from ...reports.page import report as run
+
+    check_output(arguments.output, "page")
+    if os.path.isdir(arguments.scene):
+        from ...reports.sweep_page import sweep_report
+
+        with working("report"):
+            page = sweep_report(arguments.scene, arguments.output)
+    else:
+        with working("report"):
+            page = run(arguments.scene, arguments.output, arguments.case, duration=arguments.duration)
+    print(f"written: {page} ({page.stat().st_size / 1e6:.1f} MB)")
+
+
+def new(arguments):
+    """``gearfe new``."""
+    from ...scene.new import new_scene
+
+    options = {"teeth": arguments.teeth, "module": arguments.module, "helix_deg": arguments.helix}
+    options |= {"torque_Nm": arguments.torque, "crack": arguments.crack}
+    amount, length = arguments.tip_relief or (None, None)
+    options |= {"width": arguments.width, "ring": arguments.ring, "tip_relief_um": amount, "tip_length_mm": length}
+    file = new_scene(arguments.output, **options)
+    print(f"written: {file}\n\n  gearfe check {file}\n  gearfe compare {file} --case cracked")
+
+
+def check(arguments):
+    """``gearfe check``."""
+    from ...comparison.told_scene import told
+    from ...core.files import check_output
+    from ...figures.pair_plot import plot_pair
+    from ...scene.load import load_scene
+
+    drawn = arguments.picture is not None
+    if not drawn and (arguments.pair or arguments.case):
+        raise ValueError("--pair and --case choose what is drawn: give --picture FILE too")
+    if drawn:
+        check_output(arguments.picture, "picture")
+    scene = load_scene(arguments.scene)
+    for line in told(scene):
+        print(line)
+    if drawn:
+        chosen = scene.pair(arguments.pair)
+        case = arguments.case or next(iter(chosen.damage), None)
+        title = ", ".join((scene.name, arguments.pair or next(iter(scene.pairs)), case or "healthy"))
+        plot_pair(chosen.case(case), path=arguments.picture, title=title)
+        print(f"written: {arguments.picture}")
+
+
+def app(arguments):
+    """``gearfe app``."""
+    from ..server import opened, serve
+
+    start = arguments.scene and opened(arguments.scene, arguments.pair, arguments.case)
+    names = ("port", "workers", "public", "users", "tasks")
+    serve(start=start, browser=not arguments.no_browser, **{name: getattr(arguments, name) for name in names})
+
+
+def completion(arguments):
+    """``gearfe completion``."""
+    from .completion import script
+
+    print(script(arguments.shell, arguments.verbs), end="")
+
+
+def info(arguments):
+    """``gearfe info``."""
+    from .machine_info import lines
+
+    for line in lines():
+        print(line)

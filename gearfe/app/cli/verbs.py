@@ -1,0 +1,322 @@
+"""What the verbs of the ``gearfe`` command do: one function each, no logic of its own. Heavy imports are inside."""
+
+from dataclasses import replace
+
+from .progress import working
+
+
+def _check_outputs(arguments, **kinds):
+    """Raise ValueError if a file that an option names could not be written at the end; `kinds` says by option what it holds."""
+    from ...core.files import check_output
+
+    given = {option: getattr(arguments, option) for option in kinds if getattr(arguments, option) is not None}
+    for option, path in given.items():
+        check_output(path, kinds[option])
+    if len(set(given.values())) < len(given):
+        raise ValueError(f"{' and '.join(f'--{option}' for option in given)} name the same file: give each its own")
+
+
+def _print_notes(scene):
+    """All assumptions of a scene, what was changed, and what is not modelled."""
+    for note in scene.assumptions:
+        print(f"  assumed: {note['what']}: {note['why']}" + (f" [depends: {note['depends']}]" if note["depends"] else ""))
+    for text in scene.changed:
+        print(f"  changed: {text}")
+    for item in scene.later:
+        print(f"  not modelled yet: {item}")
+
+
+def _title(scene, arguments, *more):
+    """Of a picture: scene, pair, case and what else is said."""
+    pair = arguments.pair or next(iter(scene.pairs))
+    return ", ".join(text for text in (scene.name, pair, arguments.case or "healthy", *more) if text)
+
+
+def stiffness(arguments):
+    """``gearfe stiffness``."""
+    from ...comparison.losses import beside_health, zone_table
+    from ...comparison.told_scene import told_supports
+    from ...scene.load import load_scene
+    from ...stiffness.methods import fitted
+    from ...stiffness.solve import Solve, solve
+
+    _check_outputs(arguments, output="curve", plot="picture")
+    scene = load_scene(arguments.scene)
+    case = scene.case(arguments.pair, arguments.case)
+    if arguments.force is not None:
+        case = replace(case, force=arguments.force)
+    print(f"{scene.title}\n")
+    case, variants, left_out = fitted(arguments.method, case)
+    for text in left_out:
+        print(f"{text}\n")
+    if arguments.forces or arguments.torques:
+        _transmission_error(scene, arguments, case, variants)
+        _print_assumptions(scene, arguments.assumptions)
+        return
+    with working(f"stiffness by {arguments.method}") as tell:
+        how = Solve(
+            arguments.method, arguments.phases, "tooth" if arguments.case else "cycle", not arguments.no_extended,
+            refine=arguments.refine, variants=variants, error=arguments.error, tell=tell, pose=arguments.pose,
+        )  # fmt: skip
+        curve = solve(case, how)
+        meta = curve.meta
+        answer = beside_health(curve, case, replace(how, method=meta["method"])) if arguments.case else zone_table(curve)
+    print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:")
+    print(answer)
+    if soft := told_supports(curve):
+        print(f"\n{soft}")
+    _print_assumptions(scene, arguments.assumptions)
+    if arguments.output:
+        curve.save(arguments.output)
+        print(f"written: {arguments.output}")
+    if arguments.plot:
+        from ...figures.stiffness_plots import told
+
+        curve.plot(arguments.plot, _title(scene, arguments, told(curve)))
+        print(f"written: {arguments.plot}")
+
+
+def _transmission_error(scene, arguments, case, variants):
+    """``gearfe stiffness --forces`` and ``--torques``."""
+    from ...comparison.harris import harris, harris_table
+    from ...figures.error_plots import plot_transmission_error
+    from ...figures.stiffness_plots import told
+
+    if arguments.output or arguments.force is not None or (arguments.forces and arguments.torques):
+        raise ValueError("--forces, or --torques, is the transmission error of several loads: leave out --output and --force")
+    r_b = case.pair.gear_1.r_b
+    forces = arguments.forces or [1e3 * torque / r_b for torque in arguments.torques]
+    with working(f"transmission error by {arguments.method}"):
+        options = {"extended": not arguments.no_extended, "refine": arguments.refine, "variants": variants}
+        many = replace(case, force=tuple(forces))
+        found, plain = harris(many, method=arguments.method, phases=arguments.phases, **options)
+    print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle\n")
+    print(harris_table(found, plain, r_b))
+    if arguments.plot:
+        title = _title(scene, arguments, told(found.curves[0], load=False))
+        plot_transmission_error(found, arguments.plot, title, plain)
+        print(f"written: {arguments.plot}")
+
+
+def compare(arguments):
+    """``gearfe compare``."""
+    from ...comparison.by_zone import compare as run
+    from ...comparison.case_table import printed_cases
+    from ...comparison.told_scene import told_supports
+    from ...core.markdown import aligned
+    from ...scene.load import load_scene
+    from ...scene.references import printed_stiffness
+
+    _check_outputs(arguments, plot="picture")
+    scene = load_scene(arguments.scene)
+    printed = printed_cases(scene)
+    one = arguments.pair or arguments.case or arguments.model or arguments.plot
+    if arguments.cases or (printed and not one):
+        _compare_cases(scene, arguments, None if arguments.cases or not printed else printed)
+        return
+    with working("finite elements and energy methods"):
+        options = {"models": arguments.model, "phases": arguments.phases, "refine": arguments.refine}
+        result = run(scene, arguments.pair, case=arguments.case, reference=arguments.reference, **options)
+    meta = result.reference.meta
+    load = f"{meta['force_N']:g} N on {meta['width_mm']:g} mm"
+    print(f"{scene.title}\n\n{result.headline}\n")
+    print(f"{result.pair_name}: mesh stiffness along the line of action, {load};\n{result.definition}")
+    if soft := told_supports(result.reference):
+        print(soft)
+    if result.healthy:
+        print(f"\nwhat the damage takes, ± its estimated error\n\n{aligned(result.loss_table())}")
+    print(f"\nerrors against {meta['method']}; the estimate is its own discretisation error\n")
+    print(aligned(result.table()))
+    for text in printed_stiffness(scene, result.pair_name, arguments.case):
+        print(text)
+    print()
+    for why, names in result.reasons().items():
+        print(f"  no {names}: {why.partition(' (reference=')[0]}")
+    _print_assumptions(scene, arguments.assumptions)
+    if arguments.plot:
+        from ...figures.stiffness_plots import plot_curves, told
+
+        plot_curves(result.curves, arguments.plot, _title(scene, arguments, told(result.reference)))
+        print(f"\nwritten: {arguments.plot}")
+
+
+def _print_assumptions(scene, every, told=None):
+    """What a scene assumes without the reasons, `told` (default: what the stiffness depends on), or `every` note with them."""
+    from ...scene.assumed import of_stiffness
+
+    print()
+    if every:
+        _print_notes(scene)
+        return
+    told = of_stiffness(scene.assumptions) if told is None else told
+    for note in told:
+        print(f"  assumed: {note['what']}" + (f" [{note['depends']}]" if note["depends"] else ""))
+    for text in scene.changed:
+        print(f"  changed: {text}")
+    rest = len(scene.assumptions) - len(told)
+    if rest or any(note["why"] for note in told):
+        print(f"  why{f', and {rest} more that leave the stiffness alone' if rest else ''}: --assumptions")
+
+
+def _compare_cases(scene, arguments, cases):
+    """``gearfe compare --cases``."""
+    from ...comparison.case_table import case_table, printed_text
+    from ...core.markdown import aligned
+
+    if arguments.pair or arguments.case or arguments.model or arguments.plot:
+        raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
+    if arguments.reference not in (None, "fe3d"):
+        raise ValueError(f"--reference {arguments.reference} with --cases: only fe3d can be asked for")
+    with working("every case by every method"):
+        result = case_table(scene, cases, phases=arguments.phases, compute=arguments.reference == "fe3d")
+    print(f"{scene.title}\n\n{result.headline}\n")
+    print("mesh stiffness along the line of action over the mesh cycle that has the damaged tooth in the middle of its")
+    print(f"engagement; errors are against {result.reference}\n")
+    print(aligned(result.table()))
+    print(f"\nloss of stiffness: largest at a phase of that cycle, and of the mean over it\n\n{aligned(result.drop_table())}")
+    printed = printed_text(scene, result)
+    if printed:
+        print(f"\nas printed, and after the stated corrections, beside `published` and {result.reference}\n\n{printed}")
+    _print_assumptions(scene, arguments.assumptions)
+
+
+def render(arguments):
+    """``gearfe render``."""
+    from ...comparison.pattern import render_pattern
+    from ...comparison.root_iso import told_root
+    from ...core.units import in_newton_per_um
+    from ...scene.load import load_scene
+    from ...strength.render import render_contact, render_stress
+
+    _check_outputs(arguments, output="stress" if arguments.what == "stress" else "picture")
+    scene = load_scene(arguments.scene)
+    case, title = scene.case(arguments.pair, arguments.case), _title(scene, arguments)
+    if arguments.what == "pattern":
+        if arguments.phase is not None:
+            raise ValueError("--what pattern is of a whole mesh cycle: leave out --phase, or take --what contact")
+        with working("contact pattern"):
+            print(render_pattern(case, arguments.output, title=title).told())
+    elif arguments.what == "contact":
+        with working("contact lines"):
+            told = render_contact(case, arguments.output, phase=arguments.phase, title=title)
+        print(f"phase {told['phase']:.3g}: k {in_newton_per_um(told['k'])} N/um, largest pressure {told['pressure']:.0f} MPa")
+    else:
+        with working("stress"):
+            told = render_stress(case, arguments.output, refine=arguments.refine, phase=arguments.phase, title=title)
+        print(told["text"])
+        print(f"largest von Mises stress on the fillets {told['root']:.0f} MPa")
+        for line in () if arguments.case else told_root(case):
+            print(line)
+    print(f"written: {arguments.output}")
+
+
+def mesh(arguments):
+    """``gearfe mesh``."""
+    from ...contact.bodies import seen_gears
+    from ...decks.mesh_file import export_mesh
+    from ...scene.load import load_scene
+
+    _check_outputs(arguments, output="mesh", picture="picture")
+    if arguments.close_up and not arguments.picture:
+        raise ValueError("--close-up is of a picture: give --picture FILE too")
+    case = load_scene(arguments.scene).case(arguments.pair, arguments.case)
+    side = ("pinion", "wheel").index(arguments.gear)
+    gear = (case.pair.gear_1, case.pair.gear_2)[side]
+    if case.face == "herringbone":
+        gear = seen_gears(case.pair, case.face, case.groove)[side][0]
+    options = {"cells": arguments.cells, "teeth": arguments.teeth, "refine": arguments.refine}
+    with working("mesh"):
+        made = export_mesh(arguments.output, gear, (*case.cracks[side], *case.pits[side]), **options)
+        if arguments.picture:
+            from ...strength.mesh_picture import render_mesh
+
+            render_mesh(made, arguments.picture, close_up=arguments.close_up)
+    print(f"{arguments.gear}, z = {gear.z}: {made.points.shape[1]:,} nodes, {made.cells.shape[1]:,} cells")
+    print(f"written: {arguments.output}" + (f", {arguments.picture}" if arguments.picture else ""))
+
+
+def dynamics(arguments):
+    """``gearfe dynamics``."""
+    from ...comparison.vibration import analysis, responses
+    from ...dynamics.machine.modes import natural_frequencies
+    from ...scene.load import load_scene
+
+    _check_outputs(arguments, output="response", plot="picture", kurtogram="picture")
+    scene = load_scene(arguments.scene)
+    if arguments.contact and scene.machine:
+        scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
+    print(f"{scene.title}\n")
+    with working("stiffness curves and response") as tell:
+        options = {"duration": arguments.duration, "method": arguments.method, "loads": arguments.loads, "progress": tell}
+        found = responses(scene, arguments.case, **options)
+    made = next(iter(found.values())).machine
+    for name, value in made.notes.items():
+        print(f"  {name}: {_rounded(value)}")
+    print(f"  natural frequencies [Hz]: {_rounded(tuple(natural_frequencies(made)[0][:12]))} ...")
+    for case, one in found.items():
+        stats = one.stats
+        doubt = f", error about {100 * stats['error']:.2g} % of the range" if "error" in stats else ""
+        print(f"  {case}: {len(made.dofs)} degrees of freedom, {stats['seconds']:.2f} s by {stats['method']}{doubt}")
+        left = f"free vibrations at {stats['free']:.1g} of their start"
+        for line in stats.get("loads", ()):
+            print(f"  {case}: {line}")
+        print(f"  {case}: recorded after {stats['settled']:.3g} s, {left}")
+        if "switched" in stats:
+            print(f"  {case}: reference used because {stats['switched']}")
+        if "chaotic" in stats:
+            print(f"  {case}: {stats['chaotic']}")
+    report = analysis(found, arguments.channel)
+    _print_analysis(report, arguments, scene.name)
+    if report.too_short:
+        print(f"longer: --duration {report.resolving:.3g}")
+    _print_assumptions(scene, arguments.assumptions, scene.assumptions)
+    if arguments.output:
+        list(found.values())[-1].save(arguments.output)
+        print(f"written: {arguments.output}")
+
+
+def _print_analysis(report, arguments, name=""):
+    """Tables, envelope and plots of a `gearfe.comparison.vibration.Analysis`; `name` of the scene, if it is one."""
+    from ...core.markdown import aligned
+
+    if report.lines:
+        print(f"\n{report.channel} [{report.unit}], amplitude of the lines\n\n{aligned(report.lines_text())}")
+    print(f"\n{aligned(report.indicators_text())}\n")
+    last = list(report.signals.values())[-1]
+    if report.fault:
+        found, told = report.envelope()
+        print(told)
+        kurtogram = found.kurtogram
+    elif arguments.kurtogram:
+        from ...signal.kurtogram import fast_kurtogram
+
+        kurtogram = fast_kurtogram(last)
+    if arguments.kurtogram:
+        from ...figures.vibration_plots import plot_kurtogram
+
+        plot_kurtogram(kurtogram, arguments.kurtogram, f"{name}, {last.name}, {report.channel}" if name else last.name)
+        print(f"written: {arguments.kurtogram}")
+    if arguments.plot:
+        report.plot(arguments.plot, ", ".join(filter(None, (name, report.channel))))
+        print(f"written: {arguments.plot}")
+
+
+def _rounded(value):
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {_rounded(one)}" for name, one in value.items())
+    if isinstance(value, tuple):
+        return ", ".join(_rounded(one) for one in value)
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def scenes(arguments):
+    """``gearfe scenes``."""
+    from ...scene.load import load_scene, scene_names
+
+    for name in scene_names():
+        scene = load_scene(name)
+        cases = {case for pair in scene.pairs.values() for case in pair.damage}
+        print(f"{name}: pairs {', '.join(scene.pairs)}" + (f"; cases {', '.join(sorted(cases))}" if cases else ""))
+        print(f"{scene.title}\n")
+        _print_notes(scene)
+        print()

@@ -1,0 +1,177 @@
+"""What damage takes: damaged gears beside healthy ones at the same phases, by the same method, and said in one sentence.
+
+All numbers of a damaged pair are over one mesh cycle, that in which its damaged tooth is in the middle of its engagement: the
+tooth is in contact all the time, and a healthy pair has the same mean over it as over any other cycle.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.case import Case
+from ..core.checks import COARSEST
+from ..core.markdown import aligned, table_row
+from ..core.units import in_newton_per_um
+from ..geometry.damage.kinds import Damage, called, told
+from ..geometry.pair.gear_pair import GearPair
+from ..stiffness.curve import StiffnessCurve
+from ..stiffness.estimate import coarser
+from ..stiffness.methods import METHODS, RING_FOUNDATIONS, Method
+from ..stiffness.phases import phase_array
+from ..stiffness.solve import Solve, solve
+
+ALONE = {"single": "carries alone", "double": "carries with one neighbour", "triple": "carries with two neighbours"}
+LARGEST = "most at a phase"  # row of the phase at which most is lost
+
+
+def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
+    """Phases ``(phases,)`` of the mesh cycle in which a tooth, by default the damaged one, is in the middle of its engagement.
+
+    They are multiples of ``1 / phases``: those of a healthy cycle, whole cycles further on.
+
+    Examples
+    --------
+    >>> from gearfe import Case, Gear, GearPair, Material
+    >>> rack = dict(m_n=2.0, alpha_n=0.349, b=20.0)
+    >>> pair = GearPair(Gear(z=21, r_bore=7.4, **rack), Gear(z=31, r_bore=11.4, **rack))
+    >>> print(f"{pair.eps_alpha:.3f}", damage_phases(Case(pair, 1000.0, Material(E=207e3, nu=0.3)), 4))
+    1.615 [0.5  0.75 1.   1.25]
+    """
+    tooth = (case.first_tooth or 0) if tooth is None else tooth
+    middle = (case.pair.eps_alpha + case.overlap()) / 2 - tooth
+    return (math.ceil((middle - 0.5) * phases - 1e-9) + np.arange(phases)) / phases
+
+
+def engaged_phases(case: Case, phases: int) -> NDArray:
+    """Phases ``(n,)`` of the damaged tooth's engagement and a quarter of a cycle at its ends, in steps of ``1 / phases``."""
+    return phase_array(phases, "tooth", case.pair, case.overlap()) - (case.first_tooth or 0)
+
+
+def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
+    """The part of a curve at these of its phases; all of it if None."""
+    if phases is None:
+        return curve
+    rows = np.flatnonzero(np.abs(curve.phase[:, None] - phases).min(axis=1) < 1e-9)
+    names = ("phase", "k", "k_tangent", "lte", "force", "pressure", "error", "unloaded", "lte_supports")
+    arrays = {name: value for name in names if (value := getattr(curve, name)) is not None}
+    return replace(curve, **{name: value[rows] for name, value in arrays.items()})
+
+
+def told_cycle(phases: NDArray, kind: str = "") -> str:
+    """What zones and means are over, in words; `kind` as of `kind_of`, of a damaged pair."""
+    over = f"the mesh cycle that has the {kind} tooth in the middle of its engagement" if kind else "the mesh cycle"
+    return f"zones, mean and max are over {over}, phases {phases.min():.3g} to {phases.max():.3g}"
+
+
+def zone_table(curve: StiffnessCurve) -> str:
+    """A curve by zone [N/um], with its estimated errors if it has them, as aligned text."""
+    doubt = curve.zone_errors()
+    lines = [table_row(["zone", "k [N/um]", *(["error at most about"] if doubt else [])]), "|---" * (3 if doubt else 2) + "|"]
+    for zone, value in curve.zones().items():
+        lines.append(table_row([zone, in_newton_per_um(value, 5), *([f"{100 * doubt[zone]:.2f} %"] if doubt else [])]))
+    return aligned("\n".join(lines))
+
+
+def beside_health(curve: StiffnessCurve, case: Case, how: Solve) -> str:
+    """A damaged pair's curve beside that of the same pair without damage, by the same method, in words and a table by zone.
+
+    The curve is over the whole engagement of the damaged tooth (`engaged_phases`), solved as `how` says, whose phases are a
+    number per mesh cycle.
+    """
+    cycle = damage_phases(case, cast(int, how.phases))
+    healthy = solve(case.healthy, replace(how, phases=cycle, span="cycle", error=False))
+    hurt, kind = within(curve, cycle), kind_of(case.damage)
+    losses, doubt, before, after = loss(healthy, hurt), hurt.zone_errors(), healthy.zones(), hurt.zones()
+    head = ["zone", "healthy [N/um]", f"{kind} [N/um]", *(["error at most about"] if doubt else []), "loss"]
+    lines = [table_row(head), "|---" * len(head) + "|"]
+    for zone, lost in losses.items():
+        cells = [in_newton_per_um(by_zone[zone]) if zone in by_zone else "" for by_zone in (before, after)]
+        about = [f"{100 * doubt[zone]:.2f} %" if zone in doubt else ""] if doubt else []
+        lines.append(table_row([zone, *cells, *about, f"{100 * lost:.1f} %"]))
+    return f"{told_damage(case.pair, case.damage)}; {told_cycle(cycle, kind)}\n" + aligned("\n".join(lines))
+
+
+def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:
+    """Part of the stiffness that damage takes, by zone, and the largest at one phase (`LARGEST`)."""
+    before, after = healthy.zones(), hurt.zones()
+    return {zone: 1 - after[zone] / before[zone] for zone in before} | {LARGEST: float((1 - hurt.k / healthy.k).max())}
+
+
+def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: Solve) -> dict[str, float]:
+    """Estimated discretisation error of the losses by zone: how far coarser solves of both gears move them.
+
+    The differences from all coarser solves that an estimate of k looks at are added; empty if there are none so coarse. Of finite
+    elements in three dimensions, which take minutes, the relative errors of both stiffnesses are added: a much wider bound.
+    """
+    losses, method = loss(healthy, hurt), str(how.method)
+    if method == "fe3d":
+        before, after = healthy.zone_errors(), hurt.zone_errors()
+        widest = {zone: (1 - losses[zone]) * (before[zone] + after[zone]) for zone in before.keys() & after.keys()}
+        return widest | {LARGEST: max(widest.values(), default=math.nan)}
+    away = dict.fromkeys(losses, 0.0)
+    rougher = coarser(how.refine, METHODS[method].order)
+    if any(options["refine"] < COARSEST for options in rougher):
+        return {}
+    for options in rougher:
+        rough = loss(*(solve(each_case, replace(how, **options)) for each_case in (case.healthy, case)))
+        away = {zone: away[zone] + abs(losses[zone] - rough[zone]) for zone in away}
+    return away
+
+
+def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Damage]] | None) -> str:
+    """Damage in words.
+
+    Examples
+    --------
+    >>> import gearfe as gf
+    >>> scene = gf.load_scene("compound_planetary").pair()
+    >>> told_damage(scene.pair, scene.damage["crack30"])
+    '3.07 mm crack at 45 degrees (level 0.3)'
+    """
+    return told({"pinion": pair.gear_1, "wheel": pair.gear_2}, damage or {})
+
+
+def kind_of(damage: Mapping[str, Iterable[Damage]] | None) -> str:
+    """What a tooth with such damage is called: `gearfe.geometry.damage.kinds.called`."""
+    return called(hurt for damages in (damage or {}).values() for hurt in damages)
+
+
+def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[str, float]) -> str:
+    """One sentence on what damage takes; `said`, `kind`, `found`, `doubt` of `told_damage`, `kind_of`, `loss`, `loss_errors`.
+
+    >>> headline("2 mm crack at 60 degrees", "cracked", {"single": 0.158, "mean": 0.0951}, {"single": 0.0021})
+    '2 mm crack at 60 degrees: the mesh is 15.8 ± 0.3 % softer where the cracked tooth carries alone; 9.5 % in the mean'
+    """
+    zone = next((name for name in ALONE if name in found), None)
+    where = f"where the {kind} tooth {ALONE[zone]}" if zone else f"as the {kind} tooth passes"
+    most = percent_with_doubt(found[zone or LARGEST], doubt.get(zone or LARGEST, math.nan))
+    return (
+        f"{said}: the mesh is {most} softer {where}; {percent_with_doubt(found['mean'], doubt.get('mean', math.nan))} in the mean"
+    )
+
+
+def percent_with_doubt(value: float, doubt: float) -> str:
+    """A part in percent with its doubt, which is rounded up: ``15.8 ± 0.3 %``; without a doubt the number alone."""
+    if not math.isfinite(doubt):
+        return f"{100 * value:.1f} %"
+    return f"{100 * value:.1f} ± {max(math.ceil(1000 * doubt), 1) / 10:.1f} %"
+
+
+def why_not(row: Method, case: Case, solid: str) -> str:
+    """Why a comparison has no column of a method; `solid` says why the case needs three dimensions, if it does."""
+    pair = case.pair
+    if pair.gear_2.internal and row.rings != "yes" and row.rings not in RING_FOUNDATIONS:
+        return "not for rings"
+    if pair.gear_2.internal and row.rings != "yes":
+        return f"not for rings: it {RING_FOUNDATIONS[row.rings]}"
+    if row.name == "fe3d" and solid:
+        return "takes minutes for each gear; ask for it: --reference fe3d (reference='fe3d')"
+    if row.kind == "solid":
+        return "nothing changes along the width; of narrow teeth ask for it: --reference ritz3d (reference='ritz3d')"
+    if solid and row.kind == "section":
+        return f"a transverse section, but {solid}"
+    return "for healthy gears only" if case.damaged and not row.cracks else "left out"

@@ -1,0 +1,276 @@
+"""A stiffness model as a text file with stated units: a table of any program, or a curve that gearfe wrote."""
+
+import math
+import os
+import re
+import warnings
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.files import read_text
+from ..geometry.pair.gear_pair import GearPair
+from ..stiffness.curve import StiffnessCurve
+from ..stiffness.curve_file import FIRST_LINE
+
+FORCE = {"N": 1.0, "kN": 1e3, "MN": 1e6, "GN": 1e9}
+LENGTH = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
+TURN = {"deg": math.pi / 180, "rad": 1.0}
+ANGLES, RADII = ("angle", "pinion angle", "roll angle"), ("radius", "pinion radius", "contact radius")
+ABSCISSAE = "'phase' (mesh cycles), 'angle [deg]' or 'angle [rad]' (of the pinion) or 'radius [mm]' (one pair, on the pinion)"
+UNITS = "N/m, N/mm, N/um (also kN, MN, GN) or, per width, N/(mm um), N/(m um)"
+COARSEST = 1 / 20  # longest step between rows: of a mesh cycle, or of the active flank
+SNAP = 1e-4  # of a cycle: rounding of printed angles and phases
+EXACT = 1e-9  # the same for the phases asked for
+STEEP = 0.1  # of the mean k: a rise from one row to the next that means an entering pair
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ModelFile:
+    """A table from a file, see `read_model`.
+
+    Attributes
+    ----------
+    path : str
+    abscissa : {"phase", "angle", "radius"}
+        What `x` is: mesh phase [-], pinion angle [rad] or pinion radius of a contact [mm].
+    x, k : ndarray, shape (n,)
+        Rising abscissa; stiffness [N/m], of the whole mesh or (``radius``) of one tooth pair.
+    per_width : bool
+        Whether k is that of one metre of width, [N/m per m].
+    phase_offset : float
+        Mesh phase at which the file's abscissa is zero.
+    meta : dict
+        Of a curve that gearfe wrote.
+    """
+
+    path: str
+    abscissa: str
+    x: NDArray[np.float64]
+    k: NDArray[np.float64]
+    per_width: bool = False
+    phase_offset: float = 0.0
+    meta: dict[str, Any] = field(default_factory=dict)
+
+    def total(self, pair: GearPair, phase: ArrayLike) -> NDArray[np.float64]:
+        """Mesh stiffness at mesh phases, as the file has it: [N/m], or [N/m per m] if `per_width`.
+
+        Linear between rows, never across the phases at which a pair enters or leaves: beside them the nearest row on the same
+        side counts. ValueError if the rows do not cover one mesh cycle, cover more than one, or are more than `COARSEST` apart.
+        """
+        cycle = 2 * math.pi / pair.gear_1.z if self.abscissa == "angle" else 1.0
+        x = self.x / cycle
+        self._check_cycle(x, cycle)
+        once = x < x[0] + 1 - SNAP
+        self._check_origin(x[once] + self.phase_offset, self.k[once])
+        leaves = pair.eps_alpha % 1.0
+        rows = (x[once] + self.phase_offset + SNAP) % 1.0 - SNAP
+        asked = (np.asarray(phase, dtype=float) + EXACT) % 1.0 - EXACT
+        out = np.empty(asked.shape)
+        for low, high in ((-1.0, leaves), (leaves, 1.0)):
+            row = (rows > low + SNAP) & (rows <= high + SNAP)
+            inside = (asked > low + EXACT) & (asked <= high + EXACT)
+            if inside.any() and not row.any():
+                raise ValueError(
+                    f"{self.path}: no row from phase {max(low, 0):.4g} to {high:.4g}, where another number of pairs is in "
+                    "contact; give rows there"
+                )
+            order = np.argsort(rows[row])
+            if inside.any():
+                out[inside] = np.interp(asked[inside], rows[row][order], self.k[once][row][order])
+        return out
+
+    def _check_cycle(self, x, cycle):
+        span, step = x[-1] - x[0], np.diff(x).max()
+        unit, scale = (" deg", 180 / math.pi) if self.abscissa == "angle" else ("", 1.0)
+        start, stop, whole = scale * self.x[0], scale * self.x[-1], scale * cycle
+        coverage = f"{self.path}: {self.abscissa}s {start:.6g} to {stop:.6g}{unit} cover {span:.4g} mesh cycles"
+        if span + step < 1 - SNAP:
+            raise ValueError(f"{coverage}, but one is needed: {start:.6g} to {start + whole:.6g}{unit}")
+        if span > 1 + step + SNAP:
+            raise ValueError(f"{coverage}: keep the rows of one, for example {start:.6g} to {start + whole:.6g}{unit}")
+        if step > COARSEST + SNAP:
+            finer = f"sample every {COARSEST * cycle * scale:.4g}{unit} or finer"
+            raise ValueError(f"{self.path}: rows are up to {step:.4g} of a mesh cycle apart; {finer}")
+
+    def _check_origin(self, phase, k):
+        """Warn if k jumps up where no pair enters: most often a curve that counts from elsewhere."""
+        rise = np.diff(np.append(k, k[0]))
+        top = int(np.argmax(rise))
+        after = np.append(phase, phase[0] + 1)[top + 1]
+        if rise[top] > STEEP * k.mean() and abs((after + 0.5) % 1.0 - 0.5) > COARSEST:
+            warnings.warn(
+                f"{self.path}: k rises most steeply at phase {after % 1.0:.4g}, but a pair enters at phase 0: if the file "
+                f"counts from elsewhere, write '# phase_offset = {(self.phase_offset - after) % 1.0:.4g}' into it",
+                stacklevel=5,
+            )
+
+    def single(self, pair: GearPair, radius: ArrayLike) -> NDArray[np.float64]:
+        """Stiffness of one tooth pair touching at `radius` on the pinion [mm], linear between rows; units as `total`.
+
+        ValueError if the rows do not cover the path of contact or are more than `COARSEST` of it apart.
+        """
+        low, high = np.hypot(pair.gear_1.r_b, pair.path)
+        if self.x[0] > low + 1e-3 or self.x[-1] < high - 1e-3:
+            raise ValueError(
+                f"{self.path}: radii {self.x[0]:.6g} to {self.x[-1]:.6g} mm do not cover the active flank of the pinion, "
+                f"{low:.6g} to {high:.6g} mm; give k over all of it"
+            )
+        step = np.diff(self.x).max()
+        if step > COARSEST * (high - low):
+            raise ValueError(
+                f"{self.path}: rows are up to {step:.4g} mm apart; sample every {COARSEST * (high - low):.4g} mm or finer"
+            )
+        return np.interp(np.asarray(radius, dtype=float), self.x, self.k)
+
+
+def read_model(path: str | os.PathLike[str], *, phase_offset: float | None = None) -> ModelFile:
+    """Read a stiffness curve of any program, or one that gearfe wrote.
+
+    Two columns separated by comma, semicolon or tab, numbers with a decimal point. Units are stated by a header line or by a
+    comment line (# or %) above the numbers, in brackets or, as MATLAB's variable names need it, as an ending:
+
+    - first column ``phase``, ``angle [deg]``, ``angle [rad]``, ``radius [mm]``, or ``angle_deg``, ``angle_rad``, ``radius_mm``
+    - second column, of any name, in N/m, N/mm, N/um (or kN, MN, GN), or per width in N/(mm um), N/(m um), which is multiplied
+      by the scene's width: ``k [N/um]``, ``k_N_per_um``, ``c [N/(mm um)]``, ``c_N_per_mm_um``
+
+    Phase and angle give the total mesh stiffness over one mesh cycle, 1 or ``2 pi / z_1``; radius gives the stiffness of one
+    tooth pair over the active flank of the pinion. At phase 0 a pair enters at the start of the path of contact. A file that
+    counts from elsewhere says at which phase its zero is: ``# phase_offset = 0.25``.
+
+    Parameters
+    ----------
+    path : path
+    phase_offset : float, optional
+        The same as in the file; mesh cycles, also for angles.
+
+    Returns
+    -------
+    ModelFile
+
+    Raises
+    ------
+    ValueError
+        Naming file and line, if a unit is missing or unknown, a number is not finite, k not positive, or the abscissa not rising.
+    """
+    lines = read_text(path)
+    if lines[:1] == [FIRST_LINE]:
+        curve = StiffnessCurve.from_csv(path)
+        return ModelFile(str(path), "phase", curve.phase, curve.k, phase_offset=_finite(path, phase_offset or 0), meta=curve.meta)
+    numbered = [(i, line.strip()) for i, line in enumerate(lines, 1) if line.strip()]
+    comments = [line.lstrip("#% ") for _, line in numbered if line[0] in "#%"]
+    rows = [(i, _cells(line)) for i, line in numbered if line[0] not in "#%"]
+    if not rows:
+        raise ValueError(f"{path}: no rows of numbers")
+    header = rows.pop(0)[1] if not _is_number(rows[0][1][0]) else _header_comment(path, comments, rows[0][1])
+    if len(header) != 2:
+        raise ValueError(
+            f"{path}: {len(header)} columns ({', '.join(header)}), but give two, separated by comma, semicolon or tab"
+        )
+    (abscissa, scale), (unit, per_width) = _abscissa(path, header[0]), _stiffness(path, header[1])
+    x, k = _numbers(path, rows)
+    offset = _offset(path, comments, phase_offset)
+    if offset is not None and abscissa == "radius":
+        raise ValueError(f"{path}: phase_offset = {offset:g}, but a table over the radius has no phase; leave it out")
+    return ModelFile(str(path), abscissa, scale * x, unit * k, per_width, offset or 0.0)
+
+
+def _cells(line):
+    separator = next((s for s in ";\t," if s in line), ",")
+    return [cell.strip().strip('"').strip() for cell in line.split(separator)]
+
+
+def _is_number(cell):
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def _header_comment(path, comments, first):
+    """The last comment that states a stiffness unit in its second column."""
+    for comment in reversed(comments):
+        cells = _cells(comment)
+        if len(cells) == 2 and _stiffness_unit(cells[1]):
+            return cells
+    raise ValueError(
+        f"{path}: no header with units above the numbers {', '.join(first)!r}; write one, for example 'phase,k [N/m]' or "
+        "'angle [deg],k [N/(mm um)]'"
+    )
+
+
+def _name_and_unit(cell):
+    """``k [N/m]``, ``k (N/m)`` or ``k_N_per_m``."""
+    for pattern in (r"(.*?)\s*\[(.*)\]", r"(.*?)\s*\((.*)\)", r"(.*?)_([kMG]?N_per_\w+|deg|rad|mm)"):
+        if match := re.fullmatch(pattern, cell):
+            return match[1].lower().replace("_", " "), match[2].strip()
+    return cell.lower(), ""
+
+
+def _abscissa(path, cell):
+    name, unit = _name_and_unit(cell)
+    if name == "phase" and unit in ("", "-", "1"):
+        return "phase", 1.0
+    if name in ANGLES and unit in TURN:
+        return "angle", TURN[unit]
+    if name in RADII and unit == "mm":
+        return "radius", 1.0
+    raise ValueError(f"{path}: first column {cell!r}, but it must be {ABSCISSAE}")
+
+
+def _stiffness(path, cell):
+    unit = _stiffness_unit(cell)
+    if not unit:
+        raise ValueError(f"{path}: second column {cell!r} states no known unit of stiffness; use k [unit] with {UNITS}")
+    return unit
+
+
+def _stiffness_unit(cell):
+    """Factor to SI, and whether it is per width; None if the unit is not known."""
+    unit = _name_and_unit(cell)[1].replace("_per_", "/").replace("_", " ")
+    for sign, plain in (("µ", "u"), ("μ", "u"), ("·", " "), ("*", " ")):
+        unit = unit.replace(sign, plain)
+    match = re.fullmatch(r"([kMG]?N) ?/ ?\(? ?(\w+)(?:[ /]+(\w+))? ?\)?", unit)
+    if not match or not set(match.groups()[1:]) <= {*LENGTH, None}:
+        return None
+    force, *lengths = match.groups()
+    return FORCE[force] / math.prod(LENGTH[length] for length in lengths if length), lengths[1] is not None
+
+
+def _numbers(path, rows):
+    """Both columns, checked."""
+    table = []
+    for line, cells in rows:
+        if len(cells) != 2 or not all(map(_is_number, cells)):
+            hint = "; use a decimal point" if any(re.fullmatch(r"[-+\d]*,\d+(e.*)?", cell, re.I) for cell in cells) else ""
+            raise ValueError(f"{path}, line {line}: {'; '.join(cells)!r} is not a row of two numbers{hint}")
+        x, k = map(float, cells)
+        if not math.isfinite(x) or not (math.isfinite(k) and k > 0):
+            raise ValueError(f"{path}, line {line}: {cells[0]}, {cells[1]}: both must be finite and k positive")
+        if table and x <= table[-1][0]:
+            raise ValueError(f"{path}, line {line}: the first column must rise, but {x:g} follows {table[-1][0]:g}")
+        table.append((x, k))
+    if len(table) < 2:
+        raise ValueError(f"{path}: {len(table)} rows of numbers, but a curve needs many")
+    return np.array(table).T
+
+
+def _offset(path, comments, given):
+    stated = [match[1] for c in comments if (match := re.fullmatch(r"(?:phase[ _])?offset\s*[:=](.*)", c, re.I))]
+    values = [*stated, *([given] if given is not None else [])]
+    if len(values) > 1:
+        raise ValueError(f"{path}: phase_offset is given {len(values)} times ({', '.join(map(str, values))}); give it once")
+    return _finite(path, values[0]) if values else None
+
+
+def _finite(path, value):
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise ValueError(f"{path}: phase_offset = {str(value).strip()!r}, but give a finite number of mesh cycles")
+    return number

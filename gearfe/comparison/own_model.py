@@ -1,0 +1,196 @@
+"""Stiffness models of the user's own, functions or files, as curves to compare."""
+
+import importlib.util
+import math
+import os
+import re
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.material import Material
+from ..geometry.pair.contacts import contacts
+from ..stiffness.curve import StiffnessCurve
+from ..stiffness.own_flexibility import OwnFlexibility
+from ..stiffness.solve import mesh_stiffness
+from .model_file import ModelFile, read_model
+
+SHARED_META = ("force_N", "width_mm", "gear_1", "gear_2", "a_mm", "eps_alpha", "materials", "versions")
+SAME = ("force_N", "gear_1", "gear_2", "a_mm")  # what a curve written by gearfe must share with the scene
+FAR = 10.0  # ratio to the reference that hints at a wrong unit
+
+
+@dataclass(frozen=True, slots=True)
+class PairModel:
+    """The stiffness of one tooth pair as a function of where it touches; the mesh is the plain sum of its pairs.
+
+    Parameters
+    ----------
+    function : callable
+        ``f(radius_1, radius_2) -> k``: contact radii on pinion and wheel [mm], ndarrays of shape (n,), to the stiffness of the
+        pair [N/m] over the whole width, shape (n,). It is asked for contacts on the path of contact only.
+    """
+
+    function: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for what is not a function."""
+        if not callable(self.function):
+            raise ValueError(f"PairModel({self.function!r}): give a function f(radius_1, radius_2) -> k [N/m]")
+
+
+# a function of the phase, or what says more of itself
+OwnModel = Callable[[NDArray[np.float64]], NDArray[np.float64]] | PairModel | OwnFlexibility | ModelFile | str | os.PathLike[str]
+
+
+def own_models(models, taken=()):
+    """Models by name; files are read.
+
+    Models are functions ``f(phase) -> k`` (mesh phases from 0 to 1, ndarray of shape (n,), to the total stiffness [N/m] over the
+    whole width), `PairModel`, `OwnFlexibility`, ``"file.py:name"`` of one of these in a Python file, which is run, paths of
+    tables (see `read_model`) or `ModelFile`; the keys of a dict are the names, and no model may have one of `taken`. ValueError
+    if something is none of these, cannot be read, or two share a name.
+    """
+    if callable(models) or isinstance(models, (str, os.PathLike, PairModel, OwnFlexibility, ModelFile)):
+        raise ValueError(f"models = {models!r}, but give a list, models=[...], or a dict, models={{'name': ...}}")
+    items = list(models.items()) if isinstance(models, dict) else [(_name(m, i), m) for i, m in enumerate(models, 1)]
+    out = {}
+    for name, model in items:
+        if isinstance(model, (str, os.PathLike)):
+            match = re.fullmatch(r"(.+\.py)(?::(.*))?", str(model), re.DOTALL)
+            model = _in_file(*match.groups()) if match else read_model(model)
+        elif not callable(model) and not isinstance(model, (PairModel, OwnFlexibility, ModelFile)):
+            raise ValueError(
+                f"model {name!r} is {type(model).__name__}, but give f(phase) -> k [N/m], PairModel(f), OwnFlexibility(f), "
+                "or the path of a file"
+            )
+        if name in taken or name in out:
+            clash = "is a formulation of gearfe" if name in taken else "stands for two models"
+            raise ValueError(f"the name {name!r} {clash}; rename the file or function, or give models={{'another name': ...}}")
+        out[name] = model
+    return out
+
+
+def _in_file(path, name):
+    """The model called `name` of a Python file."""
+    if not Path(path).is_file():
+        raise ValueError(f"{path}: no such file")
+    spec = importlib.util.spec_from_file_location(Path(path).stem, path)
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:  # a file of the user's may raise whatever it likes
+        raise ValueError(f"{path} failed with {type(error).__name__}: {error}") from error
+    kinds = (PairModel, OwnFlexibility)
+    has = [
+        key
+        for key, value in vars(module).items()
+        if isinstance(value, kinds) or getattr(value, "__module__", "") == module.__name__
+    ]
+    if name not in has:
+        known = f"it has {', '.join(has)}" if has else "it has no function"
+        raise ValueError(f"{path}: no model {name or ''!r}; {known}: give {path}:NAME, of a function f(phase) -> k [N/m]")
+    return getattr(module, name)
+
+
+def _name(model, number):
+    if isinstance(model, OwnFlexibility):
+        return model.name if model.name.isidentifier() else f"model {number}"
+    if isinstance(model, PairModel):
+        model = model.function
+    if isinstance(model, ModelFile):
+        model = model.path
+    if isinstance(model, (str, os.PathLike)):
+        return re.sub(r".+\.py:", "", str(model)) if ".py:" in str(model) else Path(model).stem
+    name = getattr(model, "__name__", "")
+    return name if name.isidentifier() else f"model {number}"
+
+
+def own_curve(name, model, pair, reference):
+    """`StiffnessCurve` of an own model, as `own_models` gives it, at the phases and the load of a reference curve.
+
+    ``k_tangent = k`` and ``lte = F / k``; pressures are nan, and so are the forces of the pairs if the model gives only their
+    total. An `OwnFlexibility` gives all of it, by `mesh_stiffness`. ValueError if the model fails, or k has the wrong shape or is
+    not finite and positive; if a file does not cover what is asked.
+    """
+    if isinstance(model, OwnFlexibility):
+        materials = tuple(Material(**constants) for constants in reference.meta["materials"])
+        curve = mesh_stiffness(pair, reference.meta["force_N"], materials, method=model, phases=reference.phase)
+        _hint(name, model, curve.k, reference)
+        return replace(curve, meta=curve.meta | {"method": name})
+    touch = contacts(pair, reference.phase, extended=False)
+    touching = np.isfinite(touch.gap)
+    meta = {key: reference.meta[key] for key in SHARED_META} | {"method": name, "model": _kind(model)}
+    if isinstance(model, PairModel) or getattr(model, "abscissa", None) == "radius":
+        of_pair = np.zeros(touching.shape)
+        of_pair[touching] = _single(name, model, pair, touch.roll_1[touching], touch.roll_2[touching], meta["width_mm"])
+        k = of_pair.sum(axis=1)
+        force = meta["force_N"] * of_pair / k[:, None]
+    else:
+        k = _total(name, model, pair, reference.phase, meta["width_mm"])
+        force = np.where(touching, np.nan, 0.0)
+    _hint(name, model, k, reference)
+    used = touching.any(axis=0)
+    nothing = np.full((k.size, np.count_nonzero(used)), np.nan)
+    lte = meta["force_N"] / k
+    return StiffnessCurve(reference.phase, k, k, lte, touch.order[used], force[:, used], nothing, meta=meta)
+
+
+def _kind(model):
+    if isinstance(model, ModelFile):
+        return {"file": model.path, "abscissa": model.abscissa, "per_width": model.per_width, "phase_offset": model.phase_offset}
+    return "stiffness of a tooth pair, plain sum" if isinstance(model, PairModel) else "total mesh stiffness"
+
+
+def _single(name, model, pair, roll_1, roll_2, width):
+    """Stiffness of tooth pairs [N/m] where they touch."""
+    radius_1, radius_2 = np.hypot(pair.gear_1.r_b, roll_1), np.hypot(pair.gear_2.r_b, roll_2)
+    if isinstance(model, ModelFile):
+        return model.single(pair, radius_1) * (width * 1e-3 if model.per_width else 1.0)
+    return _called(name, model.function, (radius_1, radius_2), "radius_1 = {:.6g} mm, radius_2 = {:.6g} mm")
+
+
+def _total(name, model, pair, phase, width):
+    """Total mesh stiffness [N/m]; the model is asked for phases from 0 up to, not including, 1."""
+    phase = phase % 1.0
+    phase[phase >= 1.0] = 0.0  # -1e-17 % 1.0 is 1.0
+    if isinstance(model, ModelFile):
+        return model.total(pair, phase) * (width * 1e-3 if model.per_width else 1.0)
+    return _called(name, model, (phase,), "phase {:.6g}")
+
+
+def _called(name, function, given, where):
+    """What a user's function returns, checked."""
+    n = given[0].size
+    once = f"it is called once, with arrays of {n} values; numpy.vectorize(f) makes a function of single numbers fit"
+    try:
+        k = np.asarray(function(*given))
+    except Exception as error:  # a function of the user's may raise whatever it likes
+        raise ValueError(f"model {name!r} failed with {type(error).__name__}: {error} ({once})") from error
+    if k.shape != (n,):
+        raise ValueError(f"model {name!r} returned an array of shape {k.shape}, but give ({n},): one k for each value ({once})")
+    if k.dtype.kind not in "fiu":
+        raise ValueError(f"model {name!r} returned values of type {k.dtype}, but k is a real number [N/m]")
+    k = k.astype(float)
+    bad = np.flatnonzero(~(np.isfinite(k) & (k > 0)))
+    if bad.size:
+        at = where.format(*(values[bad[0]] for values in given))
+        raise ValueError(f"model {name!r} returned k = {k[bad[0]]:g} N/m at {at}, but k must be finite and positive")
+    return k
+
+
+def _hint(name, model, k, reference):
+    """Warn of what is most likely a mistake: a unit, or a curve of another pair or load."""
+    ratio = math.exp(np.log(k / reference.k).mean())
+    if not 1 / FAR < ratio < FAR:
+        warnings.warn(
+            f"model {name!r} is {ratio:.3g} times the reference: is k that of the whole width, in N/m or the unit stated?",
+            stacklevel=4,
+        )
+    written = getattr(model, "meta", None)
+    if written and (other := [key for key in SAME if written.get(key) != reference.meta[key]]):
+        warnings.warn(f"{model.path} was computed for another {', '.join(other)} than this scene's pair", stacklevel=4)

@@ -1,0 +1,172 @@
+"""A scene in words: what was understood of its file, before anything is computed."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import fields
+
+from ..core.supports.shaft import Shaft
+from ..core.supports.support import Support
+from ..core.units import in_newton_per_um
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.modified import Flank
+from ..planetary_sets.of_scene import build_set
+from ..scene.load import Scene, ScenePair
+from ..stiffness.curve import StiffnessCurve
+from ..stiffness.solve import Solve
+from .losses import told_damage
+from .told_set import told_set
+
+SIDES = ("pinion", "wheel")
+WORDS = {  # for amounts of a flank, in um, whose names do not say enough
+    "crowning": "profile crowning", "slope": "profile slope", "lead_crowning": "crowning along the width",
+    "lead_slope": "slope along the width",
+}  # fmt: skip
+AMOUNTS = [own.name for own in fields(Flank) if own.default == 0.0 and not own.name.startswith(("tip_", "root_", "end_"))]
+AMOUNTS.remove("eccentric_tooth")
+OTHERS = {"table": "a measured profile", "topography": "a measured flank", "pitch": "pitch deviations", "wear": "wear",
+          "tooth_scale": "teeth that differ"}  # fmt: skip
+
+
+def told(scene: Scene) -> list[str]:
+    """Lines that say what a scene holds: gears, pairs with flanks, axes, supports and damage, its machine, what is assumed."""
+    lines = [scene.title]
+    for name, gear in scene.gears.items():
+        lines += ["", f"gear {name}: {told_gear(gear)}"]
+    for name, chosen in scene.pairs.items():
+        lines += ["", *_pair(name, chosen)]
+    lines += ["", _machine(scene), *_set(scene)]
+    lines += [f"assumed: {note['what']}" for note in scene.assumptions]
+    return lines + [f"changed: {text}" for text in scene.changed]
+
+
+def told_gear(gear: Gear) -> str:
+    """A gear in words.
+
+    >>> told_gear(Gear(z=21, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=7.4))
+    '21 teeth, module 2 mm, 20 degrees, spur, 20 mm wide; tip diameter 46 mm, root 37 mm; held in its bore of 14.8 mm diameter'
+    """
+    helix = f"helix {math.degrees(gear.beta):.4g} degrees" if gear.beta else "spur"
+    shift = f", profile shift {gear.x:g}" if gear.x else ""
+    held = f"{'rim' if gear.internal else 'bore'} of {2 * (gear.r_rim or gear.r_bore or 0.0):.4g}"
+    return (
+        f"{gear.z} teeth{' (ring)' if gear.internal else ''}, module {gear.m_n:g} mm, {math.degrees(gear.alpha_n):.4g} degrees, "
+        f"{helix}, {gear.b:g} mm wide{shift}; tip diameter {2 * gear.r_a:.4g} mm, root {2 * gear.r_f:.4g} mm; "
+        f"held in its {held} mm diameter"
+    )
+
+
+def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
+    pair, case = chosen.pair, chosen.case()
+    across = f", overlap ratio {case.overlap():.3f}" if case.runs != "spur" else ""
+    yield (
+        f"pair {name}: {pair.gear_1.z} and {pair.gear_2.z} teeth, {pair.a:.5g} mm apart, "
+        f"contact ratio {pair.eps_alpha:.3f}{across}; {told_load(chosen)}"
+    )
+    if case.runs == "herringbone":
+        groove = f" with a groove of {chosen.groove:g} mm" if chosen.groove else ""
+        yield f"  herringbone teeth{groove}; the overlap ratio is that of one half"
+    yield from (f"  {text}" for text in told_details(chosen))
+    for which in (None, *chosen.damage):
+        heading = "healthy" if which is None else f"case {which}: {', '.join(_where(chosen, chosen.damage[which]))}"
+        row, why = Solve().chosen(chosen.case(which))
+        yield f"  {heading}; solved by {row.name}: {why}"
+    yield from (f"  {note}" for note in pair.notes)
+
+
+def told_load(chosen: ScenePair) -> str:
+    """Force of a pair and the torques that it is."""
+    torques = [chosen.force * gear.r_b * 1e-3 for gear in (chosen.pair.gear_1, chosen.pair.gear_2)]
+    return f"{chosen.force:g} N along the line of action, {torques[0]:.4g} N m on the pinion, {torques[1]:.4g} N m on the wheel"
+
+
+def told_details(chosen: ScenePair) -> Iterator[str]:
+    """Flanks, misalignment and supports of a pair, a line for each; none of a plain pair that is held at its bores."""
+    pair, bent = chosen.pair, chosen.flanks
+    for side, gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
+        if side in bent:
+            yield f"flank of the {side}: {told_flank(bent[side], gear)}"
+    if not pair.gear_1.beta and 1 < pair.eps_alpha < 2 and any(flank.tip_relief or flank.root_relief for flank in bent.values()):
+        shared = (pair.eps_alpha - 1) * pair.p_bt
+        yield f"two pairs of teeth share the load over the first and the last {shared:.3g} mm of roll, one carries in between"
+    if chosen.misalignment:
+        amounts = {axis: 1e3 * getattr(chosen.misalignment, axis) for axis in ("F_beta", "f_sigma_beta", "f_sigma_delta")}
+        yield "misaligned: " + ", ".join(f"{axis} {value:g} um" for axis, value in amounts.items() if value)
+    for side, held in chosen.supports.items():
+        yield f"{side} held by {_held(held)}"
+
+
+def told_flank(flank: Flank, gear: Gear) -> str:
+    """A gear's flank in words, its reliefs with the diameter where they start."""
+    parts = []
+    for end, roll in (("tip", gear.roll_a), ("root", gear.roll_f)):
+        relief = 1e3 * getattr(flank, f"{end}_relief")
+        if relief:
+            start = _start(flank, end, gear)
+            shape = {1.0: "linear", 2.0: "parabolic"}.get(exponent := getattr(flank, f"{end}_exponent"), f"power {exponent:g}")
+            at = f"from a diameter of {2 * math.hypot(gear.r_b, start):.5g} mm on, over {abs(roll - start):.3g} mm of roll"
+            parts.append(f"{end} relief {relief:.4g} um, {shape}, {at}")
+    amounts = {name: 1e3 * getattr(flank, name) for name in AMOUNTS}
+    parts += [f"{WORDS.get(name, name)} {value:.4g} um" for name, value in amounts.items() if value]
+    if any(flank.end_relief if isinstance(flank.end_relief, tuple) else (flank.end_relief,)):
+        parts.append("end relief")
+    parts += [f"tip {edge} {value:g} mm" for edge in ("rounding", "chamfer") if (value := getattr(flank, f"tip_{edge}"))]
+    parts += [word for name, word in OTHERS.items() if (value := getattr(flank, name)) is not None and len(value)]
+    return "; ".join(parts) or "involute"
+
+
+def _start(flank: Flank, end: str, gear: Gear) -> float:
+    """Roll length at which a relief starts [mm]."""
+    diameter, roll, angle = (getattr(flank, f"{end}_start_{how}") for how in ("diameter", "roll", "angle"))
+    if diameter is not None:
+        return math.sqrt((diameter / 2) ** 2 - gear.r_b**2)
+    return float(roll) if roll is not None else float(angle or 0.0) * gear.r_b
+
+
+def _held(held: Support | Shaft) -> str:
+    if isinstance(held, Shaft):
+        parts = ", ".join(f"{segment.length:g} mm of {segment.diameter:g} mm" for segment in held.segments)
+        places = " and ".join(f"{at:g}" for at in held.bearings)
+        stiff = " and ".join(
+            "rigid" if math.isinf(stiffness) else f"{1e-3 * stiffness:g} N/um" for stiffness in held.bearing_stiffness
+        )
+        whole = ", one piece" if held.integral else ""
+        return f"a shaft of {parts}, bearings at {places} mm ({stiff}), gear at {held.gear:g} mm{whole}"
+    units = {"radial": ("N/um", 1e3), "axial": ("N/um", 1e3), "tilt": ("Nm/mrad", 1e6), "torsion": ("Nm/mrad", 1e6)}
+    values = {name: getattr(held, name) for name in units}
+    soft = [f"{name} {value / units[name][1]:g} {units[name][0]}" for name, value in values.items() if math.isfinite(value)]
+    return f"springs: {', '.join(soft)}; else rigid" if soft else "rigid springs"
+
+
+def _where(chosen: ScenePair, damage: dict) -> Iterator[str]:
+    for side, damages in damage.items():
+        teeth = sorted({hurt.tooth for hurt in damages})
+        yield f"{told_damage(chosen.pair, {side: damages})} in the {side}'s tooth {' and '.join(map(str, teeth))}"
+
+
+def _machine(scene: Scene) -> str:
+    if not scene.machine:
+        return "no machine: gearfe dynamics needs a [machine] table"
+    run = scene.machine
+    law = "Hertz's impact law" if run["contact"] == "impact" else "stiffness curves"
+    return f"machine: {run['model']}, {run['speed_rpm']:g} rpm, {run['torque_Nm']:g} N m, contact by {law}"
+
+
+def _set(scene: Scene) -> Iterator[str]:
+    """The set of a scene, or why it cannot be solved."""
+    if scene.set is None:
+        return
+    try:
+        yield f"set: {told_set(build_set(scene))}"
+    except ValueError as error:
+        yield f"set that cannot be solved: {error}"
+
+
+def told_supports(curve: StiffnessCurve) -> str:
+    """How much of the deflection is that of shafts and springs, in words; empty if the hubs are held rigidly."""
+    if curve.lte_supports is None:
+        return ""
+    part, k_teeth = float(curve.lte_supports.mean() / curve.lte.mean()), curve.without_supports().k.mean()
+    return (
+        f"shafts and springs take {100 * part:.0f} % of the deflection, and are in k; "
+        f"teeth and bodies alone have {in_newton_per_um(k_teeth)} N/um in the mean"
+    )

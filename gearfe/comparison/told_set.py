@@ -1,0 +1,130 @@
+"""What a planetary set does to the stiffness of its meshes, in words and as a table; and at which positions that is looked at."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.checks import whole
+from ..core.markdown import table_row
+from ..core.units import in_newton_per_um
+from ..planetary_sets.case import PlanetaryCase
+from ..planetary_sets.curves import SetCurves
+from ..planetary_sets.rim_supports import RimBed, RimSupports
+from ..planetary_sets.set_file import MESHES
+
+HEAD = (
+    "mesh",
+    "planet",
+    "k mean [N/um]",
+    "least",
+    "largest",
+    "alone [N/um]",
+    "difference",
+    "load, least [N]",
+    "largest [N]",
+)
+
+MOST = 10_000  # positions, and cycles that they are spread over
+ENGAGED = 2  # mesh cycles after which the damaged tooth 0 has been through its mesh
+
+
+def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> NDArray[np.float64]:
+    """Positions of the sun [pitches], evenly spread over `cycles` mesh cycles; some more than `count` if phases would repeat.
+
+    Default: one cycle; of damaged sets two, in which tooth 0 goes through its mesh; of a ring on pads, a pitch of these.
+    """
+    for name, value in (("positions", count), ("cycles", 1 if cycles is None else cycles)):
+        if whole(name, value, 1) > MOST:
+            raise ValueError(f"{name} = {value}, but give at most {MOST}")
+    pads = case.ring.count if isinstance(case.ring, RimSupports) else case.gears.ring.z
+    span = cycles or (ENGAGED if case.damage else max(1, round(case.gears.ring.z / pads)))
+    while math.gcd(count, span) > 1:
+        count += 1
+    return span * np.arange(count) / count
+
+
+def set_numbers(curves: SetCurves) -> dict[str, float]:
+    """Mean stiffness of both kinds of mesh in the set and alone [N/m], K_gamma, transmission error peak to peak [m].
+
+    Means are over planets and positions, of k over those that carry.
+    """
+    out: dict[str, float] = {}
+    for k, kind in enumerate(MESHES):
+        name = kind.replace("-", "_")
+        out |= {f"k_{name}": _mean(curves.k[k]), f"k_{name}_alone": float(curves.k_alone[k].mean())}
+    return out | {"K_gamma": curves.K_gamma, "te_peak_to_peak": float(np.ptp(curves.te))}
+
+
+def set_headline(curves: SetCurves, healthy: SetCurves | None = None) -> str:
+    """The answer in one sentence; of a damaged set beside the `healthy` one, at the same positions."""
+    found, said = set_numbers(curves), []
+    for kind in MESHES:
+        inside, alone = found[f"k_{kind.replace('-', '_')}"], found[f"k_{kind.replace('-', '_')}_alone"]
+        change = f"{100 * (inside / alone - 1):+.1f} %"
+        said.append(
+            f"k of {kind.replace('-', ' and ')} {in_newton_per_um(inside)} N/um, alone {in_newton_per_um(alone)} ({change})"
+        )
+    text = f"In the set {', '.join(said)}; K_gamma {found['K_gamma']:.3f}, transmission error {_um(curves)} um peak to peak"
+    return text if healthy is None else f"{text}; {_taken(curves, healthy)}"
+
+
+def set_table(curves: SetCurves) -> str:
+    """Markdown table of every mesh: its stiffness in the set and alone over the positions, and its load."""
+    rows = [table_row(HEAD), table_row("---" for _ in HEAD).replace(" ", "")]
+    for k, kind in enumerate(MESHES):
+        for planet in range(curves.force.shape[2]):
+            inside, alone, load = (one[k, :, planet] for one in (curves.k, curves.k_alone, curves.force))
+            numbers = _mean(inside), inside.min(), inside.max(), alone.mean()
+            change = f"{100 * (numbers[0] / numbers[3] - 1):+.1f} %"
+            told = [in_newton_per_um(value) for value in numbers]
+            rows.append(table_row([kind, str(planet), *told, change, f"{load.min():.5g}", f"{load.max():.5g}"]))
+    return "\n".join(rows)
+
+
+def told_span(positions: NDArray[np.float64]) -> str:
+    """Over which positions of `spread` the numbers of a table are taken, in words."""
+    cycles = round(positions.size * positions[1]) if positions.size > 1 else 1
+    return f"over {positions.size} positions in {'a mesh cycle' if cycles == 1 else f'{cycles} mesh cycles'}"
+
+
+def told_set(case: PlanetaryCase) -> str:
+    """A planetary set in words: planets, load, and what holds it."""
+    places = ", ".join(f"{one:.4g}" for one in np.degrees(case.angles).tolist())
+    pin = "" if np.isinf(case.pin) else f", pins of {case.pin / 1e3:g} N/um"
+    off = sum(1 for one in case.errors if any(one))
+    errors = f", {off} of {case.planets} off their places" if off else ""
+    sun = "floating" if case.floating else "held at its axis"
+    return (
+        f"{case.planets} planets at {places} degrees{pin}{errors}; {case.force:g} N a mesh in the mean, "
+        f"{case.force * case.planets * case.gears.sun.r_b * 1e-3:.4g} N m on the sun; sun {sun}, ring {_ring(case.ring)}"
+    )
+
+
+def _ring(support: "str | RimBed | RimSupports") -> str:
+    if isinstance(support, RimBed):
+        return f"on an elastic bed of {support.radial:g} (radial) and {support.tangential:g} MPa/mm (tangential)"
+    if not isinstance(support, RimSupports):
+        return "held all around"
+    kind = "lugs, which only push," if support.pushes else "pads"
+    soft = {way: getattr(support, way) / 1e3 for way in ("radial", "tangential") if np.isfinite(getattr(support, way))}
+    springs = "".join(f", {way} {value:g} N/um" for way, value in soft.items() if value or not support.pushes)
+    return f"on {support.count} {kind} of {support.width:g} mm{springs}"
+
+
+def _taken(curves, healthy):
+    """What damage takes of the stiffness, at most and where."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        loss = np.where((curves.k > 0) & (healthy.k > 0), 1 - curves.k / healthy.k, -np.inf)
+    k, at, planet = np.unravel_index(int(loss.argmax()), loss.shape)
+    most, kind = 100 * loss[k, at, planet], MESHES[int(k)].replace("-", " and ")
+    return f"the damage takes up to {most:.1f} % of k of {kind}, planet {planet}"
+
+
+def _mean(k: NDArray[np.float64]) -> float:
+    """Mean stiffness where something is carried."""
+    return float(k[k > 0].mean()) if (k > 0).any() else 0.0
+
+
+def _um(curves):
+    return f"{np.ptp(curves.te) * 1e6:.3g}"

@@ -1,0 +1,293 @@
+"""A scene's machine, healthy and damaged, and what its vibration shows: spectrum lines and condition indicators."""
+
+import math
+import re
+from dataclasses import dataclass, replace
+from numbers import Real
+
+import numpy as np
+
+from ..core.markdown import table_row
+from ..core.steps import part, steps
+from ..dynamics.machine.of_scene import build_machine
+from ..dynamics.motion.reference import SOLVERS
+from ..dynamics.motion.simulate import simulate
+from ..dynamics.motion.step_control import default_step
+from ..dynamics.motion.thinned import REACH
+from ..signal.demodulation import Demodulated, demodulate
+from ..signal.indicator_table import indicator_table, table_text
+from ..signal.indicators import LOBES
+from ..signal.series import Signal
+from ..signal.spectra import spectrum
+from ..signal.spectral_lines import BINS, expected_lines, find_lines
+from .record_length import resolving_seconds, too_short
+
+FREE = 1e-3  # what is left of a free vibration when a record begins, of its size at the start
+UNDAMPED = 0.5  # of the duration, before it, left out where a free vibration does not die out
+LONGEST = 20.0  # s left out at most
+NEAR = 50  # bins on either side that tell the noise floor of a line
+QUARTILE = math.sqrt(math.log(2) / math.log(4 / 3))  # median over lower quartile of the amplitudes of noise
+FLOOR = 5.0  # times its noise floor at least is a line; the largest of five bins of noise is so once in some millions
+RANGE = 1e-4  # of the rms of a record: smaller lines are lost in any recorder (80 dB; 16 bits are 96 dB below full scale)
+PULSES = 2  # harmonics of the fault at least in an envelope: pulses of a tooth have many, run-out and misplaced planets one
+RISE = 2.0  # times the healthy machine's at least is a line of a fault
+WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "turns of the gear", "f_carrier": "carrier frequency"}
+
+
+@dataclass(frozen=True, slots=True)
+class Analysis:
+    """Spectra and indicators of one channel of some responses, or of a measured signal, by case.
+
+    `signals` are what was analysed, `fault` the frequency of the fault looked for [Hz], `lines` the expected frequencies by name
+    [Hz], `spectra` by case, `amplitudes` by case and line, `indicators` as of `gearfe.indicator_table`, `resolving` the
+    seconds of a record that part the lines of the fault from those beside them (`resolving_seconds`).
+    """
+
+    channel: str
+    signals: dict
+    fault: float | None
+    lines: dict
+    spectra: dict
+    amplitudes: dict
+    indicators: dict
+    resolving: float = 0.0
+
+    @property
+    def too_short(self):
+        """What to do if the record is too short to resolve the lines of the fault; empty if it is not."""
+        return too_short(min(signal.duration for signal in self.signals.values()), self.resolving)
+
+    @property
+    def unit(self):
+        """Of the channel."""
+        return next(iter(self.signals.values())).unit
+
+    def standing(self):
+        """Names of the lines that are more than noise: those of the mesh, and what stands out in a case that is not healthy.
+
+        A line of a fault or of a carrier stands out where it has `FLOOR` times the noise of the bins around it, `RANGE` times the
+        rms of the record and, if there is a healthy machine beside it, `RISE` times the healthy machine's line.
+        """
+        return [name for name in self.lines if re.fullmatch(r"(\d+ )?f_m", name) or self._stands(name)]
+
+    def _stands(self, name):
+        healthy, *others = self.spectra
+        floors = {case: FLOOR * _floor(of_case, self.lines[name]) for case, of_case in self.spectra.items()}
+        least = {case: max(floor, RANGE * float(self.signals[case].values.std())) for case, floor in floors.items()}
+        if not others:
+            return self.amplitudes[healthy][name] > least[healthy]
+        grown = RISE * self.amplitudes[healthy][name]
+        return any(self.amplitudes[case][name] > max(least[case], grown) for case in others)
+
+    def lines_text(self):
+        """Amplitudes of the lines that stand out (see `standing`) as Markdown, and in a sentence those that do not."""
+        rows = [["line", "Hz", *self.spectra], ["---"] * (2 + len(self.spectra))]
+        shown = self.standing()
+        for name in shown:
+            sizes = (f"{self.amplitudes[case][name]:.3g}" for case in self.spectra)
+            rows.append([in_words(name), f"{self.lines[name]:.2f}", *sizes])
+        hidden = [f"{in_words(name)} ({value:.2f} Hz)" for name, value in self.lines.items() if name not in shown]
+        against = f" or {RISE:g} times the healthy one" if len(self.spectra) > 1 else ""
+        least = f"{FLOOR:g} times the noise around it, {RANGE:g} of the record's rms{against}"
+        note = f"\n\nno more than {least}: {', '.join(hidden)}" if hidden else ""
+        if hidden and self.too_short:
+            note += f"\n\n{self.too_short}"
+        return "\n".join(map(table_row, rows)) + note
+
+    def envelope(self):
+        """`Demodulated` of the last case at the fault frequency, and in a sentence the lines that stand out of its envelope.
+
+        They are told if `PULSES` of them do.
+        """
+        demodulated, risen, compared = self._demodulated()
+        low, high = demodulated.kurtogram.band
+        none = f"fewer than {PULSES} lines of the fault have {FLOOR:g} times their noise floor" + (
+            f" and {RISE:g} times healthy" if compared else ""
+        )
+        none += f"; {self.too_short}" if self.too_short else ""
+        name = list(self.signals)[-1]
+        return demodulated, f"{name}: squared envelope from {low:.0f} to {high:.0f} Hz, its most impulsive band: " + (
+            "; ".join(risen.values()) or none
+        )
+
+    def alarms(self):
+        """Names of the lines of the fault that stand out of spectrum or envelope of the last case; empty if it shows nothing."""
+        lines = [name for name in self.standing() if "f_fault" in name]
+        return [*lines, *(f"{name} of the envelope" for name in self._demodulated()[1])] if self.fault else []
+
+    def _demodulated(self):
+        """`Demodulated` of the last case, the lines that stand out of it in words, and whether a healthy case is beside it."""
+        healthy, *others = self.signals.values()
+        last = others[-1] if others else healthy
+        demodulated = demodulate(last, self.fault)
+        before = demodulate(healthy, self.fault, band=demodulated.kurtogram.band).lines if others else {}
+        risen = {name: text for name in demodulated.lines if (text := _risen(demodulated, name, before.get(name)))}
+        return demodulated, risen if len(risen) >= PULSES else {}, bool(before)
+
+    def indicators_text(self):
+        """Indicators as Markdown, increments against healthy in brackets."""
+        return table_text(self.indicators)
+
+    def plot(self, path=None, title=""):
+        """Spectra below each other under a `title` (default: the channel); returns the figure."""
+        from ..figures.vibration_plots import plot_spectra
+
+        return plot_spectra(self.spectra, self.lines, path, title=title or self.channel)
+
+
+def in_words(line):
+    """Name of a line as it is read.
+
+    >>> in_words("2 f_m - f_fault")
+    '2 x mesh frequency - fault frequency'
+    """
+    return re.sub(r"\bf_\w+", lambda match: WORDS.get(match[0], match[0]), re.sub(r"(\d+) (?=f_)", r"\1 x ", line))
+
+
+def _floor(found, frequency):
+    """Noise floor of a spectrum around a frequency, the line itself left out: the median, told from the lower quartile.
+
+    Where lines are dense, their lobes fill more than half of the bins.
+    """
+    near, values = found.within(*(frequency + sign * NEAR * found.resolution for sign in (-1, 1)))
+    return QUARTILE * float(np.quantile(values[np.abs(near - frequency) > BINS * found.resolution], 0.25))
+
+
+def _risen(found: Demodulated, name, before):
+    """A line of an envelope in words if it is above its floor and what it was before; empty if not."""
+    frequency, size = found.lines[name]
+    if size <= FLOOR * found.background or (before and size <= RISE * before[1]):
+        return ""
+    over = f"{size / found.background:.3g} times its noise floor" if found.background else f"{size:.3g} {found.spectrum.unit}"
+    times = size / before[1] if before and before[1] else 0.0
+    healthy = f", {'over 1000' if times > 1000 else f'{times:.3g}'} times healthy" if times else ""
+    return f"{in_words(name)} at {frequency:.2f} Hz, {over}{healthy}"
+
+
+def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, loads=(1.0,), progress=None):
+    """`Response` of a scene's machine by case: ``"healthy"`` and, if asked for, a case of damage.
+
+    `duration` [s] is kept, from when the free vibrations have fallen to a thousandth (`recorded`); `phases` are those of the
+    stiffness curves, per mesh cycle; `loads` as of `gearfe.build_machine`, `method` and `progress` as of `gearfe.simulate`.
+    """
+    check_run(duration, method)
+    cases = {name for pair in scene.pairs.values() for name in pair.damage}
+    if case is not None and case not in cases:
+        raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(sorted(cases)) or 'none'}")
+    in_case = [one for pair in scene.pairs.values() for damages in pair.damage.get(case, {}).values() for one in damages]
+    damage = [] if scene.machine.get("contact") == "impact" else in_case
+    along = not all(hurt.through for hurt in damage)
+    curves = "ritz3d" if along else "auto"  # one method for what is compared
+    names = ("healthy", *([case] if case else []))
+    with part("", 0.0, 0.5):
+        machines = {
+            name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves, loads=loads)
+            for name in steps(names, lambda name: f"stiffness curves, {name}")
+        }
+    rate = math.ceil(duration / min(default_step(one) for one in machines.values())) / duration
+    with part("", 0.5, 1.0):
+        return {
+            name: recorded(machines[name], duration, rate, method=method, progress=progress)
+            for name in steps(names, lambda name: f"motion, {name}")
+        }
+
+
+def check_run(duration, method="fast"):
+    """Raise ValueError for a duration or a method of a run that cannot be: to be called before curves are computed for it."""
+    if isinstance(duration, bool) or not isinstance(duration, Real) or not 0 < duration < math.inf:
+        raise ValueError(f"duration = {duration!r} s, but it must be positive and finite")
+    if method != "fast" and method not in SOLVERS:
+        raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
+
+
+def recorded(machine, duration, rate, *, method="fast", start=0.0, progress=None):
+    """`Response` of a machine from when the free vibrations that its start sets off have died out.
+
+    The time left out, by the fast path, is that in which the least damped mode falls to `FREE`, meshes at their mean stiffness.
+    The run begins before and ends after what is kept, so that its filter has all it looks at. ``stats["settled"]`` is that time
+    [s], ``stats["free"]`` what is left of that mode: above `FREE` where it would take longer than `LONGEST`, or for ever.
+
+    `duration` [s] and `rate` [Hz] are those of what is kept; at `start` [s] the machine starts: where its damaged tooth is then.
+    """
+    decay, margin = slowest_decay(machine), REACH / rate
+    need = -math.log(FREE) / decay if decay else math.inf
+    settle = max(min(need, LONGEST) if decay else UNDAMPED * duration, 2 * margin)
+    before, whole = settle - margin, settle + duration + margin
+    with part("", 0.0, before / whole):
+        first = simulate(machine, before, rate=1 / before, start=start, filtered=False, progress=progress)
+    last, options = (first.q[-1], first.v[-1]), {"method": method, "start": start + before, "progress": progress}
+    with part("", before / whole, 1.0):
+        out = simulate(machine, duration + 2 * margin, rate=rate, initial=last, **options)
+    stats = {"settled": settle, "free": math.exp(-decay * settle), "seconds": first.stats["seconds"] + out.stats["seconds"]}
+    return replace(out.part(slice(REACH, -REACH)), stats=out.stats | stats)
+
+
+def slowest_decay(machine):
+    """Rate at which the least damped vibration of a machine dies out, meshes at their mean stiffness [1/s]; 0 if it does not."""
+    n = len(machine.dofs)
+    K, C, _, _ = machine.linear(machine.working())
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [-K / machine.mass[:, None], -C / machine.mass[:, None]]])
+    values = np.linalg.eigvals(A)
+    slow = 1e-6 * np.abs(values).max()  # turning as a whole, not vibrating
+    decays = -values.real[values.imag > slow]
+    return float(max(decays.min(), 0.0)) if decays.size and decays.min() > 1e-9 * np.abs(values).max() else 0.0
+
+
+def analysis(found, channel=None):
+    """`Analysis` of a channel of `responses`, by default the force of the first mesh of the driven stage.
+
+    Of ``"healthy"`` alone no lines of a fault are looked for: there is none.
+    """
+    first = next(iter(found.values()))
+    if not first.machine.stages:
+        raise ValueError("the machine names no stages, so that no lines are known: give it stages=(Stage(...),)")
+    stage = first.machine.stages[-1]
+    driven = next(one for one in first.machine.meshes if abs(one.frequency - stage.mesh) < 1e-6 * stage.mesh)
+    channel = channel or f"force {driven.name}"
+    rate = 1 / (first.time[1] - first.time[0])
+    signals = {
+        case: Signal(np.asarray(one[channel], dtype=float), rate, one.unit(channel), name=case) for case, one in found.items()
+    }
+    if set(found) == {"healthy"}:
+        return analyse(signals, stage.mesh, carrier=stage.carrier, channel=channel)
+    return analyse(signals, stage.mesh, stage.fault, turning=stage.turning, carrier=stage.carrier, channel=channel)
+
+
+def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="signal"):
+    """`Analysis` of signals by case, computed or measured, the first the healthy one.
+
+    Frequencies [Hz] are those of the mesh, of the faulty tooth, of the gear that has it against the carrier (lines ``f_r``; one
+    of both is enough), and of the carrier. Lines of the carrier that the spectrum cannot part from others are left out.
+    """
+    for name, value in {"mesh": mesh, "fault": fault, "turning": turning, "carrier": carrier}.items():
+        if value is not None and not (isinstance(value, Real) and 0 < value < math.inf):
+            raise ValueError(f"{name} = {value!r} Hz, but a frequency is positive and finite")
+    spectra = {
+        case: spectrum(replace(of_case, values=of_case.values - of_case.values.mean())) for case, of_case in signals.items()
+    }
+    first = next(iter(spectra.values()))
+    if mesh is not None and mesh >= first.frequency[-1]:
+        raise ValueError(f"mesh = {mesh:g} Hz, but {channel} shows what lies below {first.frequency[-1]:g} Hz, half of its rate")
+    lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
+    lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
+    placed = {case: find_lines(of_case, lines, between=True) for case, of_case in spectra.items()}
+    amplitudes = {case: {name: line[1] for name, line in of_case.items()} for case, of_case in placed.items()}
+    frequencies = (mesh, fault or turning) if mesh and (fault or turning) else (None, None)
+    table = indicator_table(signals, *frequencies, healthy=next(iter(signals)))
+    resolving = resolving_seconds(fault, turning, carrier)
+    return Analysis(channel, signals, fault or turning, lines, spectra, amplitudes, table, resolving)
+
+
+def _lines(mesh, fault, turning, carrier, resolution):
+    """Frequencies of lines by name [Hz]: of the fault, of the turning gear and of the carrier.
+
+    The fault has two harmonics, and two sidebands at two mesh harmonics; the turning gear one of each, or two without a fault.
+    """
+    lines = expected_lines(mesh, fault, count=2, harmonics=2)
+    if turning is not None:
+        turns = expected_lines(mesh, turning, count=1 if fault else 2, harmonics=1 if fault else 2)
+        lines |= {name.replace("f_fault", "f_r"): value for name, value in turns.items()}
+    apart = min((abs(other - carrier) for other in (fault, turning) if other), default=math.inf) if carrier else 0.0
+    if carrier and carrier > LOBES * resolution and apart > LOBES / 2 * resolution:
+        lines |= expected_lines(mesh, None, carrier, count=1)
+    return lines

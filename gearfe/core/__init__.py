@@ -1,0 +1,1 @@
+"""What every package needs: `Case`, `Material`, supports, checks, files, progress and units."""

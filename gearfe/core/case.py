@@ -1,0 +1,274 @@
+"""`Case`: what meshes. A gear pair under a load, and everything that changes how it gives, checked once where it is made."""
+
+import math
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, field, fields, replace
+from typing import Any, Self, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.damage.crack import Crack, check_apart
+from ..geometry.damage.kinds import Damage, by_side, split, why_wide
+from ..geometry.pair.flanks import Misalignment, flank_forms
+from ..geometry.pair.gear_pair import GearPair
+from ..geometry.pair.lines import FACES
+from ..geometry.tooth.flank_form import FlankForm
+from ..geometry.tooth.modified import Flank
+from .checks import is_number, numbers
+from .material import Material
+from .supports.held import REFUSE, supports_of
+from .supports.shaft import Shaft
+from .supports.support import Support
+
+SIDES = (("pinion", 1), ("wheel", -1))  # the wheel's tooth of pair k is -k in its own frame
+
+
+@dataclass(frozen=True, slots=True)
+class Case(Mapping[str, Any]):
+    """What meshes: a gear pair under a load, with its materials, damage, flanks and supports.
+
+    It says nothing of how it is solved, that does a `Solve`. As a mapping it spells out what was given, so that
+    ``gf.mesh_stiffness(**case)`` is ``gf.mesh_stiffness(case)``, and ``{**case, "force": 500.0}`` the same under another load;
+    `dataclasses.replace` gives a changed case.
+
+    Parameters
+    ----------
+    pair : GearPair
+    force : float or sequence of float
+        Force along the line of action over the whole width [N]. Several loads share one flexibility.
+    material : Material or (Material, Material)
+        Of both gears, or of pinion and wheel.
+    torque : float or sequence of float, optional
+        Instead of `force`: torque on the pinion [N m], ``force = torque / r_b`` with the pinion's base radius.
+    damage : dict, optional
+        Cracks, pits and spalls by gear: ``{"pinion": [Crack(...), Spall(...)], "wheel": [...]}``.
+    flanks : dict, optional
+        Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``.
+    misalignment : Misalignment, optional
+        Axes that are not parallel. (A centre distance that is not the nominal one: the pair's `a`.)
+    supports : dict, optional
+        Springs or shafts under the hubs: ``{"pinion": Shaft(...), "wheel": Support(...)}``; default: rigid bores.
+    face : {"spur", "helical", "herringbone"}, optional
+        How the teeth run. Default: as their helix angle says in three dimensions, otherwise ``spur`` (of helical gears the
+        transverse section, as a spur gear of the same width).
+    groove : float
+        Width of a herringbone pair's relief groove [mm], part of b.
+
+    Attributes
+    ----------
+    forces : tuple of float
+        Along the line of action [N], of a torque too.
+    materials : (Material, Material)
+    cracks, pits : (tuple, tuple)
+        Damage of pinion and wheel, teeth numbered in each gear's own frame.
+    forms : (FlankForm, FlankForm) or None
+        `flanks` and `misalignment` on the gears; None for involutes.
+    held : (Support or Shaft or None, Support or Shaft or None) or None
+        What holds the hubs; None for rigid ones.
+
+    Raises
+    ------
+    ValueError
+        If an input is impossible; the message says which.
+
+    Warns
+    -----
+    UserWarning
+        If a pit takes a whole flank, or teeth are called helical, but are straight.
+
+    Examples
+    --------
+    >>> import math, gearfe as gf
+    >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), b=20.0)
+    >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
+    >>> case = gf.Case(pair, 2000.0, gf.Material(E=207e3, nu=0.25), damage={"pinion": [gf.Crack(level=0.3)]})
+    >>> curve = gf.solve(case, gf.Solve(phases=8, span="tooth"))
+    >>> healthy = gf.solve(case.healthy, gf.Solve(phases=8, span="tooth"))
+    >>> print(f"the crack takes up to {100 * (1 - curve.k / healthy.k).max():.1f} % of the stiffness")
+    the crack takes up to 17.8 % of the stiffness
+    """
+
+    pair: GearPair
+    force: float | Sequence[float] | NDArray[np.float64] | None = None
+    material: Material | tuple[Material, Material] | None = None
+    _: KW_ONLY
+    torque: float | Sequence[float] | NDArray[np.float64] | None = None
+    damage: Mapping[str, Sequence[Damage]] | None = None
+    flanks: Mapping[str, Flank] | None = None
+    misalignment: Misalignment | None = None
+    supports: Mapping[str, Support | Shaft] | None = None
+    face: str | None = None
+    groove: float = 0.0
+    forces: tuple[float, ...] = field(init=False, repr=False, compare=False)
+    materials: tuple[Material, Material] = field(init=False, repr=False, compare=False)
+    cracks: tuple[tuple[Crack, ...], ...] = field(init=False, repr=False, compare=False)
+    pits: tuple[tuple[Any, ...], ...] = field(init=False, repr=False, compare=False)
+    forms: tuple[FlankForm, FlankForm] | None = field(init=False, repr=False, compare=False)
+    held: tuple[Support | Shaft | None, ...] | None = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check everything, and keep it as solvers read it."""
+        pair = self.pair
+        if not isinstance(pair, GearPair):
+            raise ValueError(f"pair = {pair!r}, but give a GearPair")
+        forces, materials = forces_of(pair, self.force, self.torque), two_materials(self.material)
+        for value in forces:
+            check_load(pair, value, materials)
+        if not is_number(self.groove):
+            raise ValueError(f"groove = {self.groove!r}, but give the width of the relief groove, a number [mm]")
+        if self.face not in (None, *FACES):
+            raise ValueError(f"face = {self.face!r}, but it must be one of {', '.join(FACES)}")
+        if self.face in FACES[1:] and not pair.gear_1.beta:
+            message = f"face = {self.face!r}, but the gears have no helix angle (beta = 0): their teeth are straight"
+            warnings.warn(message, stacklevel=4)
+        cracks, pits = by_gear(pair, self.damage)
+        made: dict[str, Any] = {"forces": tuple(forces), "materials": materials, "cracks": cracks, "pits": pits}
+        if self.damage:
+            made |= {"damage": {name: defects for (name, _), defects in zip(SIDES, by_side(self.damage), strict=True) if defects}}
+        made |= {"forms": flank_forms(pair, self.flanks, self.misalignment)}
+        made |= {"held": supports_of(pair, self.supports, forces, self.face)}
+        if self.torque is not None:
+            made |= {"force": made["forces"] if np.ndim(cast(Any, self.torque)) else forces[0], "torque": None}
+        for name, value in made.items():
+            object.__setattr__(self, name, value)
+
+    def __getitem__(self, name: str) -> Any:
+        """What was given under this name, as an argument of `gearfe.mesh_stiffness`."""
+        if name not in tuple(self):
+            raise KeyError(name)
+        return getattr(self, name)
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of what was given: pair, force, material, face and groove, and of all else what is not the default."""
+        return (item.name for item in GIVEN if item.name in FIRST or getattr(self, item.name) not in (None, item.default, {}))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __or__(self, more: Mapping[str, Any]) -> dict[str, Any]:
+        """What was given, and more of it, as arguments of `gearfe.mesh_stiffness`."""
+        return {**self, **more}
+
+    @property
+    def several(self) -> bool:
+        """Whether several loads were given."""
+        return bool(np.ndim(cast(Any, self.force)))
+
+    @property
+    def healthy(self) -> Self:
+        """The same without damage."""
+        return replace(self, damage=None)
+
+    @property
+    def damaged(self) -> bool:
+        """Whether there is any damage."""
+        return any(self.cracks) or any(self.pits)
+
+    @property
+    def runs(self) -> str:
+        """How the teeth run: `face`, or as their helix angle says."""
+        return self.face or ("helical" if self.pair.gear_1.beta else "spur")
+
+    @property
+    def why_wide(self) -> str:
+        """Why the case needs three dimensions; empty if its transverse section is the whole truth."""
+        if why := why_wide([one for defects in (*self.cracks, *self.pits) for one in defects]):
+            return why
+        if self.runs != "spur":
+            return "contact lines run across helical teeth"
+        if any(form.wide for form in self.forms or ()):
+            return "flanks change along the width"
+        return "shafts tilt the gears" if any(one.tilts for one in self.held or () if one) else ""
+
+    @property
+    def first_tooth(self) -> int | None:
+        """Number of the tooth pair that the first crack or pit is in; None without damage."""
+        teeth = [
+            sense * defect.tooth for i, (_, sense) in enumerate(SIDES) for kind in (self.cracks, self.pits) for defect in kind[i]
+        ]
+        return teeth[0] if teeth else None
+
+    def overlap(self, face: str | None = None) -> float:
+        """Overlap ratio of teeth that run as `face` says (default `runs`), of one half if herringbone; 0 for spur."""
+        return overlap(self.pair, face or self.runs, self.groove)
+
+
+FIRST = ("pair", "force", "material", "face", "groove")
+GIVEN = tuple(own for own in fields(Case) if own.init)
+NAMES = tuple(own.name for own in GIVEN)
+
+
+def case_of(pair: GearPair | Case, force: Any = None, material: Any = None, **given: Any) -> Case:
+    """The `Case` of arguments such as those of `gearfe.mesh_stiffness`, in which a case may stand for the pair."""
+    if not isinstance(pair, Case):
+        return Case(pair, force, material, **given)
+    if force is not None or given.get("torque") is not None:
+        given |= {"force": force}
+    if material is not None:
+        given |= {"material": material}
+    return replace(pair, **given) if given else pair
+
+
+def two_materials(material: Any) -> tuple[Material, Material]:
+    """Materials of pinion and wheel."""
+    materials = (material, material) if isinstance(material, Material) else material
+    if not isinstance(materials, (tuple, list)) or len(materials) != 2 or not all(isinstance(m, Material) for m in materials):
+        raise ValueError(f"material = {material!r}, but give one Material or a pair (pinion, wheel)")
+    return materials[0], materials[1]
+
+
+def overlap(pair: GearPair, face: str | None, groove: float) -> float:
+    """Overlap ratio of a pair (of one half, if herringbone) whose teeth run as `face` says; 0 for spur."""
+    width = min(pair.gear_1.b, pair.gear_2.b)
+    if face == "herringbone":
+        width = (width - groove) / 2
+    return pair.eps_beta_of(width) if face in ("helical", "herringbone") else 0.0
+
+
+def forces_of(pair: GearPair, force: Any, torque: Any) -> list[float]:
+    """Forces along the line of action [N] as a list: given, or from torques on the pinion [N m], ``T / r_b``."""
+    if (force is None) == (torque is None):
+        raise ValueError(
+            f"force = {force!r}, torque = {torque!r}, but give one of them: the force along the line of action [N] or the torque "
+            "on the pinion [N m]"
+        )
+    name, unit, given = ("force", " N", force) if torque is None else ("torque", " N m", torque)
+    values = np.atleast_1d(numbers(name, given, f" [{unit.strip()}]"))
+    if values.ndim > 1 or values.size == 0:
+        raise ValueError(f"{name} = {given!r}, but give one {name} or a non-empty list of {name}s [{unit.strip()}]")
+    for value in values.tolist():
+        if not (math.isfinite(value) and value > 0):
+            raise ValueError(f"{name} = {value}{unit}, but a mesh is pressed together: give a finite {name} > 0")
+    return (values if torque is None else values * (1e3 / pair.gear_1.r_b)).tolist()
+
+
+def check_load(pair: GearPair, force: float, materials: tuple[Material, Material]) -> None:
+    """Reject a force under which even the stiffest gears would leave small strains, before anything is solved.
+
+    Raises
+    ------
+    ValueError
+        If ``force / (b E / 5)``, with the stiffer E, is more than `REFUSE` modules: no mesh of teeth is as stiff as b E / 5.
+    """
+    width, stiffest = min(pair.gear_1.b, pair.gear_2.b), max(material.E for material in materials)
+    least = 5 * force / (width * stiffest) / pair.gear_1.m_n
+    if least > REFUSE:
+        raise ValueError(
+            f"force = {force:g} N on {width:g} mm: the gears would approach by more than {100 * least:.3g} % of the module, but "
+            f"teeth that bend so far (limit {100 * REFUSE:g} %) break: give a smaller force, forces in N, lengths in mm, E in MPa"
+        )
+
+
+def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Crack, ...], ...], tuple[tuple[Any, ...], ...]]:
+    """What weakens pinion and wheel (cracks) and takes their contact away (pits, spalls), numbered in each gear's own frame."""
+    cracks, pits = [], []
+    for (_, sense), gear, defects in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
+        for text in filter(None, (defect.doubts(gear) for defect in defects)):
+            warnings.warn(text, stacklevel=5)
+        weakens, removes = split(replace(defect, tooth=sense * defect.tooth) for defect in defects)
+        check_apart(gear, split(defects)[0])
+        cracks.append(weakens)
+        pits.append(removes)
+    return tuple(cracks), tuple(pits)

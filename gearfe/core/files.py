@@ -1,0 +1,287 @@
+"""Files: `FORMATS` says which there are and what each can hold; what is written is complete, or not there.
+
+A curve or a response becomes a `Content`, which every format of numbers can hold; pictures and fields are drawn by their
+libraries into the path that `written` gives. Readers give lines of text or arrays by name.
+"""
+
+import codecs
+import contextlib
+import json
+import math
+import os
+import re
+import secrets
+import struct
+import threading
+import warnings
+import zipfile
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from tokenize import TokenError
+from typing import NamedTuple
+
+import numpy as np
+from numpy.lib import format as npy
+
+from .matlab_file import MOST_PACKED, variables
+
+# what a file that is no archive of arrays can raise: no archive, of a kind not known, other arrays
+NO_ARCHIVE: tuple[type[Exception], ...] = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, RuntimeError)
+NO_ARCHIVE += (MemoryError, KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError)
+_drawing = threading.Lock()
+
+CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # what no table in text holds
+
+
+@dataclass(frozen=True, slots=True)
+class Content:
+    """Numbers to be written."""
+
+    title: str  # first line of a text table, "gearfe stiffness curve, version 1"
+    columns: dict  # of a text table, arrays ``(n,)`` by "name [unit]"
+    arrays: dict  # the same for all other formats, by name
+    meta: dict  # all that is needed to repeat it; JSON
+    units: dict = field(default_factory=dict)  # of the arrays: a table in JSON files, JSON text ``units_json`` in the others
+
+
+@contextlib.contextmanager
+def written(path):
+    """Path of a temporary file beside `path` that replaces it when the block ends without an error.
+
+    ValueError if the folder does not exist or cannot be written.
+    """
+    name = _beside(path)
+    try:
+        yield name
+        os.replace(name, path)
+    except OSError as error:
+        raise ValueError(f"cannot write {path}: {error.strerror or error}") from error
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(name)
+
+
+def _beside(path):
+    """Name of a new empty file in the folder of `path`, its suffix in small letters: some libraries know no others."""
+    path = Path(path)
+    try:
+        handle, name = new_file(path.parent, f".{path.stem}-", path.suffix.lower())
+    except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
+        reason = getattr(error, "strerror", None) or error
+        raise ValueError(f"cannot write {path}: {reason}; give an existing, writable folder") from error
+    os.close(handle)
+    return name
+
+
+def new_file(folder, prefix, suffix=""):
+    """Open a file that was not there before: its number, and its name; the rights are those of any new file of this process.
+
+    (`tempfile.mkstemp` gives fewer, and what they should be can be asked only by changing them, for all threads.)
+    """
+    while True:
+        name = os.path.join(folder, f"{prefix}{secrets.token_hex(6)}{suffix}")
+        with contextlib.suppress(FileExistsError):
+            return os.open(name, os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666), name
+
+
+def check_output(path, kind):
+    """Raise ValueError if `path` cannot be written later: to be called before work begins.
+
+    A file is made in the folder and taken away again, so that nothing is left to chance; what stands at `path` is not touched.
+    `kind` is what will be written, as `FORMATS` names it (``curve``, ``picture``...). ValueError if the name is empty, a folder,
+    or has a suffix that holds no such content; if its folder is not there or not writable.
+    """
+    if isinstance(path, (str, os.PathLike)) and not str(path):
+        raise ValueError(f"an empty file name for a {kind}: give one that ends in {', '.join(suffixes(kind))}")
+    suffix_of(path, kind)
+    if os.path.isdir(path):  # unlike pathlib's, false for names that no file can have
+        raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
+    os.unlink(_beside(path))
+
+
+def suffixes(kind, *, reading=False):
+    """Suffixes of the files that hold what `kind` says."""
+    known = [suffix for suffix, row in FORMATS.items() if kind in (row.reads if reading else row.writes)]
+    if not known:
+        raise ValueError(f"kind = {kind!r}, but no file holds such a thing; see gearfe.core.files.FORMATS")
+    return known
+
+
+def suffix_of(path, kind, *, reading=False):
+    """Suffix of `path` in small letters.
+
+    ValueError if no such file holds what `kind` says; the message lists those that do.
+    """
+    known = suffixes(kind, reading=reading)
+    if not isinstance(path, (str, os.PathLike)):
+        raise ValueError(f"path = {path!r}, but give the name of a file that ends in {', '.join(known)}")
+    suffix = Path(path).suffix.lower()
+    if suffix not in known:
+        raise ValueError(f"{path}: no format for {suffix or 'a file without a suffix'!r}; use one of {', '.join(known)}")
+    return suffix
+
+
+def save(path, kind, content):
+    """Write a `Content` in the format that the suffix of `path` asks for."""
+    save_as(suffix_of(path, kind), path, content)
+
+
+def save_as(suffix, path, content):
+    """Write a `Content` in the format of a suffix, whatever that of `path`."""
+    with written(path) as name:
+        FORMATS[suffix].write(name, content)
+
+
+def save_figure(figure, path, dpi):
+    """Draw a matplotlib figure into a file, unless `path` is None; gives the figure back."""
+    if path is not None:
+        suffix_of(path, "picture")
+        for text in figure.findobj(lambda artist: hasattr(artist, "set_parse_math") and "$" in artist.get_text()):
+            text.set_parse_math("\\mathdefault" in text.get_text())  # a name of a file is no formula; a number of an axis may be
+        with _drawing, written(path) as name:  # the fonts of matplotlib are shared by all threads
+            figure.savefig(name, dpi=dpi)
+    return figure
+
+
+def read(path, kind):
+    """What stands in a file: its lines if it is text, else its arrays by name.
+
+    ValueError if its suffix holds no such content, or it cannot be read or is no file of its format.
+    """
+    return FORMATS[suffix_of(path, kind, reading=True)].read(path)
+
+
+def write_csv(name, content):
+    """Write a table of repr-exact numbers under comment lines with title and meta data (JSON)."""
+    columns = [np.asarray(values, dtype=float).tolist() for values in content.columns.values()]
+    with open(name, "w", encoding="utf-8") as file:
+        file.write(f"# {content.title}\n# meta: {json.dumps(content.meta)}\n{','.join(content.columns)}\n")
+        for row in zip(*columns, strict=True):
+            file.write(",".join(map(repr, row)) + "\n")
+
+
+def write_npz(name, content):
+    """Write a numpy archive; ``meta`` and ``units_json`` are JSON strings."""
+    with open(name, "wb") as file:
+        np.savez(file, **content.arrays, **_told(content))
+
+
+def write_mat(name, content):
+    """Write a MATLAB 5 file; ``meta`` and ``units_json`` are JSON (``jsondecode``), rows of text are cell arrays."""
+    from scipy.io import savemat
+
+    arrays = {key: value.astype(object) if value.dtype.kind == "U" else value for key, value in content.arrays.items()}
+    savemat(name, arrays | _told(content), appendmat=False, oned_as="column")
+
+
+def _told(content):
+    """Meta data and units of all arrays as JSON text."""
+    units = {key: content.units.get(key, "-") for key in content.arrays}
+    return {"meta": json.dumps(content.meta), "units_json": json.dumps(units)}
+
+
+def write_json(name, content):
+    """Write JSON: arrays as lists (nan as null), units beside them."""
+    data = {key: json.loads(json.dumps(value.tolist()).replace("NaN", "null")) for key, value in content.arrays.items()}
+    with open(name, "w", encoding="utf-8") as file:
+        json.dump({"units": {key: content.units[key] for key in data}, **data, "meta": content.meta}, file)
+
+
+def read_text(path):
+    """Lines of a text file: in UTF-8, in UTF-16, or, with a warning, in Windows-1252, which holds Latin-1."""
+    try:
+        content = Path(path).read_bytes()
+    except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
+        raise ValueError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
+    text = _decoded(content)
+    if text is None:
+        raise ValueError(f"{path} is not text in UTF-8, UTF-16 or Windows-1252: export it as CSV in UTF-8")
+    if text[1] == "cp1252":
+        warnings.warn(f"{path} is not UTF-8: read as Windows-1252 (Latin-1)", stacklevel=4)
+    return text[0].splitlines()
+
+
+def _decoded(content):
+    """Text of bytes and its encoding; None if they are no text in one of those that tables are exported in."""
+    marks = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16", codecs.BOM_UTF8: "utf-8-sig"}
+    marked = next((name for mark, name in marks.items() if content.startswith(mark)), None)
+    wide = {"utf-16-le": content[1:400:2], "utf-16-be": content[:400:2]}  # of text in Latin letters one byte in two is zero
+    guessed = [name for name, high in wide.items() if len(high) > 1 and high.count(0) > 0.9 * len(high)]
+    for name in [marked] if marked else [*guessed, "utf-8", "cp1252"]:
+        with contextlib.suppress(UnicodeDecodeError):
+            text = content.decode(name)
+            if name == "utf-8" or not CONTROLS.search(text):
+                return text, name
+    return None
+
+
+def read_npz(path):
+    """Arrays of a numpy archive, by name; nothing is unpickled, and no more memory is asked for than the file can fill."""
+    with _opened(path) as file:
+        try:
+            with zipfile.ZipFile(file) as archive:
+                for member in archive.infolist():
+                    _check_member(archive, member)
+            file.seek(0)
+            with np.load(file, allow_pickle=False) as archive:
+                return {name: archive[name] for name in archive.files}
+        except NO_ARCHIVE as error:
+            raise ValueError(f"{path} is not a numpy archive of plain arrays: {error}") from error
+
+
+def _check_member(archive, member):
+    """ValueError if a member of a numpy archive is larger, by what it says, than its bytes can make it."""
+    if member.file_size > MOST_PACKED * (member.compress_size + 1):
+        raise ValueError(f"{member.filename} holds {member.compress_size} bytes that cannot become {member.file_size}")
+    if not member.filename.endswith(".npy"):
+        return
+    with archive.open(member) as file:
+        version = npy.read_magic(file)
+        shape, _, dtype = (npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0)(file)
+        if not dtype.hasobject and math.prod(shape) * dtype.itemsize > member.file_size - file.tell():
+            raise ValueError(f"{member.filename} says it is {dtype} {list(shape)}, more than its {member.file_size} bytes")
+
+
+def read_mat(path):
+    """Variables of a MATLAB file of version 7 or older, by name: arrays, or `gearfe.core.matlab_file.Unread`."""
+    with _opened(path) as file:
+        try:
+            return variables(file.read())
+        except (ValueError, MemoryError) as error:
+            raise ValueError(f"{path} is not a MATLAB file, or a damaged one: {error}") from error
+
+
+@contextlib.contextmanager
+def _opened(path):
+    try:
+        with open(path, "rb") as file:
+            yield file
+    except OSError as error:
+        raise ValueError(f"cannot read {path}: {error.strerror or error}") from error
+
+
+class Format(NamedTuple):
+    """What files of a suffix hold, and what writes and reads them; None where the library that draws does."""
+
+    writes: tuple = ()
+    reads: tuple = ()
+    write: Callable | None = None
+    read: Callable | None = None
+
+
+FORMATS = {
+    ".csv": Format(("curve", "response"), ("curve", "signal"), write_csv, read_text),
+    ".txt": Format((), ("signal",), None, read_text),
+    ".npz": Format(("curve", "response", "surrogate"), ("signal", "surrogate"), write_npz, read_npz),
+    ".mat": Format(("curve", "response"), ("signal",), write_mat, read_mat),
+    **{suffix: Format((), ("signal",)) for suffix in (".h5", ".hdf5", ".wav", ".uff", ".unv", ".uf", ".tdms", ".parquet")},
+    ".json": Format(("curve",), (), write_json, None),
+    ".png": Format(("picture", "stress")),
+    **{suffix: Format(("picture",)) for suffix in (".svg", ".pdf", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".eps")},
+    ".vtu": Format(("stress", "mesh")),
+    ".msh": Format(("mesh",)),
+    ".html": Format(("page",)),
+    ".inp": Format(("deck", "mesh")),
+}

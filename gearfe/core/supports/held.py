@@ -1,0 +1,93 @@
+"""What holds the hubs of a pair, checked: it must carry its gear, and not give way so far that the teeth leave each other."""
+
+import math
+
+import numpy as np
+
+from ...geometry.checks import by_gear
+from .shaft import Shaft
+from .support import UNITS, Support
+
+TWIST = 0.1  # largest twist [rad]: round steel at 300 N/mm2 twists so far over 13 diameters of its length
+REFUSE = 0.25  # largest approach, of the module, see `gearfe.stiffness.plausible`
+FITS = 0.01  # by this part of the bore a shaft may be thicker: a press fit, and rounded numbers
+
+
+def supports_of(pair, supports, forces=(), face=None):
+    """What holds the hubs of pinion and wheel, None where rigid; None if both are.
+
+    ValueError if something else is given, a shaft does not carry its gear, or a hub gives way so far under one of the `forces`
+    [N] that the teeth leave each other.
+    """
+    if supports is None:
+        return None
+    both = by_gear("supports", supports, "{'pinion': Support(...), 'wheel': Shaft(...)}")
+    for name, gear, held in zip(("pinion", "wheel"), (pair.gear_1, pair.gear_2), both, strict=True):
+        if held is None:
+            continue
+        if not isinstance(held, (Support, Shaft)):
+            raise ValueError(f"supports of the {name}: {held!r} is neither a Support nor a Shaft")
+        _check_fit(name, gear, held)
+        beta_b = 0.0 if face == "herringbone" else abs(gear.beta_b)  # its halves' axial forces cancel
+        _check_way(name, gear, held, max(forces, default=0.0), beta_b)
+    return both if any(both) else None
+
+
+def _check_fit(name, gear, held):
+    """ValueError for a shaft that its gear's bore does not take."""
+    if not isinstance(held, Shaft) or held.integral or gear.internal:
+        return
+    if gear.b > held.length * (1 + 1e-9):
+        raise ValueError(
+            f"the {name}'s shaft is {held.length:g} mm long, but its gear is {gear.b:g} mm wide: give lengths in mm "
+            f"({held.length:g} m are {1e3 * held.length:g} mm)"
+        )
+    thick, bore = held.diameter, 2 * gear.r_bore
+    if thick > bore * (1 + FITS):
+        raise ValueError(
+            f"the {name}'s shaft is {thick:g} mm thick at the gear, but the bore is {bore:g} mm wide (r_bore = {gear.r_bore:g} "
+            "mm): give diameters of the shaft and the radius of the bore in mm, or a gear that is one piece with its shaft "
+            "(integral)"
+        )
+
+
+def _check_way(name, gear, held, force, beta_b):
+    """ValueError for springs on which a hub gives way by more than a part of the module under a force on its teeth.
+
+    As far as a force can be off the middle of the width: a quarter of it, and what the axial force of helical teeth adds.
+    """
+    hub, axial = held.hub(), force * math.tan(beta_b)
+    arm = gear.b / 4 + gear.r_b * math.tan(beta_b)
+    (soft, cross), (_, tilt) = np.abs(hub.bending).tolist()
+    ways = {
+        "radial": force * soft,
+        "tilt": force * (cross * (arm + gear.b / 2) + tilt * arm * gear.b / 2),
+        "axial": axial * hub.axial,
+    }
+    worst, twist, limit = max(ways, key=lambda way: ways[way]), force * gear.r_b * hub.torsion, REFUSE * gear.m_n
+    if ways["radial"] + ways["tilt"] > limit or ways["axial"] > limit:
+        problem = (
+            f"its teeth give way by {ways[worst]:.3g} mm, but beyond {limit:g} mm, {100 * REFUSE:g} % of the module, they leave"
+        )
+        raise ValueError(
+            f"the {name}'s {_springs(held, worst)}: under {force:g} N {problem} those of the other gear: {_units(held, worst)}"
+        )
+    if twist > TWIST:
+        problem = f"it twists by {twist:.3g} rad, but shafts twist by less than {TWIST:g} rad"
+        raise ValueError(f"the {name}'s {_springs(held, 'torsion')}: under {force:g} N {problem}: {_units(held, 'torsion')}")
+
+
+def _springs(held, what):
+    """What of a support is too soft, as it was given."""
+    if isinstance(held, Support):
+        return f"support has {what} = {getattr(held, what):g} {UNITS[what]}"
+    thin, thick = (pick(segment.diameter for segment in held.segments) for pick in (min, max))
+    return f"shaft is {held.length:g} mm long and {thin:g} to {thick:g} mm thick, its bearings {held.bearing_stiffness} N/mm"
+
+
+def _units(held, what):
+    """What to do about it."""
+    if isinstance(held, Support):
+        value, larger = getattr(held, what), "N/um" if what in ("radial", "axial") else "N m/rad"
+        return f"give {what} in {UNITS[what]} ({value:g} {larger} are {1e3 * value:g} {UNITS[what]}), or a smaller force"
+    return "give lengths and diameters in mm, stiffnesses of bearings in N/mm (1 N/um is 1000 N/mm), E in MPa, or a smaller force"

@@ -1,0 +1,1 @@
+"""Vibration: machines (masses, springs, meshes), their simulation and their steady state."""

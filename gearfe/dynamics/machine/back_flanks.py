@@ -1,0 +1,126 @@
+"""Back flanks with a stiffness of their own: a second mesh that pushes the other way, once the play is used up.
+
+The back flanks of symmetrical teeth are the mirror images of the front ones, and meet in the mirrored order: from the tip of the
+pinion to its root where the front flanks go from root to tip. So they have the stiffness of the front flanks, run through
+backwards from another phase (`back_phase`); and a tooth that is damaged in front of its centre-line is not damaged there.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from ...geometry.pair.gear_pair import GearPair
+from .gear_mesh import GearMesh, Stiffness, ToothDamage
+from .tables import Machine
+
+
+@dataclass(frozen=True, slots=True)
+class BackFlanks:
+    """The back flanks of a mesh.
+
+    Attributes
+    ----------
+    start : float
+        The phase of the mesh at which its back flanks are at phase 0 of theirs, see `back_phase`.
+    stiffness : float, ndarray, StiffnessCurve, ForceLaw or Table, optional
+        Of the back flanks over their own mesh cycle, as if they drove; default: that of the front flanks, which symmetrical teeth
+        have on both.
+    damage : tuple of ToothDamage
+        Damaged teeth, numbered as those of the mesh: their curves where the back flanks carry.
+    """
+
+    start: float
+    stiffness: Stiffness | None = None
+    damage: tuple[ToothDamage, ...] = ()
+
+
+def back_phase(pair: GearPair) -> float:
+    """The phase of a mesh at which the back flanks of its pair are at phase 0 of theirs.
+
+    At the pitch point a front flank and the back flank of the same tooth of the pinion lie a tooth's thickness s apart on the
+    pitch circle, so that with its pitch p and the phase c of the pitch point both are ``start = 2 c + s / p``. Without the play,
+    half of which moves it by half of its part of the base pitch.
+
+    Raises
+    ------
+    ValueError
+        If the teeth are helical.
+
+    Examples
+    --------
+    Two equal standard gears: the thickness is half a pitch.
+
+    >>> import math, gearfe as gf
+    >>> gear = gf.Gear(z=25, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=10.0)
+    >>> pair = gf.GearPair(gear, gear)
+    >>> round(back_phase(pair) - 2 * pair.pitch_phase, 6)
+    0.5
+    """
+    if pair.eps_beta:
+        raise ValueError("back_phase is of spur pairs: along helical teeth front and back flanks meet from different ends")
+    part = pair.gear_1.half_thickness(pair.pitch_radius_1) * pair.gear_1.z / math.pi
+    return float(2 * pair.pitch_phase + part)
+
+
+def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machine:
+    """The machine with back flanks of their own in the meshes named: each becomes two, the second called ``NAME back``.
+
+    Each of the two only has flanks in front; the second lies a play behind, and has the errors of the first, which what opens the
+    front flanks brings closer: `with_errors` comes before. What a `film` damps between the flanks stays one damping.
+
+    Parameters
+    ----------
+    machine : Machine
+    back : dict of str to BackFlanks
+        By the mesh's name.
+
+    Raises
+    ------
+    ValueError
+        If there is no such mesh, it has no back flanks (`backlash` 0 or inf), or it has friction.
+
+    Examples
+    --------
+    >>> import gearfe as gf
+    >>> made = gf.single_mesh(1.0, 1e8, 500.0, force=1000.0, backlash=1e-4)
+    >>> made = gf.with_back_flanks(made, {"mesh": gf.BackFlanks(0.5, stiffness=0.9e8)})
+    >>> [mesh.name for mesh in made.meshes]
+    ['mesh', 'mesh back']
+    """
+    known = {mesh.name: mesh for mesh in machine.meshes}
+    for name in back:
+        if name not in known:
+            raise ValueError(f"no mesh {name!r}; there are {', '.join(known)}")
+        if not 0 < known[name].backlash < math.inf:
+            raise ValueError(f"mesh {name}: backlash = {known[name].backlash} m, but back flanks need one above 0 and finite")
+        if known[name].friction:
+            raise ValueError(f"mesh {name}: back flanks of their own are without friction, which this mesh has")
+    damping = dict(zip(known, machine.law["damping"], strict=True))
+    front = tuple(
+        replace(mesh, backlash=math.inf, zeta=0.0, damping=float(damping[mesh.name])) if mesh.name in back else mesh
+        for mesh in machine.meshes
+    )
+    behind = tuple(_behind(known[name], own, float(damping[name])) for name, own in back.items())
+    return replace(machine, meshes=(*front, *behind))
+
+
+def _behind(mesh: GearMesh, own: BackFlanks, damping: float) -> GearMesh:
+    """The back flanks of a mesh as one of its own: time, teeth and errors run the other way."""
+    rest = 1.0 if mesh.push else 1 - mesh.film  # the front flanks, being apart, go on damping with the film
+    return replace(
+        mesh,
+        name=f"{mesh.name} back",
+        row=-mesh.row,
+        stiffness=mesh.stiffness if own.stiffness is None else own.stiffness,
+        frequency=-mesh.frequency,
+        phase=own.start - mesh.phase,
+        first=(-mesh.first[0], -mesh.first[1] - 1),
+        damage=tuple(replace(hurt, tooth=-hurt.tooth) for hurt in own.damage),
+        error=tuple((-size, hertz, angle) for size, hertz, angle in mesh.error),
+        gap=mesh.backlash,
+        damping=rest * damping,
+        beta=rest * mesh.beta,
+        zeta=0.0,
+        film=0.0,
+        backlash=math.inf,
+    )

@@ -1,0 +1,118 @@
+"""Over the mesh phase: coefficients of the impact law, contact lines of helical gears, what pits take away, weights of friction.
+
+All are for gears whose damaged tooth is tooth 0 of the pinion, at the phases of `gearfe.GearPair`.
+"""
+
+import math
+
+import numpy as np
+
+from ...flexibility.hertz import contact_modulus
+from .contact_law import friction_coefficient
+from .gear_mesh import Samples
+from .phase_table import table
+
+SI = 1e3**1.5  # N/mm^1.5 to N/m^1.5
+
+
+def engaged(pair, phase):
+    """Phases of all pairs on the path of contact at `phase` ``(n, pairs)``, nan where there is none."""
+    pair_phase = np.asarray(phase, dtype=float)[..., None] + np.arange(
+        -math.ceil(pair.eps_alpha) - 1, math.ceil(pair.eps_alpha) + 2
+    )
+    pair_phase = pair_phase - np.floor(np.asarray(phase, dtype=float))[..., None]
+    return np.where((pair_phase >= 0) & (pair_phase < pair.eps_alpha), pair_phase, np.nan)
+
+
+def impact_cycle(pair, materials, *, lost=None, count=256):
+    """Coefficient of ``F = K delta**1.5`` over a cycle: the sum over the pairs in touch of ``4/3 sqrt(R) E*`` [N/m^1.5].
+
+    All pairs are pressed together by the same depth, each with the radius of curvature R at its contact. With `lost`, the part of
+    its contact line that tooth 0 lacks as a function of its phase: over its whole engagement, as a damaged tooth's curve.
+    """
+    if lost is None:
+        phase = (np.arange(count) + 0.5) / count  # between the ends of engagements, which fall on whole phases
+        pair_phase = engaged(pair, phase)
+        return Samples(phase, SI * np.nansum(_hertz(pair, pair_phase, materials), axis=1))
+    phase = np.arange(-count // 8, math.ceil((pair.eps_alpha + 0.125) * count)) / count + 0.5 / count
+    pair_phase = engaged(pair, phase)
+    first = np.abs(pair_phase - phase[:, None]) < 1e-9
+    weight = np.where(first, 1.0 - np.asarray(lost(phase))[:, None], 1.0)
+    return Samples(phase, SI * np.nansum(weight * _hertz(pair, pair_phase, materials), axis=1))
+
+
+def _hertz(pair, phase, materials):
+    radius_1, radius_2 = pair.curvature_radii(phase)
+    return 4 / 3 * np.sqrt(pair.relative_radius(radius_1, radius_2)) * contact_modulus(materials)
+
+
+def contact_line(pair, phase, *, width=None):
+    """Length of the contact line of the pair at `phase` of a helical gear [mm], at an array of phases.
+
+    A line crosses the face in the phases ``0...eps_alpha + eps_beta``; it is cut at the ends of the path of contact.
+    """
+    width = width or min(pair.gear_1.b, pair.gear_2.b)
+    over, slope = pair.eps_beta_of(width), math.cos(pair.gear_1.beta_b)
+    low, high = np.maximum(np.asarray(phase, dtype=float) - over, 0.0), np.minimum(phase, pair.eps_alpha)
+    return np.maximum(high - low, 0.0) / over * width / slope
+
+
+def line_cycle(pair, coefficient, *, lost=None, width=None, count=256):
+    """Coefficient of the impact law of a helical pair over a cycle [N/m^1.5].
+
+    `coefficient` [N/mm^1.5] times the length of all contact lines over its mean, the contact-line-percentage method: the
+    force on a pair is in proportion to the length of its line. `lost` as in `impact_cycle`, in mm.
+    """
+    width = width or min(pair.gear_1.b, pair.gear_2.b)
+    total = pair.eps_alpha + pair.eps_beta_of(width)
+    mean = pair.eps_alpha * width / math.cos(pair.gear_1.beta_b)
+    steps = np.arange(count) if lost is None else np.arange(-count // 8, math.ceil((total + 0.125) * count))
+    phase = steps / count
+    around_it = phase[:, None] + np.arange(-math.ceil(total + 1 + phase.max()), math.ceil(total) + 2)
+    length = contact_line(pair, around_it, width=width).sum(axis=1)
+    if lost is not None:
+        length = length - np.minimum(lost(phase), contact_line(pair, phase, width=width))
+    return Samples(phase, SI * coefficient * length / mean)
+
+
+def ellipse_loss(pair, pits, *, width=None):
+    """Length of the contact line that elliptical pits take from a tooth of a helical pinion [mm], as a function of its phase.
+
+    Parameters
+    ----------
+    pits : sequence of (float, float, float, float)
+        Radius on the pinion, place across the width from where contact enters, axis along the width, axis along the profile [mm].
+    """
+    gear = pair.gear_1
+    width = width or min(gear.b, pair.gear_2.b)
+    angle = abs(gear.beta_b)
+
+    def lost(phase):
+        out = np.zeros(np.shape(phase))
+        for radius, z0, major, minor in pits:
+            centre = math.sqrt(radius**2 - gear.r_b**2)
+            stretch = centre / gear.r_b  # arc of the profile per length on the line of action
+            # along the line: z, and roll = path start + phase p_bt - z tan(angle); it cuts (z - z0)**2/a**2 + s**2/b**2 = 1
+            offset = (pair.path[0] + np.asarray(phase) * pair.p_bt - z0 * math.tan(angle) - centre) * stretch
+            slant, a, b = math.tan(angle) * stretch, major / 2, minor / 2
+            size = (slant * a) ** 2 + b**2
+            out = out + 2 * a * b * np.sqrt(np.maximum(size - offset**2, 0.0)) / size / math.cos(angle)
+        return out
+
+    return lost
+
+
+def friction_weights(pair, speeds, *, static, dynamic, v_static, v_dynamic, count=512):
+    """Weights of the three rows of `gearfe.dynamics.machine.layout.Layout.rubbing` over a cycle, as tables.
+
+    The force is shared equally by the pairs in touch; each slips at ``speed_1 roll_1 + outward speed_2 roll_2``, the vibration
+    left out. `speeds` are those of both gears relative to the frame [rad/s], counter-clockwise positive.
+    """
+    phase = (np.arange(count) + 0.5) / count
+    roll_1, roll_2 = (1e-3 * r for r in pair.curvature_radii(engaged(pair, phase)))
+    slip = speeds[0] * roll_1 + pair.outward * speeds[1] * roll_2
+    mu = friction_coefficient(slip, static=static, dynamic=dynamic, v_static=v_static, v_dynamic=v_dynamic)
+    share = 1 / np.isfinite(slip).sum(axis=1, keepdims=True)
+    whole = (np.nansum(share * mu * arm, axis=1) for arm in (np.ones_like(roll_1), roll_1, roll_2))
+    grid = np.arange(count) / count
+    return tuple(table(np.interp(grid, phase, values, period=1.0), 0.0, 1 / count, periodic=True) for values in whole)

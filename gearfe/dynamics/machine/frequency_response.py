@@ -1,0 +1,91 @@
+"""How a machine answers a harmonic force: receptance, mobility and accelerance between two of its coordinates."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .tables import Machine
+
+KINDS = {"receptance": 0, "mobility": 1, "accelerance": 2}  # derivatives by time
+
+
+def frequency_response(
+    machine: Machine,
+    frequencies: ArrayLike,
+    heard: str | ArrayLike,
+    driven: str | ArrayLike,
+    *,
+    kind: str = "receptance",
+    x: ArrayLike | None = None,
+) -> NDArray[np.complex128]:
+    """Motion at one coordinate per harmonic force at another, meshes at their mean stiffness and damping.
+
+    ::
+
+        H(f) = (i w)**p  heard @ inv(K + i w C - w**2 M) @ driven,   w = 2 pi f,  p = 0, 1, 2
+
+    The varying part of the stiffness, which couples frequencies a mesh frequency apart, is left out. Without the spin of a frame,
+    rotors that tilt and friction it is the same with both coordinates exchanged.
+
+    Parameters
+    ----------
+    machine : Machine
+    frequencies : array_like, shape (f,)
+        [Hz]
+    heard, driven : str or array_like, shape (n,)
+        A degree of freedom, a mesh (its compression; its force on both bodies), or a row over the degrees of freedom.
+    kind : str
+        ``"receptance"`` [m/N, rad/(N m)...], ``"mobility"`` [times 1/s], ``"accelerance"`` [times 1/s2].
+    x : ndarray, shape (m,), optional
+        Mesh compressions [m] about which laws that are not linear are taken; default: those at rest.
+
+    Returns
+    -------
+    ndarray, shape (f,), complex
+
+    Raises
+    ------
+    ValueError
+        If a name is unknown, a frequency is negative or not finite, or the machine is free to move at it without limit.
+
+    References
+    ----------
+    D. J. Ewins, Modal Testing, 2nd ed. (2000), section 2.6.
+
+    Examples
+    --------
+    A mass of 2 kg on a spring of 8e4 N/m, at rest and far above its 31.8 Hz:
+
+    >>> from gearfe.dynamics.machine.tables import Spring
+    >>> disc = Machine(("disc.x",), [2.0], (Spring("bearing", np.array([1.0]), 8e4, 40.0),), ())
+    >>> float(1 / frequency_response(disc, [0.0], "disc.x", "disc.x")[0].real)
+    80000.0
+    >>> round(float(frequency_response(disc, [1e4], "disc.x", "disc.x", kind="accelerance")[0].real), 4)
+    0.5
+    """
+    if kind not in KINDS:
+        raise ValueError(f"kind = {kind!r}, but it must be one of {', '.join(KINDS)}")
+    f = np.atleast_1d(np.asarray(frequencies, dtype=float))
+    if f.ndim != 1 or not (np.isfinite(f).all() and (f >= 0).all()):
+        raise ValueError("frequencies: give a row of finite numbers of Hz, 0 or more")
+    out, at = _row(machine, heard), _row(machine, driven)
+    K, C, _, _ = machine.linear(machine.working() if x is None else x)
+    scale = 1 / np.sqrt(machine.mass)  # so that 1 has one meaning for displacements and angles
+    K, C = (scale[:, None] * matrix * scale for matrix in (K, C))
+    answer = np.empty(f.size, dtype=complex)
+    for i, w in enumerate(2 * np.pi * f):
+        dynamic = K + 1j * w * C - w**2 * np.eye(len(K))
+        if np.linalg.cond(dynamic) > 1e15:
+            raise ValueError(f"at {f[i]:g} Hz a force moves the machine without limit: a body is free there, or a mode undamped")
+        answer[i] = (1j * w) ** KINDS[kind] * (out * scale) @ np.linalg.solve(dynamic, scale * at)
+    return answer
+
+
+def _row(machine, given):
+    """Row over the degrees of freedom of a name, or as it is given."""
+    if isinstance(given, str):
+        rows = [mesh.row for mesh in machine.meshes if mesh.name == given]
+        return rows[0] if rows else machine.row(given)
+    row = np.asarray(given, dtype=float)
+    if row.shape != (len(machine.dofs),) or not np.isfinite(row).all():
+        raise ValueError(f"a row of shape {row.shape}: give {len(machine.dofs)} finite numbers, one per degree of freedom")
+    return row

@@ -1,0 +1,255 @@
+"""One gear mesh of a machine: its row, its stiffness over the mesh phase with damaged teeth, its errors and its contact law.
+
+The phase of a mesh runs on without end, ``phase + frequency t``; the pair that enters at the whole number n is formed by tooth
+``first[0] + n`` of body 1 and ``first[1] + n`` of body 2 (modulo their tooth numbers, numbered in the order they enter). A
+damaged tooth therefore returns every z cycles of *each* mesh its body takes part in, and two damaged teeth meet at the hunting
+interval.
+"""
+
+import math
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...stiffness.curve import StiffnessCurve
+from .contact_law import LAWS, Law, law_of
+from .force_law import ForceLaw, Secant
+from .phase_table import SMOOTH, Table, smooth_table, table
+
+FINE = 1024  # samples per cycle that curves on uneven phases are brought to
+
+
+class Samples(NamedTuple):
+    """Stiffness `k` [N/m^power] at phases, of what is no `StiffnessCurve`: contact coefficients, or curves of other programs."""
+
+    phase: NDArray[np.float64]
+    k: NDArray[np.float64]
+
+
+Curve = StiffnessCurve | Samples  # stiffness over the phase
+
+
+Stiffness = float | NDArray[np.float64] | Curve | ForceLaw | Table  # what `GearMesh` takes
+
+
+def cycle_table(stiffness: Stiffness) -> Table:
+    """`Table` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law.
+
+    Through samples smooth cubics (`machine.phase_table.smooth_table`), through a `StiffnessCurve` those of `table`.
+    """
+    if isinstance(stiffness, Table):
+        return stiffness
+    if isinstance(stiffness, ForceLaw):
+        stiffness = Samples(*stiffness.at(stiffness.force))
+    if not isinstance(stiffness, (StiffnessCurve, Samples)):
+        values = np.atleast_1d(np.asarray(stiffness, dtype=float))
+    else:
+        phase = np.asarray(stiffness.phase, dtype=float) % 1.0
+        order = np.argsort(phase, kind="stable")
+        phase, values = phase[order], np.asarray(stiffness.k, dtype=float)[order]
+        if not np.allclose(phase, np.arange(phase.size) / phase.size, atol=1e-9):
+            values = np.interp(np.arange(FINE) / FINE, phase, values, period=1.0)
+    if values.ndim != 1 or not np.isfinite(values).all() or (values < 0).any():
+        raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
+    if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # bent where pairs come in
+        return table(values, 0.0, 1.0 / values.size, periodic=True)
+    return smooth_table(values)
+
+
+@dataclass(frozen=True, slots=True)
+class ToothDamage:
+    """A damaged tooth of one of the two bodies of a mesh.
+
+    Parameters
+    ----------
+    body : int
+        0 or 1: whose tooth.
+    tooth : int
+        Its number.
+    curve : StiffnessCurve, Samples or ForceLaw
+        Stiffness over the tooth's whole engagement (``span="tooth"``): phase 0 is where its pair enters. A law where the mesh
+        has one.
+    """
+
+    body: int
+    tooth: int
+    curve: Curve | ForceLaw
+
+    def change(self, healthy: Table) -> Table:
+        """`Table` of the difference from the `healthy` cycle, zero one cell beyond either end."""
+        curve = Samples(*self.curve.at(self.curve.force)) if isinstance(self.curve, ForceLaw) else self.curve
+        phase, k = np.asarray(curve.phase, dtype=float), np.asarray(curve.k, dtype=float)
+        if phase.size < 2 or not (np.diff(phase) > 0).all():
+            raise ValueError("the phases of a damaged tooth's curve must rise: use mesh_stiffness(..., span='tooth')")
+        width = np.diff(phase).min()
+        count = round((phase[-1] - phase[0]) / width)
+        grid = phase[0] + np.arange(count + 1) * (phase[-1] - phase[0]) / max(count, 1)
+        values = np.interp(grid, phase, k) - healthy(grid % 1.0)
+        width = grid[1] - grid[0]
+        return table(np.concatenate([[0.0], values, [0.0]]), grid[0] - width, width, periodic=False)
+
+
+@dataclass(frozen=True, slots=True)
+class GearMesh:
+    """A gear mesh: the force ``F`` of `gearfe.dynamics.machine.contact_law.force` acts on the degrees of freedom as ``-row F``.
+
+    Parameters
+    ----------
+    name : str
+    row : ndarray, shape (n,)
+        ``row @ q`` is the compression along the transverse line of action [m].
+    stiffness : float, ndarray, StiffnessCurve, ForceLaw or Table
+        Stiffness over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced. Of a `ForceLaw` k is the secant
+        stiffness at the depth at which the flanks press, the same law on the back flanks; where one stiffness over the phase is
+        asked for, that under the law's `force`.
+    frequency : float
+        Mesh frequency [Hz]. It is negative where the loaded flanks are those of gear 1 driving, but gear 2 drives: the contacts
+        then run backwards.
+    phase : float
+        Phase at t = 0; whole cycles count, because they number the teeth.
+    teeth, first : (int, int)
+        Tooth numbers of the bodies, and the teeth of the pair that enters at phase 0.
+    damage : tuple of ToothDamage
+    error : tuple of (float, float, float)
+        Mesh error ``e(t)`` as sinusoids: amplitude [m], frequency [Hz], phase [rad] of a sine; it opens the mesh.
+    damping, beta, zeta : float
+        ``c = damping + beta k(t)`` [N s/m], `beta` in s; a `zeta` is turned into ``damping = 2 zeta sqrt(mean k / sum(row**2 /
+        m))`` by `gearfe.dynamics.machine.tables.Machine`, summed over all degrees of freedom that the row moves.
+    power, depth, push : float, float, bool
+        Of the impact law: the exponent, the penetration from which the damping is full [m] (0: it always is), and whether the
+        flanks only push and never pull.
+    backlash : float
+        Play along the line of action [m]. With 0 the mesh never opens, with inf there is no back flank.
+    film : float
+        Part of the damping that acts while no flank touches (1: all of it, as A. Kahraman, R. Singh, J. Sound Vib. 142 (1990)).
+    friction : tuple of (ndarray, Table)
+        Rows and their weights over the phase: friction acts with ``-row weight(phase) F``.
+    gap : float
+        How far the flanks are apart where ``row @ q - e`` is 0 [m]: the play before back flanks of their own touch.
+    law : Law, optional
+        Another contact law than `power` and `depth` state, with its parameters (`gearfe.dynamics.machine.contact_law`).
+    """
+
+    name: str
+    row: NDArray[np.float64]
+    stiffness: Stiffness
+    frequency: float = 0.0
+    phase: float = 0.0
+    teeth: tuple[int, int] = (1, 1)
+    first: tuple[int, int] = (0, 0)
+    damage: tuple[ToothDamage, ...] = ()
+    error: tuple[tuple[float, float, float], ...] = ()
+    damping: float = 0.0
+    beta: float = 0.0
+    zeta: float = 0.0
+    power: float = 1.0
+    depth: float = 0.0
+    push: bool = False
+    backlash: float = 0.0
+    film: float = 1.0
+    friction: tuple[tuple[NDArray[np.float64], Table], ...] = ()
+    gap: float = 0.0
+    law: Law | None = None
+    contact: Law = field(init=False)
+    cycle: Table = field(init=False)
+    changes: tuple[tuple[float, float, Table], ...] = field(init=False)
+    secants: tuple[Secant, ...] = field(init=False)
+    average: Secant | None = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Make the tables; raise ValueError for values that are out of range or do not go together."""
+        self._check()
+        object.__setattr__(self, "row", np.asarray(self.row, dtype=float))
+        object.__setattr__(self, "contact", self.law or law_of(self.power, self.depth))
+        self._check_contact()
+        object.__setattr__(self, "cycle", cycle_table(self.stiffness))
+        secants = self._secants()
+        object.__setattr__(self, "secants", secants)
+        object.__setattr__(self, "average", secants[0].mean if secants else None)
+        object.__setattr__(self, "changes", tuple(self._change(hurt) for hurt in self.damage))
+
+    def _check(self) -> None:
+        for name in ("frequency", "phase", "damping", "beta", "zeta", "depth", "gap"):
+            value = getattr(self, name)
+            if not math.isfinite(value) or (value < 0 and name not in ("phase", "frequency")):
+                raise ValueError(f"mesh {self.name}: {name} = {value}, but it must be finite and not negative")
+        if not self.backlash >= 0 or not 0 <= self.film <= 1 or not self.power >= 1:
+            raise ValueError(f"mesh {self.name}: needs backlash >= 0, 0 <= film <= 1 and power >= 1")
+        for sinusoid in self.error:
+            if len(sinusoid) != 3 or not all(map(math.isfinite, sinusoid)):
+                raise ValueError(
+                    f"mesh {self.name}: error {sinusoid}, but give (amplitude [m], frequency [Hz], phase [rad]), finite"
+                )
+
+    def _check_contact(self) -> None:
+        law, power = self.contact, self.contact.power
+        if type(law) not in LAWS:
+            raise ValueError(
+                f"mesh {self.name}: law = {law!r} is not in LAWS of gearfe.dynamics.machine.contact_law: add its row there"
+            )
+        if self.law and (self.power != 1 or self.depth):
+            raise ValueError(f"mesh {self.name}: power and depth besides law = {law!r}, which has parameters of its own")
+        if power != 1 and self.backlash == 0:
+            raise ValueError(f"mesh {self.name}: power = {power} needs a backlash > 0 (inf: no back flank)")
+        if power != 1 and isinstance(self.stiffness, ForceLaw):
+            raise ValueError(f"mesh {self.name}: power = {power} besides a law of force, which says itself how force rises")
+
+    def _change(self, hurt: ToothDamage) -> tuple[float, float, Table]:
+        z, change = self.teeth[hurt.body], hurt.change(self.cycle)
+        if change.end - change.start > z:
+            raise ValueError(f"mesh {self.name}: the damaged tooth's curve is longer than the {z} cycles until it returns")
+        return float(z), float((hurt.tooth - self.first[hurt.body]) % z), change
+
+    def _secants(self) -> tuple[Secant, ...]:
+        """`Secant` of the healthy cycle, then the change by each damage; none without a `ForceLaw`."""
+        lawful = [isinstance(stiffness, ForceLaw) for stiffness in (self.stiffness, *(hurt.curve for hurt in self.damage))]
+        if any(lawful) != all(lawful):
+            raise ValueError(f"mesh {self.name}: give laws of force for the healthy mesh and for all its damage, or for none")
+        if not isinstance(self.stiffness, ForceLaw):
+            return ()
+        if not self.stiffness.periodic:
+            raise ValueError(f"mesh {self.name}: its law of force is not of one mesh cycle: make it with span='cycle'")
+        healthy = self.stiffness.secant
+        return healthy, *(hurt.curve.secant.less(healthy) for hurt in self.damage if isinstance(hurt.curve, ForceLaw))
+
+    @property
+    def openings(self) -> tuple[tuple[float, float, float], ...]:
+        """Its errors, and its gap as one that stays."""
+        return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
+
+    def k(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Stiffness at times `t` [N/m^power], never below zero."""
+        return self.at_phase(self.phase + self.frequency * np.asarray(t, dtype=float))
+
+    def at_phase(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Stiffness at running phases."""
+        out = self.cycle(phase - np.floor(phase))
+        for z, first, change in self.changes:
+            tooth_phase = phase - first - change.start
+            tooth_phase = tooth_phase - z * np.floor(tooth_phase / z) + change.start
+            out = out + np.where(tooth_phase < change.end, change(np.minimum(tooth_phase, change.end)), 0.0)
+        return np.maximum(out, 0.0) if self.changes else out
+
+    def e(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Mesh error with the gap, and its rate, at times `t` [m], [m/s]."""
+        out, rate = np.zeros(np.shape(t)), np.zeros(np.shape(t))
+        for amplitude, frequency, angle in self.openings:
+            turn = 2 * math.pi * frequency * np.asarray(t) + angle
+            out = out + amplitude * np.sin(turn)
+            rate = rate + amplitude * 2 * math.pi * frequency * np.cos(turn)
+        return out, rate
+
+    def cycles(self) -> int:
+        """Mesh cycles after which the stiffness repeats: 1, or the common multiple of the damaged bodies' tooth numbers."""
+        return math.lcm(1, *(int(z) for z, _, _ in self.changes))
+
+    def entries(self, duration: float) -> list[NDArray[np.float64]]:
+        """Times [s] up to `duration` at which each damaged tooth is at phase 0 of this mesh (list of arrays, one per damage)."""
+        out = []
+        for z, first, _ in self.changes:
+            low, high = sorted((self.phase, self.phase + self.frequency * duration))
+            turns = np.arange(math.ceil((low - first) / z), math.floor((high - first) / z) + 1)
+            out.append(np.sort((first + z * turns - self.phase) / self.frequency))
+        return out

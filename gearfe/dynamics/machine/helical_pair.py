@@ -1,0 +1,117 @@
+"""The helical pair on elastic shafts, with 8 degrees of freedom: linear contact, or the impact law with pitted pinion teeth."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.material import Material
+from ...geometry.pair.gear_pair import GearPair
+from .contact_cycle import ellipse_loss, line_cycle
+from .contact_law import hertz_coefficient
+from .gear_mesh import ToothDamage
+from .gear_pair import gear_pair
+from .layout import Body
+from .member import disc
+from .scene_curves import curves, speed_of
+from .tables import Machine
+
+DENSITY = 7850.0  # kg/m3
+BEARING = {"x": 1e8, "y": 1e8, "z": 1e8}  # N/m, assumed
+SHAFT = 1e4  # N m/rad, to the motor, assumed
+
+
+def scene_pair(scene, case, **options):
+    """Machine of a scene with linear contact: the stiffness curves of its pair."""
+    chosen = scene.pair()
+    name = next(name for name, candidate in scene.pairs.items() if candidate is chosen)
+    healthy, hurt = curves(name, chosen, case, options)
+    damage = () if hurt is None else (ToothDamage(0, 0, hurt),)
+    return gear_pair(
+        chosen.pair, _bodies(chosen.pair, DENSITY), healthy, speed=speed_of(scene), torque=scene.machine["torque_Nm"],
+        support=BEARING, torsion=(SHAFT, 0.0), damage=damage,
+    )  # fmt: skip
+
+
+def _bodies(pair, density):
+    discs = {"pinion": disc(pair.gear_1, density, 0.0), "wheel": disc(pair.gear_2, density, 0.0)}
+    return [Body(name, member.mass, member.inertia, "x y z theta") for name, member in discs.items()]
+
+
+def pitted_helical(
+    pair: GearPair,
+    materials: tuple[Material, Material],
+    *,
+    pits: Sequence[
+        tuple[int, Sequence[tuple[float, float, float, float]] | Callable[[NDArray[np.float64]], NDArray[np.float64]]]
+    ] = (),
+    speed: float = 2500 * math.pi / 30,
+    torque: float = 250.0,
+    damping: float = 1e3,
+    depth: float = 1e-4,
+    support: Mapping[str, float] | None = None,
+    drive: float = 1e4,
+    density: float = 7840.0,
+    zeta: float = 0.02,
+    backlash: float = 1e-4,
+) -> Machine:
+    """The helical pair with pitted pinion teeth: impact law, load shared by the lengths of the contact lines.
+
+    8 degrees of freedom: x, y, z and theta of both gears.
+
+    Parameters
+    ----------
+    pair : GearPair
+        The article has 17/60, m_n 2.1 mm, 17.5 and 29 degrees, widths 19.8 and 16.9 mm.
+    materials : (Material, Material)
+        Materials of both gears, for the coefficient of the impact law at the pitch point.
+    pits : sequence of (int, sequence of (float, float, float, float))
+        Pinion teeth and their pits, as `machine.contact_cycle.ellipse_loss` takes them, or instead of pits a function of
+        the phase (`gearfe.dynamics.machine.impact.pits_loss`); where the pits are is not in the article.
+    speed, torque : float
+        Speed [rad/s] and torque [N m] of the pinion: 2500 rpm; that 250 N m act on the pinion is assumed.
+    damping, depth : float
+        Largest damping of the impact law [N s/m], assumed 1e3, and the penetration from which it is full [m], 0.1 mm.
+    support : dict, optional
+        Bearings of both gears by direction, assumed 1e8 N/m in x, y and z.
+    drive : float
+        Torsional stiffness of the shafts to motor and brake [N m/rad], assumed 1e4 at the pinion, none at the wheel.
+    density, zeta, backlash : float
+        [kg/m3]; damping ratio of supports, assumed 0.02; play along the line of action [m], assumed 0.1 mm.
+
+    Returns
+    -------
+    Machine
+        As `gear_pair` makes it, of bodies ``pinion`` and ``wheel``: in SI units and a frame at rest.
+
+    Raises
+    ------
+    ValueError
+        If the gears are spur gears, a pit lies below the base circle, `density` or `backlash` is not positive, `damping`, `depth`
+        or `zeta` is negative or not finite, or `speed` or `torque` is not finite.
+    """
+    width = min(pair.gear_1.b, pair.gear_2.b)
+    radii = pair.curvature_radii(pair.pitch_phase)
+    helix = math.cos(pair.gear_1.beta_b)  # radii of curvature across the contact line
+    coefficient = hertz_coefficient(float(radii[0]) / helix, float(radii[1]) / helix, materials) / helix**2.5
+    damage = tuple(
+        ToothDamage(0, tooth, line_cycle(pair, coefficient, lost=lost, width=width))
+        for tooth, lost in ((n, loss if callable(loss) else ellipse_loss(pair, loss, width=width)) for n, loss in pits)
+    )
+    return gear_pair(
+        pair,
+        _bodies(pair, density),
+        line_cycle(pair, coefficient, width=width),
+        speed=speed,
+        torque=torque,
+        support=BEARING if support is None else support,
+        torsion=(drive, 0.0),
+        zeta=zeta,
+        damage=damage,
+        power=1.5,
+        push=True,
+        damping=damping,
+        depth=depth,
+        backlash=backlash,
+    )

@@ -1,0 +1,219 @@
+"""The herringbone planetary stage with its relief groove."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...geometry.pair.gear_pair import GearPair
+from ...geometry.pair.planetary import PlanetarySet
+from .gear_mesh import Curve, GearMesh, Stiffness
+from .layout import SPACE, Body, Layout
+from .member import disc
+from .planetary import damages, stage_phases
+from .scene_curves import healthy_and_hurt, speed_of, stage_of
+from .tables import Load, Machine, Spring, Stage
+
+HALVES = {"L": -1, "R": 1}
+
+
+def herringbone_planetary(
+    stage: PlanetarySet,
+    stiffness: Mapping[str, Stiffness],
+    *,
+    damage: Mapping[str, tuple[int, Mapping[str, Curve]]] | None = None,
+    speed: float = 2000 * math.pi / 30,
+    torque: float = 400.0,
+    members: Mapping[str, tuple[float, float]] | None = None,
+    bearing: float = 1e8,
+    tilt: float = 1e5,
+    housing: float = 1e9,
+    drive: float = 1e4,
+    groove: float = 20.0,
+    shear_modulus: float = 80e9,
+    zeta: float = 0.02,
+    mesh_zeta: float = 0.05,
+    density: float = 7800.0,
+    gyroscopic: bool = False,
+    **mesh: Any,
+) -> Machine:
+    """Herringbone planetary stage: 6 degrees of freedom for each half of sun and planets and for the ring, one for the carrier.
+
+    Sun input, ring held, carrier output; 55 degrees of freedom and 12 meshes with three planets. The rows are those of the
+    transverse line of action with ``tan(beta_b)`` along the axis, opposite in both halves, and include the tilting that the axial
+    force causes; the article prints ``sin(beta)`` and no tilting.
+
+    Parameters
+    ----------
+    stage : PlanetarySet
+        Helical gears with the width of *one half*.
+    stiffness : dict
+        ``{"sun_planet": ..., "planet_ring": ...}`` of one half [N/m].
+    damage : dict, optional
+        ``{"sun": (tooth, {"sun_planet": curve})}`` as in `machine.pitted_planetary.pitted_planetary`; in both halves.
+    speed, torque : float
+        Speed [rad/s] and torque [N m] of the sun: the article has 2000 rpm and 400 N m.
+    members : dict, optional
+        Masses [kg] and inertias [kg m2] of whole bodies, ``{"sun": (mass, inertia), "planet": ..., "ring": ..., "carrier":
+        ...}``; default: rings from bore to reference circle of `density`, the carrier as heavy as its planets (assumed).
+        Inertias across the axis are half of those about it (assumed).
+    bearing, tilt : float
+        Supports of each half of sun and planets [N/m], [N m/rad], assumed 1e8 and 1e5.
+    housing : float
+        Support of the ring [N/m], assumed 1e9; tilting and turning with it times its squared base radius.
+    drive : float
+        Torsional stiffness between motor and sun [N m/rad], assumed 1e4 (half of it at each half).
+    groove : float
+        Width of the relief groove [mm], assumed 20: the halves are joined by a hollow shaft from bore to root circle.
+    shear_modulus : float
+        Shear modulus of that shaft [Pa]; its Young's modulus is 2.6 times as large.
+    zeta, mesh_zeta : float
+        Damping ratios of supports and meshes, assumed 0.02 and 0.05.
+    density : float
+        [kg/m3], assumed 7800.
+    gyroscopic : bool
+        Take in the gyroscopic moments of sun, planets and ring, which tilt; not what else the turning of the carrier does.
+    **mesh
+        Further fields of every `GearMesh` (``backlash``: half of the article's dead zone lies on either side of 0 there).
+
+    Returns
+    -------
+    Machine
+        In SI units and the frame of the carrier: x, y, z [m], tilt_x, tilt_y and theta [rad] of the halves ``sunL``, ``sunR``,
+        ``planet1L``... and of ``ring``, theta of ``carrier``; axes are the same for all bodies, angles counter-clockwise.
+
+    Raises
+    ------
+    ValueError
+        If a mass, a moment of inertia or `density` is not positive, a mesh stiffness, `zeta` or `mesh_zeta` is negative or not
+        finite, `speed` or `torque` is not finite, the phases of a damaged tooth's curve do not rise, or a field of `GearMesh` is
+        out of range.
+    """
+    outer, inner, n = stage.sun_planet, stage.planet_ring, stage.n_planets
+    sun, planet, ring = outer.gear_1, outer.gear_2, inner.gear_2
+    frequency = speed * ring.z / (sun.z + ring.z) * sun.z / (2 * math.pi)
+    layout, apart = _halves(stage, members or _solid(stage, density)), 5e-4 * (sun.b + groove)
+    springs = _supports(layout, stage, (bearing, tilt, housing, drive, zeta))
+    for name, gear in (("sun", sun), *((f"planet{i + 1}", planet) for i in range(n))):
+        springs += _neck(layout, name, gear, (groove, shear_modulus, apart, zeta))
+    meshes, helix = [], math.tan(abs(sun.beta_b))
+    angles = dict(zip(range(1, n + 1), 2 * math.pi * np.arange(n) / n, strict=True))
+    for name, fields in stage_phases((outer, inner), n, frequency=frequency).items():
+        kind, i = name[:-1] if n < 10 else name.rstrip("0123456789"), int(name.rpartition(name.rstrip("0123456789"))[2])
+        inside = kind == "planet_ring"
+        pair = inner if inside else outer
+        tooth_damage = damages(name, damage)
+        for half, hand in HALVES.items():
+            body_1, body_2 = (f"planet{i}{half}", "ring") if inside else (f"sun{half}", f"planet{i}{half}")
+            place = {"angle": angles[i], "alpha": pair.alpha_w, "radii": (1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b)}
+            # a planet's flanks are parallel: what pushes it along the axis in one mesh it passes on in the other
+            place |= {"sense": -1 if inside else 1, "internal": inside, "helix": hand * helix}
+            row = layout.mesh(body_1, body_2, **place)
+            if inside:
+                row = row + _offset(layout, row, hand * apart, "ring")
+            options = {"zeta": mesh_zeta} | fields | {"damage": tooth_damage} | mesh
+            meshes.append(GearMesh(f"{name}{half}", row, stiffness[kind], **options))
+    loads = [Load(f"sun{half} torque", layout.unit(f"sun{half}", "theta"), torque / 2) for half in HALVES]
+    loads.append(Load("carrier torque", layout.unit("carrier", "theta"), -torque * (1 + ring.z / sun.z)))
+    notes: dict[str, Any] = {
+        "mesh frequency [Hz]": frequency,
+        "fault frequency of a sun tooth [Hz]": n * frequency / sun.z,
+        "carrier frequency [Hz]": speed / (1 + ring.z / sun.z) / (2 * math.pi),
+        "phases": {mesh.name: mesh.phase for mesh in meshes},
+        "overlap ratio of one half": outer.eps_beta_of(sun.b),
+    }
+    driver, first = tuple(f"sun{half}" for half in HALVES), tuple(f"planet1{half}" for half in HALVES)
+    whole = Stage("stage", driver, first, frequency, frequency / sun.z, n * frequency / sun.z, notes["carrier frequency [Hz]"])
+    rotors = _rotors(layout, stage, speed) if gyroscopic else {}
+    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, (whole,), rotors=rotors)
+
+
+def _rotors(layout, stage, speed):
+    """Angular velocities of the bodies that tilt, against the carrier [rad/s].
+
+    A frame that turns at W takes ``2 J_t W`` from the ``J_p w`` of a body that turns at w against the ground, and ``J_p`` is
+    ``2 J_t`` here: what is left is ``J_p (w - W)``.
+    """
+    turn = speed / (1 + stage.ring.z / stage.sun.z)
+    speeds = {"sun": speed - turn, "planet": -(speed - turn) * stage.sun.z / stage.planet.z, "ring": -turn}
+    return {body: speeds[body.rstrip("LR0123456789")] for body in layout.bodies if body != "carrier"}
+
+
+def scene_herringbone(scene, case, **options):
+    """Machine of a scene: the stiffness curves of halves of its pairs, the bodies that it states."""
+    halves = {}
+    for name, scene_pair in scene.pairs.items():
+        width = (min(scene_pair.pair.gear_1.b, scene_pair.pair.gear_2.b) - scene_pair.groove) / 2
+        gears = (replace(gear, b=width) for gear in (scene_pair.pair.gear_1, scene_pair.pair.gear_2))
+        halves[name] = replace(
+            scene_pair, pair=GearPair(*gears, scene_pair.pair.a), force=scene_pair.force / 2, face="helical", groove=0.0
+        )
+    half = replace(scene, pairs=halves)
+    healthy, hurt = healthy_and_hurt(half, case, options, {"sun_planet": "sun_planet", "planet_ring": "planet_ring"})
+    damage, members = {"sun": (0, hurt)} if hurt else None, scene.machine.get("bodies") or None
+    settings = {"speed": speed_of(scene), "torque": scene.machine["torque_Nm"], "members": members}
+    return herringbone_planetary(stage_of(half), healthy, damage=damage, **settings)
+
+
+def _solid(stage, density):
+    """Masses and inertias of whole bodies from the gears, each of two halves."""
+    gears = {"sun": stage.sun, "planet": stage.planet, "ring": stage.ring}
+    discs = {name: disc(gear, density, 0.0, width=2 * gear.b) for name, gear in gears.items()}
+    out = {name: (member.mass, member.inertia) for name, member in discs.items()}
+    together = stage.n_planets * out["planet"][0]
+    return out | {"carrier": (together, together * (1e-3 * stage.a) ** 2)}
+
+
+def _halves(stage, members):
+    names = ["sun", *(f"planet{i + 1}" for i in range(stage.n_planets))]
+    bodies = []
+    for name in names:
+        mass, inertia = (value / 2 for value in members[name.rstrip("0123456789")])
+        bodies += [Body(f"{name}{half}", mass, inertia, SPACE, inertia / 2) for half in HALVES]
+    mass, inertia = members["ring"]
+    bodies.append(Body("ring", mass, inertia, SPACE, inertia / 2))
+    bodies.append(Body("carrier", *members["carrier"], "theta"))
+    return Layout(bodies)
+
+
+def _supports(layout, stage, options):
+    """Springs of sun, planets and ring to ground or carrier."""
+    bearing, tilt, housing, drive, zeta = options
+    moves = dict.fromkeys("xyz", bearing) | {"tilt_x": tilt, "tilt_y": tilt}
+    out = []
+    for half in HALVES:
+        out += layout.springs(f"sun{half}", None, moves | {"theta": drive / 2}, zeta)
+        for i in range(stage.n_planets):
+            angle = 2 * math.pi * i / stage.n_planets
+            arm = 1e-3 * stage.a * np.array([math.cos(angle), math.sin(angle)])
+            out += layout.springs(f"planet{i + 1}{half}", "carrier", moves, zeta, arm)
+    turn = housing * (1e-3 * stage.ring.r_b) ** 2
+    return out + layout.springs("ring", None, dict.fromkeys("xyz", housing) | dict.fromkeys(SPACE.split()[3:], turn), zeta)
+
+
+def _neck(layout, name, gear, options):
+    """Springs of the hollow shaft under the relief groove, between the faces of both halves."""
+    width, G, apart, zeta = options
+    outer, inner, length = 1e-3 * gear.r_f, 1e-3 * gear.r_bore, 1e-3 * width
+    area, second = math.pi * (outer**2 - inner**2), math.pi / 4 * (outer**4 - inner**4)
+    bend = 2.6 * G * second / length
+    sizes = {"x": 0.9 * G * area / length, "z": 2.6 * G * area / length, "tilt_x": bend, "theta": 2 * G * second / length}
+    sizes |= {"y": sizes["x"], "tilt_y": bend}
+    axes, out = dict(zip("xyz", np.eye(3), strict=True)), []
+    for dof, k in sizes.items():
+        if dof in axes:
+            row = layout.point(f"{name}L", axes[dof], (0, 0, apart)) - layout.point(f"{name}R", axes[dof], (0, 0, -apart))
+        else:
+            row = layout.unit(f"{name}L", dof) - layout.unit(f"{name}R", dof)
+        out.append(Spring(f"{name} groove {dof}", row, k, 2 * zeta * math.sqrt(k / (row**2 / layout.mass).sum())))
+    return out
+
+
+def _offset(layout, row, z, name):
+    """What a row gains if its forces act on body `name` at height `z` [m] over its centre."""
+    out = np.zeros_like(row)
+    out[layout.place[f"{name}.tilt_x"]] = -z * row[layout.place[f"{name}.y"]]
+    out[layout.place[f"{name}.tilt_y"]] = z * row[layout.place[f"{name}.x"]]
+    return out

@@ -1,0 +1,112 @@
+"""Machines of scenes under the impact law: coefficients from Hertz's theory, pits as lost contact line (articles S0, S1, S3)."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ...geometry.pair.lines import contact_lines, lost_length
+from ...scene.machine_table import IMPACT
+from .contact_cycle import impact_cycle
+from .contact_law import hertz_coefficient
+from .helical_pair import pitted_helical
+from .pitted_planetary import pitted_planetary
+from .scene_curves import speed_of, stage_of
+from .tables import pulses
+
+PULSED = 100.0  # s: how long the load on the carrier has pulses
+PLAY = 1e-4  # m
+
+
+def pits_loss(pair, pits):
+    """Length of contact line [mm] that pits take from tooth 0 of the pinion, a function of an array of its phases.
+
+    Phase 0 is where the line first touches, at whichever end of the face.
+    """
+    pits = [replace(pit, tooth=0) for pit in pits]
+    early = pair.eps_beta if pair.gear_1.beta > 0 else 0.0
+
+    def lost(phase):
+        lines = contact_lines(pair, np.asarray(phase, dtype=float) - early)
+        return lost_length(lines, (pits, ()))[:, lines.order == 0, 0].sum(axis=1)
+
+    return lost
+
+
+def impact_planetary(scene, case):
+    """Planetary stage of a scene under the impact law, healthy or with pits on a tooth of the sun."""
+    chosen = {name: scene.pairs[name] for name in ("sun_planet", "planet_ring")}
+    if pits_of(chosen["planet_ring"].damage.get(case, {})):
+        raise ValueError("the impact law knows damage of the sun's flanks only: use contact = 'linear'")
+    tooth_pits = pits_of(chosen["sun_planet"].damage.get(case, {}))
+    materials = {name: scene_pair.materials for name, scene_pair in chosen.items()}
+    stage, machine = stage_of(scene), scene.machine
+    options, pair = _options(machine), stage.sun_planet
+    stiffness = {"sun_planet": impact_cycle(pair, materials["sun_planet"])}
+    stiffness["planet_ring"] = impact_cycle(stage.planet_ring, materials["planet_ring"])
+    damage = None
+    if tooth_pits:
+        loss, width = pits_loss(pair, tooth_pits), min(pair.gear_1.b, pair.gear_2.b)
+        hurt = impact_cycle(pair, materials["sun_planet"], lost=lambda phase: loss(phase) / width)
+        damage = {"sun": (tooth_pits[0].tooth, {"sun_planet": hurt})}
+    steady, load = machine["torque_Nm"] * (1 + stage.ring.z / stage.sun.z), None
+    if options["pulse_Nm"]:
+        period = options["pulse_period_s"]
+        load = pulses(
+            steady, steady + options["pulse_Nm"], period, options["pulse_width_s"], math.ceil(PULSED / period), start=period
+        )
+    radii = (float(r) for r in pair.curvature_radii(pair.pitch_phase))
+    return pitted_planetary(
+        stage, stiffness, damage=damage, speed=speed_of(scene), torque=machine["torque_Nm"], carrier_torque=load,
+        friction=_friction(options),
+        **_law(options, machine, hertz_coefficient(*radii, materials["sun_planet"])),
+    )  # fmt: skip
+
+
+def impact_helical(scene, case):
+    """Helical pair of a scene under the impact law, healthy or with pits on a tooth of the pinion."""
+    chosen, machine = scene.pair(), scene.machine
+    pair, materials, tooth_pits = chosen.pair, chosen.materials, pits_of(chosen.damage.get(case, {}))
+    options = _options(machine)
+    for key in ("friction", "pulse_Nm"):
+        if options[key]:
+            raise ValueError(f"[machine.impact] {key} = {options[key]}: only the model 'planetary' has it; leave it out")
+    radii = (float(r) for r in pair.curvature_radii(pair.pitch_phase))
+    law = _law(options, machine, hertz_coefficient(*radii, materials))
+    pits = [(tooth_pits[0].tooth, pits_loss(pair, tooth_pits))] if tooth_pits else []
+    return pitted_helical(
+        pair, materials, pits=pits, speed=speed_of(scene), torque=machine["torque_Nm"],
+        **{key: law[key] for key in ("damping", "depth", "backlash")},
+    )  # fmt: skip
+
+
+def pits_of(damage):
+    """Pits on one pinion tooth of a case of damage, which is all the impact law knows.
+
+    Raises
+    ------
+    ValueError
+        If there is other damage.
+    """
+    pits = list(damage.get("pinion", ()))
+    if damage.get("wheel") or not all(pit.removes_contact for pit in pits) or len({pit.tooth for pit in pits}) > 1:
+        raise ValueError("the impact law knows damage of the flank of one tooth of the pinion (sun) only: use contact = 'linear'")
+    return pits
+
+
+def _options(machine):
+    return {key: default for key, (_, default) in IMPACT.items()} | (machine.get("impact") or {})
+
+
+def _law(options, machine, coefficient):
+    damping = 1e-3 * coefficient if options["damping_Ns_per_mm"] is None else options["damping_Ns_per_mm"]
+    play = machine.get("backlash_um")
+    depth = {"depth": 1e-3 * options["depth_mm"], "backlash": PLAY if play is None else 1e-6 * play}
+    return {"power": 1.5, "push": True, "damping": 1e3 * damping} | depth
+
+
+def _friction(options):
+    if options["friction"] is None:
+        return None
+    (static, dynamic), (slow, fast) = options["friction"], options["friction_speeds_mm_per_s"]
+    return {"static": static, "dynamic": dynamic, "v_static": 1e-3 * slow, "v_dynamic": 1e-3 * fast}

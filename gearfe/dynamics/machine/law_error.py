@@ -1,0 +1,145 @@
+"""How far a law of force may be off between its loads and phases, as leaving some out tells, and one of as many as it needs."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.case import Case
+from ...core.material import Material
+from ...geometry.pair.gear_pair import GearPair
+from .force_law import ForceLaw, force_law
+
+FIRST = 5, 32  # loads and phases that `law_within` begins with
+ROUNDS = 6  # times it takes more of them, at most
+
+
+@dataclass(frozen=True, slots=True)
+class LawError:
+    """Errors of a law of force, over the force: largest ones, and root mean squares over phases and loads.
+
+    `loads` between the loads solved, `phases` between the phases, `loads_rms` and `phases_rms` likewise.
+    """
+
+    loads: float
+    phases: float
+    loads_rms: float
+    phases_rms: float
+
+
+def law_error(law: ForceLaw) -> LawError:
+    """Errors of a law of force between its loads and between its phases, over the force.
+
+    Every second load is left out, and the law of the others asked for the force at the depths that those left out press to; the
+    same with every second phase. That is the error of a law of half as many, more than that of the law itself, which has them
+    all: of laws of a spur pair the root mean squares were two to five times the true ones. The largest, where a pair comes in, is
+    no bound: it was up to 7 % smaller than the true one.
+
+    Parameters
+    ----------
+    law : ForceLaw
+        Of three loads and four phases or more.
+
+    Returns
+    -------
+    LawError
+
+    Raises
+    ------
+    ValueError
+        If it has fewer.
+
+    Examples
+    --------
+    A mesh as straight as a spring is known everywhere:
+
+    >>> phase, load = np.arange(8) / 8, np.array([100.0, 200.0, 400.0])
+    >>> k = np.full((8, 3), 1e8)
+    >>> law = ForceLaw(phase, load, load / k, k, np.ones((8, 3), dtype=int), 200.0)
+    >>> law_error(law).loads < 1e-12, law_error(law).phases < 1e-12
+    (True, True)
+    """
+    if law.load.size < 3 or law.phase.size < 4:
+        raise ValueError(f"{law!r}: its error is told from three loads and four phases or more; solve it for more")
+    loads, phases = np.arange(law.load.size), np.arange(law.phase.size)
+    inner = loads[1:-1:2]
+    fewer = _part(law, phases, np.setdiff1d(loads, inner))
+    between = _off(fewer, law, phases, inner)
+    left_out = phases[1:-1:2]
+    across = _off(_part(law, np.setdiff1d(phases, left_out), loads), law, left_out, loads)
+    return LawError(*(float(value) for value in (between.max(), across.max(), _rms(between), _rms(across))))
+
+
+def law_within(
+    pair: GearPair | Case,
+    smallest: float,
+    largest: float,
+    material: Material | tuple[Material, Material] | None = None,
+    *,
+    error: float = 3e-3,
+    force: float | None = None,
+    **options: Any,
+) -> ForceLaw:
+    """Law of force between two loads, solved under as many loads and at as many phases as its own error estimate asks for.
+
+    Twice as many of what is worse than asked for, loads or phases, until the root mean squares of `law_error` are within
+    `error`. Those are the errors of half as many: the law itself is two to five times better. With the default, accelerations of
+    a spur pair are within 2 % of those of contact solved ever finer, resonances and loss of contact included.
+
+    Parameters
+    ----------
+    pair : GearPair or Case
+    smallest, largest : float
+        Loads along the line of action [N] that the mesh will see. Below the smallest its secant stiffness is constant: a
+        thirtieth of the mean load is enough, and less where contact is lost.
+    material, force
+        As of `force_law`.
+    error : float
+        Over the force.
+    **options
+        As of `force_law`, but ``phases``.
+
+    Returns
+    -------
+    ForceLaw
+
+    Raises
+    ------
+    ValueError
+        If the loads are no range, or an input is impossible.
+    RuntimeError
+        If no law is within the error.
+    """
+    if not 0 < smallest < largest or not error > 0 or "phases" in options:
+        raise ValueError(
+            f"loads from {smallest} to {largest} N within {error}: give 0 < smallest < largest, error > 0, no phases"
+        )
+    loads, phases = FIRST
+    for _ in range(ROUNDS + 1):
+        law = force_law(pair, np.geomspace(smallest, largest, loads), material, force=force, phases=phases, **options)
+        found = law_error(law)
+        if max(found.loads_rms, found.phases_rms) <= error:
+            return law
+        loads = loads if found.loads_rms <= error else 2 * loads - 1
+        phases = phases if found.phases_rms <= error else 2 * phases
+    raise RuntimeError(
+        f"{law!r} may be off by {found.loads_rms:.2g} between its loads and {found.phases_rms:.2g} between its phases, over "
+        f"the force; asked for were {error:g}: allow more, or make a law by gf.force_law"
+    )
+
+
+def _part(law, phases, loads):
+    at = np.ix_(phases, loads)
+    unloaded = None if law.unloaded is None else law.unloaded[phases]
+    return ForceLaw(law.phase[phases], law.load[loads], law.depth[at], law.tangent[at], law.pairs[at], law.force, unloaded)
+
+
+def _off(fewer: ForceLaw, law: ForceLaw, phases: NDArray[np.int64], loads: NDArray[np.int64]) -> NDArray[np.float64]:
+    """How far the force of a law of fewer loads or phases is off at some of those of the whole one, over the force."""
+    exact = law.load[loads]
+    return np.asarray(np.abs(fewer(law.depth[np.ix_(phases, loads)], law.phase[phases, None]) / exact - 1))
+
+
+def _rms(values):
+    return np.sqrt(np.mean(values**2))

@@ -1,0 +1,54 @@
+"""`Member`: a body of a stage with its springs, and that of a gear as a ring of steel."""
+
+import math
+from dataclasses import dataclass
+
+from ...geometry.tooth.gear import Gear
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A central member or a planet of a stage: its mass, inertia and springs to the ground, a planet's to the carrier.
+
+    Attributes
+    ----------
+    mass, inertia : float
+        [kg], [kg m2]
+    bearing : float
+        Stiffness of its bearing in x and in y [N/m].
+    torsion : float
+        Torsional stiffness to the ground [N m/rad].
+    r_b : float
+        Base radius [m]; of the carrier: the radius to the planets' axes.
+    """
+
+    mass: float
+    inertia: float
+    bearing: float
+    r_b: float
+    torsion: float = 0.0
+
+
+def disc(gear: Gear, density: float, bearing: float, *, width: float | None = None) -> Member:
+    """`Member` of a gear as a ring from its bore (or rim) to its reference circle.
+
+    Numbers are taken as they are; a `Machine` refuses masses that are not positive.
+
+    Parameters
+    ----------
+    gear : Gear
+    density : float
+        [kg/m3]
+    bearing : float
+        Stiffness of its bearing in x and in y [N/m]; 0: none.
+    width : float, optional
+        [mm]; default: the width of the gear.
+
+    Returns
+    -------
+    Member
+        Mass [kg], moment of inertia about its own axis [kg m2] and base radius [m]; without torsional stiffness.
+    """
+    low, high = sorted((gear.held, gear.z * gear.m_n / (2 * math.cos(gear.beta))))
+    mass = density * math.pi * (high**2 - low**2) * (width or gear.b) * 1e-9
+    return Member(mass, mass * (low**2 + high**2) / 2 * 1e-6, bearing, 1e-3 * gear.r_b)

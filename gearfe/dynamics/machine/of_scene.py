@@ -1,0 +1,129 @@
+"""From a scene to its machine: the table of models that `build_machine` reads, and the errors a scene states.
+
+A model is one file that states its bodies, stages and springs and a function ``(scene, case, **options) -> Machine`` of it, and
+one row here.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...scene.load import Scene
+from ...stiffness.curve import StiffnessCurve
+from .compound_planetary import scene_compound
+from .force_law import ForceLaw
+from .gear_mesh import Samples
+from .helical_pair import scene_pair
+from .herringbone_planetary import scene_herringbone
+from .impact import impact_helical, impact_planetary
+from .mesh_errors import with_errors
+from .pitted_planetary import scene_planetary
+from .scene_curves import own_forces
+from .tables import Machine
+
+MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it is built with either contact
+    "planetary": {"linear": scene_planetary, "impact": impact_planetary},
+    "compound_planetary": {"linear": scene_compound},
+    "helical_pair": {"linear": scene_pair, "impact": impact_helical},
+    "herringbone_planetary": {"linear": scene_herringbone},
+}
+EVEN = 1e-9  # how far phases may lie from equal distances
+ROUGH = 8  # phases per cycle of the curves from which the forces at rest are computed
+STATED = ("herringbone_planetary",)  # models that take masses and inertias from the scene
+
+
+def build_machine(
+    scene: Scene, case: str | None = None, *, phases: int = 64, method: str = "auto", loads: Sequence[float] = (1.0,)
+) -> Machine:
+    """Machine of a scene for `gearfe.simulate`, with the contact of its pairs solved under the loads that its meshes have.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a ``[machine]`` table.
+    case : str, optional
+        Case of damage; None: healthy.
+    phases : int
+        Per mesh cycle, of the curves.
+    method : str
+        As in `mesh_stiffness`.
+    loads : sequence of float
+        Loads that the contact of each pair is solved under, as multiples of the largest force of its meshes at rest, which the
+        load that the scene states for the pair need not be. One of them makes stiffnesses over the phase that are true of this
+        load alone, by default of the meshes' own. Several make laws of force (`machine.force_law.ForceLaw`), for loads
+        that change and for resonances: ``(1 / 16, 1 / 4, 1 / 2, 1, 2)``. Their mesh forces bend where pairs come in, with
+        harmonics far above the mesh frequency: `gearfe.simulate` filters them out above half of its rate. Not under the impact
+        law, which has a coefficient.
+
+    Returns
+    -------
+    gearfe.dynamics.machine.tables.Machine
+        Its `stages` and `notes` hold mesh, fault and carrier frequencies, and the forces of the pairs' meshes at rest.
+
+    Raises
+    ------
+    ValueError
+        If the scene has no machine, no such case, or an unknown model.
+    """
+    if not scene.machine:
+        raise ValueError(f"scene {scene.name} has no [machine] table: add one with model, speed_rpm and torque_Nm")
+    if case is not None and not any(case in pair.damage for pair in scene.pairs.values()):
+        known = sorted({name for pair in scene.pairs.values() for name in pair.damage})
+        raise ValueError(f"scene {scene.name} has no case {case!r}; it has {', '.join(known) or 'none'}")
+    model, contact = scene.machine["model"], scene.machine.get("contact", "linear")
+    if model not in MACHINES:
+        raise ValueError(f"[machine] model = {model!r}, but it must be one of {', '.join(MACHINES)}")
+    if contact not in ("linear", "impact"):
+        raise ValueError(f"[machine] contact = {contact!r}, but it must be 'linear' or 'impact'")
+    if contact not in MACHINES[model]:
+        raise ValueError(f"[machine] contact = 'impact': the model {model!r} has linear contact only")
+    if scene.machine.get("bodies") and model not in STATED:
+        raise ValueError(f"[machine.bodies]: the model {model!r} takes masses and inertias from its gears; leave the table out")
+    if contact == "impact" and tuple(loads) != (1.0,):
+        raise ValueError(
+            f"loads = {tuple(loads)}: the impact law has a coefficient and no curves under loads; take contact = 'linear'"
+        )
+    if contact == "impact":
+        return with_scene_errors(scene, MACHINES[model][contact](scene, case))
+    if not len(loads) or not all(math.isfinite(multiple) and multiple > 0 for multiple in loads):
+        raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")
+    build, play = MACHINES[model][contact], scene.machine.get("backlash_um")
+    forces = own_forces(build(scene, case, phases=ROUGH, method=method, loads=None))
+    several = {name: ([force * multiple for multiple in loads], force) for name, force in forces.items()}
+    out = build(scene, case, phases=phases, method=method, loads=several)
+    stated = {name: pair.force for name, pair in scene.pairs.items() if name in forces}
+    out = replace(out, notes=out.notes | {"mesh forces at rest [N]": forces, "loads stated for the pairs [N]": stated})
+    return with_scene_errors(scene, with_flanks(out.with_meshes(backlash=1e-6 * play) if play else out))
+
+
+def with_flanks(machine):
+    """The machine with the unloaded transmission error of modified flanks in the meshes whose curves or laws have one."""
+    errors = {
+        mesh.name: _unloaded(mesh.stiffness)
+        for mesh in machine.meshes
+        if isinstance(mesh.stiffness, (StiffnessCurve, ForceLaw)) and mesh.stiffness.unloaded is not None
+    }
+    return with_errors(machine, profile=errors) if errors else machine
+
+
+def _unloaded(curve):
+    """Unloaded error at the phases of a curve; of a law without the extra phases where pairs come in."""
+    phase = curve.phase
+    if isinstance(curve, ForceLaw):
+        at = phase[0] + np.arange(round(1 / np.diff(phase).max())) * np.diff(phase).max()
+        kept = np.abs(phase[:, None] - at).min(axis=1) < EVEN
+        return Samples(phase[kept], curve.unloaded[kept])
+    return Samples(phase, curve.unloaded)
+
+
+def with_scene_errors(scene, machine):
+    """The machine with the errors that its scene states: of the driven stage, the last one."""
+    keys = ("profile_error_um", "runout_um", "misplaced_um", "misplaced_y_um")
+    profile, runout, *shift = (1e-6 * scene.machine.get(key, 0.0) for key in keys)
+    if not (profile or runout or any(shift)):
+        return machine
+    stage = machine.stages[-1]
+    place = dict.fromkeys(stage.follower, tuple(shift)) if any(shift) else None
+    return with_errors(machine, profile=profile, runout=dict.fromkeys(stage.driver, (runout, stage.turning, 0.0)), place=place)

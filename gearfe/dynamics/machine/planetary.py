@@ -1,0 +1,154 @@
+"""A planetary stage with any number of planets, and the phases of its meshes.
+
+What a source leaves out is an argument with a default, named in the docstring as an assumption. Stiffnesses are given by mesh
+name as anything `gearfe.dynamics.machine.gear_mesh.GearMesh` takes; damage by mesh name as tuples of `ToothDamage`.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ...geometry.pair.gear_pair import GearPair
+from .gear_mesh import GearMesh, Stiffness, ToothDamage
+from .layout import Body, Layout, around, through
+from .member import Member
+from .tables import History, Load, Machine
+
+
+def planetary(
+    sun: Member,
+    planet: Member | Sequence[Member],
+    ring: Member,
+    carrier: Member,
+    *,
+    n_planets: int,
+    alpha: tuple[float, float],
+    stiffness: Mapping[str, Stiffness],
+    mesh: Callable[[str, int], dict[str, Any]] | None = None,
+    loads: Mapping[str, History] | None = None,
+    zeta: float = 0.0,
+    places: Sequence[float] | None = None,
+    spin: float = 0.0,
+) -> Machine:
+    """A planetary stage in its plane, 3 degrees of freedom per body, seen from the carrier.
+
+    The model of J. Lin, R. G. Parker, J. Vib. Acoust. 121 (1999) 316-321, in coordinates that do not turn with the planets; for
+    its frequencies see ``tests/dynamics/test_models.py``.
+
+    Parameters
+    ----------
+    sun, ring, carrier : Member
+    planet : Member or sequence of Member
+        One for all planets, or one for each.
+    n_planets : int
+    alpha : (float, float)
+        Working pressure angles sun-planet and planet-ring [rad].
+    stiffness : dict
+        ``{"sun_planet": ..., "planet_ring": ...}`` along the line of action [N/m].
+    mesh : callable, optional
+        ``mesh(kind, i) -> dict`` of further fields of `GearMesh` for planet i.
+    loads : dict, optional
+        Torques ``{"sun": ..., "ring": ..., "carrier": ...}`` [N m]: numbers, histories or functions.
+    zeta : float
+        Damping ratio of the supports.
+    places : sequence of float, optional
+        Angles of the planets [rad]; default: equal spacing from 0.
+    spin : float
+        Speed of the carrier [rad/s], whose gyroscopic and centripetal terms are then taken in; 0: they are left out.
+
+    Returns
+    -------
+    Machine
+        In SI units and the frame of the carrier: x and y [m] of all bodies along the same axes, theta [rad] counter-clockwise;
+        sun, ring, carrier, then the planets.
+
+    Raises
+    ------
+    ValueError
+        If the bodies of the planets or their `places` are not `n_planets`; if a mass or a moment of inertia is not positive, a
+        mesh stiffness or `zeta` is negative or not finite, a load is not finite, the times of a history fall, or a field of
+        `GearMesh` is out of range.
+    """
+    names = [f"planet{i + 1}" for i in range(n_planets)]
+    angles = 2 * math.pi * np.arange(n_planets) / n_planets if places is None else np.asarray(places, dtype=float)
+    planets = [planet] * n_planets if isinstance(planet, Member) else list(planet)
+    if len(planets) != n_planets:
+        raise ValueError(f"planet: {len(planets)} bodies, but n_planets = {n_planets}: give one for all, or one for each")
+    central = {"sun": sun, "ring": ring, "carrier": carrier}
+    bodies = [Body(name, m.mass, m.inertia) for name, m in central.items()] + [
+        Body(n, m.mass, m.inertia) for n, m in zip(names, planets, strict=True)
+    ]
+    layout, springs, meshes = Layout(bodies), [], []
+    for name, m in central.items():
+        springs += layout.springs(name, None, {"x": m.bearing, "y": m.bearing, "theta": m.torsion}, zeta)
+    for i, (name, angle, member) in enumerate(zip(names, angles, planets, strict=True)):
+        arm = carrier.r_b * np.array([math.cos(angle), math.sin(angle)])
+        springs += layout.springs(name, "carrier", {"x": member.bearing, "y": member.bearing}, zeta, arm)
+        for kind, body_1, body_2, r, sense, inside in (
+            ("sun_planet", "sun", name, (sun.r_b, member.r_b), 1, False),
+            ("planet_ring", name, "ring", (member.r_b, ring.r_b), -1, True),
+        ):
+            row = layout.mesh(body_1, body_2, angle=angle, alpha=alpha[inside], radii=r, sense=sense, internal=inside)
+            meshes.append(GearMesh(f"{kind}{i + 1}", row, stiffness[kind], **({} if mesh is None else mesh(kind, i))))
+    torques = tuple(Load(f"{name} torque", layout.unit(name, "theta"), value) for name, value in (loads or {}).items())
+    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), torques, spin=spin)
+
+
+def stage_phases(
+    pairs: tuple[GearPair, GearPair],
+    n_planets: int,
+    *,
+    start: float = 0.0,
+    frequency: float = 1.0,
+    places: Sequence[float] | None = None,
+) -> dict[str, dict[str, Any]]:
+    """Running phases and first teeth of the meshes of a simple stage whose sun drives counter-clockwise.
+
+    Parameters
+    ----------
+    pairs : (GearPair, GearPair)
+        Sun-planet and planet-ring.
+    n_planets : int
+    start : float
+        Phase of the first sun-planet mesh at t = 0.
+    frequency : float
+        Mesh frequency, the same for all meshes [Hz].
+    places : sequence of float, optional
+        Angles of the planets [rad].
+
+    Returns
+    -------
+    dict
+        By mesh name: fields of `GearMesh` (``frequency, phase, teeth, first``). Sun teeth are numbered in the order in which they
+        enter at planet 1, the teeth of each planet in the order they meet the sun from the pair of sun tooth 0 on, ring teeth
+        as planet 1 meets them.
+
+    Raises
+    ------
+    ValueError
+        If a planet cannot be assembled at its place: ``z_sun + z_ring`` times its part of a turn is not whole.
+    """
+    outer, inner = pairs
+    sun, planet, ring = outer.gear_1, outer.gear_2, inner.gear_2
+    out, angles = {}, 2 * math.pi * np.arange(n_planets) / n_planets if places is None else places
+    for i, angle in enumerate(angles):
+        phase = around(start, sun.z, 1, angle)
+        ahead = (sun.z + ring.z) * angle / (2 * math.pi)
+        if abs(ahead - round(ahead)) > 1e-9:
+            raise ValueError(
+                f"planet {i + 1} at {math.degrees(angle):.4g} degrees cannot be assembled: (z_s + z_r) / turn is not whole"
+            )
+        out[f"sun_planet{i + 1}"] = {"phase": phase, "teeth": (sun.z, planet.z)}
+        passed = through(phase, outer, inner, -1, -math.pi)
+        out[f"planet_ring{i + 1}"] = {"phase": passed, "teeth": (planet.z, ring.z), "first": (0, round(ahead))}
+    return {name: fields | {"frequency": frequency} for name, fields in out.items()}
+
+
+def damages(mesh, damage):
+    """Damage of a mesh ``sun_planet1`` or ``planet_ring1`` from damage by gear (see `pitted_planetary`)."""
+    kind, number = mesh.rstrip("0123456789"), mesh[len(mesh.rstrip("0123456789")) :]
+    names = [gear + (number if gear == "planet" else "") for gear in kind.split("_")]
+    hurt = ((body, *(damage or {}).get(name, (0, {}))) for body, name in enumerate(names))
+    return tuple(ToothDamage(body, tooth, curves[kind]) for body, tooth, curves in hurt if kind in curves)

@@ -1,0 +1,156 @@
+"""What a sensor on the housing of a planetary stage receives: the forces of the planets, louder as they pass it."""
+
+import re
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.signal import cont2discrete, lfilter, ss2tf
+
+from ...signal.series import Signal
+from .response import Response
+
+
+def housing_signal(
+    response: Response,
+    *,
+    kind: str = "planet_ring",
+    sensor: float = 0.0,
+    places: Sequence[float] | None = None,
+    carrier: float | None = None,
+    window: Callable[[NDArray[np.float64]], ArrayLike] | None = None,
+    modes: Sequence[tuple[float, float, float]] = (),
+) -> Signal:
+    """Sum of the planets' mesh forces, weighted by how near each planet is to a sensor that stands still; or its acceleration.
+
+    Simulations are made in the frame of the carrier; a sensor on a fixed ring sees the planets go by. The path from a mesh to
+    it is taken as a window w over the planet's place, if none is given one that is largest at the sensor and zero opposite::
+
+        F(t) = sum over planets p of w(phi_p(t)) F_p(t),   phi_p(t) = places[p] + 2 pi carrier t - sensor,
+        w = (1 + cos(phi)) / 2
+
+    It brings the lines a carrier turning at `carrier` Hz puts beside those of the forces (`gearfe.stage_lines` says where); their
+    sizes are those of the window. With `modes` the housing answers to that force, each mode as an oscillator of its own::
+
+        a(t) = sum over modes of x'',   x'' + 2 zeta (2 pi f) x' + (2 pi f)**2 x = F(t) / mass
+
+    from rest under the first force, exactly for forces that are straight between samples.
+
+    With n equal planets in phase, healthy gears keep only multiples of n `carrier` beside the mesh line.
+
+    Parameters
+    ----------
+    response : gearfe.dynamics.motion.response.Response
+        Response of a machine with one planetary stage.
+    kind : str
+        Meshes whose forces are heard, one or more to a planet: those named ``kind`` and the number of the planet
+        (``planet_ring1``, ``planet_ring1L``...).
+    sensor : float
+        Angle of the sensor [rad].
+    places : sequence of float, optional
+        Angles of the planets at time 0 [rad]; default: equally spaced from 0, as all stages of `gearfe.dynamics.machine` are.
+    carrier : float, optional
+        Turns of the carrier per second at the machine's nominal speed, counter-clockwise if positive; default: from the
+        machine's notes, ``"carrier frequency [Hz]"``.
+    window : callable, optional
+        Weights at an array of angles between planet and sensor [rad]: a measured one, or `gearfe.ring_window`.
+    modes : sequence of (float, float, float)
+        Natural frequency [Hz], damping ratio and modal mass [kg] of the housing at the sensor; none: the force itself.
+
+    Returns
+    -------
+    Signal
+        [N], with modes [m/s^2].
+
+    Raises
+    ------
+    ValueError
+        If no mesh has such a name, the carrier's frequency is not known, or `places` are too few.
+
+    References
+    ----------
+    X. Liang, M. J. Zuo, W. Chen, Dynamics-based vibration signal modeling for tooth fault diagnosis of planetary gearboxes,
+    in Fault Diagnosis and Detection, InTech, 2017, doi 10.5772/67529, on windows for the path.
+    """
+    machine = response.machine
+    named = [(mesh.name, re.fullmatch(re.escape(kind) + r"(\d+)[LR]?", mesh.name)) for mesh in machine.meshes]
+    heard = [(name, int(match[1]) - 1) for name, match in named if match]
+    if not heard:
+        raise ValueError(f"no mesh is called {kind!r} and a number; there are {', '.join(mesh.name for mesh in machine.meshes)}")
+    if carrier is None:
+        if "carrier frequency [Hz]" not in machine.notes:
+            raise ValueError("the machine's notes have no 'carrier frequency [Hz]': give carrier")
+        carrier = machine.notes["carrier frequency [Hz]"]
+    count = 1 + max(planet for _, planet in heard)
+    angles = 2 * np.pi * np.arange(count) / count if places is None else np.asarray(places, dtype=float)
+    if len(angles) < count:
+        raise ValueError(f"places has {len(angles)} angles, but there are {count} planets")
+    time = response.time
+    turned = 2 * np.pi * carrier * machine.turned(time) - sensor
+    weigh = _raised if window is None else window
+    heights = [np.asarray(weigh(angles[planet] + turned)) * response[f"force {name}"] for name, planet in heard]
+    values = np.sum(heights, axis=0)
+    rate = 1 / float(time[1] - time[0])
+    if not modes:
+        return Signal(values, rate, "N", f"housing, {kind}")
+    return Signal(np.sum([_answer(values, rate, *mode) for mode in modes], axis=0), rate, "m/s^2", f"housing, {kind}")
+
+
+def _raised(angle):
+    return (1 + np.cos(angle)) / 2
+
+
+def _answer(force, rate, frequency, zeta, mass):
+    """Acceleration of an oscillator under a force, from rest under its first value."""
+    if not (0 < frequency < rate / 2 and 0 <= zeta < 1 and mass > 0):
+        raise ValueError(
+            f"mode ({frequency} Hz, {zeta}, {mass} kg): the frequency must lie between 0 and {rate / 2:g} Hz, half the rate, the "
+            "damping ratio from 0 to below 1, and the mass above 0"
+        )
+    omega = 2 * np.pi * frequency
+    inner = np.array([[0.0, 1.0], [-(omega**2), -2 * zeta * omega]])
+    discrete = cont2discrete((inner, np.array([[0.0], [1 / mass]]), inner[1:], np.array([[1 / mass]])), 1 / rate, method="foh")
+    above, below = ss2tf(*discrete[:4])
+    return lfilter(above[0], below, force - force[0])
+
+
+def ring_window(radius: float, bending: float, foundation: float) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    """Window for `housing_signal`: how a thin ring on an elastic foundation gives at the sensor to a planet elsewhere.
+
+    The radial displacement at an angle phi from a radial force, over that under the force, of a ring whose centre line keeps its
+    length::
+
+        w(phi) = sum over n >= 1 of cos(n phi) / (bending (n**2 - 1)**2 / radius**3 + foundation radius),   over w(0)
+
+    A stiff ring moves as a whole, w = cos(phi); a soft one gives near the planet only.
+
+    Parameters
+    ----------
+    radius : float
+        Of the ring's centre line [m].
+    bending : float
+        Young's modulus times second moment of area of its section [N m2].
+    foundation : float
+        Radial stiffness of what holds it, per length [N/m2].
+
+    Returns
+    -------
+    callable
+        Weights at an array of angles [rad].
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive and finite.
+
+    References
+    ----------
+    By the energy of bending ``EI / (2 R**3) integral of (w + w'')**2``: S. P. Timoshenko, Vibration Problems in Engineering, art.
+    on the flexural vibrations of a circular ring.
+    """
+    if not all(0 < value < np.inf for value in (radius, bending, foundation)):
+        raise ValueError(f"radius = {radius}, bending = {bending}, foundation = {foundation}: give positive numbers")
+    n = np.arange(1, 400)
+    share = 1 / (bending * (n**2 - 1.0) ** 2 / radius**3 + foundation * radius)
+    share = share / share.sum()
+    return lambda angle: np.cos(np.multiply.outer(np.asarray(angle, dtype=float), n)) @ share

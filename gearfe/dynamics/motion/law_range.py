@@ -1,0 +1,98 @@
+"""Whether a motion stays within the loads that the force of its meshes was solved for, and how well their phases are known."""
+
+import math
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+from ...stiffness.curve import StiffnessCurve
+from ..machine.force_law import ForceLaw
+from ..machine.gear_mesh import cycle_table
+from ..machine.phase_table import table
+
+LOOKS = 2000  # times of a run at which its mesh forces are compared with the loads of their laws
+LEAST = 40  # of them in a stretch over which forces are averaged, one mesh cycle or more
+OTHER = 0.1  # of the load of a stiffness curve: a mean force further off is told
+IDLE = 1e-3  # of that load: a mesh that carries less on average carries nothing
+FEWEST = 10  # samples of a stiffness whose error between them is told
+NEARLY = 0.01  # of the stiffness: loads that change it by as much are those within which a curve holds
+
+
+def compared(response):
+    """The response, with ``stats["loads"]`` where mesh forces leave the loads they were solved for; warns of those above a law.
+
+    And with ``stats["error_phases"]`` (`between_phases`), where stiffnesses are over the phase.
+
+    Looked at at `LOOKS` times of the run. Of a stiffness over the phase the forces are means of stretches of one mesh cycle or
+    more: a load that swings slowly leaves the curve's although its mean over the run does not.
+    """
+    machine = response.machine
+    between = between_phases(machine)
+    if between is not None:
+        response = replace(response, stats=response.stats | {"error_phases": between})
+    if not any(isinstance(mesh.stiffness, (ForceLaw, StiffnessCurve)) for mesh in machine.meshes):
+        return response
+    some = response.raw.part(slice(None, None, max(1, len(response.time) // LOOKS)))
+    told = {"above": [], "other": []}
+    for mesh, own in zip(machine.meshes, np.abs(some.mesh()).T, strict=True):
+        given, most = mesh.stiffness, float(own.max())
+        if isinstance(given, ForceLaw) and most > given.load[-1]:
+            told["above"].append(f"{mesh.name} {most:.4g} N, its law of force up to {given.load[-1]:.4g} N")
+        if isinstance(given, StiffnessCurve) and "force_N" in given.meta:
+            told["other"] += _other(mesh, own, some.time[-1] - some.time[0])
+    if told["above"]:
+        warnings.warn(
+            f"forces above the loads solved: {'; '.join(told['above'])}. Beyond them a law goes on with its tangent: give it "
+            "larger loads (gf.force_law, or loads= of gf.build_machine)",
+            stacklevel=4,
+        )
+    found = [*told["above"], *told["other"]]
+    return replace(response, stats=response.stats | {"loads": found}) if found else response
+
+
+def between_phases(machine):
+    """How far stiffnesses over the phase may be off between their samples: RMS over their spread, of the worst mesh; or None.
+
+    Every second sample is left out, and the cubics through the others are asked for it. That is the error of half as many: of a
+    smooth curve eight to sixteen times that of all, of one bent where pairs come in two to ten times. Laws of force have
+    `gearfe.law_error`.
+    """
+    curves = {id(m.stiffness): m for m in machine.meshes if not isinstance(m.stiffness, ForceLaw)}
+    found = [_left_out(mesh) for mesh in curves.values() if len(mesh.cycle.cells) >= FEWEST and len(mesh.cycle.cells) % 2 == 0]
+    return max(found, default=None)
+
+
+def _left_out(mesh):
+    values = mesh.cycle.cells[:, 0]
+    kept, count = values[::2], values.size // 2
+    half = table(kept, 0.0, 1 / count, periodic=True) if isinstance(mesh.stiffness, StiffnessCurve) else cycle_table(kept)
+    spread = float(np.ptp(values))
+    off = half((np.arange(count) + 0.5) / count) - values[1::2]
+    return float(np.sqrt(np.mean(off**2)) / spread) if spread > 1e-9 * values.mean() else 0.0
+
+
+def _other(mesh, own, seconds):
+    """What is told of a mesh whose forces, at equal times of a run, are not those of its stiffness curve: one line or none."""
+    stated = mesh.stiffness.meta["force_N"]
+    count = min(own.size // LEAST, math.floor(seconds * abs(mesh.frequency)))
+    means = np.array([part.mean() for part in np.array_split(own, max(count, 1))])
+    low, high, mean = float(means.min()), float(means.max()), float(own.mean())
+    if mean < IDLE * stated or max(high / stated - 1, 1 - low / stated) <= OTHER:
+        return []
+    swing = f", {low:.4g} to {high:.4g} N by turns" if high - low > OTHER * stated else ""
+    return [
+        f"{mesh.name} {mean:.4g} N on average{swing}, its stiffness is that of {stated:.4g} N{_holds(mesh.stiffness, stated)}"
+    ]
+
+
+def _holds(curve, stated):
+    """Loads within which the mean stiffness of a curve changes by `NEARLY`, from how far its tangent lies above it, in words.
+
+    ``k = F / x`` gives ``d ln k / d ln F = 1 - k / (dF / dx)``.
+    """
+    power = 1 - float(np.mean(np.asarray(curve.k) / np.asarray(curve.k_tangent)))
+    if not power > 1e-6:
+        return ""
+    low, high = (stated * math.exp(sign * min(NEARLY / power, 10.0)) for sign in (-1, 1))
+    return f", within {100 * NEARLY:g} % from {low:.4g} to {high:.4g} N"

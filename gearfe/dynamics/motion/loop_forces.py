@@ -1,0 +1,114 @@
+"""Forces of the meshes in `gearfe.dynamics.motion.loop`, by the contact laws of `machine.contact_law`, compiled."""
+
+import numpy as np
+
+from ..machine.contact_law import LAWS, mesh_force, touch
+from .loop_parts import compiled, secant
+
+
+def records(**columns):
+    """Arrays of one length by name as an array of records, ``records[i].name``."""
+    dtype = np.dtype([(name, values.dtype) for name, values in columns.items()], align=True)
+    out = np.empty(len(next(iter(columns.values()))), dtype)
+    for name, values in columns.items():
+        out[name] = values
+    return out
+
+
+def _chain(first):
+    """Function of the force by the law that ``law.kind`` names: a row of `LAWS`, from row `first` on."""
+    force = compiled(LAWS[first].force)
+    if first + 1 == len(LAWS):
+        return force
+    others = _chain(first + 1)
+
+    def pushed(depth, rate, k, c, law):
+        if law.kind == first:
+            return force(depth, rate, k, c, law)
+        return others(depth, rate, k, c, law)
+
+    return compiled(pushed)
+
+
+_force = compiled(mesh_force(compiled(touch), _chain(0)))
+
+
+@compiled
+def forces(g, first, x, now, row, laws, parts, table):
+    """Forces of the meshes and friction rows beyond the linear part, and loads that change, into ``g[first:]``, a fifth of it.
+
+    Whole forces and stiffnesses of the meshes go into their records (the former where they are needed). `parts` are those of the
+    `table` of laws of several loads: of the meshes, with the meshes of friction rows after them, and of damaged teeth.
+    """
+    m, rubs = laws.size, laws[0].rubs if laws.size > 0 else 0
+    for j in range(m + rubs, g.size // 5):
+        g[first + j] = now[row, 2 * m + j]
+    if m > 0 and laws[0].affine:  # every mesh stays closed: the same, without asking where it is
+        for i in range(m):
+            law, k, e, rate = laws[i], now[row, i], now[row, m + i], now[row, 2 * m + i]
+            g[first + i] = (k - law.k_linear) * x[i] - k * e - (law.damping + law.beta * k) * rate
+            law.stiff = k
+        return
+    at = now.shape[1] - 2 * (parts.size - rubs)
+    for i in range(m):
+        law, v = laws[i], x[m + i] if x.size > m else 0.0
+        k, e, rate = now[row, i], now[row, m + i], now[row, 2 * m + i]
+        if law.lawful:
+            deep = max(x[i] - e, 0.0) + max(-law.backlash - (x[i] - e), 0.0)
+            k = secant(table, parts[i], now[row, at + 2 * i], now[row, at + 2 * i + 1], deep)
+            for j in range(m + rubs, parts.size):
+                column = at + 2 * (j - rubs)
+                if parts[j].mesh == i and now[row, column] >= 0:
+                    k += secant(table, parts[j], now[row, column], now[row, column + 1], deep)
+            k = max(k, 0.0)
+        whole = _force(x[i] - e, v - rate, k, law)
+        g[first + i] = whole - law.k_linear * x[i] - law.c_linear * v
+        law.total, law.stiff = whole, k
+    for j in range(rubs):
+        g[first + m + j] = now[row, 3 * m + j] * laws[parts[m + j].mesh].total
+
+
+@compiled
+def note(acting, step, g, now, row, laws):
+    """Write the forces that change, the stiffnesses, and the errors if there is room, into a row of `acting`."""
+    m, f = laws.size, g.size // 5
+    for i in range(f):
+        acting[step, i] = g[i]
+    for i in range(m):
+        acting[step, f + i] = laws[i].stiff
+    for i in range(acting.shape[1] - f - m):
+        acting[step, f + m + i] = now[row, m + i]
+
+
+@compiled
+def _side(own, backlash):
+    """1 where the front flanks touch, -1 the back ones, 0 none."""
+    return 1.0 if own > 0 else (-1.0 if own < -backlash else 0.0)
+
+
+@compiled
+def changed(side, x, now, row, laws):
+    """Whether a mesh that can open is not on the side given."""
+    m = side.size
+    for i in range(m):  # noqa: SIM110 (numba has no generators here)
+        if laws[i].backlash > 0 and side[i] != _side(x[i] - now[row, m + i], laws[i].backlash):
+            return True
+    return False
+
+
+@compiled
+def losses(side, x, now, row, laws):
+    """Bring the sides up to date; how many meshes that can open have opened."""
+    m, lost = side.size, 0
+    for i in range(m):
+        seen = _side(x[i] - now[row, m + i], laws[i].backlash)
+        lost += laws[i].backlash > 0 and side[i] != 0.0 and seen == 0.0
+        side[i] = seen
+    return lost
+
+
+@compiled
+def loads(g, now, row, m, rubs):
+    """Loads that change into the first forces of a step, which otherwise stand there: a load may jump."""
+    for j in range(m + rubs, g.size // 5):
+        g[j] = now[row, 2 * m + j]

@@ -1,0 +1,216 @@
+"""`Response`: what a machine did, by named channels with units."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from html import escape
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.files import Content, save_as, suffix_of
+from ...figures.inline import line_svg
+from ...signal.series import Signal
+from ..machine.contact_law import force, sided_force
+from ..machine.tables import Machine
+from . import excitation
+
+KINDS = {"velocity": "/s", "acceleration": "/s2"}
+MESH = {"compression": "m", "stiffness": "N/m", "force": "N"}
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """Motion of a machine at equal intervals.
+
+    ``response[name]`` is a channel, an array like `time`: a degree of freedom (``"sun.theta"``), with ``" velocity"`` or
+    ``" acceleration"`` after it, or of a mesh ``"compression NAME"``, ``"stiffness NAME"``, ``"force NAME"``.
+
+    Channels by name, `mesh`, `accelerations`, `signal` and files are filtered to the rate of the response where `gearfe.simulate`
+    filtered them (`filtered`): what vibrates above half of it is not in them. `states`, `q` and `v` are those of the integrator
+    at these times, to go on from; all of ``response.raw`` is, for energies, and for contact that is lost or not.
+
+    Attributes
+    ----------
+    machine : Machine
+    time : ndarray, shape (t,)
+        [s]
+    states : ndarray, shape (t, 2n)
+        Coordinates of the integrator.
+    basis : ndarray, shape (2n, 2n)
+        ``(q, v) = basis @ state``.
+    stats : dict
+        Solver, step, calls or steps, seconds, losses of contact, error estimate if asked for.
+    filtered : ndarray, shape (t, 3n + 3m), optional
+        States, accelerations, and compressions, stiffnesses and forces of the meshes, filtered.
+    """
+
+    machine: Machine
+    time: NDArray[np.float64]
+    states: NDArray[np.float64]
+    basis: NDArray[np.float64]
+    stats: dict[str, Any] = field(default_factory=dict)
+    filtered: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for times, states and filtered channels of different lengths."""
+        counts = {len(self.time), len(self.states), len(self.time if self.filtered is None else self.filtered)}
+        if len(counts) > 1:
+            raise ValueError("a response needs as many times as states and filtered channels: cut it by part")
+
+    @property
+    def raw(self) -> "Response":
+        """The same, its channels those of the integrator at these times, not filtered."""
+        return replace(self, filtered=None)
+
+    def part(self, kept: slice) -> "Response":
+        """Some of the samples, as a slice of them."""
+        filtered = None if self.filtered is None else self.filtered[kept]
+        return replace(self, time=self.time[kept], states=self.states[kept], filtered=filtered)
+
+    def __repr__(self):
+        """One line: machine, time, solver."""
+        time = f"{len(self.time)} samples from {self.time[0]:.4g} to {self.time[-1]:.4g} s"
+        machine = f"{len(self.machine.dofs)} degrees of freedom, {len(self.machine.meshes)} meshes"
+        return f"<Response: {time}, {machine}, by {self.stats.get('method', '?')}; {len(self.names)} channels in .names>"
+
+    def _repr_html_(self):
+        if not self.machine.meshes:
+            return escape(repr(self))
+        name = f"force {self.machine.meshes[0].name}"
+        last = slice(-min(len(self.time), 2000), None)  # the whole would be a black band
+        drawn = line_svg(self.time[last], np.asarray(self[name])[last], "time [s]", f"{name} [{self.unit(name)}]")
+        return f"<div>{drawn}<br>{escape(repr(self))}</div>"
+
+    @property
+    def names(self) -> list[str]:
+        """Names of all channels."""
+        dofs = self.machine.dofs
+        motions = [*dofs, *(f"{name} {kind}" for kind in KINDS for name in dofs)]
+        return [*motions, *(f"{kind} {mesh.name}" for kind in MESH for mesh in self.machine.meshes)]
+
+    def unit(self, name: str) -> str:
+        """Unit of a channel."""
+        head, _, tail = name.partition(" ")
+        if head in MESH and tail in self._meshes:
+            power = self.machine.meshes[self._meshes.index(tail)].contact.power
+            return MESH[head] if head != "stiffness" or power == 1 else f"N/m^{power:g}"
+        self._dof(head, name)
+        return ("rad" if head.endswith((".theta", ".tilt_x", ".tilt_y")) else "m") + KINDS.get(tail, "")
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        """Channel `name` ``(t,)``."""
+        head, _, tail = name.partition(" ")
+        if head in MESH and tail in self._meshes:
+            return self.mesh(head)[:, self._meshes.index(tail)]
+        dof, n = self._dof(head, name), len(self.machine.dofs)
+        if tail == "acceleration":
+            return self.accelerations()[:, dof]
+        states = self.states if self.filtered is None else self.filtered[:, : 2 * n]
+        return states @ self.basis[dof + (n if tail == "velocity" else 0)]
+
+    @property
+    def q(self) -> NDArray[np.float64]:
+        """Displacements ``(t, n)``."""
+        return self.states @ self.basis[: len(self.machine.dofs)].T
+
+    @property
+    def v(self) -> NDArray[np.float64]:
+        """Velocities ``(t, n)``."""
+        return self.states @ self.basis[len(self.machine.dofs) :].T
+
+    def mesh(self, kind: str = "force") -> NDArray[np.float64]:
+        """Compression [m], stiffness [N/m^power] or force [N] of all meshes ``(t, m)``."""
+        if kind not in MESH:
+            raise ValueError(f"kind = {kind!r}, but it must be one of {', '.join(MESH)}")
+        which = list(MESH).index(kind)
+        if self.filtered is not None:
+            return np.split(self.filtered[:, 3 * len(self.machine.dofs) :], 3, axis=1)[which]
+        flat = excitation.flatten(self.machine, self.time)
+        return mesh_channels(self.machine, flat, self.time, self.q, self.v)[which]
+
+    def accelerations(self) -> NDArray[np.float64]:
+        """Accelerations ``(t, n)``, from the equations of motion."""
+        if self.filtered is not None:
+            n = len(self.machine.dofs)
+            return self.filtered[:, 2 * n : 3 * n]
+        return acceleration(self.machine, excitation.flatten(self.machine, self.time), self.time, self.q, self.v)
+
+    def signal(self, name: str, turning: float | None = None) -> Signal:
+        """Channel `name` as a `gearfe.Signal`.
+
+        With `turning`, the turns per second of a shaft at the machine's nominal speed [Hz], it has the angle of that shaft, so
+        that `gearfe.order_spectrum` and the synchronous average follow a speed that changes.
+        """
+        angle = None if turning is None else 2 * np.pi * turning * self.machine.turned(self.time)
+        return Signal(self[name], 1 / float(self.time[1] - self.time[0]), self.unit(name), name, angle)
+
+    def save(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
+        """Write channels `names` (default: displacements and mesh forces); the suffix decides: .csv, .npz or .mat."""
+        suffix = suffix_of(path, "response")
+        save_as(suffix, path, self._content(names))
+
+    def to_csv(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
+        """Write a table of numbers with all their digits under comment lines with the solver's statistics (JSON)."""
+        save_as(".csv", path, self._content(names))
+
+    def to_npz(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
+        """Write a numpy archive: ``time``, ``values`` (t, channels), ``names``, ``units``, ``meta`` (JSON)."""
+        save_as(".npz", path, self._content(names))
+
+    def to_mat(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
+        """Write a MATLAB 5 file with the variables of `to_npz`."""
+        save_as(".mat", path, self._content(names))
+
+    def _content(self, names):
+        channels = self._columns(names)
+        units = [self.unit(name) for name in channels]
+        columns = {"time [s]": self.time} | {f"{name} [{u}]": v for (name, v), u in zip(channels.items(), units, strict=True)}
+        values = np.array(list(channels.values())).T
+        arrays = {"time": self.time, "values": values, "names": np.array(list(channels)), "units": np.array(units)}
+        array_units = {"time": "s", "values": "by row of units", "names": "-", "units": "-"}
+        return Content("gearfe response, version 1", columns, arrays, self.stats, array_units)
+
+    def _columns(self, names):
+        names = [*self.machine.dofs, *(f"force {m}" for m in self._meshes)] if names is None else list(names)
+        forces = self.mesh() if any(name.startswith("force ") for name in names) else None
+        plain = {f"force {name}": i for i, name in enumerate(self._meshes)}
+        return {name: forces[:, plain[name]] if name in plain else self[name] for name in names}
+
+    @property
+    def _meshes(self):
+        return [mesh.name for mesh in self.machine.meshes]
+
+    def _dof(self, head, name):
+        if head not in self.machine.dofs or name.partition(" ")[2] not in ("", *KINDS):
+            raise ValueError(f"no channel {name!r}; there are {', '.join(self.names)}")
+        return self.machine.dofs.index(head)
+
+
+def mesh_channels(machine, flat, t, q, v, side=None):
+    """Compressions, stiffnesses and forces of the meshes ``(..., m)``, running phases; of meshes held on a `side` if given."""
+    e, rate = excitation.errors(flat, t)
+    x, speed = q @ machine.G.T - e, v @ machine.G.T - rate
+    k, _, phase = excitation.stiffness_at(machine, flat, t, x)
+    total = force(x, speed, k, machine.law) if side is None else sided_force(x, speed, k, machine.law, side)
+    return x, k, total, phase
+
+
+def acceleration(machine, flat, t, q, v, side=None, meshes=None):
+    """Accelerations at times `t` from displacements and velocities ``(..., n)``; `meshes`: their `mesh_channels`, if known."""
+    _, _, total, phase = mesh_channels(machine, flat, t, q, v, side) if meshes is None else meshes
+    out = -q @ machine.K.T - v @ machine.C.T - total @ machine.G
+    rub = [row for mesh in machine.meshes for row, _ in mesh.friction]
+    if rub:
+        out = out - (excitation.rubbing(flat, phase) * total[..., flat.rub_mesh]) @ np.array(rub)
+    if machine.loads:
+        out = out + excitation.loads(flat, t) @ np.array([load.row for load in machine.loads])
+    return out / machine.mass
+
+
+def all_channels(response, flat):
+    """`Response.filtered` of a response before it is filtered ``(t, 3n + 3m)``."""
+    machine, t, q, v = response.machine, response.time, response.q, response.v
+    meshes = mesh_channels(machine, flat, t, q, v)
+    return np.concatenate([response.states, acceleration(machine, flat, t, q, v, meshes=meshes), *meshes[:3]], axis=1)

@@ -1,0 +1,329 @@
+"""`simulate`: the response of a machine, by a reference integrator or by the fast path."""
+
+import math
+import time
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from numbers import Real
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...core.memory import free_memory
+from ...core.threads import single
+from ..machine.tables import Machine
+from . import excitation
+from .fixed_step import fixed_steps
+from .law_range import compared
+from .reference import SOLVERS, reference
+from .response import Response, all_channels
+from .step_control import (
+    WANTED_OPEN,
+    Estimate,
+    beginning,
+    chosen_step,
+    default_step,
+    difference,
+    differences,
+    estimate,
+    estimate_along,
+    is_rough,
+    longest_seen,
+    seen,
+    unseen,
+)
+from .thinned import stages, thinned
+
+FINE = 4  # steps of the reference that the filter sees in each `default_step`
+FINER = 3  # times the step of a whole run is halved where contact is lost
+DEEPEST, FASTEST = 1.0, 1e3  # of flanks along a line of action [m], [m/s]: no tooth is so high, no gear so fast
+ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
+WHOLE = 1e-3  # of the range, of a whole run whose error is asked for
+COARSE = 0.1  # of the range: an estimate of a given step above which is warned of
+SLOW, ENDLESS = 5.0, 7200.0  # s of computing expected of a whole run: above these it is told, and refused
+NUDGE, GROWN = 1e-9, 1e-2  # a disturbance of the start, of the state; what it may grow to, of the range
+
+
+@single
+def simulate(
+    machine: Machine,
+    duration: float,
+    *,
+    method: str = "fast",
+    rate: float | None = None,
+    step: float | None = None,
+    dt: float | None = None,
+    initial: tuple[ArrayLike, ArrayLike] | None = None,
+    start: float = 0.0,
+    every: int = 1,
+    rtol: float = 1e-8,
+    error: bool | None = None,
+    filtered: bool | None = None,
+    progress: Callable[[str], object] | None = None,
+) -> Response:
+    """Response of a machine.
+
+    What is kept and how it is integrated are two things: `rate` is the first, `step` the second. Channels are filtered before
+    they are thinned (`motion.thinned`): amplitudes below 0.4 of the rate kept stay, and nothing above half of it folds
+    into a spectrum. The states (`Response.q`, `Response.v`) are those of the integrator, exact to its error, at the times kept,
+    and so are the channels of `Response.raw`. The first and the last sample of a channel are not filtered, as nothing is
+    known beyond them; the 26 next to them pass from one to the other.
+
+    Parameters
+    ----------
+    machine : Machine
+    duration : float
+        [s]
+    method : str
+        ``"fast"``: `motion.exponential`, fixed steps that are halved about changes of contact, and under a law of contact
+        that is not linear also where flanks come into contact. Or a method of
+        `scipy.integrate.solve_ivp`, the reference (``"DOP853"`` with ``rtol=1e-10``), between located changes of contact.
+    rate : float, optional
+        Samples per second kept [Hz], at the times ``start + i / rate`` up to the duration. Default: one each `default_step`.
+    step : float, optional
+        Step of the fast path [s], halved about changes of contact alone; rounded down to divide the interval of the output (of
+        what is filtered, by two or more). Its error is estimated. Default: a
+        step whose error on a short stretch is at most 7e-4 of the range (`motion.step_control.chosen_step`); where
+        contact is lost the whole run is repeated at half the step until both agree within 1e-2. If they never do, a state
+        disturbed by 1e-9 tells why: where that grows to as much, no integration can follow the motion, which
+        ``stats["chaotic"]`` says; otherwise the reference takes over, which ``stats["switched"]`` says.
+    dt : float, optional
+        Step and interval of the output in one [s]; rounded down to divide `duration`.
+    initial : (ndarray, ndarray), optional
+        Displacements and velocities ``(n,)``; default: at rest under the loads at the start (`Machine.rest`).
+    start : float
+        Time of the first state [s].
+    every : int
+        Keep every n-th output. Without `dt` the outputs counted are `default_step` apart, whatever the step. Not with `rate`.
+    rtol : float
+        Of the reference; its atol is a thousandth of that of the largest value at rest.
+    error : bool, optional
+        Fast path: True integrates the whole run again with half the step, until two runs agree within 1e-3 where the step is
+        chosen; ``stats["error"]`` is then of the whole run. False leaves a given step unestimated.
+    filtered : bool, optional
+        False: channels are those of the integrator at the times kept. Default: filtered, unless `dt` makes each step an output.
+        There are then two steps or more for each output.
+    progress : callable, optional
+        Gets a line before the loop is compiled, which the first run on a machine does in about 10 s, and one with the seconds
+        expected where a run takes long.
+
+    Returns
+    -------
+    Response
+        Its ``stats["error"]`` estimates the error: the largest difference of displacements and mesh forces to a run of half the
+        step (under a law of contact that is not linear, of a third), over their ranges
+        (`motion.step_control.difference`), on ``stats["error_seconds"]`` of the run, about the worst damaged tooth or
+        where the speed is highest, or on the whole run; ``stats["error_acceleration"]`` is that of the accelerations. Without
+        damping the error goes on growing after such a stretch: ask for the whole run (``error=True``). These are of the
+        integration; ``stats["error_phases"]`` is how far stiffnesses over the phase may be off between their samples, over their
+        spread (`motion.law_range.between_phases`): where it is the larger, solve more phases. ``stats["loads"]`` says
+        which mesh forces leave the loads that their law of force or stiffness curve was solved for, if any do.
+
+    Raises
+    ------
+    ValueError
+        If an input is impossible, or a run whose step is left open would take hours (`ENDLESS`).
+    RuntimeError
+        If the response grows beyond all bounds, or the reference gives up.
+
+    Warns
+    -----
+    UserWarning
+        If the estimate of a given step is above a tenth of the range. If a mesh force is above the loads of its law
+        (`gearfe.dynamics.machine.force_law.ForceLaw`). Without `progress`, before the loop is compiled.
+
+    Examples
+    --------
+    A mesh whose stiffness goes up and down by a tenth, at 0.63 of the natural frequency of 1592 Hz:
+
+    >>> import numpy as np, gearfe as gf
+    >>> wave = 1e8 * (1 + 0.1 * np.cos(2 * np.pi * np.arange(64) / 64))  # N/m, over the mesh cycle
+    >>> machine = gf.single_mesh(1.0, wave, frequency=1000.0, force=1000.0, zeta=0.05)
+    >>> run = gf.simulate(machine, 0.2, rate=20000.0)
+    >>> force = run["force mesh"][2000:]  # without what the start sets off
+    >>> print(f"{force.min():.0f} to {force.max():.0f} N are carried, {force.mean():.0f} N in the mean")
+    913 to 1052 N are carried, 1000 N in the mean
+    """
+    _check(machine, duration, method, rate, step, dt, start, every)
+    if initial is None:
+        state = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
+    else:
+        state = np.concatenate([np.asarray(part, dtype=float) for part in initial])
+    if state.shape != (2 * len(machine.dofs),) or not np.isfinite(state).all():
+        raise ValueError(f"initial: give displacements and velocities, {len(machine.dofs)} finite numbers each")
+    if initial is not None:
+        _check_initial(machine, state)
+    if rate is not None:
+        count = math.floor(duration * rate * (1 + 1e-12))
+        duration = count / rate
+    else:
+        count = math.ceil(duration / (dt or min(default_step(machine), duration)) / every * (1 - 1e-12))
+    filtered = dt is None if filtered is None else filtered
+    _check_memory(machine, duration, count, filtered)
+    if method != "fast":
+        return compared(_reference(machine, duration, count, state, method, rtol, start, filtered))
+    own = state if initial is not None else None
+    from .loop_parts import announced  # loads the compiler
+
+    run = _Runs(machine, duration, count, state, own, start, filtered, progress)
+    with announced(progress):
+        if step is None and dt is None:
+            return compared(run.controlled(error))
+        steps = math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1
+        return compared(run.given(steps, error))
+
+
+def _check_initial(machine, state):
+    """Refuse initial states in which flanks lie in each other by more than teeth are high, or move as fast as no gear does."""
+    n = len(machine.dofs)
+    deep, fast = (float(np.abs(machine.G @ part).max(initial=0.0)) for part in (state[:n], state[n:]))
+    if deep > DEEPEST or fast > FASTEST:
+        raise ValueError(
+            f"initial: the flanks of a mesh would be {deep:.3g} m in or off each other and move at {fast:.3g} m/s, but give less "
+            f"than {DEEPEST:g} m and {FASTEST:g} m/s: displacements in m and rad, velocities in m/s and rad/s"
+        )
+
+
+def _reference(machine, duration, count, state, method, rtol, start, filtered):
+    """`reference`, its channels filtered if asked for."""
+    if not filtered:
+        return reference(machine, duration, count, state, method, rtol, start)
+    counts = stages(FINE * math.ceil(duration / count / default_step(machine) * (1 - 1e-9)))
+    every = math.prod(counts)
+    whole = reference(machine, duration, count * every, state, method, rtol, start)
+    flat = excitation.flatten(machine, whole.time)
+    return replace(whole.part(slice(None, None, every)), filtered=thinned([all_channels(whole, flat)], counts))
+
+
+def _check_memory(machine, duration, count, filtered):
+    """Refuse more outputs than memory holds, before they are computed."""
+    size = 4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0)  # and a copy
+    memory, free = 8.0 * count * size, free_memory()
+    if memory > free:
+        raise ValueError(
+            f"duration = {duration:g} s: {count:.3g} outputs, every {duration / count:.3g} s, need about {memory / 1e9:.3g} GB, "
+            f"but {free / 1e9:.3g} GB are free: give a shorter duration, or a lower rate"
+        )
+
+
+class _Runs:
+    """Runs of the fast path that keep the same times: `count` intervals of output, each of some steps."""
+
+    def __init__(self, machine, duration, count, state, own, start, filtered, progress):
+        self.machine, self.duration, self.count, self.state = machine, duration, count, state
+        self.own, self.start, self.filtered = own, start, filtered
+        self.tell = progress or (lambda line: None)
+
+    def _watch(self, cost):
+        """Tell how long the whole run takes, from the seconds that one simulated second takes; refuse one that takes hours."""
+        seconds = cost * self.duration
+        if seconds > ENDLESS:
+            raise ValueError(
+                f"duration = {self.duration:g} s: about {seconds / 3600:.2g} hours of computing at the step that this machine "
+                f"needs, {cost:.2g} s for each second of motion: give a shorter duration, or state step= and it is run"
+            )
+        if seconds > SLOW:
+            self.tell(f"{self.duration:.3g} s of motion at this step: about {seconds:.2g} s")
+
+    def steps(self, every):
+        """Steps for each output: `every`, or some more where channels are filtered."""
+        return math.prod(stages(every)) if self.filtered else every
+
+    def __call__(self, every, state=None, adapt=False):
+        """Run of `steps` of `every` for each output."""
+        state = self.state if state is None else state
+        counts, every = stages(every) if self.filtered else (), self.steps(every)
+        options = {"every": every, "start": self.start, "adapt": adapt, "counts": counts}
+        return fixed_steps(self.machine, self.duration, every * self.count, state, **options)
+
+    def given(self, every, error):
+        """Run of steps that the caller chose, with their estimate unless `error` is False."""
+        started, every = time.perf_counter(), self.steps(every)
+        out = self(every)
+        if error is False:
+            return out
+        length = float(self.duration)
+        if error:
+            finer = self(2 * every)
+            *moved, shaken = differences(seen(out), seen(finer), self.machine)
+            found = Estimate(max(moved), False, length, 0.0, shaken)
+        else:
+            try:
+                place, span = beginning(self.machine, self.duration, self.own, self.start)
+                found = estimate(self.machine, out.stats["dt"], span, [place])
+            except RuntimeError:  # the stretch, unlike the run, grows beyond all bounds
+                found = Estimate(math.inf, False, length, 0.0, math.inf)
+        doubt = max(found.error, unseen(self.machine, self.start, self.duration, out.stats["dt"]))
+        if not doubt <= COARSE:
+            warnings.warn(
+                f"a step of {out.stats['dt']:.3g} s is too long for this machine: its error is about {100 * doubt:.2g} % of the "
+                "range of the motion; leave the step open and state the rate of the output by rate=",
+                stacklevel=3,
+            )
+        stats = {"error": doubt, "error_acceleration": found.acceleration, "error_seconds": found.length}
+        return replace(out, stats=out.stats | stats | {"seconds": time.perf_counter() - started})
+
+    def controlled(self, error):
+        """Run at the chosen step; where contact is lost, until two whole runs agree, or by the reference."""
+        started = time.perf_counter()
+
+        def told(one, **more):
+            return replace(one, stats=one.stats | more | {"seconds": time.perf_counter() - started})
+
+        longest = longest_seen(self.machine, self.start, self.duration)
+        options = {"begin": self.start, "adapt": True, "watch": self._watch, "longest": longest}
+        dt, found = chosen_step(self.machine, self.duration, self.own, **options)
+        every = self.steps(math.ceil(self.duration / self.count / dt * (1 - 1e-9)))
+        out = self(every, adapt=True)
+        if not (out.stats["losses"] or error):
+            if is_rough(self.machine):
+                found = estimate_along(out, found)
+            return told(out, error=found.error, error_acceleration=found.acceleration, error_seconds=found.length)
+        length = float(self.duration)
+        for _ in range(FINER):
+            every *= 2
+            finer = self(every, adapt=True)
+            *moved, shaken = differences(seen(out), seen(finer), self.machine)
+            out, doubt = finer, max(moved)
+            if doubt <= (ALLOWED if out.stats["losses"] else WHOLE):
+                break
+        if doubt <= ALLOWED or not out.stats["losses"]:
+            return told(out, error=doubt, error_acceleration=shaken, error_seconds=length)
+        h = out.stats["dt"]
+        why = f"contact is lost and two runs of the fast path, with steps of {2 * h:.3g} s and half of it, differ by {doubt:.2g}"
+        rest = np.concatenate([self.machine.rest(self.start), np.zeros(len(self.machine.dofs))])
+        grown = max(difference(self(every, self.state + NUDGE * (self.state + rest), adapt=True), out))
+        if grown > GROWN:
+            why += f" of the range, and two whose start differs by {NUDGE:g} by {grown:.2g}: no integration can follow the motion"
+            why += " for so long; trust its averages and spectra, or shorten the run"
+            return told(out, chaotic=why, error=doubt, error_seconds=length)
+        start = self.start
+        want = _reference(self.machine, self.duration, self.count, self.state, "DOP853", 1e-10, start, self.filtered)
+        return told(want, switched=f"{why} of the range", error=max(difference(out, want)), error_seconds=length)
+
+
+def _check(machine, duration, method, rate, step, dt, start, every):
+    if not isinstance(machine, Machine):
+        raise ValueError(
+            f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
+        )
+    if isinstance(duration, bool) or not isinstance(duration, Real):
+        raise ValueError(f"duration = {duration!r}, but give a number of seconds")
+    if not (math.isfinite(duration) and duration > 0):
+        raise ValueError(f"duration = {duration} s, but it must be positive")
+    if method != "fast" and method not in SOLVERS:
+        raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
+    for name, value in {"dt": dt, "step": step}.items():
+        if value is not None and not (math.isfinite(value) and 0 < value <= duration):
+            raise ValueError(f"{name} = {value} s, but it must be positive and no longer than the duration")
+    if rate is not None and not (math.isfinite(rate) and duration * rate * (1 + 1e-12) >= 1):
+        raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
+    if dt is not None and (rate is not None or step is not None):
+        raise ValueError("dt is both the step and the interval of the output: give rate and step instead, or one of them")
+    if rate is not None and every != 1:
+        raise ValueError(f"rate = {rate} Hz and every = {every}: both thin out the output; give a lower rate alone")
+    if not math.isfinite(start):
+        raise ValueError(f"start = {start} s, but it must be a time")
+    if isinstance(every, bool) or every != int(every) or every < 1:
+        raise ValueError(f"every = {every!r}, but give a whole number >= 1")

@@ -1,0 +1,201 @@
+"""Steady state of a machine without its transient, by shooting, and whether it is stable, by Floquet multipliers."""
+
+import math
+import time
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...core.threads import single
+from ..machine.contact_law import closed, slopes
+from ..machine.tables import Machine
+from . import excitation, propagator
+from .exponential import Step
+from .response import Response
+from .step_control import chosen_step
+
+STABLE = 1e-6  # above 1: a multiplier this large still counts as 1 (rigid-body motion, no damping)
+
+
+@dataclass(frozen=True, slots=True)
+class Steady:
+    """A periodic motion.
+
+    Attributes
+    ----------
+    response : Response
+        One period, both ends included.
+    period : float
+        [s]
+    multipliers : ndarray, shape (2n,)
+        Floquet multipliers: eigenvalues of the monodromy matrix, the largest first.
+    residual : float
+        Distance of the end of the period from its start over the size of the motion (in scaled coordinates).
+    iterations : int
+        Of Newton's method.
+    """
+
+    response: Response
+    period: float
+    multipliers: NDArray[np.complex128]
+    residual: float
+    iterations: int
+
+    @property
+    def stable(self) -> bool:
+        """Whether small disturbances do not grow."""
+        return bool(abs(self.multipliers[0]) <= 1 + STABLE)
+
+
+def common_period(machine: Machine) -> float:
+    """Shortest time after which all stiffnesses and errors of a machine repeat [s].
+
+    Raises
+    ------
+    ValueError
+        If there is none (frequencies without a common multiple, loads that change).
+    """
+    if any(load.breaks.size > 1 or callable(load.value) for load in machine.loads):
+        raise ValueError("the loads change with time: give the period")
+    if machine.speed is not None:
+        raise ValueError("the speed changes with time: there is no periodic motion; use simulate")
+    rates = [abs(m.frequency) / m.cycles() for m in machine.meshes if m.frequency]
+    rates += [abs(f) for m in machine.meshes for _, f, _ in m.error if f]
+    if not rates:
+        raise ValueError("nothing in this machine is periodic: give the period")
+    parts = [Fraction(rate / rates[0]).limit_denominator(10000) for rate in rates]
+    if any(abs(float(part) * rates[0] / rate - 1) > 1e-9 for part, rate in zip(parts, rates, strict=True)):
+        raise ValueError(f"frequencies {', '.join(f'{r:.6g}' for r in sorted(set(rates)))} Hz have no common period")
+    turns = math.lcm(*(part.denominator for part in parts))
+    return turns / math.gcd(*(int(part * turns) for part in parts)) / rates[0]
+
+
+@single
+def steady_state(
+    machine: Machine,
+    *,
+    period: float | None = None,
+    dt: float | None = None,
+    initial: tuple[ArrayLike, ArrayLike] | None = None,
+    iterations: int = 20,
+    tolerance: float = 1e-9,
+) -> Steady:
+    """Periodic motion of a machine by shooting.
+
+    Newton's method on the state at the start of the period; for meshes that stay closed one step is exact. Motions of longer
+    periods (subharmonic, chaotic) are not found unless `period` asks for them.
+
+    Parameters
+    ----------
+    machine : Machine
+    period : float, optional
+        [s]; default: `common_period`.
+    dt : float, optional
+        Step; default `gearfe.dynamics.motion.step_control.chosen_step`.
+    initial : (ndarray, ndarray), optional
+        Displacements and velocities to start from; default: at rest.
+    iterations : int
+        Bound of Newton's method.
+    tolerance : float
+        Of `Steady.residual`.
+
+    Returns
+    -------
+    Steady
+
+    Raises
+    ------
+    RuntimeError
+        If Newton's method does not settle.
+    """
+    started = time.perf_counter()
+    period = common_period(machine) if period is None else period
+    flow = _Flow(machine, period, dt)
+    q, v = (machine.rest(), np.zeros(len(machine.dofs))) if initial is None else initial
+    z = flow.plan.inverse @ np.concatenate([q, v])
+    for done in range(iterations + 1):
+        states, stats = flow(z)
+        away = states[-1] - z
+        size = np.abs(states).max() or 1.0
+        residual = float(np.abs(away).max() / size)
+        if not residual <= tolerance and done == iterations:
+            break
+        if done == 0 or residual > tolerance or not flow.linear:
+            matrix = flow.monodromy(states)
+        if residual <= tolerance:
+            values = np.linalg.eigvals(matrix)
+            stats |= {"method": "shooting", "dt": 2 * flow.plan.h, "seconds": time.perf_counter() - started}
+            response = Response(machine, flow.times[::2], states[::2], flow.plan.basis, stats)
+            return Steady(response, period, values[np.argsort(-np.abs(values))], residual, done)
+        z = z + np.linalg.lstsq(np.eye(z.size) - matrix, away, rcond=1e-10)[0]
+    raise RuntimeError(
+        f"no periodic motion of period {period:.6g} s found in {iterations} iterations (residual {residual:.3g}): "
+        "the response may be of a longer period or not periodic; integrate from rest, start from a state of that, or add damping"
+    )
+
+
+def floquet(machine, *, period=None, dt=None):
+    """Floquet multipliers of a machine with closed meshes, the largest first ``(2n,)``; loads and errors do not matter."""
+    flow = _Flow(machine, common_period(machine) if period is None else period, dt)
+    if not flow.linear:
+        raise ValueError("the meshes of this machine can open: its multipliers depend on its motion; use steady_state")
+    values = np.linalg.eigvals(flow.monodromy(None))
+    return values[np.argsort(-np.abs(values))]
+
+
+class _Flow:
+    """The motion over a period in steps of h/2, and its derivative by the start in steps of h."""
+
+    def __init__(self, machine, period, dt):
+        steps = math.ceil(period / (dt or chosen_step(machine, period)[0]) * (1 - 1e-12))
+        h = period / steps
+        x = machine.working()
+        self.machine, self.steps, self.times = machine, steps, np.linspace(0.0, period, 2 * steps + 1)
+        self.plan, self.coarse = propagator.plan(machine, h / 2, x), propagator.plan(machine, h, x)
+        self.flat = excitation.flatten(machine, np.linspace(0.0, period, 16 * steps + 1))
+        self.breaks = np.unique(np.concatenate([np.empty(0), *(load.breaks for load in machine.loads)]))
+        self.linear = closed(machine.law) and not machine.curved  # even with friction
+        # both plans must speak of the same coordinates
+        self.turn = self.coarse.inverse @ self.plan.basis
+
+    def __call__(self, z):
+        from .loop import run  # loads the compiler
+        from .loop_parts import announced
+
+        with announced():
+            return run(self.plan, self.machine, self.flat, z, 2 * self.steps, 1, self.breaks)
+
+    def monodromy(self, states):
+        """Derivative of the state after the period by that before, along `states` (None: they do not matter)."""
+        machine, n, m = self.machine, len(self.machine.dofs), len(self.machine.meshes)
+        if states is None:
+            x = np.ones((self.times.size, m))
+            v = np.zeros_like(x)
+        else:
+            e, rate = excitation.errors(self.flat, self.times)
+            x = states @ (machine.G @ self.plan.basis[:n]).T - e
+            v = states @ (machine.G @ self.plan.basis[n:]).T - rate
+        k, bend, phase = excitation.stiffness_at(machine, self.flat, self.times, x)
+        by_x, by_v = slopes(x, v, k, machine.law, bend)
+        rub = len(self.flat.rub_mesh)
+        weight = excitation.rubbing(self.flat, phase) if rub else None
+        X, step = np.eye(2 * n), Step(self.coarse, (2 * n,))
+
+        def forces(y, out, j):
+            if self.coarse.affine:
+                out[:m] = (k[j] - self.coarse.k)[:, None] * y[:m]
+                return
+            total = by_x[j][:, None] * y[:m]
+            out[:m] = total - self.coarse.k[:, None] * y[:m]
+            if len(y) > m:
+                total = total + by_v[j][:, None] * y[m:]
+                out[:m] += (by_v[j] - self.coarse.c)[:, None] * y[m:]
+            if rub:
+                out[m : m + rub] = weight[j][:, None] * total[self.flat.rub_mesh]
+
+        for j in range(0, 2 * self.steps, 2):
+            X = step(X, 0, forces, j)
+        back = np.linalg.inv(self.turn)
+        return back @ X @ self.turn

@@ -1,0 +1,292 @@
+"""The step of the fast path: what two runs of different steps differ by, and a step for which that is small.
+
+The error of a step is set by the mesh cycles, by the modes the meshes excite, by how steep the stiffness curves are and by the
+damaged tooth: no frequency alone determines it. So a short stretch of the motion is run at a step and at half of it, and the
+step changed until both agree.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from . import excitation
+from .fixed_step import fixed_steps
+from .propagator import default_step, is_bent, plan
+from .response import acceleration, mesh_channels
+
+WANTED, WANTED_OPEN = 7e-4, 5e-3  # largest error, as a part of the range, while the meshes stay closed and where contact is lost
+CYCLES = 3.5  # of the slowest mesh, in a stretch
+SPREAD = 4  # stretches on which a run under a law of contact that is not linear is repeated; all of it if it is no longer
+HALVINGS = 6
+SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to a shorter step: of order four, and where local halving rules
+SEEN = 3e-3  # of the spread of a load that is a function: how well it must be known between the samples of a run
+SAMPLES = 1000  # of a stretch, at which two runs are compared
+PROBES = 50_000  # times at which that is looked at
+TURNS = ("theta", "tilt_x", "tilt_y")
+
+
+class Seen(NamedTuple):
+    """What two runs are compared by, at the times kept and as the integrator has it.
+
+    Attributes
+    ----------
+    q : ndarray, shape (t, n)
+        Displacements.
+    force : ndarray, shape (t, m)
+        Of the meshes.
+    acceleration : ndarray, shape (t, n)
+    """
+
+    q: np.ndarray
+    force: np.ndarray
+    acceleration: np.ndarray
+
+
+def seen(response):
+    """`Seen` of a response."""
+    machine, t, q, v = response.machine, response.time, response.q, response.v
+    flat = excitation.flatten(machine, t)
+    meshes = mesh_channels(machine, flat, t, q, v)
+    return Seen(q, meshes[2], acceleration(machine, flat, t, q, v, meshes=meshes))
+
+
+def differences(one, two, machine):
+    """Largest differences of `Seen` of two runs at the same times, relative to ranges of the second.
+
+    Returns
+    -------
+    displacement : float
+        Of any translation over the largest range of a translation, or of any rotation over that of a rotation.
+    force : float
+        Of any mesh force over its own range; forces that vary by less than a millionth of the largest do not count.
+    acceleration : float
+        As of displacements.
+    """
+    moved, shaken = (_by_kind(getattr(one, name), getattr(two, name), machine) for name in ("q", "acceleration"))
+    if not machine.meshes:
+        return moved, 0.0, shaken
+    size = np.ptp(two.force, axis=0)
+    size = np.where(size > 1e-6 * np.abs(two.force).max(), size, np.inf)
+    return moved, float((np.abs(one.force - two.force).max(axis=0) / size).max()), shaken
+
+
+def difference(one, two):
+    """`differences` of the displacements and the mesh forces of two responses."""
+    return differences(seen(one), seen(two), two.machine)[:2]
+
+
+def _by_kind(one, two, machine):
+    away, size = np.abs(one - two).max(axis=0), np.ptp(two, axis=0)
+    turns = np.array([name.rpartition(".")[2] in TURNS for name in machine.dofs])
+    kinds = [(away[kind].max(), size[kind].max()) for kind in (turns, ~turns) if kind.any()]
+    return max(float(error / limit) if limit else 0.0 for error, limit in kinds)
+
+
+def unseen(machine, start, duration, h):
+    """How far loads that are functions are from what steps of `h` seconds see of them, over their spread; the worst.
+
+    A run knows them at quarters of its steps and draws straight lines between. Asked at times by chance over the whole run, not
+    on a stretch: a burst, or a tone far above the meshes, shows.
+    """
+    functions = [applied for applied in machine.loads if callable(applied.value)]
+    if not functions:
+        return 0.0
+    t = start + duration * np.random.default_rng(0).random(PROBES)
+    part, whole = np.modf((t - start) / (h / 4))
+    low = start + h / 4 * whole
+    worst = 0.0
+    for load in functions:
+        value, left, right = load(t), load(low), load(low + h / 4)
+        spread = float(np.std(value))
+        off = float(np.sqrt(np.mean((left + part * (right - left) - value) ** 2)))
+        worst = max(worst, off / spread if spread else 0.0)
+    return worst
+
+
+def longest_seen(machine, start, duration):
+    """Longest step that sees the loads to `SEEN` [s]; at most `default_step`, and that over ``2**12`` if none does."""
+    h = default_step(machine)
+    for _ in range(12):
+        if unseen(machine, start, duration, h) <= SEEN:
+            break
+        h /= 2
+    return h
+
+
+def stretch(machine, duration, begin=0.0):
+    """Start and length [s] of the stretch of a run from time `begin` on, on which its error is estimated.
+
+    `CYCLES` mesh cycles, with the worst damaged tooth among them; of a speed that changes: where it is fastest.
+    """
+    rates = [abs(m.frequency) for m in machine.meshes if m.frequency]
+    if not rates:
+        return begin, min(duration, 1000 * default_step(machine))
+    length = min(duration, CYCLES / (min(rates) * machine.fastest))
+    if machine.speed is not None:
+        times = begin + np.linspace(0.0, duration - length, 1000)
+        return float(times[np.argmax(np.diff(machine.turned([times, times + length]), axis=0))]), length
+    worst, start = 0.0, begin
+    for mesh in machine.meshes:
+        for (_, _, change), times in zip(mesh.changes, mesh.entries(begin + duration) if mesh.frequency else (), strict=False):
+            depth, times = np.abs(change.cells[:, 0]).max() / mesh.cycle.mean, times[times >= begin]
+            if times.size and depth > worst:
+                worst, before = depth, 0.5 if mesh.frequency > 0 else CYCLES - 0.5
+                start = times[0] - before / abs(mesh.frequency)
+    return max(begin, min(start, begin + duration - length)), length
+
+
+def wanted(lost):
+    """Largest error of a step that is taken, as a part of the range, where contact is lost or not."""
+    return WANTED_OPEN if lost else WANTED
+
+
+def beginning(machine, duration, initial=None, begin=0.0):
+    """Time and state at the start of the `stretch` of a run, ``(2n,)`` and at rest unless given, and its length [s]."""
+    start, length = stretch(machine, duration, begin)
+    if initial is None:
+        initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
+    return (start, initial), length
+
+
+def chosen_step(machine, duration, initial=None, *, begin=0.0, adapt=False, watch=None, longest=math.inf):
+    """Step of the fast path, no longer than `default_step`, whose error on a `stretch` is at most `WANTED` of the range.
+
+    Where contact is lost on the stretch, `WANTED_OPEN`.
+
+    Parameters
+    ----------
+    machine : Machine
+    duration : float
+        Of the whole run [s].
+    initial : ndarray, shape (2n,), optional
+        State from which the stretch starts; default: at rest.
+    begin : float
+        Time at which the run starts [s].
+    adapt : bool
+        Of `gearfe.dynamics.motion.fixed_step.fixed_steps`: the step is then the longest.
+    watch : callable, optional
+        Gets the seconds that a simulated second takes at each step tried; may raise.
+    longest : float
+        Step to begin with [s], if it is shorter than `default_step`.
+
+    Returns
+    -------
+    dt : float
+        [s]
+    assessed : Estimate
+        Of that step.
+    """
+
+    def error(h):
+        try:
+            assessed = estimate(machine, h, length, [place], adapt=adapt, tried=True)
+        except RuntimeError:
+            if h < 0.9 * low:
+                raise
+            return Estimate(math.inf, False, length, 0.0, math.inf)
+        if watch is not None:
+            watch(assessed.cost)
+        return assessed
+
+    place, length = beginning(machine, duration, initial, begin)
+    h = min(default_step(machine), length, longest)
+    low = h / 2**HALVINGS
+    assessed = error(h)
+    while assessed.error > wanted(assessed.lost) and h > low:
+        h *= max(0.25, min(0.8, 0.9 * (WANTED / assessed.error) ** 0.25)) if not assessed.lost else 0.5
+        assessed = error(h)
+    return h, assessed
+
+
+class Estimate(NamedTuple):
+    """Error and cost of a step, from a run with it and one with half of it on a stretch.
+
+    Attributes
+    ----------
+    error : float
+        Of displacements and mesh forces, the larger of `difference`, times `SMOOTH` or `ROUGH`.
+    lost : bool
+        Whether contact is lost there.
+    length : float
+        Of the stretch [s].
+    cost : float
+        Wall time for a simulated second at this step [s], from how much longer the run at half of it took.
+    acceleration : float
+        Error of the accelerations, likewise.
+    """
+
+    error: float
+    lost: bool
+    length: float
+    cost: float
+    acceleration: float
+
+
+def is_rough(machine):
+    """Whether the error of a step hangs on where the steps lie: flanks meet under a law that is not straight, or one of force."""
+    return is_bent(machine) or any(mesh.secants for mesh in machine.meshes)
+
+
+def estimate(machine, h, length, places, *, adapt=False, tried=False):
+    """`Estimate` of the step `h` on stretches of `length` seconds, each from a time and a state that `places` has; the worst.
+
+    Where local halving rules, the error is small or large by where the steps happen to lie, and a shorter one can be the worse:
+    the run is then compared with a third of the step, and so is that of half the step; of a step that is `tried` not if half of
+    it alone says that it is too long.
+    """
+    count, x, rough = length / h * (1 - 1e-12), machine.working(), adapt and is_rough(machine)
+    every = max(1, int(count / SAMPLES))
+    steps = every * math.ceil(count / every)
+    plans = {c: plan(machine, length / (c * steps), x, adapt) for c in ((1, 2, 3) if rough else (1, 2))}
+
+    def run(c, start, state):
+        return fixed_steps(machine, length, c * steps, state, every=c * every, start=start, adapt=adapt, plan=plans[c])
+
+    def apart(told):
+        found = np.max([differences(each, told[-1], machine) for each in told[:-1]], axis=0)
+        return (ROUGH if rough else SMOOTH) * np.array([max(found[:2]), found[2]])
+
+    worst, lost, cost = np.zeros(2), False, 0.0
+    for place in places:
+        runs = [run(c, *place) for c in (1, 2)]
+        told, opened = [seen(each) for each in runs], runs[1].stats["losses"] > 0
+        if rough and not (tried and apart(told)[0] > wanted(opened)):
+            told.append(seen(run(3, *place)))
+        worst, lost = np.maximum(worst, apart(told)), lost or opened
+        one, two = (each.stats["seconds"] for each in runs)
+        if one >= two:  # the first waited for the compiler, or for the processor
+            one = run(1, *place).stats["seconds"]
+        cost = max(cost, two - one, two / 4)  # half of `two` but for noise, which may make it nothing
+    return Estimate(float(worst[0]), lost, length * len(places), cost / length, float(worst[1]))
+
+
+def estimate_along(response, found):
+    """`Estimate` of a run under laws for which `is_rough`, from what it went through.
+
+    Its error depends on where its own steps happen to lie when pairs come in, so that one stretch says too little: the whole of
+    a run as short as `SPREAD` stretches is run again, of a longer one `SPREAD` stretches spread over it, each from the state
+    that the run had there. What those cannot know is what was wrong before: errors of stretches one after the other add up
+    as independent ones do, until the least damped vibration forgets them.
+
+    Parameters
+    ----------
+    response : Response
+        Of `gearfe.dynamics.motion.fixed_step.fixed_steps`, ``adapt=True``.
+    found : Estimate
+        Of its step on one stretch.
+    """
+    machine, time, h, length = response.machine, response.time, response.stats["dt"], found.length
+    begin, duration, grown, index = float(time[0]), float(time[-1] - time[0]), 1.0, [0]
+    if duration > SPREAD * length:
+        index = np.searchsorted(time, begin + np.linspace(0.0, duration - length, SPREAD) * (1 - 1e-12)) - 1
+        index = np.unique(np.maximum(index, 0))
+        values = np.linalg.eigvals(plan(machine, h, machine.working()).levels[0][0])
+        left = np.abs(values[values.imag > 0]).max(initial=0.0) ** (2 * length / h)  # of a squared error, after a stretch
+        grown = math.sqrt(sum(left**i for i in range(math.ceil(duration / length))))
+    else:
+        length = duration
+    state = np.concatenate([response.q, response.v], axis=1)
+    along = estimate(machine, h, length, [(float(time[i]), state[i]) for i in index], adapt=True)
+    error, acceleration = (max(getattr(along, key), getattr(found, key)) * grown for key in ("error", "acceleration"))
+    return Estimate(error, found.lost or along.lost, along.length, found.cost, acceleration)

@@ -1,0 +1,47 @@
+"""Plots (matplotlib) of the transmission error: over phase at several loads, and its swing over load."""
+
+import numpy as np
+
+from ..core.files import save_figure
+from .look import COLOURS, blank
+from .stiffness_plots import told
+
+
+def plot_transmission_error(found, path=None, title=None, plain=None):
+    """Draw a `gearfe.stiffness.transmission_error.TransmissionError`; save to `path` (png, svg, pdf) if given.
+
+    The `title` is by default teeth, damage and width, see `gearfe.figures.stiffness_plots.told`. With `plain`, that of the same
+    pair with plain involutes, its peak-to-peak is drawn too.
+    """
+    from matplotlib import colormaps
+
+    figure, (top, bottom) = blank((8, 6.5), 2, 1, height_ratios=[2, 1])
+    order = np.argsort(found.force)[::-1]
+    colours = colormaps["plasma"](np.linspace(0.0, 0.62, order.size))  # no paler: light loads are lines on white, too
+    for i, colour in zip(order.tolist(), colours, strict=True):
+        phase, te = _closed(found.phase, found.te[i])
+        top.plot(phase, 1e6 * te, color=colour, label=f"{found.force[i]:g} N")
+    phase, te = _closed(found.phase, found.unloaded)
+    top.plot(phase, 1e6 * te, color="black", linestyle=":", label="unloaded")
+    top.set_title(told(found.curves[0], load=False) if title is None else title, fontsize=10)
+    top.set_xlabel("mesh phase (0: a pair enters, 1: one base pitch later)")
+    top.set_ylabel("transmission error [µm]")
+    top.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    rising, swing = order[::-1], 1e6 * found.peak_to_peak
+    bottom.plot(
+        found.force[rising], swing[rising], "o-", color=COLOURS[0], label="under load" if plain is None else "modified flanks"
+    )
+    if plain is not None:
+        bottom.plot(plain.force[rising], 1e6 * plain.peak_to_peak[rising], "s--", color=COLOURS[1], label="plain involutes")
+    bottom.axhline(1e6 * np.ptp(found.unloaded), color="black", linestyle=":", label="unloaded")
+    bottom.set(xlim=(0, None), ylim=(0, None))
+    bottom.set(xlabel="force along the line of action [N]", ylabel="peak-to-peak [µm]")
+    bottom.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    return save_figure(figure, path, dpi=120)
+
+
+def _closed(phase, values):
+    """One mesh cycle with its first point again at its end; other phases as they are."""
+    if phase.size > 1 and (np.diff(phase) > 0).all() and phase[-1] < phase[0] + 1:
+        return np.append(phase, phase[0] + 1), np.append(values, values[0])
+    return phase, values

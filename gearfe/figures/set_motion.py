@@ -1,0 +1,60 @@
+"""Moving picture (matplotlib) of a planetary set, bent under its load while it turns."""
+
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.files import _beside, written
+from ..core.steps import steps
+from .set_plot import BRIGHT, LARGEST, draw_set
+
+SUFFIX = ".gif"
+AROUND = 1.08  # times the set's radius: what the frames show
+
+
+def check_moving(path: Any) -> None:
+    """Raise ValueError if a moving picture cannot be written to `path` later: to be called before work begins."""
+    if not isinstance(path, (str, os.PathLike)) or Path(path).suffix.lower() != SUFFIX:
+        raise ValueError(f"{path!r} is no moving picture: give the name of a file that ends in {SUFFIX}")
+    if os.path.isdir(path):
+        raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
+    os.unlink(_beside(path))  # a file can be made there
+
+
+def draw_motion(
+    positions: list[tuple[list[Any], NDArray[np.float64] | None]],
+    path: str | os.PathLike[str],
+    *,
+    magnified: float | None,
+    rate: int,
+    dpi: int,
+) -> None:
+    """Moving picture of `gearfe.planetary_sets.animation.animate_planetary_set`: `positions` as of `loaded_shapes`.
+
+    `rate` is in frames a second. Magnification, colours and what is seen are the same in all frames.
+    """
+    from matplotlib.animation import PillowWriter
+
+    every = [shape for shapes, _ in positions for shape in shapes]
+    radius = max(float(np.hypot(*one.place).max()) for one in every)
+    largest = max(float(np.hypot(*one.moved).max()) for one in every)
+    top = max(float(np.percentile(one.stress, BRIGHT)) for one in every)
+    times = magnified or 10 ** math.floor(math.log10(LARGEST * radius / largest)) * 2
+    reach = AROUND * (radius + times * largest)
+    writer = PillowWriter(fps=rate)
+    with written(path) as name:
+        for i, (shapes, supports) in enumerate(steps(positions)):
+            figure = draw_set(shapes, supports, None, magnified=times, dpi=dpi)
+            (axes, _) = figure.axes
+            axes.set(xlim=(-reach, reach), ylim=(-reach, reach), title=f"displacements {times:g} times as large")
+            for drawn in axes.collections:
+                drawn.set_clim(0, top)
+            if not i:
+                writer.setup(figure, name, dpi)
+            writer.fig = figure
+            writer.grab_frame()
+        writer.finish()

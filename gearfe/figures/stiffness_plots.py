@@ -1,0 +1,133 @@
+"""Plots (matplotlib) of stiffness: curves, error maps."""
+
+import math
+
+import numpy as np
+
+from ..core.files import save_figure
+from ..core.units import NEWTON_PER_UM
+from .look import SQUASHED, blank, look
+
+COLUMNS = {  # of an error map
+    "load": "load F / (b m_n) [MPa]",
+    "bore_1": "pinion bore / root radius",
+    "bore_2": "wheel bore / root radius",
+    "z_1": "teeth of the pinion",
+    "z_2": "teeth of the wheel",
+    "crack": "crack level",
+}
+
+
+def plot_curves(curves, path=None, title=None):
+    """Draw stiffness curves by name over the phase [N/um], the load shares of the first below; save to `path` if given.
+
+    Curves differ by colour and by dashes. A jump, where a curve without contact off the path of contact gains or loses a pair,
+    is drawn at its phase. The axis of stiffness starts at zero unless that would squash the curves. The `title` is by default
+    teeth, damage and load of the first curve, see `told`.
+    """
+    figure, (top, bottom) = blank((7.5, 5.4), 2, 1, sharex=True, height_ratios=[2, 1])
+    for number, (name, curve) in enumerate(curves.items()):
+        top.plot(*closed(curve), label=name, linewidth=1.8 if number == 0 else 1.4, **look(number))
+    first = next(iter(curves.values()))
+    share = np.where(first.force > 0, first.share, np.nan)
+    for column, order in enumerate(first.order):
+        bottom.plot(first.phase, share[:, column], label=f"pair {order:+d}", **look(column))
+    k = np.concatenate([curve.k for curve in curves.values()]) / NEWTON_PER_UM
+    if k.min() < SQUASHED * k.max():
+        top.set_ylim(0, 1.06 * k.max())
+    top.set_title(told(first) if title is None else title, fontsize=10)
+    top.set_ylabel("mesh stiffness k [N/µm]")
+    top.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
+    bottom.set_ylabel(f"load share ({next(iter(curves))})")
+    bottom.set_xlabel("mesh phase (0: a pair enters, 1: one base pitch later)")
+    bottom.set_ylim(0, 1.05)
+    bottom.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
+    return save_figure(figure, path, dpi=120)
+
+
+def told(curve, *, load=True):
+    """Teeth, damage, width and (if `load`) load of a curve in one line, as far as its `meta` has them."""
+    meta = curve.meta
+    parts = []
+    if "gear_1" in meta and "gear_2" in meta:
+        parts.append(f"z = {meta['gear_1']['z']} / {meta['gear_2']['z']}")
+    hurt = {side: len(damages) for side, damages in meta.get("damage", {}).items() if damages}
+    parts += [f"{number} damage{'s' if number > 1 else ''} of the {side}" for side, number in hurt.items()]
+    if "force_N" in meta and "width_mm" in meta:
+        parts.append(f"{meta['force_N']:g} N on {meta['width_mm']:g} mm" if load else f"{meta['width_mm']:g} mm wide")
+    return ", ".join(parts)
+
+
+def closed(curve):
+    """Phases and stiffness [N/um] as they are drawn: one cycle closed, jumps upright.
+
+    Returns
+    -------
+    phase, k : ndarray, shape (m,)
+    """
+    phase, k, order = curve.phase, curve.k / NEWTON_PER_UM, np.arange(curve.phase.size)
+    rises = phase.size > 1 and bool((np.diff(phase) > 0).all())
+    if rises and phase[-1] < phase[0] + 1 and phase[-1] - phase[0] > 0.75:  # one cycle: close it
+        phase, order = np.append(phase, phase[0] + 1), np.append(order, 0)
+    k = k[order]
+    meta = curve.meta
+    smooth = meta.get("extended", not np.isfinite(curve.force).all()) or meta.get("face") in ("helical", "herringbone")
+    if not rises or smooth or "eps_alpha" not in meta or phase.size < 4:
+        return phase, k
+    whole = np.arange(math.floor(phase[0]), math.ceil(phase[-1]) + 1)
+    places = np.concatenate([whole, whole + meta["eps_alpha"] % 1])  # a pair enters, a pair leaves
+    for place in np.sort(places[(places > phase[0]) & (places <= phase[-1])])[::-1]:
+        after = int(np.searchsorted(phase, place - 1e-9))
+        if after < phase.size - 1 and abs(phase[after] - place) < 1e-9:  # a pair that enters is there, one that leaves still is
+            after += int(place not in whole)
+        before = after - 1
+        left = _extended(phase, k, (before - 1, before), place)
+        right = _extended(phase, k, (after, after + 1), place)
+        phase, k = np.insert(phase, after, [place, place]), np.insert(k, after, [left, right])
+    return phase, k
+
+
+def _extended(phase, k, rows, place):
+    """Straight line through two samples at `place`; beside the ends of the curve the nearer sample."""
+    a, b = rows
+    if a < 0 or b >= phase.size or phase[a] == phase[b]:
+        return k[min(max(a, 0), phase.size - 1)] if a >= 0 else k[b]
+    return k[a] + (k[b] - k[a]) / (phase[b] - phase[a]) * (place - phase[a])
+
+
+def plot_map(found, formulations, x, y, zone, path=None, bins=8):
+    """Heat maps of the median error over two columns of an `gearfe.runs.errormap.ErrorMap`, one for each formulation.
+
+    Columns with few different values (loads) get one bin each, others `bins` of equal width.
+    """
+    size = (3.4 * len(formulations) + 1, 3.4)
+    figure, (row,) = blank(size, 1, len(formulations), sharex=True, sharey=True, squeeze=False)
+    (place_x, names_x), (place_y, names_y) = (_binned(found.columns[name], bins) for name in (x, y))
+    for axes, name in zip(row, formulations, strict=True):
+        error = 100 * found.columns[f"{name} {zone}"]
+        table = np.full((len(names_y), len(names_x)), np.nan)
+        for i in range(len(names_y)):
+            for j in range(len(names_x)):
+                cell = error[(place_x == j) & (place_y == i) & np.isfinite(error)]
+                table[i, j] = np.median(cell) if cell.size else np.nan
+                if cell.size:
+                    color = "white" if abs(table[i, j]) > 20 else "black"
+                    axes.text(j, i, f"{table[i, j]:+.0f}", ha="center", va="center", fontsize=7, color=color)
+        image = axes.imshow(table, cmap="RdBu_r", vmin=-30, vmax=30, origin="lower", aspect="auto")
+        axes.set_title(name, fontsize=9)
+        axes.set_xlabel(COLUMNS.get(x, x), fontsize=9)
+        axes.set_xticks(range(len(names_x)), names_x, fontsize=7)
+        axes.set_yticks(range(len(names_y)), names_y, fontsize=7)
+    row[0].set_ylabel(COLUMNS.get(y, y), fontsize=9)
+    figure.colorbar(image, ax=row, label=f"median error of k, {zone} [%]")
+    figure.suptitle(f"{found.columns['load'].size} gears, loads and cracks, errors against ritz", fontsize=9)
+    return save_figure(figure, path, dpi=100)
+
+
+def _binned(values, bins):
+    """Bin of every value, and the names of the bins."""
+    few = np.unique(values)
+    if few.size <= bins:
+        return np.searchsorted(few, values), [f"{v:g}" for v in few]
+    edges = np.linspace(values.min(), values.max(), bins + 1)
+    return np.clip(np.digitize(values, edges) - 1, 0, bins - 1), [f"{v:.3g}" for v in (edges[1:] + edges[:-1]) / 2]

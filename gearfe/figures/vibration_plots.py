@@ -1,0 +1,144 @@
+"""Plots (matplotlib) of vibration: spectra, kurtogram, phase portraits."""
+
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.files import save_figure
+from .look import COLOURS, blank
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..signal.kurtogram import Kurtogram
+    from ..signal.spectrum import Spectrum
+    from ..signal.time_frequency import Spectrogram
+
+LETTER = 0.014  # height of a letter, which lines' names need beside each other, over the width of the axes
+
+
+def plot_spectra(
+    spectra: Mapping[str, "Spectrum"],
+    lines: Mapping[str, float] | None = None,
+    path: str | os.PathLike[str] | None = None,
+    top: float | None = None,
+    *,
+    dpi: int = 120,
+    title: str = "",
+) -> "Figure":
+    """Draw spectra of one unit below each other, expected lines dotted and named; save to `path` if given.
+
+    Parameters
+    ----------
+    spectra : dict of str to gearfe.signal.spectra.Spectrum
+    lines : dict of str to float, optional
+        See `gearfe.expected_lines`.
+    path : path, optional
+    top : float, optional
+        Largest frequency or order; default 1.2 times the last line.
+    dpi : int
+        Dots per inch of the picture.
+    title : str
+        What is shown: scene, case, channel.
+    """
+    figure, rows = blank((9, 1 + 2 * len(spectra)), len(spectra), 1, sharex=True, sharey=True, squeeze=False)
+    rows = rows[:, 0]
+    largest = max(curve.values.max() for curve in spectra.values())
+    for axes, (name, spectrum) in zip(rows, spectra.items(), strict=True):
+        axes.semilogy(spectrum.frequency, spectrum.values, linewidth=0.8, color=COLOURS[0])
+        axes.set_ylim(1e-6 * largest, 2 * largest)  # common axes: the first would decide for all
+        axes.set_ylabel(f"{name} [{spectrum.unit}]")
+        for value in (lines or {}).values():
+            axes.axvline(value, linestyle=":", linewidth=0.7, color="gray", zorder=0)
+    if title:
+        figure.suptitle(title, fontsize=10)
+    end = 1.2 * max(lines.values()) if lines and top is None else top
+    end = spectrum.frequency[-1] if end is None else end
+    rows[-1].set_xlim(0, end)
+    for name, place in _apart({name: value for name, value in (lines or {}).items() if value <= end}, LETTER * end).items():
+        rows[0].annotate(
+            name, (place, 1.02), xycoords=("data", "axes fraction"), rotation=90, fontsize=7, ha="center", va="bottom"
+        )
+    rows[-1].set_xlabel("order" if spectrum.axis == "order" else f"frequency [{spectrum.axis}]")
+    return save_figure(figure, path, dpi=dpi)
+
+
+def _apart(places, least):
+    """Places of labels by name, each at least `least` from the one before it, as near to where they belong as that allows."""
+    names = sorted(places, key=places.get)
+    wanted = np.array([places[name] for name in names], dtype=float)
+    shifted = wanted.copy()
+    for _ in range(len(names)):
+        gaps = least - np.diff(shifted)
+        push = np.where(gaps > 0, gaps / 2, 0.0)
+        shifted += np.append(0.0, push) - np.append(push, 0.0)
+    return dict(zip(names, shifted.tolist(), strict=True))
+
+
+def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
+    """Draw a `gearfe.signal.kurtogram.Kurtogram` under a `title`, the best band framed; save to `path` if given."""
+    from matplotlib import cm, colormaps, colors
+
+    figure, axes = blank((7, 4))
+    levels = np.unique(kurtogram.level)
+    top = kurtogram.kurtosis.max()
+    low = kurtogram.centre - kurtogram.bandwidth / 2
+    for row, level in enumerate(levels):
+        in_row = kurtogram.level == level
+        shades = colormaps["viridis"](np.clip(kurtogram.kurtosis[in_row] / max(top, 1e-300), 0, 1))
+        axes.barh(row, kurtogram.bandwidth[in_row], 1.0, left=low[in_row], color=shades, align="center")
+    scale = cm.ScalarMappable(colors.Normalize(0, max(top, 1e-300)), "viridis")
+    figure.colorbar(scale, ax=axes, label="spectral kurtosis [-] (0: noise; below it as 0)")
+    best = kurtogram.best
+    row = int(np.searchsorted(levels, kurtogram.level[best]))
+    axes.barh(row, kurtogram.bandwidth[best], 1.0, left=low[best], fill=False, edgecolor="#d55e00", linewidth=2)
+    axes.set_yticks(range(levels.size), [f"{level:.3g}" for level in levels])
+    axes.invert_yaxis()
+    axes.set(xlabel="frequency [Hz]", ylabel="level")
+    best_band = f"kurtosis up to {top:.3g}, in {kurtogram.band[0]:.0f} to {kurtogram.band[1]:.0f} Hz"
+    axes.set_title(f"{title}: {best_band}" if title else best_band, fontsize=9)
+    return save_figure(figure, path, dpi=120)
+
+
+def plot_spectrogram(spectrogram: "Spectrogram", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
+    """Draw a `gearfe.signal.time_frequency.Spectrogram`, 80 dB deep, under a `title`; save to `path` if given."""
+    figure, axes = blank((9, 4))
+    largest = max(float(spectrogram.values.max()), 1e-300)
+    shown = 20 * np.log10(np.maximum(spectrogram.values / largest, 1e-4))
+    drawn = axes.pcolormesh(spectrogram.time, spectrogram.frequency, shown, cmap="viridis", shading="nearest", rasterized=True)
+    figure.colorbar(drawn, ax=axes, label=f"amplitude [dB re {largest:.3g} {spectrogram.unit}]")
+    axes.set(xlabel="time [s]", ylabel="frequency [Hz]")
+    axes.set_title(title or spectrogram.name, fontsize=9)
+    return save_figure(figure, path, dpi=120)
+
+
+def plot_cepstrum(found: "Spectrum", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
+    """Draw a cepstrum, `gearfe.cepstrum`, from a thousandth of its length on; save to `path` if given."""
+    figure, axes = blank((9, 3))
+    first = max(1, found.values.size // 1000)  # the shape of the whole spectrum stands before
+    axes.plot(found.frequency[first:], found.values[first:], linewidth=0.7)
+    axes.set(xlabel="quefrency [s]", ylabel="cepstrum [-]")
+    axes.set_title(title or found.name, fontsize=9)
+    return save_figure(figure, path, dpi=120)
+
+
+def plot_phase(
+    portrait: tuple[NDArray[np.float64], NDArray[np.float64]],
+    section: NDArray[np.float64] | None = None,
+    unit: str = "m",
+    path: str | os.PathLike[str] | None = None,
+    title: str = "",
+) -> "Figure":
+    """Draw a phase portrait, `gearfe.phase_portrait`, with the points of a Poincare section; save to `path` if given."""
+    figure, axes = blank((5, 4))
+    axes.plot(*portrait, linewidth=0.4, color=COLOURS[0])
+    if section is not None:
+        axes.plot(*np.transpose(section), ".", color=COLOURS[1], markersize=5, label="Poincaré section")
+        axes.legend(fontsize=8)
+    axes.ticklabel_format(scilimits=(-2, 3))
+    axes.set_title(title, fontsize=10)
+    axes.set(xlabel=f"displacement [{unit}]", ylabel=f"velocity [{unit}/s]")
+    return save_figure(figure, path, dpi=120)

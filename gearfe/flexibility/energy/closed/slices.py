@@ -1,0 +1,163 @@
+"""Slices of the tooth pairs along their contact lines: places and weights of an exact integral over the width."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+
+from ....geometry.pair.contacts import contacts
+from ....geometry.pair.lines import covered, halves
+from ....geometry.pair.modified import first_touch, flank_contacts
+
+LOST = ("hertz", "slices", "summed")
+RULES = {False: leggauss(1), True: leggauss(24)}
+SHORT = leggauss(10)  # for panels shorter than a quarter of a base pitch
+
+
+@dataclass(frozen=True, slots=True)
+class Stations:
+    """Slices of the tooth pairs that carry load, as flat arrays of n stations; `order` (pairs,) as of `Contacts` of a pair.
+
+    `phase` and `column` are indices of the phase and of the pair in `order`, `roll_1` and `roll_2` the roll lengths [mm],
+    `weight` the part of the face width a station stands for, `touching` the part of its contact that pits have left, `gap` the
+    approach at which it first touches [mm], None for involutes.
+    """
+
+    order: np.ndarray
+    phase: np.ndarray
+    column: np.ndarray
+    roll_1: np.ndarray
+    roll_2: np.ndarray
+    weight: np.ndarray
+    touching: np.ndarray
+    gap: np.ndarray | None = None
+
+
+def faces(pair, face, groove=0.0):
+    """Bands of the face width as ``(first end, last end, lag)``: axial positions [mm] and phase by which the last end is behind.
+
+    A slice of a helical gear at distance s from the end that touches first is a spur gear whose phase is
+    ``s tan(beta_b) / p_bt`` behind; over the whole band the lag is its overlap ratio.
+
+    ``spur``: one band without lag, whatever the helix angle. ``helical``: the end z = 0 touches first. ``herringbone``: two
+    mirrored halves left and right of a relief groove of width `groove` [mm] in the middle, whose outer ends touch first; each
+    is a helical gear of width ``(b - groove) / 2``.
+    """
+    twist = 0.0 if face == "spur" else abs(np.tan(pair.gear_1.beta_b)) / pair.p_bt
+    return [(first, last, twist * abs(last - first)) for first, last in halves(pair, face, groove)]
+
+
+def faces_of(case):
+    """`faces` of a `Case`; without `face` its teeth are taken for straight."""
+    return faces(case.pair, case.face or "spur", case.groove)
+
+
+def stations(case, phase, *, lost="hertz", edges=None):
+    """`Stations` over the contact lines of a `Case` at some phases; exact for what is smooth between the breakpoints.
+
+    Each contact line is cut at the borders of pits and at `edges`; in between 24 Gauss points integrate along the width. No
+    slice is a step: the sum is a smooth function of the phase wherever the exact integral is.
+
+    Parameters
+    ----------
+    lost : {"hertz", "slices", "summed"}
+        What pits take from a pair, see `gearfe.flexibility.energy.closed.plain_sum.plain_sum`.
+    edges : callable, optional
+        From the pair orders to a dict by order: roll lengths of the pinion [mm] at which that pair's stiffness is not smooth.
+    """
+    pair, pits, flanks, bands = case.pair, case.pits, case.forms, faces_of(case)
+    if lost not in LOST:
+        raise ValueError(f"lost = {lost!r}, but it must be one of {', '.join(LOST)}")
+    lag = max(band[2] for band in bands)
+    order = contacts(pair, [phase.min() - lag, phase.max()], extended=False).order
+    edges = edges(order) if edges and lag > 0 else {}
+    pitted = any(p.side == "loaded" for found in pits for p in found)
+    if lag == 0 and not pitted:  # one station for each pair on the path of contact
+        found = flank_contacts(pair, phase, extended=False, flanks=flanks)
+        i, j = np.nonzero(np.isfinite(found.gap))
+        whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
+        gap = None if flanks is None else found.gap[i, j]
+        return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size), gap)
+    rows, taken = [], {} if lost == "summed" else _taken(pair, phase, order, pits, bands)
+    summed = _summed(pair, order, pits, bands) if lost == "summed" else np.zeros((order.size, len(bands)))
+    for i, p in enumerate(phase):
+        for j, number in enumerate(order):
+            for k, band in enumerate(bands):
+                found = _line(pair, p + number, taken.get((i, j, k), ()), band, lost, edges.get(number, ()), 1 - summed[j, k])
+                rows += [np.column_stack([np.full(len(f), i), np.full(len(f), j), f]) for f in found]
+    table = np.concatenate(rows) if rows else np.zeros((0, 6))
+    (i, j), (roll, weight, touching) = table[:, :2].astype(int).T, table[:, 2:5].T
+    roll_2, gap = pair.mate_roll(roll), None
+    if flanks is not None:
+        backwards = len(bands) == 1 and lag > 0 and pair.gear_1.beta > 0  # there, the end z = b touches first
+        z = bands[0][1] - table[:, 5] if backwards else table[:, 5]
+        met = first_touch(pair, flanks, roll, order[j], np.zeros(roll.size), z)
+        roll, roll_2, gap = met.roll_1, met.roll_2, met.gap
+    return Stations(order, i, j, roll, roll_2, weight, touching, gap)
+
+
+def _taken(pair, phase, order, pits, bands):
+    """Parts of the bands that pits take from the contact line of a pair at a phase, by number of phase, pair and band."""
+    i, j, k = (index.ravel() for index in np.indices((phase.size, order.size, len(bands))))
+    first, last, lag = np.array(bands).T
+    place = phase[i] + order[j]
+    roll = pair.path[0] + np.stack([place, place - lag[k]], axis=1) * pair.p_bt
+    z = np.stack([first, last], axis=1)[k]
+    piece, _, start, end = covered(pair, pits, order[j], (roll, pair.mate_roll(roll)), z)
+    out = {}
+    for n, s, e in zip(piece.tolist(), start.tolist(), end.tolist(), strict=True):
+        out.setdefault((int(i[n]), int(j[n]), int(k[n])), []).append((s, e))
+    return out
+
+
+def _summed(pair, order, pits, bands):
+    """Parts of the width of each band that the pits of a pair's two teeth take, summed: ``(pairs, bands)``."""
+    out = np.zeros((order.size, len(bands)))
+    common = min(pair.gear_1.b, pair.gear_2.b)
+    for gear, gear_pits, sense in ((pair.gear_1, pits[0], 1), (pair.gear_2, pits[1], -1)):
+        for pit in gear_pits:
+            z = pit.z - (gear.b - common) / 2
+            ends = [(max(min(a, b), z - pit.reach[1]), min(max(a, b), z + pit.reach[1])) for a, b, _ in bands]
+            width = [max(high - low, 0.0) / abs(b - a) for (low, high), (a, b, _) in zip(ends, bands, strict=True)]
+            out[(order - sense * pit.tooth) % gear.z == 0] += width if pit.side == "loaded" else 0.0
+    if (out >= 1).any():
+        raise ValueError(
+            f"the damage's widths summed are {out.max():.3g} times the width they lie in and leave no contact: give fewer or "
+            "smaller ones, or lost = 'hertz'"
+        )
+    return out
+
+
+def _line(pair, place, taken, band, lost, edges, kept_part=1.0):
+    """Stations (pinion roll, weight, touching, height) of one pair whose slice at the first end is at phase `place`."""
+    first, last, lag = band
+    slack = 1e-9
+    low, high = 0.0, 1.0
+    if lag > 0:
+        low, high = max((place - pair.eps_alpha) / lag, 0.0), min(place / lag, 1.0)
+    elif not -slack <= place < pair.eps_alpha + slack:
+        return []
+    if high <= low:
+        return []
+    start = pair.path[0]
+    roll = np.array([start + place * pair.p_bt, start + (place - lag) * pair.p_bt])
+    width = min(pair.gear_1.b, pair.gear_2.b)
+    taken = [(max(a, low), min(b, high)) for a, b in taken if min(b, high) > max(a, low)]
+    kinks = [(roll[0] - r) / (roll[0] - roll[1]) for r in edges] if lag > 0 else []
+    places = np.unique([low, high, *(t for t in kinks if low < t < high), *(t for part in taken for t in part)])
+    parts = list(pairwise(places))
+    under = [any(a <= (s + e) / 2 <= b for a, b in taken) for s, e in parts]
+    left = sum(e - s for (s, e), gone in zip(parts, under, strict=True) if not gone) / (high - low)
+    if left < 1e-12:
+        return []
+    out, share = [], abs(last - first) / width
+    for (s, e), gone in zip(parts, under, strict=True):
+        if gone and lost == "slices":
+            continue
+        points, weights = SHORT if 0 < lag * (e - s) < 0.25 else RULES[lag > 0]
+        t = s + (e - s) * (1 + points) / 2
+        at = roll[0] + (roll[1] - roll[0]) * t
+        kept, z = np.full(t.size, left if lost == "hertz" else kept_part), first + (last - first) * t
+        out.append(np.column_stack([at, share * (e - s) / 2 * weights, kept, z]))
+    return out

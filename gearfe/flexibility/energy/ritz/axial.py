@@ -1,0 +1,231 @@
+"""Functions along the width of a gear: polynomials over all of it, and polynomials over the part where a crack is open.
+
+One polynomial over the whole width spans the same space in any basis; the orthonormal Legendre polynomials make their mass matrix
+the identity and the loads those of each mode. The faces of a crack that is open between two heights move apart there only: by
+polynomials over that part that vanish at its ends, unless an end is the end face of the gear. Where it ends inside the gear, all
+nodes near the crack and its faces get short cubics about that height on top: no polynomial over the width bends that sharply.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ...halfspace import modes
+
+PUSHING = 6  # degree, at most, of forces between faces of a crack over the whole width (`depth.degrees`: all nodes have that)
+OPEN = 6, 1.6  # degree of the opening along a part of the width: the least, and per normal module of that part
+# How far the short cubics about the end of a crack reach [m_n], and the shortest of them, in that. Set while looking at
+# hexahedra of one gear, 12 mm wide with a crack over half of that; judged on finer layers and on 8 mm of the same gear only.
+ENDS = 1.0, 0.2
+MOVED = 3  # polynomials that the depth of a front is multiplied by
+FRONT = 8  # so many more Gauss points where the section follows a crack's front
+
+
+@dataclass(frozen=True, slots=True)
+class Axial:
+    """Functions along the width, and sets of them.
+
+    `mass`, `mixed`, `slope` (n, n): integrals of f f', f df' and df df'. `sets` are index arrays: the first the modes over
+    the whole width, then for each crack those of its opening, of forces that push its faces apart, of the nodes near it, and of
+    those that move with its front, then the modes up to degree 0, 1, ... . `points` of each crack are heights [mm] where its
+    faces may touch, and `at` the values (points, functions of the force) there. `z`, `weight` [mm] (q,) integrate over the
+    width; `value`, `rise` (q, n) are the functions and their slopes at `z`.
+    """
+
+    mass: np.ndarray
+    mixed: np.ndarray
+    slope: np.ndarray
+    sets: tuple
+    points: tuple
+    at: tuple
+    z: np.ndarray
+    weight: np.ndarray
+    value: np.ndarray
+    rise: np.ndarray
+
+
+def axial(width, degree, parts=(), m_n=1.0, fronts=()):
+    """`Axial` of a gear.
+
+    Parameters
+    ----------
+    width, degree
+        Of the gear [mm], and of the polynomials over all of it.
+    parts : tuple of (None or tuple of (float, float))
+        Of each crack: None if it is open over the whole width, or the parts of the width where it is, apart from each other [mm].
+    m_n : float
+        Normal module [mm]; the degree of the openings follows from it.
+    fronts : sequence of None or Front
+        Of each crack, if its depth changes along the width: nodes near it have its depth as a function too.
+    """
+    fronts = tuple(fronts) or (None,) * len(parts)
+    kinks = [z for front in fronts if front for z in front.kinks()]
+    bands = sorted({band for where in parts if where for band in where})
+    degrees = [max(OPEN[0], math.ceil(OPEN[1] * (high - low) / m_n) + 2) for low, high in bands]
+    shallow = {
+        end for front, where in zip(fronts, parts, strict=True) if front for end in np.ravel(where or ()) if front.runs_out(end)
+    }
+    fine = {
+        (band, k): _steps(band, k, width, m_n, band[k] in shallow)
+        for band in bands
+        for k in (0, 1)
+        if 1e-9 * width < band[k] < width * (1 - 1e-9)
+    }
+    ends = np.unique(
+        [0.0, width, *kinks, *(end for band in bands for end in band), *(at for where in fine.values() for at in where)]
+    )
+    ends = ends[np.append(True, np.diff(ends) > 1e-12 * width)]
+    gauss, weight = legendre.leggauss(max([degree, *degrees]) + 1 + (FRONT if kinks else 0))
+    half = np.diff(ends)[:, None] / 2
+    z = (ends[:-1, None] + half * (1 + gauss)).ravel()
+    weight = (half * weight).ravel()[:, None]
+    value, rise = _whole(z, width, degree)
+    columns, slopes, first = [value], [rise], degree + 1
+    opening, pushing = {}, {}
+    for band, order in zip(bands, degrees, strict=True):
+        for made, kind in ((_open(z, band, order, width), opening), (_pushing(z, band, order), pushing)):
+            columns.append(made[0])
+            slopes.append(made[1])
+            kind[band] = np.arange(first, first + made[0].shape[1])
+            first += made[0].shape[1]
+    short, inside = {}, {}
+    for (band, k), places in fine.items():
+        made, where = _short(z, places, band[k], 1 - 2 * k)
+        columns.append(made[0])
+        slopes.append(made[1])
+        number = np.arange(first, first + where.size)
+        short.setdefault(band, []).append(number)
+        inside.setdefault(band, []).append(number[where])
+        first += where.size
+    depths = {}
+    for i, front in enumerate(fronts):
+        if front and front.sharp:
+            made = _depth(z, weight, front, columns[0], slopes[0])
+            columns.append(made[0])
+            slopes.append(made[1])
+            depths[i] = np.arange(first, first + made[0].shape[1])
+            first += made[0].shape[1]
+    value, rise = np.hstack(columns), np.hstack(slopes)
+    every = np.arange(degree + 1)
+    sets, points, at = [every], [], []
+    for i, where in enumerate(parts):
+        where = where or ()
+        sets.append(
+            np.concatenate([part for band in where for part in (opening[band], *inside.get(band, ()))]) if where else every
+        )
+        sets.append(np.concatenate([pushing[band] for band in where]) if where else every[: PUSHING + 1])
+        sets.append(np.concatenate([every, *(part for band in where for part in short.get(band, ())), depths.get(i, every[:0])]))
+        sets.append(np.append(every, depths.get(i, every[:0])))
+        place, matrix = _points(
+            where or ((0.0, width),), [degrees[bands.index(band)] for band in where] or [min(degree, PUSHING)]
+        )
+        points.append(place)
+        at.append(matrix)
+    sets += [every[: k + 1] for k in range(degree + 1)]
+    mass = value.T @ (weight * value)
+    mass[: degree + 1, : degree + 1] = np.eye(degree + 1)
+    mixed, slope = value.T @ (weight * rise), rise.T @ (weight * rise)
+    return Axial(mass, mixed, slope, tuple(sets), tuple(points), tuple(at), z, weight[:, 0], value, rise)
+
+
+def _whole(z, width, degree):
+    """Orthonormal Legendre polynomials over the width and their slopes ``(n, degree + 1)``."""
+    value = modes(z, width, degree)
+    scale = np.sqrt((2 * np.arange(degree + 1) + 1) / width) * 2 / width
+    local = 2 * z / width - 1
+    rise = legendre.legvander(local, degree)[:, :degree] @ legendre.legder(np.eye(degree + 1)) if degree else 0 * value
+    return value, rise * scale
+
+
+def _open(z, band, degree, width):
+    """Continuous polynomials over a band and their slopes, zero outside and at its ends that are not end faces."""
+    low, high = band
+    length, slack = high - low, 1e-9 * width
+    inside = ((z > low) & (z < high))[:, None]
+    t = np.clip(2 * (z - low) / length - 1, -1, 1)
+    p = legendre.legvander(t, degree)
+    k = np.arange(2, degree + 1)
+    value = [(p[:, 2:] - p[:, :-2]) / np.sqrt(2 * (2 * k - 1))]
+    rise = [np.sqrt((2 * k - 1) / 2) * p[:, 1:-1] * 2 / length]
+    for free, sign in ((low <= slack, -1), (high >= width - slack, 1)):
+        if free:
+            value.append((1 + sign * t)[:, None] / 2)
+            rise.append(np.full((z.size, 1), sign / length))
+    return np.hstack(value) * inside * math.sqrt(2 / length), np.hstack(rise) * inside * math.sqrt(2 / length)
+
+
+def _steps(band, k, width, m_n, shallow):
+    """Places about one end of a band, between which the short cubics change [mm]: closer together towards the end.
+
+    They are as close as a ligament beyond is narrow, unless the crack is `shallow` there.
+    """
+    end, inwards = band[k], 1 - 2 * k
+    # short cubics of both ends that met would hold a cubic over the whole band, which is an opening already
+    inside, outside = min(ENDS[0] * m_n, 0.4 * (band[1] - band[0])), min(ENDS[0] * m_n, 0.9 * (width - end if k else end))
+    nearest = ENDS[1] * (inside if shallow else min(inside, outside))
+    steps = [side * _graded(min(nearest, reach), reach) for side, reach in ((inwards, inside), (-inwards, outside))]
+    return np.unique(end + np.concatenate([[0.0], *steps]))
+
+
+def _graded(nearest, reach):
+    """Distances from `nearest` to `reach` [mm], each at most 1 / `ENDS[1]` times the one before."""
+    count = math.ceil(math.log(reach / nearest) / -math.log(ENDS[1]) - 1e-9)
+    if count < 1:
+        return np.array([reach])
+    return nearest * (reach / nearest) ** (np.arange(count + 1) / count)
+
+
+def _short(z, places, end, inwards):
+    """Continuous cubics between `places`, zero at the first and the last, their slopes, and which vanish outside the crack."""
+    value, rise, inside = [], [], []
+    for low, middle, high in zip(places[:-2], places[1:-1], places[2:], strict=True):  # hats
+        up, down = (z > low) & (z <= middle), (z > middle) & (z < high)
+        value.append(np.where(up, (z - low) / (middle - low), np.where(down, (high - z) / (high - middle), 0.0)))
+        rise.append(np.where(up, 1 / (middle - low), np.where(down, -1 / (high - middle), 0.0)))
+        inside.append(inwards * (middle - end) > 0)
+    for low, high in zip(places[:-1], places[1:], strict=True):
+        there, t = (z > low) & (z < high), 2 * (z - low) / (high - low) - 1
+        value += [np.where(there, 1 - t**2, 0.0), np.where(there, t * (1 - t**2), 0.0)]
+        rise += [np.where(there, slope * 2 / (high - low), 0.0) for slope in (-2 * t, 1 - 3 * t**2)]
+        inside += [inwards * ((low + high) / 2 - end) > 0] * 2
+    return (np.column_stack(value), np.column_stack(rise)), np.array(inside)
+
+
+def _depth(z, weight, front, whole, rise):
+    """The depth of a crack's front times the first `MOVED` polynomials and its slopes ``(n, k)``, without what polynomials carry.
+
+    What is smooth in space is not smooth at points that move with the front by f(z): it goes like ``a(z) + f(z) b(z)``.
+    """
+    value, slope = front.depth(z)
+    few, steep = whole[:, :MOVED], rise[:, :MOVED]
+    value, slope = value[:, None] * few, slope[:, None] * few + value[:, None] * steep
+    carried = whole.T @ (weight * value)
+    value, slope = value - whole @ carried, slope - rise @ carried
+    size, turn = np.linalg.eigh(value.T @ (weight * value))
+    kept = size > 1e-12  # of functions that have about unit size before
+    turn = turn[:, kept] / np.sqrt(size[kept])
+    return value @ turn, slope @ turn
+
+
+def _pushing(z, band, degree):
+    """Orthonormal polynomials over a band, zero outside; forces have no slope."""
+    low, high = band
+    value = modes(z - low, high - low, degree) * ((z > low) & (z < high))[:, None]
+    return value, 0 * value
+
+
+def _points(bands, degrees):
+    """Gauss points of the bands [mm], and the values there of the forces' polynomials, band by band."""
+    places, blocks = [], []
+    for (low, high), degree in zip(bands, degrees, strict=True):
+        z = (high - low) * (1 + legendre.leggauss(degree + 1)[0]) / 2
+        places.append(low + z)
+        blocks.append(modes(z, high - low, degree))
+    out = np.zeros((sum(b.shape[0] for b in blocks), sum(b.shape[1] for b in blocks)))
+    row = column = 0
+    for block in blocks:
+        out[row : row + block.shape[0], column : column + block.shape[1]] = block
+        row, column = row + block.shape[0], column + block.shape[1]
+    return np.concatenate(places), out

@@ -1,0 +1,41 @@
+"""How much of the degree along the width a place in the section needs: the less, the deeper it lies below the loaded flanks.
+
+What a load on the surface does along the width decays like ``exp(-k pi d / b)`` at depth d, k the number of half waves in the
+width b. Polynomials of low degree suffice in the body, the high ones are needed next to the contact.
+"""
+
+import math
+
+import numpy as np
+
+from ....geometry.mesh.triangle import table
+from ....geometry.tooth.profile import cartesian, flank
+
+LEAST, DECAY = 5, 2.0  # degree of what does not decay; half waves that decay by less than exp(-`DECAY`) are kept
+SAMPLES = 60  # of a loaded flank
+SAME = 1e-6  # distances that differ by less have one degree [m_n]
+
+
+def degrees(gear, sector, numbers, sides, degree, order):
+    """Degree along the width of every node ``(n,)``, even and at most `degree`.
+
+    A node has the degree of its place in the section; the two sides get the same, whatever is in the sector. `numbers` ``(k, m)``
+    are all nodes of the triangles, `sides` those of both sides, left ones first, `order` is that in the section.
+    """
+    width = gear.b
+    place = np.einsum("cn,dcm->dnm", table(order).nodes, sector.points[:, sector.triangles])
+    away = np.zeros(int(numbers.max()) + 1)
+    away[numbers.ravel()] = _distance(gear, place.reshape(2, -1))
+    nearer = away[sides].reshape(2, -1).min(axis=0)
+    away[sides] = np.tile(np.round(nearer / (SAME * gear.m_n)) * SAME * gear.m_n, 2)
+    turned = abs(gear.twist_rate) * width / 2  # rigid motions are not constant along a twisted gear
+    wanted = LEAST + turned + DECAY * width / (math.pi * np.maximum(away, 1e-9 * width))
+    return np.minimum(2 * np.ceil(np.minimum(wanted, degree) / 2).astype(int), degree)
+
+
+def _distance(gear, points):
+    """Distance of points ``(2, n)`` to the nearest loaded flank of their tooth and the next ones [mm]."""
+    radius, angle = flank(gear, np.linspace(gear.roll_f, gear.roll_a, SAMPLES))
+    teeth = np.array([-1, 0, 1])[:, None] * 2 * math.pi / gear.z
+    line = cartesian(np.tile(radius, 3), (angle + teeth).ravel())
+    return np.hypot(*(points[:, :, None] - line[:, None, :])).min(axis=1)

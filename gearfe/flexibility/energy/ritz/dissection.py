@@ -1,0 +1,69 @@
+"""Triangles of a section divided into nested halves, in which their unknowns are eliminated."""
+
+import math
+
+import numpy as np
+
+from ....geometry.mesh.triangle import ENDS
+
+LEAF = 2  # triangles eliminated together first
+CUTS = 8  # directions in which sets of triangles are divided
+ON_EDGE, INSIDE = 2, 1  # nodes of cubic triangles
+
+
+def dissect(sector):
+    """Nested halves of the triangles: ``(triangles, first half, second half)``, the halves empty where few are left.
+
+    Every set is divided where that promises the least work: what both parts share is eliminated with the set, and costs
+    ``g**3 / 3 + g**2 r + g r**2`` products if g nodes go and r stay; the insides of a part, i nodes, will cost ``i b**2`` at
+    least, b what the part shares with anything else. Both sides of the sector stay.
+    """
+    triangles, vertices = sector.triangles, sector.points.shape[1]
+    ends = np.sort(np.array([triangles[list(pair)] for pair in ENDS]), axis=1)
+    keys, edges = np.unique((ends[:, 0] * vertices + ends[:, 1]).ravel(), return_inverse=True)
+    members = np.concatenate([triangles, vertices + edges.reshape(3, -1)])  # vertices and edges of each triangle
+    nodes = np.concatenate([np.ones(vertices), np.full(keys.size, float(ON_EDGE))])
+    users = np.bincount(members.ravel())
+    corners = np.concatenate([sector.left, sector.right])
+    users[corners] += 1
+    users[vertices + np.flatnonzero(np.isin(keys // vertices, corners) & np.isin(keys % vertices, corners))] += 1
+    turn = np.arange(CUTS) * math.pi / CUTS
+    along = np.array([np.cos(turn), np.sin(turn)]).T @ sector.points[:, triangles].mean(axis=1)
+
+    def parted(own):
+        if own.size <= LEAF:
+            return own, (), ()
+        ranked, cut = _cut(members[:, own], nodes, users, along[:, own])
+        return own, parted(own[ranked[:cut]]), parted(own[ranked[cut:]])
+
+    return parted(np.arange(triangles.shape[1]))
+
+
+def _cut(members, nodes, users, along):
+    """Order of a set of triangles along the best of all directions, and how many of them go first."""
+    count = along.shape[1]
+    order = np.argsort(along, axis=1, kind="stable")
+    rank = np.empty_like(order)
+    np.put_along_axis(rank, order, np.arange(count)[None, :], axis=1)
+    flat = members.ravel()
+    by_member = np.argsort(flat, kind="stable")
+    starts = np.flatnonzero(np.diff(flat[by_member], prepend=-1))
+    ids, uses = flat[by_member][starts], np.diff(starts, append=flat.size)
+    rank = np.tile(rank, members.shape[0])[:, by_member]  # (directions, members), those of a vertex or an edge side by side
+    first, last = np.minimum.reduceat(rank, starts, axis=1), np.maximum.reduceat(rank, starts, axis=1)
+    shared = uses < users[ids]
+    inner, outer = nodes[ids] * ~shared, nodes[ids] * shared
+
+    def before(place, weight):
+        """Nodes by direction, and by how many triangles go first, whose `place` is among these."""
+        at = (np.arange(CUTS)[:, None] * count + place).ravel()
+        return np.bincount(at, np.tile(weight, CUTS), CUTS * count).reshape(CUTS, count).cumsum(axis=1)[:, :-1]
+
+    begun, done = before(first, inner), before(last, inner)
+    gone, stay = begun - done, outer.sum()
+    border = before(first, outer) + gone, stay - before(last, outer) + gone
+    inside = INSIDE * np.arange(1, count)
+    within = done + inside, inner.sum() - begun + inside[::-1]
+    work = gone**3 / 3 + gone**2 * stay + gone * stay**2 + within[0] * border[0] ** 2 + within[1] * border[1] ** 2
+    k, cut = np.unravel_index(work.argmin(), work.shape)
+    return order[k], cut + 1

@@ -1,0 +1,259 @@
+"""A curved sector as an elastic body of polynomial triangles: stiffness, line loads on its flank, and its reduction to its sides.
+
+The singular field of each load (`flamant`) is taken out, so that what is left is smooth and a few triangles carry it. With
+u_s that field in the loaded sector and P u_s its values on the sector's two sides and held edge::
+
+    u = u_s + U - P u_s,    K (U - P u_s) = -int N' (sigma_s n) ds
+
+over the whole boundary of the sector, crack faces included.
+"""
+
+import math
+from dataclasses import dataclass
+from numbers import Integral
+
+import numpy as np
+from scipy.sparse import coo_array
+
+from ....core.material import Material
+from ....geometry.kept import keeping
+from ....geometry.mesh.triangle import BULGE, ENDS, GAUSS, jacobians, lagrange, lobatto, table
+from ....geometry.tooth.gear import Gear
+from ....geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
+from ... import flamant
+from ...condense import condense
+from ...plane_elements import bent_stiffness, stiffness
+
+STRAIGHT = 1e-12  # edges that depart less from their chord, by the size of the sector
+GROUP = 10  # triangles eliminated together, and up to twice as many
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """A sector reduced to its two sides (polar components, from the held edge to the root, left side first; m unknowns).
+
+    `stiffness` (m, m); for n loads on the flank `push` (m, n) their forces on the sides, `own` (n, n) the displacement at load
+    i with the sides held under load j, the half-plane's logarithm taken out; for k facing pairs of crack nodes `open_push`
+    (m, k), `open_own` (k, n) their opening under the loads and `open_open` (k, k) under unit forces that push them apart.
+    """
+
+    stiffness: np.ndarray
+    push: np.ndarray
+    own: np.ndarray
+    open_push: np.ndarray
+    open_own: np.ndarray
+    open_open: np.ndarray
+    unknowns: int
+
+
+@dataclass(frozen=True, slots=True)
+class SectionModel:
+    """A gear's section as it is solved for, held at its bore or rim.
+
+    `order` is that of the polynomials, 2 to 8; `refine` divides the edge lengths of the triangles, and the hats at corners.
+    """
+
+    gear: Gear
+    material: Material
+    state: str = "plane strain"
+    order: int = 4
+    refine: float = 1.0
+
+
+def check_order(order):
+    """ValueError unless it is an order of polynomials that the triangles have."""
+    if isinstance(order, bool) or not isinstance(order, Integral) or not 2 <= order <= 8:
+        raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
+
+
+def panel(model, sector, roll, tilt=0.0):
+    """The `Panel` of a `gearfe.geometry.mesh.sector.Sector` of a `SectionModel`.
+
+    Parameters
+    ----------
+    roll : ndarray, shape (n,)
+        Roll lengths of unit line loads on the loaded flank [mm]; none for a sector that only supports others.
+    tilt : float or ndarray, shape (n,)
+        By what angle the loads lean from the flank's normal towards the outside of the gear [rad]; small.
+    """
+    gear, material, state, order = model.gear, model.material, model.state, model.order
+    modulus = material.plane_modulus(state)
+    ratio = material.nu / (1 - material.nu) if state == "plane strain" else material.nu
+    numbers, count, chain = numbering(sector, order)
+    sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
+    edge = _unknowns(np.append(sides, chain(sector.held)))
+    bulges = sector.edge_bulges
+    parts, extra = _loads(gear, sector, bulges, chain, roll, order, (modulus, ratio), tilt)
+    m, n = 2 * sides.size, roll.size
+    parts.append(_apart(sector, chain, 2 * n))
+    rows, columns, values = (np.concatenate([part[k] for part in parts]) for k in range(3))
+    k = int(columns.max(initial=2 * n - 1)) + 1 - 2 * n
+    load = coo_array((values, (rows, columns)), shape=(2 * count, 2 * n + k))
+    local = _local(sector, bulges, order, modulus, ratio)
+    centre = sector.points[:, sector.triangles].mean(axis=1)
+    total = condense(local, _unknowns(numbers.T).reshape(local.shape[:2]), centre, load, edge, leaf=GROUP)
+    loads, reads, faces = (edge.size + np.arange(first, stop) for first, stop in ((0, n), (n, 2 * n), (2 * n, 2 * n + k)))
+    if n:
+        where, inward, tip_side = _frames(gear, roll, tilt)
+        pinned = flamant.displacement(_matched(gear, sector, order), where, inward, tip_side, modulus, ratio)
+        total[:, loads] += total[:, : edge.size] @ pinned.transpose(2, 0, 1).reshape(edge.size, n)
+    turn = _polar(gear, sides.size // 2)
+    push = turn.T @ total[:m, edge.size :]
+    return Panel(
+        stiffness=turn.T @ total[:m, :m] @ turn,
+        push=push[:, :n],
+        own=extra - total[np.ix_(reads, loads)],
+        open_push=push[:, 2 * n :],
+        open_own=-total[np.ix_(faces, loads)],
+        open_open=-total[np.ix_(faces, faces)],
+        unknowns=2 * count - edge.size,
+    )
+
+
+def _unknowns(nodes):
+    """Both unknowns of each node, in a row."""
+    return (2 * nodes[..., None] + np.arange(2)).reshape(*nodes.shape[:-1], -1)
+
+
+def numbering(sector, order):
+    """Node numbers of the triangles without their insides, their count, and the nodes along a chain of vertices."""
+    triangles = sector.triangles
+    ends = np.array([triangles[[a, b]] for a, b in ENDS])  # (3, 2, m)
+    low, high = ends.min(axis=1), ends.max(axis=1)
+    vertices = sector.points.shape[1]
+    keys, edge = np.unique((low.astype(np.int64) * vertices + high).ravel(), return_inverse=True)
+    edge = edge.reshape(low.shape)
+    steps = np.arange(order - 1)
+    forward = np.where((ends[:, 0] < ends[:, 1])[..., None], steps, steps[::-1])
+    inner = vertices + edge[..., None] * (order - 1) + forward  # (3, m, order - 1)
+    numbers = np.concatenate([triangles, inner.transpose(0, 2, 1).reshape(-1, triangles.shape[1])])
+
+    def chain(corners):
+        """Nodes along a chain of vertices, or along many: those of the edges between the rows of `corners`."""
+        corners = np.asarray(corners, dtype=np.int64)
+        a, b = corners[:-1], corners[1:]
+        at = np.searchsorted(keys, np.minimum(a, b) * vertices + np.maximum(a, b))
+        middle = vertices + at[..., None] * (order - 1) + np.where((a < b)[..., None], steps, steps[::-1])
+        nodes = np.moveaxis(np.concatenate([a[..., None], middle], axis=-1), -1, 1)
+        return np.concatenate([nodes.reshape(-1, *corners.shape[1:]), corners[-1:]])
+
+    return numbers, vertices + keys.size * (order - 1), chain
+
+
+def _local(sector, bulges, order, modulus, ratio):
+    """Stiffness matrices of the triangles, their insides eliminated."""
+    basis, corners = table(order), sector.points[:, sector.triangles]
+    lam, mu = modulus * ratio / (1 - ratio**2), modulus / (2 * (1 + ratio))
+    local = stiffness(basis.slope, basis.weight, np.einsum("dcm,ce->mde", corners, basis.corner_slope), lam, mu)
+    bent = np.flatnonzero(np.abs(bulges).max(axis=(0, 1, 2)) > STRAIGHT * np.ptp(sector.points))
+    jacobian = jacobians(sector.points, sector.triangles[:, bent], bulges[..., bent], order)
+    local[bent] = bent_stiffness(basis.slope, basis.weight, jacobian, lam, mu)
+    kept = 2 * (basis.count - basis.inside)
+    if not basis.inside:
+        return local
+    inside = np.linalg.inv(local[:, kept:, kept:])  # of so few unknowns sooner than a solve
+    return local[:, :kept, :kept] - local[:, :kept, kept:] @ (inside @ local[:, kept:, :kept])
+
+
+def _polar(gear, nodes):
+    """Rotation from radial and tangential to Cartesian components of the side nodes."""
+    angle = np.repeat([-math.pi / gear.z, math.pi / gear.z], nodes)
+    x = 2 * np.arange(2 * nodes)
+    out = np.zeros((4 * nodes, 4 * nodes))
+    out[x, x], out[x + 1, x + 1] = np.sin(angle), -np.sin(angle)
+    out[x, x + 1] = out[x + 1, x] = np.cos(angle)
+    return out
+
+
+def _frames(gear, roll, tilt=0.0):
+    """Places ``(2, n)`` of loads on the flank, their directions into it, and the tangents towards the tip, both tilted."""
+    radius, angle = flank(gear, roll)
+    normal = -flank_normal(gear, roll)
+    inward = np.cos(tilt) * normal + np.sin(tilt) * np.array([normal[1], -normal[0]])
+    return np.array([radius * np.sin(angle), radius * np.cos(angle)]), inward, gear.outward * np.array([inward[1], -inward[0]])
+
+
+def _matched(gear, sector, order):
+    """Places ``(2, n)`` of the nodes of both sides, the held corner left out, and of the held edge."""
+    line = (lobatto(order) + 1) / 2
+    out = []
+    for side in (sector.left, sector.right):
+        a, b = sector.points[:, side[:-1], None], sector.points[:, side[1:], None]
+        out.append((a * (1 - line[1:]) + b * line[1:]).reshape(2, -1))
+    angle = np.arctan2(*sector.points[:, sector.held])
+    places = np.append((angle[:-1, None] + np.diff(angle)[:, None] * line[:-1]).ravel(), angle[-1])
+    return np.hstack([*out, cartesian(gear.held, places)])
+
+
+def _apart(sector, chain, first):
+    """Unit forces that push the facing nodes of the cracks apart, tips left out: unknowns, columns from `first` on, forces."""
+    out, at = [np.zeros((3, 0))], first
+    for left, right in sector.faces:
+        ahead = np.diff(sector.points[:, left], axis=1)
+        normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
+        pairs = np.array([chain(left), chain(right)])[:, :-1]
+        normal = np.repeat(normal, pairs.shape[1] // normal.shape[1], axis=1)
+        columns, force = np.repeat(at + np.arange(pairs.shape[1]), 2), normal.T.ravel()
+        out += [np.array([_unknowns(pairs[0]), columns, force]), np.array([_unknowns(pairs[1]), columns, -force])]
+        at += pairs.shape[1]
+    rows, columns, forces = np.hstack(out)
+    return rows.astype(np.int64), columns.astype(np.int64), forces
+
+
+def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
+    """Forces of the singular fields' tractions and reads of the flank, and what the fields add to the reads ``(n, n)``.
+
+    Of the first two unknowns, columns (loads 0 to n, then reads) and values.
+    """
+    n = roll.size
+    if n == 0:
+        return [], np.zeros((0, 0))
+    where, inward, tip_side = _frames(gear, roll, tilt)
+    gauss, weight = GAUSS
+    start, stop, bulge = _boundary(sector, bulges)
+    ends = sector.points[:, start], sector.points[:, stop]
+    points = (ends[0][..., None] * (1 - gauss) + ends[1][..., None] * (1 + gauss)) / 2 + (1 - gauss**2) * bulge
+    along = (ends[1] - ends[0])[..., None] / 2 + bulge @ _bulge_slope().T
+    outward = np.array([along[1], -along[0]]) * weight  # times the length element; triangles run counter-clockwise
+    spread = flamant.traction(points.reshape(2, -1), outward.reshape(2, -1), where, inward, tip_side)
+    force = -spread.reshape(2, n, start.size, gauss.size) @ lagrange(order, tuple(gauss)).T  # (2, n, edges, nodes)
+    nodes = chain(np.array([start, stop])).T
+    rows, columns = (np.broadcast_to(indices, force.shape).ravel() for indices in _places(nodes, np.arange(n)[:, None, None]))
+    edge = np.clip(np.searchsorted(sector.roll * gear.outward, roll * gear.outward) - 1, 0, sector.roll.size - 2)
+    low, high = sector.roll[edge], sector.roll[edge + 1]
+    values = lagrange(order, tuple((2 * (roll - low) / (high - low) - 1).tolist()))
+    at = chain(np.array([sector.flank[edge], sector.flank[edge + 1]]))
+    read = values * inward[:, None]  # (2, nodes, n)
+    read_rows, read_columns = (np.broadcast_to(indices, read.shape).ravel() for indices in _places(at, n + np.arange(n)))
+    arc = arc_at(gear, roll)
+    with np.errstate(divide="ignore", invalid="ignore"):  # a load at itself, which is taken as zero
+        moved = flamant.displacement(where, where, inward, tip_side, *elastic)
+        field = np.einsum("dji,di->ij", moved, inward) + 2 / (math.pi * elastic[0]) * np.log(np.abs(arc[:, None] - arc))
+    field[~np.isfinite(field)] = 0.0  # loads at one place that lean differently are not read by each other
+    leans = (1 + elastic[1]) / (math.pi * elastic[0]) * np.sin(tilt) ** 2  # the surface then is not at right angles to the load
+    np.fill_diagonal(field, leans)
+    return [(rows, columns, force.ravel()), (read_rows, read_columns, read.ravel())], field
+
+
+def _places(nodes, columns):
+    """Unknowns ``(2, ...)`` of nodes and their columns."""
+    return 2 * nodes + np.arange(2).reshape(2, *(1,) * max(np.ndim(nodes), np.ndim(columns))), columns
+
+
+@keeping(1)
+def _bulge_slope():
+    """Matrix from the bulge at the points of an edge to the derivative of ``(1 - s**2) bulge`` there."""
+    gauss, powers = GAUSS[0], np.arange(BULGE)
+    slope = (1 - gauss**2)[:, None] * np.where(powers > 0, powers * gauss[:, None] ** np.maximum(powers - 1, 0), 0.0)
+    slope = slope - 2 * gauss[:, None] * gauss[:, None] ** powers
+    return slope @ np.linalg.inv(np.vander(gauss, increasing=True))
+
+
+def _boundary(sector, bulges):
+    """Boundary edges as vertices ``(e,)``, ``(e,)`` with the material on the left, and their bulges ``(2, e, BULGE)``."""
+    a, b = np.array([sector.triangles[list(ends)] for ends in ENDS]).transpose(1, 0, 2).reshape(2, -1).astype(np.int64)
+    count = sector.points.shape[1]
+    edge, back = a * count + b, np.sort(b * count + a)
+    outer = back.take(np.searchsorted(back, edge), mode="clip") != edge
+    bulges = np.moveaxis(bulges, (1, 2), (0, 1)).reshape(2, BULGE, -1)
+    return a[outer], b[outer], bulges[..., outer].transpose(0, 2, 1)

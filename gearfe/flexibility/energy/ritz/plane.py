@@ -1,0 +1,189 @@
+"""The converged energy model: least potential energy over polynomials on one pitch sector, all sectors joined exactly.
+
+Nothing is fitted and no mesh is fine: the field of each load near itself is Flamant's (`panel`), the rest is carried by about
+a hundred curved triangles of order 4; sectors without load are joined by doubling, so the whole gear costs little more than
+one tooth.
+"""
+
+from functools import partial
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy.interpolate import CubicSpline, RectBivariateSpline
+
+from ....geometry.damage.crack import check_through
+from ....geometry.kept import keeping
+from ....geometry.mesh.sector import sector
+from ....geometry.tooth.profile import arc_at, roll_at_arc
+from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning
+from ...solved import solved_gears
+from .join import join
+from .panel import SectionModel, check_order, panel
+
+PLACES = 16  # loads on each flank
+FOOT = 20 * NEAREST  # distance from the first of them to the form point; from the last to the tip corner it is `NEAREST` [m_n]
+HATS = 2  # how many times shorter the hats at corners are than those of `fe`
+KNOTS = 48  # of the splines that carry their polynomial
+
+
+def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
+    """`Flexibility` of a gear by the energy model.
+
+    Parameters
+    ----------
+    gear : Gear
+    material : Material
+    cracks : tuple of Crack
+        Their `tooth` counts to the loaded side of this gear.
+    neighbours : int
+        How many following teeth may carry load at the same time.
+    state : {"plane strain", "plane stress"}
+    order : int
+        Polynomial order, 2 to 8.
+    refine : float
+        Divides the edge lengths of the triangles and the hats at corners.
+    cache : bool or SolvedGears
+        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
+
+    Raises
+    ------
+    ValueError
+        If `order` is out of range or a crack changes along the width.
+    """
+    check_order(order)
+    check_through(cracks, "the energy model of the section")
+    model = SectionModel(gear, material, state, int(order), float(refine))
+    return _flexibility(model, tuple(cracks), neighbours, solved_gears(cache))
+
+
+def _flexibility(model, cracks, neighbours, cache):
+    solve = _cracked if cracks else _healthy
+    return cache.get(("ritz", model, cracks, neighbours), partial(solve, model, cracks, neighbours, cache))
+
+
+def _healthy(model, _, neighbours, cache):
+    gear, healthy = model.gear, loaded_sector(model, (), cache)
+    teeth = range(min(neighbours + 1, gear.z))
+    influence, _ = join(gear, dict.fromkeys(teeth, healthy), healthy)
+    far = {(0, k): _spline(gear, influence[0, k]) for k in teeth if k}
+    near, within, leans = _own_tooth(gear, influence[0, 0])
+    fine = HATS * model.refine
+    return Flexibility(
+        gear, {0: near}, far, {0: within}, _limits(gear), fine, healthy.unknowns, basis=_basis(gear), leans={0: leans}
+    )
+
+
+def _cracked(model, cracks, neighbours, cache):
+    """Flexibility with cracks; that without serves the teeth too far away to share load with a cracked one."""
+    gear, reach = model.gear, max(1, neighbours - 1)
+    healthy = _flexibility(model, (), neighbours, cache)
+    teeth = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
+    by_tooth = {tooth: tuple(crack for crack in cracks if crack.tooth % gear.z == tooth) for tooth in teeth}
+    panels = {tooth: loaded_sector(model, tooth_cracks, cache) for tooth, tooth_cracks in by_tooth.items()}
+    influence, opening = join(gear, panels, loaded_sector(model, (), cache))
+    between = opening["influence"]
+    stiffness = np.linalg.inv(between)
+    near, within, far, leans = {}, {}, {}, {}
+    for i in teeth:
+        for j in teeth:
+            glued = influence[i, j] - opening[i].T @ stiffness @ opening[j]
+            if i == j:
+                near[i], within[i], leans[i] = _own_tooth(gear, glued)
+            elif (j - i) % gear.z <= gear.z // 2:
+                far[i, j] = _spline(gear, glued)
+    arcs, matrix = _knots(gear)
+    seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t][:, :PLACES].T) for t in teeth}, between, stiffness)
+    unknowns, fine = sum(p.unknowns for p in panels.values()), HATS * model.refine
+    return Flexibility(gear, near, far, within, _limits(gear), fine, unknowns, healthy, seam, _basis(gear), leans)
+
+
+def loaded_sector(model, cracks, cache=True):
+    """`Panel` of a sector with `cracks` under the loads at `_places`, and under eight tilted ones: at `_leans`, both ways."""
+    gear = model.gear
+
+    def solve():
+        rolls = np.append(_places(gear), np.repeat(roll_at_arc(gear, _leans(gear)), 2))
+        tilt = np.append(np.zeros(PLACES), [TILT, -TILT] * 4)
+        return panel(model, sector(gear, cracks, refine=model.refine), rolls, tilt)
+
+    return solved_gears(cache).get(("ritz sector", model, cracks), solve)
+
+
+def _limits(gear):
+    return arc_at(gear, gear.roll_f) + FOOT * gear.m_n, arc_at(gear, gear.roll_a) - NEAREST * gear.m_n
+
+
+def _leans(gear):
+    """Arcs of the tilted loads, as of `leaning`."""
+    low, high = _limits(gear)
+    below = max(high - BELOW * gear.m_n, (low + high) / 2)
+    return np.array([low, (low + below) / 2, below, high])
+
+
+def _scale(gear):
+    """The variable of the flank: its roll length at the tip, an offset, and both ends of the logarithm between the limits.
+
+    The flexibility is smooth in the roll length, not in the arc, near the base circle, and logarithmic towards the tip corner.
+    """
+    offset = NEAREST * gear.m_n * gear.r_b / gear.roll_a
+    low, high = (np.log(abs(gear.roll_a - roll_at_arc(gear, limit)) + offset) for limit in _limits(gear))
+    return offset, low, high
+
+
+def _variable(gear, arc):
+    """Place on the flank in [-1, 1]: the logarithm of the distance to the tip corner in roll."""
+    offset, low, high = _scale(gear)
+    return (2 * np.log(np.abs(gear.roll_a - roll_at_arc(gear, arc)) + offset) - low - high) / (high - low)
+
+
+def _arcs(gear, places):
+    offset, low, high = _scale(gear)
+    away = np.exp((low + high) / 2 + (high - low) / 2 * places) - offset
+    return arc_at(gear, gear.roll_a - gear.outward * away)
+
+
+@keeping(64)
+def _places(gear):
+    """Roll lengths of the loads: Chebyshev points in `_variable`, from root to tip."""
+    return roll_at_arc(gear, _arcs(gear, chebyshev.chebpts2(PLACES)))
+
+
+def carry(gear, arc):
+    """Matrix ``(n, PLACES)`` from values at the loads to values at arcs ``(n,)`` of the flank [mm]."""
+    return _carry(_variable(gear, arc))
+
+
+def _carry(places):
+    """Matrix ``(n, PLACES)`` from values at the loads to values at `places` of `_variable`."""
+    nodes = chebyshev.chebvander(chebyshev.chebpts2(PLACES), PLACES - 1)
+    return np.linalg.solve(nodes.T, chebyshev.chebvander(np.clip(places, -1, 1), PLACES - 1).T).T
+
+
+@keeping(64)
+def _knots(gear):
+    """Arcs of the splines' knots, and the matrix from values at the loads to values there."""
+    return _arcs(gear, np.linspace(-1, 1, KNOTS)), _between()
+
+
+@keeping(1)
+def _between():
+    return _carry(np.linspace(-1, 1, KNOTS))
+
+
+def _spline(gear, influence):
+    arcs, matrix = _knots(gear)
+    return RectBivariateSpline(arcs, arcs, matrix @ influence[:PLACES, :PLACES] @ matrix.T)
+
+
+@keeping(64)
+def _basis(gear):
+    """Spline from values at the loads to those at an arc: what a tooth's S(s, s') is carried by."""
+    return CubicSpline(*_knots(gear))
+
+
+def _own_tooth(gear, influence):
+    """Spline S(s, s), S(s, s') between the loads along the normal, and what `leaning` gives, from the influence of all loads."""
+    (arcs, matrix), between = _knots(gear), influence[:PLACES, :PLACES]
+    near = CubicSpline(arcs, ((matrix @ between) * matrix).sum(axis=1))
+    at, tilted = _leans(gear), np.diag(influence)[PLACES:]
+    return near, (between + between.T) / 2, leaning(at, near(at), tilted[::2], tilted[1::2])

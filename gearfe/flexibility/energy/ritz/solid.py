@@ -1,0 +1,226 @@
+"""The energy model in three dimensions: helical and spur gears of any width, both end faces free.
+
+Curved triangles in the section times polynomials along the width (`panel3d`), all sectors joined exactly as in `ritz`. Loads are
+patches on the flank; see `gearfe.flexibility.solid` for what is made of them.
+"""
+
+import math
+from dataclasses import replace
+from functools import partial
+from numbers import Integral
+
+import numpy as np
+from numpy.polynomial import chebyshev, legendre
+
+from ....geometry.damage.front import crack_in_band, shallower, whole
+from ....geometry.mesh.sector import sector
+from ...solid import PLACES, Faces, hats, parted, solved_teeth
+from ...solved import solved_gears
+from .bent import bent
+from .dissection import dissect
+from .join import join
+from .panel import check_order
+from .panel3d import SolidModel, panel3d
+from .plane_strain import missing
+
+LOST = 2  # axial modes too poor to be kept
+# Depths at which a sloping crack's section is compared with plane strain; Gauss points along each open part.
+DEPTHS, ALONG = 3, 12
+# edge lengths in modules, see `gearfe.geometry.mesh.sector.SIZES`
+SIZES = {
+    "flank": 0.28,
+    "back": 0.7,
+    "corner": 0.02,
+    "kink": 0.2,
+    "fillet": 0.4,
+    "root": 1.0,
+    "side": 0.7,
+    "crack": 0.5,
+    "crack tip": 0.01,
+}
+
+
+def flexibility3d(gear, material, cracks=(), *, neighbours=1, order=3, axial=None, refine=1.0, cache=True):
+    """`Flexibility3D` of a gear of finite width by the energy model.
+
+    Parameters
+    ----------
+    gear : Gear
+        With a positive `beta` the section at height z is that at z = 0 turned clockwise by ``z tan(beta) / r``; bore or rim are
+        held over the whole width, the end faces free.
+    material : Material
+    cracks : tuple of Crack
+        Of any depth along the width, but one that changes follows a straight crack. Their `tooth` counts to the loaded side of
+        this gear.
+    neighbours : int
+        How many following teeth may carry load at the same time.
+    order : int
+        Of the polynomials in the section, 2 to 8.
+    axial : int, optional
+        Degree of the polynomials along the width, 0 or at least 3; default `axial_degree`. 0 on a spur gear is plane strain.
+    refine : float
+        Divides the edge lengths of the triangles.
+    cache : bool or SolvedGears
+        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
+
+    Raises
+    ------
+    ValueError
+        If an option is out of range, or a tooth has cracks that the model has not.
+    """
+    axial = axial_degree(gear.b, gear.m_n) if axial is None else axial
+    check_order(order)
+    if isinstance(axial, bool) or not isinstance(axial, Integral) or not (axial == 0 or axial > LOST):
+        raise ValueError(f"axial = {axial!r}, but it is the degree along the width: 0, or a whole number from {LOST + 1}")
+    model = SolidModel(gear, material, int(order), int(axial), float(refine))
+    return _flexibility(model, tuple(cracks), min(neighbours, gear.z - 1), solved_gears(cache))
+
+
+def _flexibility(model, cracks, neighbours, cache):
+    solve = _mirrored if model.gear.beta < 0 else _solved
+    return cache.get(("ritz3d", model, cracks, neighbours), partial(solve, model, cracks, neighbours, cache))
+
+
+def axial_degree(width, m_n):
+    """Degree along a `width` [mm] that goes with cubic triangles: 2 and 0.8 per normal module [mm], at least 8."""
+    return max(8, math.ceil(0.8 * width / m_n) + LOST)
+
+
+def _mirrored(model, cracks, neighbours, cache):
+    """The gear of the other hand, seen from its other end: odd polynomials along the width change their sign."""
+    gear = model.gear
+    cracks = tuple(crack_in_band(crack, gear.b, gear.b, 0.0) for crack in cracks)
+    other = _flexibility(replace(model, gear=replace(gear, beta=-gear.beta)), cracks, neighbours, cache)
+    sign = np.tile((-1.0) ** np.arange(other.degree + 1), PLACES)
+    near, far = ({key: sign[:, None] * matrix * sign for key, matrix in matrices.items()} for matrices in (other.near, other.far))
+    healthy = other.healthy and _flexibility(model, (), neighbours, cache)
+    seam = other.seam and replace(other.seam, opening={tooth: matrix * sign for tooth, matrix in other.seam.opening.items()})
+    return replace(other, gear=gear, near=near, far=far, healthy=healthy, seam=seam)
+
+
+def _solved(model, cracks, neighbours, cache):
+    gear, degree = model.gear, max(model.axial - LOST, 0)
+    healthy_panel = solid_sector(model, (), cache)
+    by_tooth = {t: tuple(c for c in cracks if c.tooth % gear.z == t) for t in {crack.tooth % gear.z for crack in cracks}}
+    panels = dict.fromkeys(solved_teeth(gear, cracks, neighbours), healthy_panel)
+    panels |= {t: solid_sector(model, tooth_cracks, cache) for t, tooth_cracks in by_tooth.items()}
+    healthy = _flexibility(model, (), neighbours, cache) if cracks else None
+    influence, opening = join(gear, panels, healthy_panel)
+    kept = (np.arange(PLACES)[:, None] * (model.axial + 1) + np.arange(degree + 1)).ravel()
+    influence = {key: value[np.ix_(kept, kept)] for key, value in influence.items()}
+    for tooth in panels:
+        _complete(model, by_tooth.get(tooth, ()), influence[tooth, tooth], cache)
+    unknowns = sum(p.unknowns for p in panels.values())
+    made = parted(gear, model.material, degree, influence, unknowns, healthy, cache=cache)
+    if not cracks:
+        return made
+    faces = Faces({tooth: opening[tooth][:, kept] for tooth in panels}, opening["influence"])
+    return replace(made, seam=faces)
+
+
+def _complete(model, cracks, influence, cache):
+    """Add to the influence between the hats of a tooth with `cracks`, in place, what the section's polynomials miss."""
+    slopes, degree = not all(crack.even for crack in cracks), len(influence) // PLACES - 1
+    healthy = _missing(model, (), cache)
+    influence += np.kron(_missing(model, (), cache, cubic=True) if slopes else healthy, np.eye(degree + 1))
+    even = np.ix_(*[np.arange(PLACES) * (degree + 1)] * 2)
+    if cracks and all(crack.even and crack.width is None for crack in cracks):
+        influence[even] += _missing(model, tuple(whole(crack) for crack in cracks), cache) - healthy
+    elif len(cracks) == 1 and slopes:
+        influence[even] += _missing_along(model, cracks[0], cache)
+
+
+def _seams(cracks):
+    """Cracks of one tooth as the section has them, where along the width each is open (None: everywhere), and their fronts.
+
+    A front is a crack whose depth changes along the width, or None.
+
+    Raises
+    ------
+    ValueError
+        If cracks on one side of a tooth are not parts of one crack, or more than one has a front.
+    """
+    by_shape = {}
+    for crack in cracks:
+        by_shape.setdefault(whole(crack), []).append(crack)
+    sides = [crack.side for crack in by_shape]
+    if len(set(sides)) < len(sides):
+        raise ValueError(
+            f"cracks of different shape on the {sides[0]} side of a tooth: the energy model has one section for all of them; "
+            "give them the same level, start and angle, or use method = 'fe3d'"
+        )
+    fronts = [None if all(crack.even for crack in group) else group[0] for group in by_shape.values()]
+    if len(fronts) - fronts.count(None) > 1 or any(front and len(by_shape[whole(front)]) > 1 for front in fronts):
+        raise ValueError(
+            f"tooth {cracks[0].tooth} has several cracks, and the depth of more than one may change along the width: the energy "
+            "model follows one front; give the others ends = (1, 1) on the other side, or use method = 'fe3d'"
+        )
+    parts = ([crack.width for crack in group] for group in by_shape.values())
+    return tuple(by_shape), [None if None in group else tuple(group) for group in parts], fronts
+
+
+def solid_sector(model, cracks, cache=True):
+    """`Panel` of a sector with `cracks`, loaded by the hats times all modes."""
+    kept, gear = solved_gears(cache), model.gear
+
+    def solve():
+        shapes, parts, fronts = _seams(cracks)
+        section, tree = _sector(gear, shapes, model.refine, kept)
+        bends = [None] * len(fronts)
+        for i, crack in enumerate(fronts):
+            if crack:
+                bends[i] = bent(gear, section, i, crack)
+                parts[i] = bends[i][1].open()
+                parts[i] = None if parts[i] == ((0.0, gear.b),) else parts[i]
+        return panel3d(model, section, hats(gear), parts=tuple(parts), bends=tuple(bends), tree=tree)
+
+    return kept.get(("ritz3d sector", model, cracks), solve)
+
+
+def _sector(gear, cracks, refine, cache):
+    """The section's triangles and their nested halves."""
+
+    def solve():
+        made = sector(gear, cracks, refine=refine, sizes=SIZES)
+        return made, dissect(made)
+
+    return cache.get(("ritz3d section", gear, cracks, refine), solve)
+
+
+def _missing_along(model, crack, cache):
+    """What a crack of changing depth adds to `_missing`: the mean over the width of what straight ones of those depths add.
+
+    Of the section as it follows the front; known at `DEPTHS` depths, by a polynomial between them.
+    """
+
+    def solve():
+        shape = whole(crack)
+        section, sound = (_sector(model.gear, own, model.refine, cache)[0] for own in ((shape,), ()))
+        shift, front = bent(model.gear, section, 0, crack)
+        x, weight = legendre.leggauss(ALONG)
+        parts = np.array(front.open())
+        half = np.diff(parts, axis=1) / 2
+        depth, weight = front.depth((parts[:, :1] + half * (1 + x)).ravel())[0], (half * weight).ravel() / model.gear.b
+        low, high, nodes = depth.min(), depth.max(), chebyshev.chebpts1(DEPTHS)
+        at = np.clip((2 * depth - low - high) / max(high - low, 1e-9), -1, 1)
+        carry = chebyshev.chebvander(at, DEPTHS - 1) @ np.linalg.inv(chebyshev.chebvander(nodes, DEPTHS - 1))
+        out = -weight.sum() * _missing(model, (), cache, cubic=True)
+        for own, share in zip(((low + high + (high - low) * nodes) / 2).tolist(), weight @ carry, strict=True):
+            sections = replace(section, points=section.points + (own - 1) * shift), sound
+            out = out + share * missing(model, (shallower(shape, own),), sections, cubic=True, cache=cache)
+        return out
+
+    return cache.get(("ritz3d missing along", model, crack), solve)
+
+
+def _missing(model, cracks, cache, cubic=False):
+    """`plane_strain.missing` with the sections solved for: of all modes along the width, or what a crack adds, of the even one.
+
+    Near the tip corner the difference in plane strain is that of all modes along the width, to a thousandth.
+    """
+
+    def solve():
+        sections = tuple(_sector(model.gear, tooth_cracks, model.refine, cache)[0] for tooth_cracks in (cracks, ()))
+        return missing(model, cracks, sections, cubic=cubic, cache=cache)
+
+    return cache.get(("ritz3d missing", model, cracks, cubic), solve)

@@ -1,0 +1,250 @@
+"""Flexibility of one gear between its contacts, by finite elements (plane strain or plane stress).
+
+Each loaded flank carries *hat pressures* of unit resultant along the involute normal; the displacement of a contact is
+the same hat average, so the influence matrix ``C = B' K^-1 B`` is symmetric. On one tooth it is split::
+
+    C(i, j) = S(s_i, s_j) + c * mean(-ln |s_i - s_j|)
+
+into the half-plane's logarithm, known exactly, and a smooth rest S that any spline can carry to any contact position.
+
+Edges that are a fixed part of the hats miss a fixed part of the work at the hats' kinks: with `SPAN` edges on either side 0.5 to
+1 % of c at *any* resolution. The missing work is a sum over kinks of (change of slope)**2, so hats twice as wide on the same
+edges, which are sums of three (`gearfe.flexibility.hats.wider`), miss 1/16 of it: with kinks (1, -2, 1) of a hat it is 6,
+with (1, 0, -2, 0, 1) / 4 it is 6 / 16. S(s, s) is taken from those.
+"""
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.interpolate import CubicSpline, RectBivariateSpline
+from scipy.sparse import coo_matrix, hstack
+
+from ...geometry.mesh.outline import GROWTH, stations
+from ...geometry.mesh.section_mesh import section
+from ...geometry.tooth.profile import arc_at, flank_normal
+from ..hats import SPAN, hat_knots, wider
+from ..hertz import half_plane, hat_logarithm
+from ..plane import BELOW, TILT, Flexibility, SeamFaces, leaning
+from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
+
+# default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
+# three next teeth, all other teeth
+EDGES = {"flank": 0.04, "tip": 0.0005, "low": 0.01, "read": 0.2, "fillet": 0.1, "near": 0.4, "far": 0.9}
+
+
+@dataclass(frozen=True, slots=True)
+class Hats:
+    """Unit hat pressures on one flank: knots along the arc ``(3, n)`` [mm] and load columns."""
+
+    knots: np.ndarray
+    load: object
+
+    @property
+    def arc(self):
+        """Centroids [mm]."""
+        return self.knots.mean(axis=0)
+
+
+def hats(section_, tooth, *, corner=False, tilt=0.0):
+    """Hat pressures with unit resultant along the loaded flank of `tooth`, a top on every second inner vertex.
+
+    With `corner`, a last, one-sided hat has its top at the tip corner. With `tilt` [rad] from the normal towards the outside of
+    the gear, only the three hats of `_leans`.
+    """
+    gear, roll = section_.gear, section_.roll[tooth % section_.gear.z]
+    arc = arc_at(gear, roll)
+    knots = hat_knots(arc, corner=corner)
+    first = np.minimum(SPAN * np.arange(knots.shape[1]), roll.size - 1 - 2 * SPAN)
+    if tilt:
+        numbers = _leans(gear, knots)
+        knots, first = knots[:, numbers], first[numbers]
+
+    def height(s):
+        start, top, stop = knots[:, :, None, None]
+        fall = np.where(stop > top, (stop - s) / np.where(stop > top, stop - top, 1.0), 1.0)
+        return np.maximum(np.minimum((s - start) / (top - start), fall), 0.0) * 2 / (stop - start)
+
+    return Hats(knots, flank_load(section_, tooth, height, first, 2 * SPAN, tilt))
+
+
+def flank_load(section_, tooth, pressure, first, count, tilt=0.0):
+    """Consistent nodal forces ``(2 nodes, n)`` [N/mm] of pressures on the loaded flank of `tooth`.
+
+    Parameters
+    ----------
+    pressure : callable
+        Maps arcs ``(n, count, points)`` from the base circle [mm] to pressures [MPa], row by row.
+    first, count
+        First flank edge each pressure acts on ``(n,)``, and the number of edges it does.
+    tilt : float
+        Of the pressures from the normal towards the outside of the gear [rad].
+    """
+    gear, mesh = section_.gear, section_.mesh
+    tooth %= gear.z
+    roll = section_.roll[tooth]
+    points, weights = GAUSS_3
+    shapes, slopes = edge_shapes(points)
+    nodes = edge_nodes(mesh, section_.flank[tooth])
+    length = np.hypot(*np.einsum("dne,np->dep", mesh.doflocs[:, nodes], slopes)) * weights
+    rolls = (roll[:-1, None] + roll[1:, None]) / 2 + (roll[1:, None] - roll[:-1, None]) / 2 * points
+    normal = turned(flank_normal(gear, rolls), 2 * np.pi * tooth / gear.z + tilt)
+    edge = np.asarray(first)[:, None] + np.arange(count)
+    height = pressure(arc_at(gear, rolls[edge]))
+    force = -np.einsum("np,hep,hep,dhep->nhed", shapes, height, length[edge], normal[:, edge])
+    rows = 2 * nodes[:, edge][..., None] + np.arange(2)
+    columns = np.broadcast_to(np.arange(edge.shape[0])[:, None, None], force.shape)
+    shape = (2 * mesh.doflocs.shape[1], edge.shape[0])
+    return coo_matrix((force.ravel(), (rows.ravel(), columns.ravel())), shape=shape).tocsc()
+
+
+def turned(vectors, angle):
+    """Vectors ``(2, ...)`` turned clockwise by `angle` [rad]."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.array([cos * vectors[0] + sin * vectors[1], cos * vectors[1] - sin * vectors[0]])
+
+
+def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
+    """Section of `gear` meshed for loads on the teeth `loaded` and for reading displacements on the teeth `read`.
+
+    `refine` divides every edge length of `EDGES`. It is the section of the whole gear, or of a number of `teeth` on a plain rim,
+    with `cracks`, as in `gearfe.geometry.mesh.section_mesh.section`.
+    """
+    if not (math.isfinite(refine) and refine > 0):
+        raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
+    edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
+    longest = abs(arc_at(gear, gear.roll_a) - arc_at(gear, gear.roll_f)) / (8 * SPAN)  # a bicubic spline needs hats enough
+    even = {"span": SPAN, "growth": GROWTH / refine}  # or the graded ends would be equally coarse at any resolution
+    fine = stations(gear, min(edge["flank"], longest), tip=edge["tip"], low=edge["low"], **even)
+    coarse = stations(gear, min(edge["read"], longest), tip=0.025 * gear.m_n / refine, **even)
+    rolls = dict.fromkeys(loaded, fine) | dict.fromkeys(read, coarse)
+    return section(gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], teeth=teeth, cracks=cracks)
+
+
+def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
+    """`Flexibility` of a healthy gear by finite elements: one factorisation, one tooth loaded.
+
+    The teeth of a healthy gear are alike, so a load on tooth 0 read on tooth k is also a load on any tooth read k teeth
+    further.
+
+    Parameters
+    ----------
+    neighbours : int
+        How many following teeth may carry load at the same time.
+    state : {"plane strain", "plane stress"}
+    refine, teeth
+        As of `mesh_gear`.
+    """
+    mesh = mesh_gear(gear, read=range(1, neighbours + 1), refine=refine, teeth=teeth)
+    body = Body(mesh.mesh, material, state=state)
+    on = {0: hats(mesh, 0, corner=True)} | {tooth: hats(mesh, tooth) for tooth in range(1, neighbours + 1)}
+    tilted = _tilted(mesh, 0)
+    influence, at = _between(body, [part.load for part in (*on.values(), *tilted)])
+    loaded, c = on[0], half_plane(material, state)
+    near, block = own_tooth(loaded, influence[at[0], at[0]], c)
+    leans = _leaning(gear, loaded, influence, at[0], at[-2:], c)
+    far = {(0, k): RectBivariateSpline(loaded.arc, on[k].arc, influence[at[0], at[k]]) for k in on if k}
+    limits = loaded.arc[0], loaded.arc[-1]
+    return Flexibility(
+        gear, {0: near}, far, {0: block}, limits, refine, 2 * mesh.mesh.doflocs.shape[1], basis=basis(loaded), leans={0: leans}
+    )
+
+
+def _tilted(mesh, tooth):
+    """The hats of `_leans` of a flank, tilted either way."""
+    return [hats(mesh, tooth, corner=True, tilt=tilt) for tilt in (TILT, -TILT)]
+
+
+def _leans(gear, knots):
+    """Numbers of the hats at the foot of a flank, half-way up, `BELOW` the tip and at the tip."""
+    away = knots[1, -1] - knots.mean(axis=0)
+    below = min(BELOW * gear.m_n, away[0] / 2)
+    inner = [int(np.argmin(np.abs(away[1:-1] - place))) + 1 for place in ((away[0] + below) / 2, below)]
+    return [0, *inner, knots.shape[1] - 1]
+
+
+def _leaning(gear, on, influence, plain, tilted, coefficient):
+    """What `leaning` gives of a tooth with hats `on`, from the influence of all loads and where these and the tilted ones are."""
+    numbers = _leans(gear, on.knots)
+    local, diagonal = coefficient * np.diag(hat_logarithm(on.knots[:, numbers], on.knots[:, numbers])), np.diag(influence)
+    return leaning(on.arc[numbers], diagonal[plain][numbers] - local, *(diagonal[part] - local for part in tilted))
+
+
+def _between(body, loads):
+    """Displacements of all columns of `loads` under each other, and which rows and columns belong to each of them."""
+    ends = np.cumsum([0, *(load.shape[1] for load in loads)]).tolist()
+    return body.between(hstack(loads, format="coo")), [slice(a, b) for a, b in pairwise(ends)]
+
+
+def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
+    """`Flexibility` of a gear with root cracks: every tooth that can share load with a cracked one is loaded and read.
+
+    Their `tooth` counts to the loaded side of this gear; `healthy` is that of the same gear without cracks, for the teeth further
+    away. The other arguments are as of `flexibility`.
+    """
+    reach = max(1, neighbours - 1)
+    solved = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
+    mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks)
+    body = Body(mesh.mesh, material, state=state)
+    on = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
+    faces = _face_columns(mesh)
+    tilted = [part for tooth in solved for part in _tilted(mesh, tooth)]
+    influence, at = _between(body, [*(on[tooth].load for tooth in solved), faces, *(part.load for part in tilted)])
+    pairs = zip(solved, at[len(solved) + 1 :: 2], at[len(solved) + 2 :: 2], strict=True)
+    leaned = {tooth: blocks for tooth, *blocks in pairs}
+    at, opened = dict(zip(solved, at, strict=False)), at[len(solved)]
+    opening = {tooth: influence[opened, at[tooth]] for tooth in solved}
+    apart = influence[opened, opened]
+    stiffness = np.linalg.inv(apart)
+    near, blocks, far, leans = {}, {}, {}, {}
+    for tooth in solved:
+        shut = influence.copy()
+        for part in (at[tooth], *leaned[tooth]):
+            shut[part, part] -= influence[opened, part].T @ stiffness @ influence[opened, part]
+        leans[tooth] = _leaning(gear, on[tooth], shut, at[tooth], leaned[tooth], half_plane(material, state))
+        for other in solved:
+            glued = influence[at[tooth], at[other]] - opening[tooth].T @ stiffness @ opening[other]
+            if other == tooth:
+                near[tooth], blocks[tooth] = own_tooth(on[tooth], glued, half_plane(material, state))
+            elif (other - tooth) % gear.z <= gear.z // 2:
+                far[tooth, other] = RectBivariateSpline(on[tooth].arc, on[other].arc, glued)
+    seam = SeamFaces({t: CubicSpline(on[t].arc, opening[t].T) for t in solved}, apart, stiffness)
+    limits = on[solved[0]].arc[0], on[solved[0]].arc[-1]
+    return Flexibility(gear, near, far, blocks, limits, refine, faces.shape[0], healthy, seam, basis(on[solved[0]]), leans)
+
+
+def _face_columns(mesh):
+    """Columns of unit forces that push the facing nodes of all cracks apart, tips and the quarter points beside them left out."""
+    columns = []
+    for seam in mesh.seams:
+        ahead = np.gradient(mesh.mesh.doflocs[:, seam.faces[0]], axis=1)[:, :-2]
+        normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
+        columns += list(zip(*seam.faces[:, :-2].tolist(), normal.T, strict=True))
+    at = np.arange(len(columns))
+    left, right = (np.array([column[side] for column in columns]) for side in (0, 1))
+    normal = np.array([column[2] for column in columns]).T
+    rows = [2 * nodes + d for nodes in (left, right) for d in (0, 1)]
+    forces = np.concatenate([*normal, *-normal])
+    return coo_matrix((forces, (np.concatenate(rows), np.tile(at, 4))), shape=(2 * mesh.mesh.doflocs.shape[1], at.size)).tocsc()
+
+
+def basis(on):
+    """Spline from values at hats to those at an arc: what S(s, s') of a tooth is carried by."""
+    return CubicSpline(on.arc, np.eye(on.arc.size))
+
+
+def own_tooth(on, influence, coefficient):
+    """Spline S(s, s) of one tooth, and S(s, s') between its hats, from their influence matrix.
+
+    S(s, s) comes from hats twice as wide, see the module; at both ends of the flank, where none has room, from the single hat
+    plus what the wide one next to it finds more than its own.
+    """
+    smooth = influence - coefficient * hat_logarithm(on.knots, on.knots)
+    arc, wide, single = on.arc[:-1], wider(on.knots[:, :-1]), np.diag(smooth)[:-1]  # without the corner's
+    middle, values = wide @ arc, np.einsum("ij,jk,ik->i", wide, smooth[:-1, :-1], wide)
+    inner = CubicSpline(middle[1:-1], values[1:-1])
+    values[[0, -1]] = single[[0, -1]] + inner(arc[[1, -2]]) - single[[1, -2]]
+    near = CubicSpline(middle, values)
+    excess = near(arc) - single
+    return near, (smooth + smooth.T) / 2 + np.diag(np.append(excess, excess[-1]))

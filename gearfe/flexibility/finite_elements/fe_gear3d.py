@@ -1,0 +1,141 @@
+"""`Flexibility3D` of a whole gear by brute force: hexahedra (`fe3d`) under the patches of `gearfe.flexibility.solid`."""
+
+import math
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from scipy.linalg import eigh
+
+from ...core.supports.shaft import Shaft
+from ...geometry.tooth.gear import Gear
+from ..halfspace import half_space
+from ..solid import Faces, hats, own_distance, parted, solved_teeth
+from .crack_zones import zone_forces
+from .fe3d import Patches, influence, mesh_patches, planned
+from .integral import integral_influence, on_stubs
+
+LOST = 2  # of the highest axial degrees may be dropped if the layers do not carry them
+RESOLVED = 0.05  # of the half-space's displacement: below, the mesh is stiffer than the contact's own part by so much
+PER_HAT = 4  # edges across a hat
+LAYER = 2.0  # height of the element layers [m_n], at most a sixth of the width
+END = 0.25  # height of the layers at the end faces, where loads and modes change most, against that
+# edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`; the section costs little: layers times teeth fill the memory
+SIZES = {"flank": 0.13, "corner": 0.07, "fillet": 0.17, "root": 0.27, "near": 0.33, "far": 0.8, "crack": 0.2, "crack tip": 0.04}
+
+
+def axial_modes(width, m_n):
+    """Highest degree of the patches along a `width` [mm]: 0.8 per normal module plus 2, at least 8; `ritz3d` keeps 2 less."""
+    return max(8, math.ceil(0.8 * width / m_n) + 2)
+
+
+@dataclass(frozen=True, slots=True)
+class WholeGear:
+    """A gear of finite width as it is meshed, and which of its teeth are loaded.
+
+    Attributes
+    ----------
+    gear : Gear
+        Bore or rim are held over the whole width, the end faces free.
+    cracks : tuple of Crack
+        Their faces are kept from passing through each other, zone by zone (`gearfe.flexibility.finite_elements.crack_zones`).
+    neighbours : int
+        How many following teeth may carry load at the same time.
+    degree : int, optional
+        Of the patches along the width, before `less` is taken off; default `axial_modes`. At most two of the highest degrees are
+        dropped if the layers cannot carry them (seen on the gear without cracks).
+    refine : float
+        Divides all edge lengths and the layers.
+    section : float, optional
+        Divides the edges of the section instead.
+    shaft : Shaft, optional
+        Of a gear that is one piece with it: held by it at its end faces, the bore free.
+    """
+
+    gear: Gear
+    cracks: tuple = ()
+    neighbours: int = 1
+    degree: int | None = None
+    less: int = 0
+    refine: float = 1.0
+    section: float | None = None
+    shaft: Shaft | None = None
+
+    def meshed(self):
+        """Mesh and `Patches`.
+
+        Raises
+        ------
+        ValueError
+            If `refine` is not positive.
+        """
+        gear, refine = self.gear, self.refine
+        if not (math.isfinite(refine) and refine > 0):
+            raise ValueError(f"refine = {refine}, but it divides the edge lengths: give a positive number")
+        degree = (axial_modes(gear.b, gear.m_n) if self.degree is None else self.degree) - self.less
+        patches = Patches(tuple(solved_teeth(gear, self.cracks, self.neighbours)), hats(gear), degree + 1)
+        section = refine if self.section is None else self.section
+        layer = min(LAYER * gear.m_n, gear.b / 6) * section / refine
+        fine = [(z, z, END * layer) for z in (0.0, gear.b)]
+        options = {"refine": section, "per_hat": PER_HAT, "layer": layer, "sizes": SIZES, "fine": fine}
+        return mesh_patches(gear, patches, cracks=self.cracks, **options), patches
+
+    def plan(self):
+        """`finite_elements.solver.Plan` of its `solid_flexibility`, refused if it does not fit; costs its mesh alone."""
+        mesh, patches = self.meshed()
+        columns = zone_forces(mesh).shape[1]
+        if self.shaft is not None:
+            mesh, discs = on_stubs(mesh, self.shaft)
+            columns += discs.shape[1]
+        return planned(mesh, patches, columns)
+
+
+def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
+    """`Flexibility3D` of a `WholeGear` by finite elements.
+
+    Parameters
+    ----------
+    healthy : Flexibility3D, optional
+        Of the gear without cracks; needed if it has cracks.
+    tell
+        As in `gearfe.flexibility.finite_elements.fe3d.influence`.
+    cache : bool or SolvedGears
+        Where to look for the half-space's part, see `gearfe.flexibility.solved.solved_gears`.
+
+    Raises
+    ------
+    ValueError
+        If an input is impossible.
+    RuntimeError
+        If the system does not fit into memory, with the numbers, or if the mesh cannot carry the patches.
+    """
+    gear, (mesh, patches) = whole.gear, whole.meshed()
+    teeth, degree = patches.teeth, patches.modes - 1
+    solve = influence if whole.shaft is None else partial(integral_influence, shaft=whole.shaft)
+    solved = solve(mesh, material, patches, tell=tell, zones=zone_forces(mesh))
+    unit = np.tile(np.sqrt((2 * np.arange(degree + 1) + 1) * gear.b), patches.knots.shape[1])  # from P_a / b to orthonormal
+    size = unit.size
+    matrix = solved.matrix.reshape(len(teeth), size, len(teeth), size) * unit[:, None, None] * unit
+    kept = _resolved(whole, material, matrix[0, :, 0], degree, cache) if healthy is None else healthy.degree
+    carried = np.flatnonzero(np.arange(size) % (degree + 1) <= kept)
+    between = {(i, j): matrix[a][np.ix_(carried, [b], carried)][:, 0] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
+    flexibility = parted(gear, material, kept, between, solved.dofs, healthy, cache=cache)
+    if not solved.mutual.size:
+        return flexibility
+    opening = {tooth: (solved.opening[:, k].reshape(-1, size) * unit)[:, carried] for k, tooth in enumerate(teeth)}
+    return replace(flexibility, seam=Faces(opening, solved.mutual))
+
+
+def _resolved(whole, material, own, degree, cache):
+    """Highest degree that the layers carry: `degree`, or up to `LOST` less; `own` is the influence on one flank."""
+    gear = whole.gear
+    for kept in range(degree, degree - LOST - 1, -1):
+        at = np.flatnonzero(np.arange(len(own)) % (degree + 1) <= kept)
+        flat = half_space(material) * own_distance(gear, kept, cache=cache)
+        least = eigh(own[np.ix_(at, at)], flat, eigvals_only=True)[0]
+        if least >= RESOLVED:
+            return kept
+    raise RuntimeError(
+        f"z = {gear.z}, b = {gear.b:g} mm, refine = {whole.refine:g}: the mesh is too coarse for patches of degree {kept} along "
+        f"the width, one of them moves only {100 * least:.2g} % of what a half-space does: raise refine, or lower the degree"
+    )

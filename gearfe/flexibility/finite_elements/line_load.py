@@ -1,0 +1,68 @@
+"""A load on a line across the flank of tooth 0 of a gear in hexahedra, and what it moves."""
+
+import math
+
+import numpy as np
+
+from ...core.checks import check_length
+from ...geometry.mesh.solid import Solid
+from ...geometry.tooth.profile import arc_at, roll_at_arc
+from .fe3d import helicoid_normal, points_between
+from .hexahedron import assemble, face_shapes
+from .one_tooth import load_at
+from .solver import factor, plan
+
+SPREAD = 0.15  # half width of the hat over which a load is spread [m_n]
+ACROSS, ALONG = 8, 4  # Gauss points of the load on an edge and along a layer
+
+
+def check_spread(gear, half_width=None):
+    """Half width of the hat over which the load is spread [mm], `SPREAD` modules by default."""
+    check_length("half_width", half_width)
+    spread = SPREAD * gear.m_n if half_width is None else half_width
+    if not 0 < spread <= gear.m_n:
+        raise ValueError(f"half_width = {half_width} mm, but the load is narrow: give 0 < half_width <= {gear.m_n} mm")
+    return spread
+
+
+def contact_line(gear, radius):
+    """Roll length at heights z [mm] of the contact line through `radius` [mm] at half the width, a function of z."""
+    middle, slope = float(roll_at_arc(gear, load_at(gear, radius))), gear.outward * math.tan(gear.beta_b)
+    return lambda z: middle + slope * (z - gear.b / 2)
+
+
+def strip(gear, roll, spread, refine):
+    """Part of the flank under a line to be meshed finer: first arc, last arc, edge length [mm]."""
+    least, most = sorted((gear.roll_f, gear.roll_a))
+    arcs = arc_at(gear, np.clip(roll(np.linspace(0.0, gear.b, 65)), least, most))
+    return arcs.min() - spread, arcs.max() + spread, spread / 2 / refine
+
+
+def under_line(mesh, roll, line_load, material, spread):
+    """Displacements ``(nodes, 3)`` [mm] under `line_forces`, and the number of unknowns."""
+    load = line_forces(mesh, roll, line_load, spread)
+    free = np.setdiff1d(np.arange(mesh.points.shape[1]), mesh.held)
+    rows = (3 * free[:, None] + np.arange(3)).ravel()
+    moved = np.zeros(load.size)
+    moved[rows] = factor(assemble(mesh.points, mesh.cells, material, free), plan(rows.size))(load[rows, None])[:, 0]
+    return moved.reshape(-1, 3), rows.size
+
+
+def line_forces(mesh: Solid, roll, line_load, spread):
+    """Nodal forces ``(3 nodes,)`` [N] of a line load on tooth 0 at roll lengths ``roll(z)``, 0 where it is off the flank.
+
+    `line_load` is a number or a function of z [N/mm].
+    """
+    gear = mesh.gear
+    edge, x, at, across = points_between(gear.outward * mesh.section.roll[0], (), ACROSS)
+    layer, y, z, along = points_between(mesh.levels, (), ALONG)
+    at, centre = gear.outward * at, roll(z)
+    low, high = sorted((gear.roll_f, gear.roll_a))
+    on = (centre >= low) & (centre <= high)
+    away = np.abs(arc_at(gear, at)[:, None] - arc_at(gear, np.clip(centre, low, high)))
+    hat = np.maximum(1 - away / spread, 0.0) * (across * at / gear.r_b)[:, None]
+    press = (line_load(z) if callable(line_load) else line_load) * along * on * hat / hat.sum(axis=0)
+    value, nodes = face_shapes(x[:, None], y[None, :]), mesh.flank(0)[:, edge[:, None], layer[None, :]]
+    force = np.zeros((mesh.points.shape[1], 3))
+    np.add.at(force, nodes, -np.einsum("nsz,dsz->nszd", value * press, helicoid_normal(gear, at, z)))
+    return force.ravel()

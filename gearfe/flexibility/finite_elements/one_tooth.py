@@ -1,0 +1,107 @@
+"""What functions of one gear and one loaded tooth are given: checked before any work, placed, and as nodal forces."""
+
+import math
+
+import numpy as np
+
+from ...core.checks import checked_refine, is_number
+from ...core.material import Material
+from ...geometry.damage.crack import Crack
+from ...geometry.damage.kinds import are
+from ...geometry.mesh.outline import stations
+from ...geometry.mesh.section_mesh import section
+from ...geometry.tooth.gear import Gear
+from ...geometry.tooth.profile import arc_at
+from .elasticity import Body
+from .fe import flank_load
+
+MOST_LOAD = 0.05  # N/mm over E m_n: no mesh of teeth is stiffer than b E / 5, so that it would approach by m_n / 4
+NARROW = 0.05  # half width of a narrow load [m_n]
+SAMPLES = 65  # heights at which a load along the width is looked at
+
+
+def check_gear(gear):
+    """ValueError unless it is a `Gear`: a pair has two."""
+    if not isinstance(gear, Gear):
+        raise ValueError(f"gear = {gear!r}, but give one Gear, of a pair for instance pair.gear_1")
+
+
+def check_one(gear, material, refine=1.0):
+    """ValueError unless these are one gear, its one material and a resolution."""
+    check_gear(gear)
+    if not isinstance(material, Material):
+        raise ValueError(f"material = {material!r}, but give the Material of this gear")
+    checked_refine(refine)
+
+
+def check_line_load(line_load, gear, material):
+    """ValueError unless the line load is a finite push that teeth of this module and material stand at small strains."""
+    if not (is_number(line_load) and line_load > 0 and math.isfinite(line_load)):
+        raise ValueError(f"line_load = {line_load!r} N/mm, but a tooth is pushed: give a finite line_load > 0")
+    most = MOST_LOAD * material.E * gear.m_n
+    if line_load > most:
+        raise ValueError(
+            f"line_load = {line_load:g} N/mm, but under more than {most:.3g} N/mm (E m_n / {1 / MOST_LOAD:g}) a tooth bends by a "
+            "quarter of the module and breaks: give a smaller one, in N/mm, lengths in mm, E in MPa"
+        )
+
+
+def check_load_along(line_load, gear, material):
+    """ValueError unless it is a finite push, or a function of heights z [mm] that gives finite pushes, not all zero."""
+    if not callable(line_load):
+        return check_line_load(line_load, gear, material)
+    z, b = np.linspace(0.0, gear.b, SAMPLES), gear.b
+    try:
+        values = np.asarray(line_load(z))
+        load = np.broadcast_to(values, z.shape)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"line_load at {SAMPLES} heights z: {error}; give a function of an array of heights [mm]") from error
+    if values.dtype.kind not in "iuf" or not np.isfinite(load).all() or load.min() < 0 or not load.max() > 0:
+        raise ValueError(
+            f"line_load from z = 0 to {b:g} mm gives {load[0]!s} to {load[-1]!s}, but a tooth is pushed: give numbers >= 0 "
+            "[N/mm], somewhere > 0"
+        )
+    check_line_load(float(load.max()), gear, material)
+
+
+def check_cracks(cracks):
+    """ValueError unless they are a sequence of `Crack`."""
+    if not are(cracks, Crack):
+        raise ValueError(f"cracks = {cracks!r}, but give a list of Crack, [] for none")
+
+
+def load_at(gear, radius):
+    """Arc from the base circle [mm] of the flank point at `radius` [mm]."""
+    low, high = sorted((gear.r_form, gear.r_a))
+    if not is_number(radius):
+        raise ValueError(f"radius = {radius!r}, but give the radius of one point of the flank [mm]")
+    if not low <= radius <= high:
+        raise ValueError(f"radius = {radius} mm is not on the involute flank: give {low:.6g} <= radius <= {high:.6g} mm")
+    return float(arc_at(gear, math.sqrt(radius**2 - gear.r_b**2)))
+
+
+def edge_lengths(gear, edges, refine):
+    """Edge lengths [mm] of a table in modules at a resolution."""
+    return {name: size * gear.m_n / refine for name, size in edges.items()}
+
+
+def narrow_section(gear, material, state, edge, load, tooth=0, cracks=()):
+    """Section of a gear meshed for a narrow load on a tooth, its `Body`, and the nodal forces of a unit load.
+
+    `edge` are its edge lengths [mm], `load` the arc [mm] of the load, its half width [mm] and the edge length there [mm].
+    """
+    arc, half_width, fine = load
+    roll = stations(gear, edge["flank"], patches=[(arc - half_width, arc + half_width, fine)])
+    mesh = section(gear, {tooth: roll}, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], cracks=cracks)
+    return mesh, Body(mesh.mesh, material, state=state), narrow_load(mesh, tooth, arc, half_width)
+
+
+def narrow_load(mesh, tooth, arc, half_width):
+    """Nodal forces of unit resultant, ``cos**2`` over `half_width` [mm] around `arc` [mm], as far as the flank reaches."""
+
+    def pressure(s):
+        away = np.minimum(np.abs(s - arc) / half_width, 1.0)
+        return np.cos(math.pi / 2 * away) ** 2 / half_width
+
+    load = flank_load(mesh, tooth, pressure, np.array([0]), mesh.roll[tooth % mesh.gear.z].size - 1)
+    return load / math.hypot(load[0::2].sum(), load[1::2].sum())

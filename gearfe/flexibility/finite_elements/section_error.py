@@ -1,0 +1,70 @@
+"""How much the quads of a gear's section are too stiff, from the same section in plane strain at a multiple of its resolution.
+
+A section costs a hundredth of the gear. It is one layer of hexahedra whose displacement does not change with the height and has
+no axial part; what its patches lack against the finer one is what those of the gear lack at every height, whatever the load
+along the width, since it comes from places much closer than the width.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse import coo_matrix, csc_matrix, tril
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import splu
+
+from ...geometry.damage.front import whole
+from ...geometry.mesh.solid import HEX
+from ..solid import hats
+from ..solved import solved_gears
+from .fe3d import Patches, mesh_patches, patch_loads
+from .fe_gear3d import PER_HAT, SIZES
+from .hexahedron import assemble
+
+FINER = 4.0  # resolution of the section that is taken for exact, against that of the gear
+THIN = 1e-2  # height of the layer [m_n]: so thin that a helix does not turn it
+
+
+def finer_section(found, material, cracks=(), *, refine, cache=True):
+    """A gear's `Flexibility3D` with what a section of `FINER` resolution adds to every tooth.
+
+    `found` is of hexahedra whose section has resolution `refine`. Cracks of part of the width or of a depth that changes count
+    with their whole section.
+    """
+    gear, kept = found.gear, solved_gears(cache)
+    even = np.eye(found.degree + 1)
+
+    def lacking(tooth):
+        """Displacement ``(PLACES, PLACES)`` of the hats under a unit force per width that the section lacks [mm**2/N]."""
+        on_tooth = tuple(replace(whole(c), tooth=0) for c in cracks if c.tooth % gear.z == tooth)
+        case = gear, material, on_tooth
+        return kept.get(("section error", *case, refine), lambda: plane_hats(*case, FINER * refine) - plane_hats(*case, refine))
+
+    near = {tooth: near + np.kron(lacking(tooth), even) for tooth, near in found.near.items()}
+    healthy = found.healthy and finer_section(found.healthy, material, refine=refine, cache=kept)
+    return replace(found, near=near, healthy=healthy)
+
+
+def plane_hats(gear, material, cracks, refine):
+    """Displacement ``(PLACES, PLACES)`` of the hats of tooth 0 under a unit force per width in plane strain [mm**2/N]."""
+    thin = replace(gear, b=THIN * gear.m_n)
+    patches = Patches((0,), hats(gear), 1)
+    mesh = mesh_patches(thin, patches, cracks=cracks, refine=refine, per_hat=PER_HAT, layer=refine * thin.b, sizes=SIZES)
+    count = mesh.points.shape[1]
+    lower = assemble(mesh.points, mesh.cells, material, np.arange(count))
+    planar = _planar(mesh.cells, count)
+    held = np.unique(planar[3 * mesh.held].indices // 2)
+    free = np.setdiff1d(np.arange(planar.shape[1]), [2 * held, 2 * held + 1])
+    load = (planar.T @ patch_loads(mesh, patches, 0))[free]
+    matrix = csc_matrix(planar.T @ (lower + tril(lower, -1).T) @ planar)[free][:, free]
+    return thin.b / np.cos(gear.beta_b) ** 2 * (load.T @ splu(matrix).solve(load))
+
+
+def _planar(cells, count):
+    """Matrix ``(3 count, 2 n)`` from displacements in the plane of the section's n nodes to those of one layer above them."""
+    pairs = [(i, j) for i, (node, _) in enumerate(HEX) for j, (other, _) in enumerate(HEX) if node == other and i < j]
+    ends = np.hstack([cells[list(pair)] for pair in pairs])
+    joined = coo_matrix((np.ones(ends.shape[1]), tuple(ends)), shape=(count, count))
+    n, where = connected_components(joined, directed=False)
+    nodes = np.arange(count)
+    rows, columns = np.append(3 * nodes, 3 * nodes + 1), np.append(2 * where, 2 * where + 1)
+    return coo_matrix((np.ones(2 * count), (rows, columns)), shape=(3 * count, 2 * n)).tocsr()

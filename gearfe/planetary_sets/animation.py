@@ -1,0 +1,65 @@
+"""A loaded planetary set as a moving picture."""
+
+import math
+import os
+from pathlib import Path
+
+from ..core.checks import is_number, whole
+from ..core.steps import part
+from ..figures.set_motion import check_moving, draw_motion
+from .curves import SetCurves
+from .shape import loaded_shapes
+
+MOST = 512  # frames
+
+
+def animate_planetary_set(
+    curves: SetCurves,
+    path: str | os.PathLike[str],
+    *,
+    magnified: float | None = None,
+    rate: int = 8,
+    dpi: int = 80,
+) -> Path:
+    """Write a moving picture of a loaded set: one frame for each of its positions, all gears bent and coloured by stress.
+
+    The carrier stands still, the ring turns with its pads. Over one mesh cycle, of a ring on pads over a pitch of the pads, the
+    last frame goes on into the first. What is drawn and what is left out is that of `plot_planetary_set`; magnification and
+    colours are the same in all frames.
+
+    Parameters
+    ----------
+    curves : SetCurves
+        As `planetary_stiffness` gives it, of a case that `plot_planetary_set` takes.
+    path : path
+        The file: ``.gif``.
+    magnified : float, optional
+        How many times as large displacements are drawn; default: so that the largest is seen.
+    rate : int
+        Frames in a second.
+    dpi : int
+        Dots per inch of a frame, which is 8 inches wide.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    ValueError
+        If the set cannot be meshed gear by gear, the file cannot be written, or an argument is out of range.
+    """
+    check_moving(path)
+    if not isinstance(curves, SetCurves):
+        raise ValueError(f"curves = {curves!r}, but give what planetary_stiffness gives")
+    if magnified is not None and not (is_number(magnified) and 0 < float(magnified) < math.inf):
+        raise ValueError(f"magnified = {magnified!r}, but give a finite number > 0, or leave it out")
+    whole("rate", rate, 1)
+    if curves.position.size > MOST:
+        raise ValueError(f"{curves.position.size} positions make too many frames: give curves of at most {MOST}")
+    with part("gears", 0.0, 0.3):
+        positions = loaded_shapes(curves, range(curves.position.size))
+    with part("frames", 0.3, 1.0):
+        draw_motion(positions, path, magnified=magnified, rate=rate, dpi=dpi)
+    return Path(path)

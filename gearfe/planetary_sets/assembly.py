@@ -1,0 +1,255 @@
+"""The one contact problem of a whole set at a position: flexibility between all contacts, gaps, motions, and what it gives."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..flexibility.hertz import contact_modulus
+from .balance import Problem, balance
+from .case import PlanetaryCase
+from .meshes import Met
+from .rim import Rim
+from .standing import Standing, directions
+from .whole_gear import PLACES, carry
+
+
+class Bodies(NamedTuple):
+    """How gears yield between meshes [mm per N/mm]: tables of `gearfe.planetary_sets.whole_gear`.
+
+    `sun` and `ring` ``(z, PLACES, z, PLACES)`` between right flanks, `planet` ``(z, PLACES, PLACES)`` of a right flank by loads
+    on a left one so many teeth before it, `rim` what the ring's support adds. `planets` ``(z, PLACES, z, PLACES)`` of a right
+    flank by left ones, of planets with cracks, by their number.
+    """
+
+    sun: NDArray[np.float64]
+    planet: NDArray[np.float64]
+    ring: NDArray[np.float64]
+    rim: Rim
+    planets: dict[int, NDArray[np.float64]]
+
+
+class Position(NamedTuple):
+    """A solved position: line loads [N/mm], lengths [mm] along the line of action.
+
+    `loads`, `closing`, `rim` and `gap` ``(2, planets)`` of the meshes with the sun and with the ring: load, how far it closes the
+    mesh beyond the first touch, the part that the ring's support gives way, and how far from each other flanks and pins off
+    their places leave the mesh without load. `turn` of the sun, its motion `orbit` (x, y) [mm].
+    `pairs` are (inner, planet, number of the pair beyond the newest, pinion's tooth, line load). `on_ring` ``(z, PLACES)`` are
+    the loads on the ring, `lugs` those of its lugs, `whole` ``(3,)`` the motion of a ring on lugs.
+    """
+
+    loads: NDArray[np.float64]
+    closing: NDArray[np.float64]
+    rim: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    turn: float
+    orbit: NDArray[np.float64]
+    pairs: list[tuple[int, int, int, int, float]]
+    on_ring: NDArray[np.float64]
+    lugs: NDArray[np.float64]
+    whole: NDArray[np.float64]
+
+
+class _Block(NamedTuple):
+    """One mesh: its contacts in the problem, teeth of pinion and wheel by slot, and what carries loads there to the contacts."""
+
+    met: Met
+    inner: int
+    planet: int
+    at: slice
+    teeth: tuple[NDArray[np.int64], NDArray[np.int64]]
+    spread: tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+class Set:
+    """A case with its flexibilities; solves any of its positions. `coupled` as of `planetary_stiffness`."""
+
+    def __init__(self, case: PlanetaryCase, bodies: Bodies, stand: Standing, coupled: bool) -> None:
+        self.case, self.bodies, self.stand, self.coupled = case, bodies, stand, coupled
+        angles = np.array(case.angles)
+        outer, inner = directions(case.gears, angles)
+        self.push = np.array([outer, inner]).transpose(0, 2, 1)  # (2, planets, 2): unit forces on the planets
+        out = np.array([np.sin(angles), np.cos(angles)]).T
+        along = np.array([np.cos(angles), -np.sin(angles)]).T
+        error = np.array(case.errors)
+        self.behind = np.einsum("kpd,pd->kp", self.push, error[:, :1] * out + error[:, 1:] * along)
+        self._modulus = [contact_modulus(case.material[k : k + 2]) for k in (0, 1)]
+        self._spread: dict[int, Any] = {}
+
+    def solved(self, i: int, met: list[list[Met]]) -> Position:
+        """`Position` i from what its meshes are."""
+        blocks = self._blocks(met)
+        problem = self._problem(blocks)
+        force, motion = balance(problem)
+        shut = [block for block in blocks if block.met.contacts.closed(force[block.at])]
+        if shut:
+            force, motion = balance(_with_faces(problem, shut))
+            force = force[: problem.gap.size]
+        return self._read(blocks, force, motion, problem)
+
+    def _blocks(self, met):
+        out, stop = [], 0
+        for inner, row in enumerate(met):
+            for planet, one in enumerate(row):
+                at = slice(stop, stop := stop + one.contacts.gap.size)
+                slots = self._slots(one.contacts, inner)
+                # teeth, clockwise: sun j, planet C - j; planet -j', ring D - j'
+                first = (self.stand.planet, self.stand.ring)[inner][planet]
+                teeth = slots[0] + one.first
+                out.append(_Block(one, inner, planet, at, ((-1 if inner else 1) * teeth, first - teeth), slots[1]))
+        return out
+
+    def _slots(self, contacts, inner):
+        """Orders of the pairs in touch, and what carries loads on their teeth to the contacts, of pinion and wheel."""
+        key = id(contacts)
+        if key not in self._spread:
+            pair = self.case.pairs[inner]
+            orders = np.unique(contacts.order)
+            on = contacts.order[:, None] == orders
+            both = []
+            for gear, roll, turn in (
+                (pair.gear_1, contacts.roll_1, contacts.turn_1),
+                (pair.gear_2, contacts.roll_2, contacts.turn_2),
+            ):
+                rows = carry(gear, roll) * turn[:, None]
+                both.append((on[:, :, None] * rows[:, None]).reshape(roll.size, -1))
+            self._spread[key] = orders, tuple(both), contacts  # which is kept, so that no other one gets its number
+        return self._spread[key]
+
+    def _between(self, a, b):
+        """Flexibility between the contacts of two meshes that share a gear; None if they share none or nothing is added."""
+        gears, bodies = self.case.gears, self.bodies
+        if a.inner and b.inner:
+            table = bodies.rim.more if a is b else bodies.ring + bodies.rim.more
+            rows, columns, side = a.teeth[1] % gears.ring.z, b.teeth[1] % gears.ring.z, (1, 1)
+            own = table[np.ix_(rows, range(PLACES), columns, range(PLACES))]
+        elif a is b:
+            return None
+        elif not (a.inner or b.inner):
+            rows, columns, side = a.teeth[0] % gears.sun.z, b.teeth[0] % gears.sun.z, (0, 0)
+            own = bodies.sun[np.ix_(rows, range(PLACES), columns, range(PLACES))]
+        elif a.planet == b.planet:
+            side, z = (1, 0), gears.planet.z
+            if a.planet in bodies.planets:
+                own = bodies.planets[a.planet][np.ix_(a.teeth[1] % z, range(PLACES), b.teeth[0] % z, range(PLACES))]
+            else:
+                own = bodies.planet[(a.teeth[1][:, None] - b.teeth[0]) % z].transpose(0, 2, 1, 3)
+        else:
+            return None
+        rows, columns = a.spread[side[0]], b.spread[side[1]]
+        return rows @ own.reshape(rows.shape[1], columns.shape[1]) @ columns.T
+
+    def _problem(self, blocks):
+        """`Problem` of a position; motions: the sun's turn, its x and y if it floats, planets' turns, a loose ring's motions."""
+        case, n = self.case, blocks[-1].at.stop
+        total, closing = np.zeros((n, n)), np.zeros((n, self._motions))
+        give = case.width / case.pin
+        for k, a in enumerate(blocks):
+            total[a.at, a.at] = a.met.contacts.flexibility
+            for b in blocks[k:]:
+                if self.coupled:
+                    more = self._between(a, b)
+                    if more is not None:
+                        total[a.at, b.at] += more
+                if a.planet == b.planet:
+                    total[a.at, b.at] += give * (self.push[a.inner, a.planet] @ self.push[b.inner, b.planet])
+                if a is not b:
+                    total[b.at, a.at] = total[a.at, b.at].T
+            closing[a.at] = self._closing(a)
+        values = {
+            name: np.concatenate([getattr(block.met.contacts, name) for block in blocks])
+            for name in ("coefficient", "radius", "tilt")
+        }
+        gap = np.concatenate([block.met.contacts.gap + self.behind[block.inner, block.planet] for block in blocks])
+        modulus = np.concatenate([np.full(block.met.contacts.gap.size, self._modulus[block.inner]) for block in blocks])
+        load = np.zeros(self._motions)
+        load[0] = case.planets * case.force / case.width
+        problem = Problem(total, gap, values["coefficient"], values["radius"], modulus, values["tilt"], closing, load)
+        return self._with_lugs(problem, blocks) if self._lugs else problem
+
+    @property
+    def _lugs(self):
+        return self.bodies.rim.lug.shape[0] if self.coupled else 0
+
+    @property
+    def _motions(self):
+        return 1 + 2 * self.case.floating + self.case.planets + 3 * bool(self._lugs)
+
+    def _closing(self, block):
+        """How motions of the bodies close a mesh: ``(motions,)``."""
+        case, out = self.case, np.zeros(self._motions)
+        first = 1 + 2 * case.floating
+        if block.inner:
+            out[first + block.planet] = 1.0
+        else:
+            out[0], out[first + block.planet] = 1.0, -1.0
+            if case.floating:
+                out[1:3] = self.push[0, block.planet]
+        return out
+
+    def _with_lugs(self, problem, blocks):
+        """The problem with lugs of the ring as contacts, and the ring's motions."""
+        rim, lugs = self.bodies.rim, self._lugs
+        n = problem.gap.size
+        across, moves = np.zeros((lugs, n)), np.zeros((3, n))
+        for block in blocks:
+            if block.inner:
+                teeth = block.teeth[1] % self.case.gears.ring.z
+                across[:, block.at] = rim.across[:, teeth].reshape(lugs, -1) @ block.spread[1].T
+                moves[:, block.at] = rim.gives[:, teeth].reshape(3, -1) @ block.spread[1].T
+        closing = np.vstack([problem.closing, np.zeros((lugs, problem.closing.shape[1]))])
+        closing[:, -3:] = -np.concatenate([moves, rim.turns], axis=1).T
+        return problem.with_more(np.block([[problem.flexibility, across.T], [across, rim.lug]]), closing)
+
+    def _read(self, blocks, force, motion, problem):
+        """`Position` from forces and motions."""
+        case, z = self.case, self.case.gears.ring.z
+        loads, closing, rim, gap = np.zeros((4, 2, case.planets))
+        on_ring, pairs = np.zeros((z, PLACES)), []
+        give = case.width / case.pin
+        for one in blocks:
+            loads[one.inner, one.planet] = force[one.at].sum()
+            if one.inner:
+                np.add.at(on_ring, one.teeth[1] % z, (force[one.at] @ one.spread[1]).reshape(-1, PLACES))
+        moved = np.einsum("kpd,kp->pd", self.push, loads) * give
+        back = np.einsum("kpd,pd->kp", self.push, moved) + self.behind
+        released = np.einsum("tapb,pb->ta", self.bodies.rim.more, on_ring) if self.coupled else np.zeros_like(on_ring)
+        for one in blocks:
+            own = force[one.at]
+            way = self._closing(one) @ motion - back[one.inner, one.planet]
+            closing[one.inner, one.planet] = way - one.met.contacts.least
+            gap[one.inner, one.planet] = self.behind[one.inner, one.planet] + one.met.contacts.least
+            if one.inner and own.any():
+                given = one.spread[1] @ released[one.teeth[1] % z].ravel()
+                if self._lugs:
+                    given = given - (problem.closing[one.at, -3:] @ motion[-3:]) + self._by_lugs(one, force)
+                rim[one.inner, one.planet] = own @ given / own.sum()
+            orders = one.met.contacts.order
+            for order in np.unique(orders[own > 0]).tolist():
+                tooth = (order + one.met.first) * (-1 if one.inner else 1)
+                pairs.append((one.inner, one.planet, order + one.met.newest, tooth, float(own[orders == order].sum())))
+        orbit = motion[1:3] if case.floating else np.zeros(2)
+        lugs, whole = (force[-self._lugs :], motion[-3:]) if self._lugs else (np.zeros(0), np.zeros(3))
+        return Position(loads, closing, rim, gap, float(motion[0]), orbit, pairs, on_ring, lugs, whole)
+
+    def _by_lugs(self, one, force):
+        """What lugs move the ring at the contacts of a mesh."""
+        rim, lugs = self.bodies.rim, self._lugs
+        teeth = one.teeth[1] % self.case.gears.ring.z
+        return one.spread[1] @ (rim.across[:, teeth].reshape(lugs, -1).T @ force[-lugs:])
+
+
+def _with_faces(problem, shut):
+    """The problem with the faces of cracks that would overlap as contacts among themselves."""
+    n, m = problem.gap.size, sum(one.met.contacts.faces.shape[0] for one in shut)
+    total = np.zeros((n + m, n + m))
+    total[:n, :n], stop = problem.flexibility, n
+    tilt = problem.tilt.copy()
+    for one in shut:
+        at = slice(stop, stop := stop + one.met.contacts.faces.shape[0])
+        total[at, at] = one.met.contacts.faces
+        tilt[one.at] = 0.0  # it is that of open cracks
+        total[one.at, at], total[at, one.at] = one.met.contacts.opening, one.met.contacts.opening.T
+    closing = np.vstack([problem.closing, np.zeros((m, problem.closing.shape[1]))])
+    return problem._replace(tilt=tilt).with_more(total, closing)

@@ -1,0 +1,176 @@
+"""`PlanetaryCase`: a planetary set with what holds it, what is wrong with it, and its load, checked once."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from ..core.case import check_load
+from ..core.checks import is_number, numbers, truth
+from ..core.material import Material
+from ..geometry.damage.crack import Crack, check_through
+from ..geometry.pair.gear_pair import GearPair
+from ..geometry.pair.planetary import PlanetarySet
+from ..geometry.tooth.modified import Flank
+from .rim_supports import check_support
+from .standing import assembled
+
+GEARS = ("sun", "planet", "ring")
+LARGEST = 0.1  # modules: larger position errors are probably given in another unit
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetaryCase:
+    """A planetary set in plane strain with its load: the carrier is held, the sun drives clockwise, the ring takes the torque.
+
+    Parameters
+    ----------
+    gears : PlanetarySet
+        Spur gears. Its number of planets does not count where `angles` are given.
+    force : float
+        Mean over the planets of the force between sun and planet, along the line of action [N]: the sun's torque is `force` times
+        the number of planets times the sun's r_b.
+    material : Material or (Material, Material, Material)
+        Of all gears, or of sun, planets and ring.
+    angles : sequence of float, optional
+        Where the planets stand, clockwise from +y [rad]; default: equally spaced from 0 on. Teeth fit only where planets are
+        whole multiples of ``2 pi / (z_s + z_r)`` apart.
+    ring : "held", RimBed or RimSupports
+        What holds the ring's outer edge: ``"held"`` is rigidly all around.
+    floating : bool
+        Whether the sun's axis may move freely in the plane of the section; needs three planets. Otherwise it stays where it is.
+    pin : float
+        Radial stiffness of each planet's pin and bearing together, over the whole width [N/mm]; default rigid. Planets turn on
+        their pins without friction; the carrier is rigid.
+    errors : sequence of (float, float), optional
+        For each planet how far its pin stands off its place [mm]: outwards, and clockwise, the way the sun drives it.
+    flanks : dict, optional
+        Modifications ``{"sun": Flank(...), "planet": Flank(...), ("planet", 1): Flank(...), "ring": Flank(...)}``; ``"planet"``
+        is every planet for which ``("planet", number)`` is not given. Both flanks of a planet have them. A pitch deviation of a
+        planet moves the whole tooth; its sign is that of the flank towards the sun. Teeth are counted clockwise: at position 0
+        tooth 0 of the sun meets tooth 0 of planet 0, see `gearfe.planetary_sets.standing`.
+    damage : dict, optional
+        Lists of cracks through the whole width ``{"sun": [Crack(...)], ...}``, by the same names. The loaded side of a planet's
+        tooth is the one that the sun loads. One crack to a side of a tooth. In what a gear feels of its other meshes, and in how
+        a ring bends, faces of cracks are free; in the mesh that loads their tooth they do not pass through each other.
+
+    Raises
+    ------
+    ValueError
+        If the set is impossible; the message says what to change.
+    """
+
+    gears: PlanetarySet
+    force: float
+    material: Any
+    angles: Any = None
+    ring: Any = "held"
+    floating: bool = False
+    pin: float = math.inf
+    errors: Any = None
+    flanks: Any = None
+    damage: Any = None
+    pairs: tuple[GearPair, GearPair] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Bring all values into one form; raise ValueError for a set that is impossible."""
+        if not isinstance(self.gears, PlanetarySet):
+            raise ValueError(f"gears = {self.gears!r}, but give a PlanetarySet")
+        put = object.__setattr__
+        put(self, "pairs", (self.gears.sun_planet, self.gears.planet_ring))
+        if self.gears.sun.beta:
+            raise ValueError(
+                f"beta = {math.degrees(self.gears.sun.beta):.4g} degrees, but a section knows spur gears only: give beta = 0"
+            )
+        n = self.gears.n_planets
+        even = 2 * math.pi / n * np.arange(n)
+        put(self, "angles", tuple(assembled(self.gears, even if self.angles is None else self.angles).tolist()))
+        for name, most in (("force", math.inf), ("pin", math.nan)):
+            value = getattr(self, name)
+            if not is_number(value) or not 0 < float(value) != most:
+                raise ValueError(f"{name} = {value!r}, but give a number > 0{' [N]' if name == 'force' else ' [N/mm]'}")
+            put(self, name, float(value))
+        materials = tuple(self.material) if isinstance(self.material, (tuple, list)) else (self.material,) * 3
+        if len(materials) != 3 or not all(isinstance(material, Material) for material in materials):
+            raise ValueError(f"material = {self.material!r}, but give one Material or three: of sun, planets and ring")
+        put(self, "material", materials)
+        for k, pair in enumerate(self.pairs):
+            check_load(pair, self.force, materials[k : k + 2])
+        check_support(self.ring, self.ring_gear)
+        put(self, "floating", truth("floating", self.floating))
+        if self.floating and self.planets < 3:
+            raise ValueError(f"{self.planets} planets do not hold a floating sun: give floating = False, or at least 3 planets")
+        put(self, "errors", self._errors())
+        put(self, "flanks", self._by_gear("flanks", self.flanks, Flank, single=True))
+        put(self, "damage", self._by_gear("damage", self.damage, Crack, single=False))
+        self._check_faults()
+
+    @property
+    def planets(self) -> int:
+        """Number of planets."""
+        return len(self.angles)
+
+    @property
+    def width(self) -> float:
+        """Face width that all gears have in common [mm]."""
+        return float(min(gear.b for gear in (self.gears.sun, self.gears.planet, self.gears.ring)))
+
+    @property
+    def ring_gear(self) -> Any:
+        """The ring as it meshes: its tip may have been trimmed."""
+        return self.pairs[1].gear_2
+
+    def _errors(self):
+        errors = np.zeros((self.planets, 2)) if self.errors is None else numbers("errors", self.errors, " [mm]")
+        if errors.shape != (self.planets, 2) or not np.isfinite(errors).all():
+            raise ValueError(
+                f"errors of shape {errors.shape}, but give (outwards, clockwise) for each of {self.planets} planets [mm]"
+            )
+        most = LARGEST * self.gears.sun.m_n
+        if np.abs(errors).max() > most:
+            raise ValueError(
+                f"errors up to {np.abs(errors).max():g} mm, more than a tenth of the module: amounts are in mm (20 um are 0.02)"
+            )
+        return tuple(map(tuple, errors.tolist()))
+
+    def _by_gear(self, what, given, kind, *, single):
+        """By gear, planets one by one: ``{"sun": ..., ("planet", i): ..., "ring": ...}``, those given only."""
+        if given is None:
+            return {}
+        if not isinstance(given, Mapping):
+            raise ValueError(f"{what} = {given!r}, but give them by gear: {{'sun': ..., 'planet': ..., 'ring': ...}}")
+        names = {"sun", "ring", *(("planet", i) for i in range(self.planets))}
+        out: dict[Any, Any] = {}
+        for name in sorted(given, key=lambda entry: entry != "planet"):
+            if name not in names and name != "planet":
+                raise ValueError(f"{what} of {name!r}, but give 'sun', 'planet', 'ring' or ('planet', 0 ... {self.planets - 1})")
+            value = given[name]
+            if not single:
+                if not isinstance(value, (list, tuple)):
+                    raise ValueError(f"{what} of {name!r} = {value!r}, but give a list of {kind.__name__}, even of one")
+                value = tuple(value)
+            for entry in (value,) if single else value:
+                if not isinstance(entry, kind):
+                    raise ValueError(f"{what} of {name!r}: {entry!r} is no {kind.__name__}; the section has no other")
+            out |= {("planet", i): value for i in range(self.planets)} if name == "planet" else {name: value}
+        return out
+
+    def _check_faults(self):
+        for name, flank in self.flanks.items():
+            if flank.wide:
+                raise ValueError(f"flanks of {name!r} change along the width, but a section knows none: leave that out")
+            if flank.eccentricity and name not in ("sun", "ring"):
+                raise ValueError(f"eccentricity of {name!r}: give that of a planet as pitch deviations")
+            flank.on(self.gear_of(name))
+        for cracks in self.damage.values():
+            check_through(cracks, "the section of a planetary set")
+
+    def gear_of(self, name: Any) -> Any:
+        """Gear by its name."""
+        return {"sun": self.gears.sun, "ring": self.ring_gear}.get(name, self.gears.planet)
+
+    def with_(self, **changed: Any) -> "PlanetaryCase":
+        """The same with other values; flanks and damage are given anew as a whole."""
+        return replace(self, **changed)

@@ -1,0 +1,145 @@
+"""`SetCurves`: what a planetary set does over its positions, in SI units."""
+
+import os
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.files import save
+from ..core.units import NEWTON_PER_UM
+from ..figures.set_plot import draw_curves
+from .rim import rim_angles, rim_moved
+from .rim_supports import RimSupports
+from .set_file import MESHES, content
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, slots=True)
+class SetCurves:
+    """What `planetary_stiffness` gives: a planetary set over p positions.
+
+    The first axis of length 2 is the kind of mesh: 0 sun and planet, 1 planet and ring.
+
+    Attributes
+    ----------
+    position : ndarray, shape (p,)
+        By how many of its pitches the sun is turned.
+    force : ndarray, shape (2, p, planets)
+        Load of each mesh along its line of action [N].
+    k : ndarray, shape (2, p, planets)
+        Stiffness of each mesh in the set: its force over how far the turns and shifts of its two gears close it after the first
+        touch [N/m]; 0 where it carries nothing. That the ring bends and moves on its supports, `rim`, makes it softer.
+    k_alone : ndarray, shape (2, p, planets)
+        Stiffness of the isolated pair under the mean force, both gears held at their bore or rim [N/m].
+    rim : ndarray, shape (2, p, planets)
+        How far a ring that is not held all around gives way in each mesh, along the line of action [m]; 0 in meshes of the sun.
+    gap : ndarray, shape (2, p, planets)
+        How far apart each mesh is before it is loaded, by modified flanks and by pins off their places [m].
+    te : ndarray, shape (p,)
+        Transmission error of the set under load: how far the sun turns ahead while carrier and ring are held, times its base
+        radius [m].
+    orbit : ndarray, shape (p, 2)
+        Displacement x, y of the sun's axis [m]; 0 of a sun that is held.
+    pair_force : ndarray, shape (2, p, planets, pairs)
+        Load of each pair of teeth [N]; `order` says which pair.
+    tooth : ndarray of int, shape (2, p, planets, pairs)
+        Its tooth of the sun (meshes with the sun) or of the planet (meshes with the ring), counted clockwise; -1: none.
+    order : ndarray of int, shape (pairs,)
+        By how many base pitches a pair of teeth is ahead of the pair that came into contact last.
+    ring_angle : ndarray, shape (n,)
+        Angles of nodes on the ring's outer edge, clockwise from its tooth 0 [rad]; empty unless the ring is on pads.
+    ring_moved : ndarray, shape (p, n, 2)
+        Their displacements, outwards and clockwise [m].
+    meta : dict
+        ``"case"``: the `PlanetaryCase`; ``"seconds_flexibility"``, ``"seconds_contact"``: time taken [s].
+    """
+
+    position: NDArray[np.float64]
+    force: NDArray[np.float64]
+    k: NDArray[np.float64]
+    k_alone: NDArray[np.float64]
+    rim: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    te: NDArray[np.float64]
+    orbit: NDArray[np.float64]
+    pair_force: NDArray[np.float64]
+    tooth: NDArray[np.int64]
+    order: NDArray[np.int64]
+    ring_angle: NDArray[np.float64]
+    ring_moved: NDArray[np.float64]
+    meta: dict[str, Any] = field(default_factory=dict)
+
+    def __repr__(self):
+        """One line: planets, positions, stiffness of both kinds of mesh, load factor."""
+        mean = [one[one > 0].mean() / NEWTON_PER_UM for one in self.k]
+        told = ", ".join(f"k {name} {value:.4g} N/um" for name, value in zip(MESHES, mean, strict=True))
+        return f"<SetCurves: {self.force.shape[2]} planets, {self.position.size} positions, {told}, K_gamma {self.K_gamma:.4g}>"
+
+    @property
+    def share(self) -> NDArray[np.float64]:
+        """Load of each mesh over the mean load of its kind ``(2, p, planets)``: 1 where all planets carry the same."""
+        return self.force / self.force.mean(axis=2, keepdims=True)
+
+    @property
+    def K_gamma(self) -> float:  # noqa: N802  # the symbol of ISO 6336-1
+        """Mesh load factor K_gamma of ISO 6336-1: the largest share of any mesh at any position."""
+        return float(self.share.max())
+
+    @property
+    def k_without_rim(self) -> NDArray[np.float64]:
+        """`k` without the share of `rim` [N/m]: for machines in which the ring is a body on springs of its own."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(self.k > 0, self.force / (self.force / self.k - self.rim), 0.0)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write to `path`; its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
+        save(path, "curve", content(self))
+
+    def plot(self, path: str | os.PathLike[str] | None = None, *, dpi: int = 120) -> "Figure":
+        """Draw stiffness and load of every mesh and the transmission error; save to `path` if given."""
+        return draw_curves(self, path, dpi=dpi)
+
+    @classmethod
+    def of(cls, of: Any, meshes: Any, position: NDArray[np.float64], found: list[Any], meta: dict[str, Any]) -> "SetCurves":
+        """From solved positions, `gearfe.planetary_sets.assembly.Position`."""
+        case, p = of.case, len(found)
+        width, n = case.width, case.planets
+        loads, closing, rim, gap = (
+            np.array([getattr(one, name) for one in found]).transpose(1, 0, 2) for name in ("loads", "closing", "rim", "gap")
+        )
+        even = case.force / width
+        alone = np.array([[[meshes.alone(i, k, j, even) for j in range(n)] for i in range(p)] for k in (0, 1)])
+        orders = np.array(sorted({pair[2] for one in found for pair in one.pairs}))
+        pair_force, tooth = np.zeros((2, p, n, orders.size)), np.full((2, p, n, orders.size), -1)
+        teeth = case.gears.sun.z, case.gears.planet.z
+        for i, one in enumerate(found):
+            for inner, planet, order, number, load in one.pairs:
+                at = inner, i, planet, int(np.searchsorted(orders, order))
+                pair_force[at], tooth[at] = load * width, number % teeth[inner]
+        carries = loads > 0
+        k = np.where(carries, loads * width / np.where(carries, closing * 1e-3, 1.0), 0.0)
+        angle, moved = _rim_of(of, found)
+        return cls(
+            position, loads * width, k, even * width / (alone * 1e-3), rim * 1e-3, gap * 1e-3,
+            np.array([one.turn for one in found]) * 1e-3, np.array([one.orbit for one in found]) * 1e-3,
+            pair_force, tooth, orders, angle, moved * 1e-3, {"case": case} | meta,
+        )  # fmt: skip
+
+
+def _rim_of(of, found):
+    """Angles and displacements [mm] of the rim of a ring on supports."""
+    rim = of.bodies.rim
+    if not (of.coupled and isinstance(of.case.ring, RimSupports)):
+        return np.zeros(0), np.zeros((len(found), 0, 2))
+    moved = []
+    for one in found:
+        if of.case.ring.pushes:
+            tractions, whole = one.lugs, one.whole
+        else:
+            tractions, whole = (np.einsum("pta,ta->p", values, one.on_ring) for values in (rim.reaction, rim.moves))
+        moved.append(rim_moved(rim, one.on_ring, tractions, whole))
+    return rim_angles(rim.whole), np.array(moved)

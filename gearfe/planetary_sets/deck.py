@@ -1,0 +1,169 @@
+"""A whole planetary set in contact as a CalculiX deck: the second opinion on `planetary_stiffness`.
+
+Sun and planets are turned by what was found here, the ring is held on its pads; what the bodies then push is CalculiX's own.
+"""
+
+import math
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.checks import checked_refine, is_number
+from ..core.files import check_output
+from ..decks.contact_deck import TIP, posed
+from ..decks.deck import held_nodes
+from ..decks.pressed import Sections, pressing, read_rows, write_lines
+from ..flexibility.finite_elements.fe import EDGES
+from ..flexibility.finite_elements.one_tooth import edge_lengths
+from ..geometry.mesh.outline import stations
+from ..geometry.tooth.profile import arc_at
+from .case import PlanetaryCase
+from .curves import SetCurves
+from .loaded_gears import drawable, meshed, placed, touching
+from .standing import directions
+
+
+@dataclass(frozen=True, slots=True)
+class SetDeck:
+    """What is needed to read the result of a deck of a whole set.
+
+    `held` and `place` are the numbers ``(n,)`` of the held nodes of sun, planets and ring, and their places ``(2, n)`` from the
+    gear's centre [mm]; `rim` and `around` those of the nodes of the ring's outer edge; `angle` that of the ring's tooth 0,
+    clockwise [rad].
+    """
+
+    case: PlanetaryCase
+    held: list[NDArray[np.int64]]
+    place: list[NDArray[np.float64]]
+    rim: NDArray[np.int64]
+    around: NDArray[np.float64]
+    angle: float
+
+    def forces(self, path: str | os.PathLike[str]) -> dict[str, Any]:
+        """What CalculiX printed to the ``.dat`` file `path`, per width [N/mm].
+
+        ``"sun"``, ``"ring"``: torque over the base radius. ``"outer"``, ``"inner"`` ``(planets,)``: forces of the meshes of each
+        planet with sun and ring, from its pin's force and torque. RuntimeError if the file is not there, or holds no forces.
+        """
+        reaction = read_rows(path, "forces")
+        moments, sums = [], []
+        for nodes, place in zip(self.held, self.place, strict=True):
+            f = np.array([reaction[n] for n in nodes.tolist()])[:, :2].T
+            moments.append(float((place[1] * f[0] - place[0] * f[1]).sum()))
+            sums.append(f.sum(axis=1))
+        gears, n = self.case.gears, self.case.planets
+        outer, inner = directions(gears, np.array(self.case.angles))
+        meshes = []
+        for i in range(n):  # the pin holds against both meshes: force and clockwise torque
+            rows = np.column_stack([np.append(outer[:, i], -1.0), np.append(inner[:, i], 1.0)])
+            right = -np.append(sums[1 + i], moments[1 + i] / gears.planet.r_b)
+            meshes.append(np.linalg.lstsq(rows, right, rcond=None)[0])
+        loads = np.array(meshes).T
+        return {
+            "sun": moments[0] / gears.sun.r_b,
+            "ring": moments[-1] / gears.ring.r_b,
+            "outer": loads[0],
+            "inner": loads[1],
+        }
+
+    def moved(self, path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad]; how they move outwards, clockwise ``(n, 2)`` [mm]."""
+        displacements = read_rows(path, "displacements")
+        u = np.array([displacements[n] for n in self.rim.tolist()])[:, :2]
+        angle = np.arctan2(*self.around)
+        sin, cos = np.sin(angle), np.cos(angle)
+        out = np.column_stack([sin * u[:, 0] + cos * u[:, 1], cos * u[:, 0] - sin * u[:, 1]])
+        return (angle - self.angle) % (2 * math.pi), out
+
+
+def write_set_inp(
+    path: str | os.PathLike[str],
+    curves: SetCurves,
+    at: int,
+    *,
+    per_width: float = 6.0,
+    penalty: float = 500.0,
+    refine: float = 1.0,
+) -> SetDeck:
+    """Write a CalculiX deck of one position of a set: all gears with all teeth in second-order triangles, plane strain.
+
+    Sun and planets are turned, at the edges where they are held, by what `planetary_stiffness` found. Small displacements;
+    frictionless surface-to-surface contact of all flanks that may touch. ``ccx -i NAME`` writes ``NAME.dat``, which
+    `SetDeck.forces` and `SetDeck.moved` read.
+
+    Parameters
+    ----------
+    path : path
+        Ends in ``.inp``.
+    curves : SetCurves
+        Of a case with a held ring or one on rigid pads, without modified flanks and cracks.
+    at : int
+        Number of the position, from 0.
+    per_width : float
+        Element edges per Hertz half width of each contact.
+    penalty : float
+        Stiffness of the contact springs: pressure per overlap, over E [1/mm].
+    refine : float
+        Divides the other edge lengths.
+
+    Returns
+    -------
+    SetDeck
+
+    Raises
+    ------
+    ValueError
+        If the set cannot be meshed gear by gear, as of `planetary_sets.loaded_gears.drawable`, or an argument is out of range.
+    """
+    check_output(path, "deck")
+    case, stand = drawable(curves, at)
+    for name, value in (("per_width", per_width), ("penalty", penalty)):
+        if not (is_number(value) and 0 < value < math.inf):
+            raise ValueError(f"{name} = {value!r}, but give a finite number > 0")
+    refine = checked_refine(refine)
+    pressed, bodies = touching(case, stand, curves, at), placed(case, stand, curves, at)
+    text = Sections()
+    for number, (gear, material, centre, angle, (turn, shift)) in enumerate(bodies):
+        rolls = _rolls(gear, [side for pair in pressed for side in pair if side["body"] == number], per_width, refine)
+        edge = edge_lengths(gear, EDGES, refine)
+        section, fixed = meshed(case, gear, rolls, edge["fillet"], edge["near"], edge["far"], 0.05 / refine)
+        points = np.array(posed(section.mesh.doflocs, angle, 1))
+        surfaces = {_surface(number, *flank): flank for flank in section.flank}
+
+        def moved(place, turn=turn, shift=shift):
+            return np.array([place[1] * turn, -place[0] * turn]) + np.reshape(shift, (2, 1))
+
+        text.add(number, section, material, points, centre, fixed, surfaces, moved)
+    edge_of_ring = held_nodes(section.mesh)
+    rim, around = edge_of_ring + text.count - points.shape[1] + 1, points[:, edge_of_ring]
+    head = ["** gearfe: planetary set, plane strain; mm, N, MPa, per mm of width", "*NODE, NSET=ALL"]
+    step = pressing(penalty * max(m.E for m in case.material), _contacts(pressed), text.motions, "*STEP, INC=200")
+    prints = [*(f"*NODE PRINT, NSET=H{k}\nRF" for k in range(len(bodies))), "*NODE PRINT, NSET=RIM\nU"]
+    outer = ["*NSET, NSET=RIM", *(f"{n}," for n in rim.tolist())]
+    write_lines(path, [*head, *text.nodes, *text.blocks, *outer, *step, *prints, "*END STEP\n"])
+    return SetDeck(case, text.held, text.place, rim, around, bodies[-1][3])
+
+
+def _contacts(pressed):
+    """Surfaces in contact, slave and master: the one with a tip corner is the slave, its edges are finer."""
+    for sides in pressed:
+        pinion, wheel = (_surface(side["body"], side["tooth"], side["side"]) for side in sides)
+        yield (wheel, pinion) if sides[1]["tip"] else (pinion, wheel)
+
+
+def _surface(body, tooth, side):
+    return f"C{body}T{tooth}S{side}"
+
+
+def _rolls(gear, sides, per_width, refine):
+    """Roll lengths of the vertices of loaded flanks, by tooth and side."""
+    edge, top, out = edge_lengths(gear, EDGES, refine), arc_at(gear, gear.roll_a), {}
+    for side in sides:
+        arc, a = side["arc"], side["width"]
+        tip = min(a / per_width / 2, TIP * gear.m_n) if top - arc < 2 * a else 0.05 * gear.m_n
+        patch = (arc - 3 * a, arc + 3 * a, a / per_width)
+        out[side["tooth"], side["side"]] = stations(gear, 2 * edge["flank"], tip=tip, low=edge["flank"], patches=[patch])
+    return out

@@ -1,0 +1,111 @@
+"""The gears of a loaded set one by one, for decks and pictures: where each stands, which flanks touch where, and its mesh."""
+
+import math
+from collections import Counter
+from typing import Any
+
+import numpy as np
+
+from ..core.checks import whole
+from ..decks.deck import held_nodes
+from ..flexibility.hertz import contact_modulus, half_width
+from ..geometry.mesh.both_flanks import both_flanks
+from ..geometry.pair.contacts import contacts
+from ..geometry.tooth.profile import arc_at
+from .case import PlanetaryCase
+from .curves import SetCurves
+from .rim_supports import RimSupports
+from .standing import Standing, directions, standing, tooth_angles
+
+NEAR = 1.5  # times the approach of a mesh: gaps up to there are pressed together
+
+
+def check_meshable(case: PlanetaryCase) -> None:
+    """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, modified flanks, cracks."""
+    rigid = isinstance(case.ring, RimSupports) and math.isinf(case.ring.radial) and math.isinf(case.ring.tangential)
+    if not (case.ring == "held" or rigid):
+        raise ValueError("the ring is neither held nor on rigid pads, and is not meshed so: give a case with one of these")
+    if case.flanks or case.damage:
+        raise ValueError("modified flanks and cracks of a set are not meshed: give a case without them")
+
+
+def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
+    """Case and `Standing` of one position whose gears can be meshed one by one as the set has them.
+
+    ValueError as of `check_meshable`, if there is no such position, or if a mesh carries nothing, so that how far its planet is
+    turned is not known.
+    """
+    if not isinstance(curves, SetCurves):
+        raise ValueError(f"curves = {curves!r}, but give what planetary_stiffness gives")
+    if whole("at", at, 0) >= curves.position.size:
+        raise ValueError(f"at = {at}, but there are {curves.position.size} positions: give 0 to {curves.position.size - 1}")
+    case = curves.meta["case"]
+    check_meshable(case)
+    without = np.flatnonzero((curves.force[:, at] == 0).any(axis=0)).tolist()
+    if without:
+        raise ValueError(f"planet {without[0]} carries nothing at position {at}, so that its place is not known: choose another")
+    return case, standing(case.gears, np.array(case.angles), [curves.position[at]])
+
+
+def meshed(case, gear, rolls, fillet, near, far, pad):
+    """`Section` of a gear by its edge lengths [mm], `pad` those at the ends of a ring's pads; and its nodes that are held."""
+    pads = gear.internal and case.ring != "held"
+    marks = case.ring.ends(gear) if pads else ()
+    section = both_flanks(gear, rolls, fillet_size=fillet, size=near, far_size=far, marks=marks, mark_size=pad)
+    held = held_nodes(section.mesh)
+    return section, held[case.ring.covers(gear, section.mesh.doflocs[:, held])] if pads else held
+
+
+def touching(case, stand, curves, at):
+    """Both sides of all tooth pairs that may touch: body, tooth, side, and where (see the dict).
+
+    `arc`, `roll` and half `width` of the contact [mm], `tip`: whether the tip corner is there, `force` [N/mm].
+    """
+    out = []
+    for inner, phases, firsts in ((0, stand.outer, stand.planet), (1, stand.inner, stand.ring)):
+        pair = case.pairs[inner]
+        for i in range(case.planets):
+            phase = float(phases[0, i])
+            whole = math.floor(phase)
+            candidates = contacts(pair, [phase - whole])
+            load = curves.force[inner, at, i] / case.width
+            force = dict(zip(curves.order.tolist(), curves.pair_force[inner, at, i].tolist(), strict=True))
+            approach = curves.force[inner, at, i] / curves.k[inner, at, i] * 1e3
+            for k in np.flatnonzero(candidates.gap[0] < NEAR * approach).tolist():
+                tooth = int(candidates.order[k]) - whole
+                first = (-tooth if inner else tooth), int(firsts[i]) - tooth
+                width = float(half_width(load, candidates.radius[0, k], contact_modulus(case.material[inner : inner + 2])))
+                sides = []
+                for which, (gear, roll) in enumerate(
+                    zip((pair.gear_1, pair.gear_2), (candidates.roll_1, candidates.roll_2), strict=True)
+                ):
+                    body = ((0, 1 + i), (1 + i, 1 + case.planets))[inner][which]
+                    sides.append({
+                        "body": body, "tooth": first[which] % gear.z, "side": 1 if inner and not which else 0,
+                        "arc": float(arc_at(gear, roll[0, k])), "width": width,
+                        "roll": float(roll[0, k]), "force": force.get(int(candidates.order[k]), 0.0) / case.width,
+                        "tip": abs(float(roll[0, k]) - gear.roll_a) < 1e-9 * gear.m_n,
+                    })  # fmt: skip
+                out.append(sides)
+    counted = Counter((side["body"], side["tooth"], side["side"]) for pair in out for side in pair)
+    if max(counted.values()) > 1:
+        raise ValueError("a flank touches two others here: choose another position")
+    return out
+
+
+def placed(case, stand, curves, at):
+    """Gear, material, centre [mm], angle of tooth 0 [rad], and motion of the held nodes (turn, (x, y)) of sun, planets, ring."""
+    angles, gears = np.array(case.angles), case.gears
+    sun, planets, ring = tooth_angles(gears, angles, stand)
+    _, inner = directions(gears, angles)
+    turn, orbit = curves.te[at] * 1e3, curves.orbit[at] * 1e3
+    out = [(gears.sun, case.material[0], np.zeros(2), sun, (turn / gears.sun.r_b, orbit))]
+    for i, angle in enumerate(angles):
+        place = np.array([math.sin(angle), math.cos(angle)])
+        along = np.array([math.cos(angle), -math.sin(angle)])
+        error = case.errors[i][0] * place + case.errors[i][1] * along
+        closed = curves.force[1, at, i] / curves.k[1, at, i] * 1e3  # of the mesh with the ring, by the planet's turn and shift
+        turned = closed + inner[:, i] @ error
+        out.append((gears.planet, case.material[1], gears.a * place, planets[i], (-turned / gears.planet.r_b, error)))
+    out.append((case.ring_gear, case.material[2], np.zeros(2), ring, (0.0, np.zeros(2))))
+    return out

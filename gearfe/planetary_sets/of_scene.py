@@ -1,0 +1,108 @@
+"""From a scene to its planetary set: the case that the tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]`` state."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+from ..geometry.damage.crack import Crack
+from ..scene.load import Scene, ScenePair
+from ..scene.set_table import SceneSet
+from ..scene.strict import placed
+from .case import PlanetaryCase
+from .rim_supports import RimBed, RimSupports
+
+PER_UM = 1e3  # N/um to N/mm
+
+
+def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
+    """Planetary set of a scene for `gearfe.planetary_stiffness`, with the flanks of its gears and a case of damage.
+
+    Cracks of the planet's gear are in one planet (``damaged_planet``), on the flank that the sun loads; one that the scene has in
+    the pair of planet and ring only, on the other.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a ``[set]`` table.
+    case : str, optional
+        Case of damage; None: healthy.
+
+    Returns
+    -------
+    PlanetaryCase
+
+    Raises
+    ------
+    ValueError
+        If the scene has no set, no such case in its gears, damage other than cracks, or pairs whose misalignment, shafts or
+        springs the set does not know; or if the set cannot be.
+    """
+    given = scene.set
+    if given is None:
+        raise ValueError(f"scene {scene.name} has no [set] table: add one with n_planets or angles_deg")
+    outer, inner = (scene.pairs[name] for name in given.pairs)
+    for name, pair in zip(given.pairs, (outer, inner), strict=True):
+        if pair.supports or pair.misalignment:
+            raise ValueError(
+                f"{scene.name} [set]: pair {name!r} has shafts, springs or misalignment, which a set does not know: its gears "
+                "are held by pin_N_per_um, floating and [ring.support]; leave those out"
+            )
+    file = f"{scene.name}.toml"
+    ring = placed(file, "ring.support", lambda: _support(given.support))
+    flanks, damage = _flanks(scene, outer, inner), _damage(scene, case, given, outer, inner)
+    materials = (*outer.materials, inner.materials[1])
+    return placed(file, "set", lambda: PlanetaryCase(
+        given.gears, given.force, materials, angles=given.angles, ring=ring, floating=given.floating, pin=given.pin,
+        errors=given.errors, flanks=flanks, damage=damage,
+    ))  # fmt: skip
+
+
+def _support(row: dict[str, Any]) -> "str | RimBed | RimSupports":
+    """What holds the ring, from a checked table ``[ring.support]``."""
+    if row["kind"] == "held":
+        return "held"
+    if row["kind"] == "bed":
+        return RimBed(row["radial_MPa_per_mm"], row["tangential_MPa_per_mm"])
+    keys = "radial_N_per_um", "tangential_N_per_um"
+    radial, tangential = (math.inf if row[key] is None else row[key] * PER_UM for key in keys)
+    pushes = row["kind"] == "lugs"
+    return RimSupports(
+        row["count"], row["width_mm"], first=math.radians(row["first_deg"] or 0.0), radial=0.0 if pushes else radial,
+        tangential=tangential, pushes=pushes,
+    )  # fmt: skip
+
+
+def _flanks(scene: Scene, outer: ScenePair, inner: ScenePair) -> dict[str, Any]:
+    """Flanks by gear; a planet has the same on both sides of its teeth."""
+    planet = outer.flanks.get("wheel"), inner.flanks.get("pinion")
+    if planet[0] != planet[1]:
+        raise ValueError(
+            f"{scene.name} [set]: the planet has another flank with the sun than with the ring, but a set gives it the same: "
+            "give it one [flank.NAME] table without pair"
+        )
+    found = {"sun": outer.flanks.get("pinion"), "planet": planet[0], "ring": inner.flanks.get("wheel")}
+    return {name: flank for name, flank in found.items() if flank is not None}
+
+
+def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, inner: ScenePair) -> dict[Any, Any]:
+    """Cracks of a case by gear."""
+    if case is None:
+        return {}
+    known = dict.fromkeys((*outer.damage, *inner.damage))
+    if case not in known:
+        raise ValueError(f"no case {case!r} in the set of scene {scene.name}; it has {', '.join(known) or 'none'}")
+    one, two = outer.damage.get(case, {}), inner.damage.get(case, {})
+    kinds = {type(own) for found in (*one.values(), *two.values()) for own in found}
+    other = sorted(kind.__name__.lower() for kind in kinds - {Crack})
+    if other:
+        raise ValueError(
+            f"case {case!r} has a {' and a '.join(other)}, but the section of a set knows cracks only: choose a case of cracks"
+        )
+    both = one.get("wheel", [])
+    ring_side = [replace(crack, side=_opposite(crack.side)) for crack in two.get("pinion", []) if crack not in both]
+    found = {"sun": one.get("pinion", []), ("planet", given.damaged_planet): both + ring_side, "ring": two.get("wheel", [])}
+    return {name: cracks for name, cracks in found.items() if cracks}
+
+
+def _opposite(side):
+    return "unloaded" if side == "loaded" else "loaded"

@@ -1,0 +1,134 @@
+"""Pads under the rim of a ring: their tractions as forces on its mesh, and how they and the teeth move each other."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from ..flexibility.finite_elements.elasticity import GAUSS_3
+from ..flexibility.hertz import half_plane, hat_logarithm
+from .rim_supports import RimSupports
+from .whole_gear import PLACES, WholeGear
+
+TERMS = 10  # polynomials on a pad, radial and tangential
+POINTS = 64  # of their quadrature
+FINE = 400  # the same, where a polynomial meets a jump
+SPREAD = 3  # edges of the rim to either side over which the mesh is given a traction as a hat
+
+
+@dataclass(frozen=True, slots=True)
+class Pads:
+    """Tractions of pads on the rim, p of them by pad, direction and polynomial.
+
+    `load` ``(z, r, p)`` are their nodal forces, `turns` ``(3, p)`` their forces along x and y and clockwise torque [mm].
+    `compliance` ``(p, p)`` is added to how the rim's mesh moves under them [mm per N/mm]: of springs, and close to each pad.
+    `moved` are the edge's displacements by harmonic, as of `WholeGear.loose`.
+    """
+
+    load: NDArray[np.float64]
+    turns: NDArray[np.float64]
+    compliance: NDArray[np.float64]
+    moved: NDArray[np.complex128]
+
+
+def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray[np.complex128]) -> Pads:
+    """`Pads` of a ring, stiffnesses shared by the face `width` [mm]; `moved` as of `WholeGear.loose`."""
+    gear, z, nodes = whole.gear, whole.gear.z, whole.angle.size
+    step = 4 * math.pi / (z * nodes)  # of an edge of the rim
+    terms = 1 if support.pushes else TERMS
+    place = np.cos((np.arange(POINTS) + 0.5) * math.pi / POINTS)
+    shapes = chebyshev.chebvander(place, terms - 1) / POINTS
+    stiff = (support.radial, support.tangential)
+    held = [which for which in (0, 1) if stiff[which] > 0]
+    hats = [_hat(which, step, z * nodes) for which in (0, 1)]
+    columns, turns, compliance, local = [], [], [], []
+    for middle in support.middles:
+        angle = middle + place * support.width / (2 * gear.held)
+        at = (angle + math.pi / z) / step  # in edges from the first corner
+        number = np.arange(math.floor(at.min()), math.floor(at.max()) + 2)
+        weight = np.maximum(1 - np.abs(number[:, None] - at), 0.0) @ shapes
+        out, inx = np.sin(angle), np.cos(angle)
+        force = np.array([out, inx, 0 * angle]), np.array([inx, -out, np.full(angle.size, gear.held)])
+        for which in held:
+            hat = zip(number.tolist(), weight, strict=True)  # of each vertex under the pad: every second node, two unknowns each
+            columns.append(sum(np.roll(hats[which], 4 * n)[:, None] * row for n, row in hat))
+            turns.append(force[which] @ shapes)
+            compliance.append(np.append(width / stiff[which], np.zeros(terms - 1)))
+        edge = step * gear.held
+        local.append(_sharper(whole, support.width, number * edge, edge, weight)[np.ix_(held, held)])
+    p = len(held) * terms
+    total = np.zeros((support.count * p,) * 2)
+    for k, pad in enumerate(local):
+        total[k * p : (k + 1) * p, k * p : (k + 1) * p] = pad.transpose(0, 2, 1, 3).reshape(p, p)
+    load = np.concatenate(columns, axis=1).reshape(z, 2 * nodes, -1)
+    return Pads(load, np.concatenate(turns, axis=1), total + np.diag(np.concatenate(compliance)), moved)
+
+
+def _hat(which, step, count):
+    """Forces ``(2 count,)`` on rim nodes of a unit hat of traction, radial (0) or tangential (1), its top on the first node."""
+    points, weights = GAUSS_3
+    edges = np.arange(-SPREAD, SPREAD)
+    angle = step * (edges[:, None] + (points + 1) / 2)
+    share = (1 - np.abs(angle) / (SPREAD * step)) * weights / (2 * SPREAD)
+    return _nodal(angle.ravel(), which, step / 2, count) @ share.ravel()
+
+
+def _nodal(angle, which, step, count):
+    """Forces ``(2 count, n)`` on rim nodes, radial and tangential, of unit forces at `angle` from the first node."""
+    edge = np.floor(angle / (2 * step)).astype(int)
+    t = angle / step - 2 * edge - 1
+    shapes = np.array([t * (t - 1) / 2, 1 - t**2, t * (t + 1) / 2])
+    out, column = np.zeros((2 * count, angle.size)), np.arange(angle.size)
+    for a, shape in enumerate(shapes):
+        lean = angle - step * (2 * edge + a)
+        parts = (np.cos(lean), np.sin(lean)) if which == 0 else (-np.sin(lean), np.cos(lean))
+        for direction, part in enumerate(parts):
+            np.add.at(out, (2 * ((2 * edge + a) % count) + direction, column), shape * part)
+    return out
+
+
+def _sharper(whole, width, tops, edge, weight):
+    """How much more a pad's own tractions move it than the hats that stand for them ``(2, 2, terms, terms)`` [mm per N/mm].
+
+    Both differ only near by, where the rim is a half-plane. On it tractions ``T_n(s) / (pi sqrt(1 - s**2))`` move the surface
+    along themselves by c ``ln(4 / width)`` (n = 0) or ``c T_n(s) / n``, and across by the jump of Flamant's field.
+    """
+    terms, material = weight.shape[1], whole.material
+    knots = tops + SPREAD * edge * np.array([[-1], [0], [1]])
+    along = np.append(math.log(4 / width), 1 / (2 * np.arange(1, terms)))
+    direct = half_plane(material) * (np.diag(along) - weight.T @ hat_logarithm(knots, knots) @ weight)
+    modulus, ratio = material.plane_modulus("plane strain"), material.nu / (1 - material.nu)
+    angle, order = (np.arange(FINE) + 0.5) * math.pi / FINE, np.arange(1, terms)
+    ahead = np.column_stack([1 - 2 * angle / math.pi, -2 * np.sin(angle[:, None] * order) / (math.pi * order)])
+    jump = np.cos(angle[:, None] * np.arange(terms)).T @ ahead / FINE
+    masses = np.array([1.0, -2.0, 1.0]) / (SPREAD * edge) ** 2  # second derivative of a unit hat
+    apart = knots[:, :, None, None] - knots
+    spread = np.einsum("p,pnqm,q->nm", masses, np.sign(apart) * apart**4 / 24, masses)
+    across = -(1 - ratio) / (2 * modulus) * (jump - weight.T @ spread @ weight)
+    return np.array([[direct, across], [across.T, direct]])
+
+
+def _series(load):
+    """Harmonics ``(h, r, p)`` of nodal forces ``(z, r, p)``."""
+    return np.fft.rfft(load, axis=0)
+
+
+def among(pads):
+    """Displacement ``(p, p)`` [mm per N/mm] of pads under each other's tractions."""
+    z, waves = pads.load.shape[0], _series(pads.load)
+    r = waves.shape[1]
+    weight = np.full(waves.shape[0], 2.0)
+    weight[0] = 1.0
+    if z % 2 == 0:
+        weight[-1] = 1.0
+    out = np.einsum("h,hrp,hrs,hsq->pq", weight, waves.conj(), pads.moved[:, :, -r:], waves, optimize=True).real / z
+    return (out + out.T) / 2
+
+
+def by_teeth(pads):
+    """Displacement ``(p, z, PLACES)`` [mm per N/mm] of pads under loads on the teeth."""
+    z, waves = pads.load.shape[0], _series(pads.load)
+    spectrum = np.einsum("hrp,hra->hpa", waves.conj(), pads.moved[:, :, :PLACES], optimize=True)
+    return np.fft.irfft(spectrum.conj(), n=z, axis=0).transpose(1, 0, 2)

@@ -1,0 +1,119 @@
+"""How the teeth of a set stand at one position: mesh phases, tooth numbers and directions of the forces.
+
+The carrier stands still. Angles count clockwise from +y, the sun turns clockwise and drives; planets turn counter-clockwise, as
+does the torque on the ring. The mesh of sun and planet i is that of `GearPair.turn`, turned by the planet's angle; in the frame
+of planet and ring everything is mirrored, since there the planet is the pinion, and pinions turn clockwise.
+
+Every tooth of a gear is numbered clockwise in this frame, by whole numbers that may leave 0 ... z - 1. With the sun turned by
+`position` pitches sun tooth j is in a pair of phase ``position - z_s (angle_i - angle_0) / 2 pi + j``, with planet tooth
+``C_i - j``; ring tooth ``D_i - j'`` with planet tooth ``-j'``.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.checks import numbers
+
+if TYPE_CHECKING:
+    from ..geometry.pair.planetary import PlanetarySet
+
+DIGITS = 9  # of phases: equal planets have equal ones
+FITS = 1e-6  # of a pitch by which a planet may stand off a place where it can be assembled
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """Phases ``(positions, planets)`` of tooth 0 of sun (`outer`) and planet (`inner`) in their meshes.
+
+    `planet` and `ring` ``(planets,)`` are C_i and D_i of the module: planet tooth of the sun's tooth 0, ring tooth of the
+    planet's tooth 0.
+    """
+
+    outer: NDArray[np.float64]
+    inner: NDArray[np.float64]
+    planet: NDArray[np.int64]
+    ring: NDArray[np.int64]
+
+
+def assembled(set_: "PlanetarySet", angles: ArrayLike) -> NDArray[np.float64]:
+    """Planets' angles, checked [rad].
+
+    ValueError if teeth do not fit there, or neighbours touch; the message gives the nearest angles that fit.
+    """
+    places = numbers("angles", angles, " [rad], one for each planet")
+    if places.ndim != 1 or not places.size or not np.isfinite(places).all():
+        raise ValueError(f"angles = {angles!r}, but give a finite angle for each planet [rad]")
+    step = 2 * math.pi / (set_.sun.z + set_.ring.z)
+    away = (places - places[0]) / step
+    if (np.abs(away - np.round(away)) > FITS).any():
+        fit = np.degrees(places[0] + step * np.round(away)).tolist()
+        raise ValueError(
+            f"planets at {', '.join(f'{x:.6g}' for x in np.degrees(places))} degrees cannot be assembled: they stand whole "
+            f"multiples of 360 / (z_s + z_r) = {math.degrees(step):.6g} degrees apart; nearest: "
+            f"{', '.join(f'{x:.6g}' for x in fit)}"
+        )
+    around = np.sort(places % (2 * math.pi))
+    apart = np.diff(np.append(around, around[0] + 2 * math.pi))
+    if places.size > 1 and 2 * set_.a * math.sin(min(apart.min(), math.pi) / 2) <= 2 * set_.planet.r_a:
+        raise ValueError(f"planets {math.degrees(apart.min()):.4g} degrees apart touch each other: give fewer, or other angles")
+    return places
+
+
+def standing(set_: "PlanetarySet", angles: NDArray[np.float64], position: ArrayLike) -> Standing:
+    """`Standing` of a set whose sun is turned by `position` ``(n,)`` of its pitches.
+
+    At position 0 planet 0 and the sun are at mesh phase 0, with tooth 0 of both; ring tooth 0 is that of the newest pair of
+    planet 0 and the ring.
+    """
+    sun_planet, planet_ring, n = set_.sun_planet, set_.planet_ring, angles.size
+    behind = set_.sun.z * (angles - angles[0]) / (2 * math.pi)
+    outer = np.atleast_1d(position)[:, None] - behind
+    planet = -np.floor(np.round(-behind, DIGITS)).astype(int)
+    turn = _turn_2(sun_planet, sun_planet.path[0] + (planet - behind) * sun_planet.p_bt)  # of the planet's tooth 0, at position 0
+    start = planet_ring.gear_1.r_b * (-turn - _turn_1(planet_ring, 0.0))
+    inner = (start - planet_ring.path[0]) / planet_ring.p_bt
+    at_ring = angles - _turn_2(planet_ring, start)
+    pitch = 2 * math.pi / set_.ring.z
+    newest = np.floor(np.round(inner[0], DIGITS))  # order 0 is the planet's tooth -newest
+    ring_0 = at_ring[0] + newest * pitch  # angle of the ring's tooth 0: planet tooth j' has ring tooth D - j'
+    number = (at_ring - ring_0) / pitch
+    whole = np.round(number)
+    if n and np.abs(number - whole).max() > 1e-3:
+        raise RuntimeError("the ring's teeth do not fit all planets: an error of the geometry")
+    inner = np.atleast_1d(position)[:, None] + inner
+    return Standing(np.round(outer, DIGITS), np.round(inner, DIGITS), planet, whole.astype(int))
+
+
+def _turn_1(pair, nominal):
+    """Clockwise angle of the pinion's tooth in contact at `nominal` [mm], which may be anywhere on the line of action."""
+    middle = pair.gear_1.r_b * math.tan(pair.alpha_w)
+    return pair.turn(middle)[0] + (nominal - middle) / pair.gear_1.r_b
+
+
+def _turn_2(pair, nominal):
+    middle = pair.gear_1.r_b * math.tan(pair.alpha_w)
+    return pair.turn(middle)[1] - pair.outward * (nominal - middle) / pair.gear_2.r_b
+
+
+def tooth_angles(set_: "PlanetarySet", angles: NDArray[np.float64], stand: Standing) -> tuple[float, NDArray[np.float64], float]:
+    """Clockwise angles of tooth 0 of sun, planets ``(planets,)`` and ring [rad] at the first position of `stand`."""
+    sun_planet, planet_ring = set_.sun_planet, set_.planet_ring
+    sun = angles[0] + _turn_1(sun_planet, sun_planet.path[0] + stand.outer[0, 0] * sun_planet.p_bt)
+    planets = angles + _turn_2(sun_planet, sun_planet.path[0] + (stand.outer[0] + stand.planet) * sun_planet.p_bt)
+    at_ring = angles[0] - _turn_2(planet_ring, planet_ring.path[0] + stand.inner[0, 0] * planet_ring.p_bt)
+    return float(sun), planets, float(at_ring - 2 * math.pi / set_.ring.z * stand.ring[0])
+
+
+def directions(set_: "PlanetarySet", angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Unit forces ``(2, planets)`` on the planets, along x and y: of the sun, and of the ring."""
+    cos, sin = np.cos(angles), np.sin(angles)
+
+    def turned(x, y):
+        return np.array([x * cos + y * sin, y * cos - x * sin])
+
+    alpha_outer, alpha_inner = set_.sun_planet.alpha_w, set_.planet_ring.alpha_w
+    return turned(math.cos(alpha_outer), math.sin(alpha_outer)), turned(math.cos(alpha_inner), -math.sin(alpha_inner))

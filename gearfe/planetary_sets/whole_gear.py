@@ -1,0 +1,262 @@
+"""A gear as z equal sectors: how loads on any tooth and on the held edge move any other, exactly z-periodic.
+
+A sector keeps as unknowns its left side and its held edge, in polar components, so that all sectors of a gear look alike; its
+right side is the next one's left. With v_j these unknowns of sector j the whole gear is a block-circulant system, which
+Fourier series over the sectors take apart into z small ones::
+
+    v_j = 1/z sum_k V_k exp(2 pi i j k / z),    (A + B exp(2 pi i k / z) + B' exp(-2 pi i k / z)) V_k = F_k
+
+Only the far field is asked for: how teeth yield to loads near themselves the pair knows itself (`gearfe.flexibility.plane`).
+
+References
+----------
+P. J. Davis, Circulant Matrices, Wiley, 1979, ch. 5.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+
+from ..core.material import Material
+from ..flexibility.condense import condense
+from ..flexibility.finite_elements.elasticity import GAUSS_3, LEAF, Body, edge_nodes, edge_shapes
+from ..flexibility.solved import solved_gears
+from ..geometry.mesh.periodic_sector import periodic_sector
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.profile import arc_at, flank, flank_normal, roll_at_arc
+
+PLACES = 8  # loads on each flank: what other teeth see of a load changes little along it
+NULL = 1e-9  # of the largest eigenvalue: a smaller one is a motion of the whole gear, which strains nothing
+
+
+@dataclass(frozen=True, slots=True)
+class WholeGear:
+    """The block-circulant system of a gear, by harmonic k = 0 ... z // 2 (h of them), per mm of width.
+
+    Loads are unit line loads into the right flank of a tooth (the loaded one of its own frame, `PLACES` of them from root to
+    tip), then into the left one. The held edge has r unknowns a sector, radial and tangential (clockwise) by node: those of its
+    left corner first, clockwise, the right corner left out.
+
+    `stiffness` ``(h, n, n)`` is complex, the unknowns of the held edge come first; `push` ``(h, n, 2 PLACES)`` are the loads on
+    the tooth of sector 0; `bed` ``(h, r, r)`` is the mass matrix of the held edge [mm]: forces of unit tractions spread as
+    displacements are; `angle` ``(r / 2,)`` that of the held nodes of sector 0, clockwise from its tooth's centre-line [rad].
+    """
+
+    gear: Gear
+    material: Material
+    stiffness: NDArray[np.complex128]
+    push: NDArray[np.complex128]
+    bed: NDArray[np.complex128]
+    angle: NDArray[np.float64]
+
+    @property
+    def edge(self) -> int:
+        """Unknowns of the held edge of a sector."""
+        return 2 * self.angle.size
+
+    def held(self) -> NDArray[np.float64]:
+        """Displacement ``(z, 2 PLACES, 2 PLACES)`` [mm per N/mm] of the loads of tooth d by those of tooth 0, its edge held.
+
+        Of tooth 0 itself only what passes through the sides of its sector.
+        """
+        inner = slice(self.edge, None)
+        return self._turned(self._yields(self.stiffness[:, inner, inner], self.push[:, inner], self.push[:, inner]))
+
+    def bedded(self, stiffness: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What is added to `held` if springs hold the edge: radial and tangential [N/mm per mm of edge, per mm of width]."""
+        return self._turned(self._yields(self._springs(stiffness), self.push, self.push)) - self.held()
+
+    def loose(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+        """What is added to `held` if nothing holds the edge, and how forces on the edge move the loads and the edge.
+
+        Forces are to be in balance with those on the teeth; the motion of the whole gear is left out. Given are ``(z, 2 PLACES, 2
+        PLACES)``, and displacements of the edge by harmonic ``(h, r, 2 PLACES + r)``, under the loads and under forces on itself.
+        """
+        h, n, r = *self.stiffness.shape[:2], self.edge
+        own = np.zeros((h, n, r))
+        own[:, np.arange(r), np.arange(r)] = 1.0
+        out = self.loose_inverse() @ np.concatenate([self.push, own], axis=2)
+        more = self._turned(np.conj(self.push.transpose(0, 2, 1)) @ out[:, :, : self.push.shape[2]]) - self.held()
+        return more, out[:, :r]
+
+    def held_inverse(self) -> NDArray[np.complex128]:
+        """Inverses ``(h, n, n)`` of the stiffness with the edge held: 0 there."""
+        out, inner = np.zeros_like(self.stiffness), slice(self.edge, None)
+        out[:, inner, inner] = np.linalg.inv(self.stiffness[:, inner, inner])
+        return out
+
+    def bedded_inverse(self, stiffness: NDArray[np.float64]) -> NDArray[np.complex128]:
+        """Inverses with the springs of `bedded` on the edge."""
+        return np.linalg.inv(self._springs(stiffness))
+
+    def loose_inverse(self) -> NDArray[np.complex128]:
+        """Inverses if nothing holds the edge, without the motions of the whole gear."""
+        free = [_pseudo(one) for one in self.stiffness[:2]]
+        return np.concatenate([free, np.linalg.inv(self.stiffness[2:])])
+
+    def _springs(self, stiffness):
+        springs = self.stiffness.copy()
+        springs[:, : self.edge, : self.edge] += self.bed * np.tile(stiffness, self.edge // 2)
+        return springs
+
+    def _yields(self, stiffness, left, right):
+        return np.conj(left.transpose(0, 2, 1)) @ np.linalg.solve(stiffness, right)
+
+    def _turned(self, harmonics):
+        return np.fft.irfft(harmonics, n=self.gear.z, axis=0)
+
+
+def _pseudo(stiffness):
+    """Inverse of a Hermitian matrix without the one motion of the whole gear that it does not resist."""
+    values, vectors = np.linalg.eigh(stiffness)
+    if not abs(values[0]) < NULL * values[-1] < abs(values[1]):
+        raise RuntimeError("the sectors of the gear do not move freely as a whole: change refine a little")
+    return (vectors[:, 1:] / values[1:]) @ np.conj(vectors[:, 1:].T)
+
+
+def whole_gear(gear, material, *, refine=1.0, cache=True):
+    """`WholeGear` of a healthy gear in plane strain, by second-order triangles on one sector."""
+    case = gear, material, float(refine)
+    return solved_gears(cache).get(("whole gear", *case), partial(_solved, *case))
+
+
+def _solved(gear, material, refine):
+    sector = periodic_sector(gear, refine=refine)
+    matrix, push, angle = sector_stiffness(sector, material)
+    own, next_, to = in_chain(sector)
+    n, e = matrix.shape[0], sector_edge(sector)
+    wave = np.exp(2j * math.pi / gear.z * np.arange(gear.z // 2 + 1))[:, None, None]
+    first = np.zeros((n, own.size))  # from unknowns of one harmonic to those of the sector with its right side
+    first[own, np.arange(own.size)] = 1.0
+    second = np.zeros((n, own.size))
+    second[next_, to] = 1.0
+    spread = first + second * wave
+    back = np.conj(spread.transpose(0, 2, 1))
+    stiffness = back @ matrix @ spread
+    bed, m = np.zeros((n, n)), own.size - e
+    at = np.concatenate([[0, 1], np.arange(m, m + e + 2)])
+    bed[np.ix_(at, at)] = _mass(sector)
+    bed = (back @ bed @ spread)[:, : e + 2, : e + 2]
+    places = np.append(-math.pi / gear.z, angle[m // 2 : -(m // 2)])
+    return WholeGear(gear, material, (stiffness + np.conj(stiffness.transpose(0, 2, 1))) / 2, back @ push, bed, places)
+
+
+def sector_stiffness(sector, material):
+    """Stiffness ``(n, n)`` of a sector, forces ``(n, 2 PLACES)`` of its tooth's loads, angles of its nodes.
+
+    Unknowns are polar components of the nodes of the left side, of the held edge between its corners, of the right side.
+    """
+    body = Body(sector.mesh, material, held="rim")  # its own outline: only its elements are used
+    local, dofs = body.local()
+    left, right, edge = (np.array(_chain(sector.mesh, way)) for way in (sector.left, sector.right, sector.held))
+    ends = np.concatenate([left, edge[1:-1], right])  # both sides begin with a corner of the held edge
+    rolls = _rolls(sector.gear)
+    load = np.hstack([line_loads(sector.gear, sector.mesh, sector.flank[k], sector.roll, rolls, k) for k in (0, 1)])
+    centre = sector.mesh.doflocs[:, sector.mesh.t[:3]].mean(axis=1)
+    stays = (2 * ends[:, None] + np.arange(2)).ravel()
+    total = condense(local, dofs, centre, coo_array(load), stays, leaf=LEAF)
+    side = np.full(left.size, math.pi / sector.gear.z)
+    angle = np.concatenate([-side, np.arctan2(*sector.mesh.doflocs[:, edge[1:-1]]), side])
+    turn = _polar(angle)
+    return turn.T @ total[: stays.size, : stays.size] @ turn, turn.T @ total[: stays.size, stays.size :], angle
+
+
+def sector_edge(sector):
+    """Unknowns of the held edge of a sector between its corners."""
+    return 2 * (2 * sector.held.size - 3)
+
+
+def in_chain(sector):
+    """Where the unknowns of a chain of sectors stand among those of `sector_stiffness`.
+
+    A sector's own (corner, held edge, the rest of the left side); the next one's corner and side; and where these stand among the
+    next one's own.
+    """
+    m, e = 2 * (2 * sector.left.size - 1), sector_edge(sector)
+    own = np.concatenate([np.arange(2), np.arange(m, m + e), np.arange(2, m)])
+    return own, np.arange(m + e, 2 * m + e), np.concatenate([np.arange(2), np.arange(2 + e, m + e)])
+
+
+def _chain(mesh, vertices):
+    """Nodes along a chain of vertices, edge middles included."""
+    start, stop, middle = edge_nodes(mesh, vertices)
+    return np.append(np.array([start, middle]).T.ravel(), stop[-1])
+
+
+def _polar(angle):
+    """Rotation from radial and tangential (clockwise) to Cartesian components of nodes at `angle`."""
+    x = 2 * np.arange(angle.size)
+    out = np.zeros((2 * angle.size,) * 2)
+    out[x, x], out[x + 1, x], out[x, x + 1], out[x + 1, x + 1] = np.sin(angle), np.cos(angle), np.cos(angle), -np.sin(angle)
+    return out
+
+
+def _mass(sector):
+    """Mass matrix of the held edge [mm], radial and tangential components of its nodes alike, left to right."""
+    nodes = edge_nodes(sector.mesh, sector.held)
+    points, weights = GAUSS_3
+    shapes, slopes = edge_shapes(points)
+    length = np.hypot(*np.einsum("dne,np->dep", sector.mesh.doflocs[:, nodes], slopes)) * weights
+    block = np.einsum("ap,ep,bp->eab", shapes, length, shapes)
+    count = 2 * nodes.shape[1] + 1
+    out = np.zeros((count, count))
+    for e, one in enumerate(block):
+        at = np.array([2 * e, 2 * e + 2, 2 * e + 1])
+        out[np.ix_(at, at)] += one
+    return np.kron(out, np.eye(2))
+
+
+def _rolls(gear):
+    """Roll lengths of the loads, from root to tip [mm]."""
+    return (gear.roll_f + gear.roll_a) / 2 + (gear.roll_a - gear.roll_f) / 2 * chebyshev.chebpts2(PLACES)
+
+
+def line_loads(gear, mesh, vertices, rolls, roll, side):
+    """Nodal forces ``(2 nodes, n)`` of unit line loads into the right (`side` 0) or the left flank (1) of tooth 0.
+
+    `vertices` of the flank from root to tip at the roll lengths `rolls` [mm]; `roll` ``(n,)`` are those of the loads [mm].
+    """
+    rising = rolls * gear.outward
+    edge = np.clip(np.searchsorted(rising, roll * gear.outward) - 1, 0, rising.size - 2)
+    low, high = rolls[edge], rolls[edge + 1]
+    shapes, _ = edge_shapes(np.clip(2 * (roll - low) / (high - low) - 1, -1, 1))
+    nodes = edge_nodes(mesh, vertices)[:, edge]
+    force = -flank_normal(gear, roll) * np.array([[1 - 2 * side], [1]])
+    out, column = np.zeros((2 * mesh.doflocs.shape[1], roll.size)), np.arange(roll.size)
+    for shape, node in zip(shapes, nodes, strict=True):
+        out[2 * node, column] += shape * force[0]
+        out[2 * node + 1, column] += shape * force[1]
+    return out
+
+
+def carry(gear, roll):
+    """Matrix ``(n, PLACES)`` from values at the loads to values at roll lengths ``(n,)`` [mm], clamped to the flank."""
+    arc, ends = arc_at(gear, np.asarray(roll)), sorted(arc_at(gear, end) for end in (gear.roll_f, gear.roll_a))
+    middle, reach = (gear.roll_f + gear.roll_a) / 2, (gear.roll_a - gear.roll_f) / 2
+    place = (roll_at_arc(gear, np.clip(arc, *ends)) - middle) / reach
+    nodes = chebyshev.chebvander(chebyshev.chebpts2(PLACES), PLACES - 1)
+    return np.linalg.solve(nodes.T, chebyshev.chebvander(place, PLACES - 1).T).T
+
+
+def motion(gear):
+    """How the loads of tooth 0 move with the whole gear ``(3, 2 PLACES)``: along x, along y, and by a clockwise turn [mm]."""
+    roll = _rolls(gear)
+    radius, angle = flank(gear, roll)
+    into = -flank_normal(gear, roll)
+    out = []
+    for sign in (1, -1):
+        x, y, (fx, fy) = sign * radius * np.sin(angle), radius * np.cos(angle), into * np.array([[sign], [1]])
+        out.append(np.array([fx, fy, y * fx - x * fy]))
+    return np.hstack(out)
+
+
+def between_teeth(table):
+    """``(z, PLACES, z, PLACES)`` between right flanks, of a table by the distance of teeth."""
+    z = table.shape[0]
+    apart = (np.arange(z)[:, None] - np.arange(z)) % z
+    return table[apart, :PLACES, :PLACES].transpose(0, 2, 1, 3).copy()

@@ -1,0 +1,213 @@
+"""A machine whose meshes are those of a planetary set: nothing that gives way counts twice."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dynamics.machine.mesh_excitation import harmonics
+from ..dynamics.machine.tables import Machine, Spring
+from .curves import SetCurves
+from .rim_supports import RimBed, RimSupports
+
+NAMES = ("sun_planet{}", "planet_ring{}")
+RINGS = ("in k", "body")
+BODY, AXES = "ring", ("x", "y", "theta")
+EVEN = 1e-6  # of a mesh cycle
+SAME = 1e-6  # of a radius, of a direction
+PERFECT = 1e-12  # m: gaps below it are rounding
+
+
+def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str, str] = NAMES) -> Machine:
+    """The machine with every mesh as stiff as it is in a planetary set, each mesh of each planet with a curve of its own.
+
+    `SetCurves.k` is what a mesh gives way beyond the turns and shifts of sun and planet, so that pins, a floating sun and the
+    turns are the machine's alone: its bearings of planets and sun should be those that the set was solved with. What the ring
+    does may stand in k or in the machine; with either, its sun turns as far under the set's torque as that of the set.
+
+    Parameters
+    ----------
+    machine : Machine
+        With a mesh for each planet of the set, seen from the carrier, as `planetary`, `pitted_planetary` and `build_machine`
+        make them; without damage.
+    curves : SetCurves
+        Over whole mesh cycles at equally spaced positions, as many as the set takes to repeat.
+    ring : {"in k", "body"}
+        ``"in k"``: k has all that the ring gives way, its motion on its supports included. The machine's ring is taken out; its
+        inertia is left out. ``"body"``: the ring is a body of the machine. On an elastic bed or elastic pads its springs are
+        those that a rigid ring has there, and how far these give way under the set's loads is taken out of k: what is left in k
+        is that teeth and ring bend, between the pads, too. A ring that is held, or on rigid pads, has no such motion: all of it
+        stays in k, and the springs of the machine's ring are its housing's, in series with it.
+    names : (str, str)
+        Names of the meshes with the sun and with the ring, ``{}`` for the planet's number from 1 on.
+
+    Returns
+    -------
+    Machine
+        Errors of modified flanks and pins off their places are in its meshes. Meshes whose curves last several mesh cycles have
+        the `frequency` of one period of theirs; unloaded ones (k = 0) do nothing.
+
+    Raises
+    ------
+    ValueError
+        If machine and set do not fit each other; the message says what to change.
+
+    Notes
+    -----
+    k is true of the loads that the set was solved for. That planets twist one sun together, and bend one ring, is in the k of
+    each mesh as those loads do it; a machine has no other coupling between its meshes than its bodies, so that loads which
+    planets do not share in that way, as in vibration, feel k as if they did. Teeth that touch at a tip corner, off the line of
+    action, turn the ring with some per cent less than the row of a mesh says; on very soft springs more than all that the set
+    gives way would then be taken out, which is refused.
+    """
+    if not isinstance(machine, Machine) or not isinstance(curves, SetCurves):
+        raise ValueError(f"with_set({machine!r}, {curves!r}), but give a Machine and what planetary_stiffness gives")
+    if ring not in RINGS:
+        raise ValueError(f"ring = {ring!r}, but give 'in k' or 'body': whether the ring's motion stands in k or in the machine")
+    cycles, case = _cycles(curves), curves.meta["case"]
+    at = _places(machine, case, names)
+    machine = _still(machine) if ring == "in k" else _on_springs(machine, case)
+    k = curves.k if ring == "in k" else _without_body(machine, curves, at[1])
+    first, meshes = machine.meshes[at[0][0]], list(machine.meshes)
+    phase = (first.phase - float(curves.position[0])) / cycles
+    for inner, row in enumerate(at):
+        for planet, number in enumerate(row):
+            mesh, gap = meshes[number], curves.gap[inner, :, planet]
+            moved = replace(mesh, stiffness=k[inner, :, planet], frequency=first.frequency / cycles, phase=phase)
+            if np.abs(gap).max() > PERFECT:
+                moved = replace(moved, error=(*mesh.error, *harmonics(gap, moved.frequency, phase)))
+            meshes[number] = moved
+    notes = machine.notes | {"meshes of a set": repr(curves), "motion of the ring": ring}
+    return replace(machine, meshes=tuple(meshes), notes=notes)
+
+
+def cycles_of(case: Any) -> int:
+    """Mesh cycles after which a `PlanetaryCase` repeats, each planet by itself."""
+    faulty = [name for name, flank in case.flanks.items() if flank.on(case.gear_of(name)).differs]
+    faulty += [name for name, found in case.damage.items() if found]
+    z = case.ring_gear.z
+    on_pads = z // math.gcd(z, case.ring.count) if isinstance(case.ring, RimSupports) else 1
+    return math.lcm(on_pads, *(case.gear_of(name).z for name in faulty))
+
+
+def _cycles(curves):
+    """Mesh cycles that positions last, equally spaced over whole cycles, and enough of them."""
+    at = curves.position
+    step = np.ptp(at) / max(at.size - 1, 1)
+    cycles = round(at.size * step)
+    if not cycles or not np.allclose(np.diff(at), step, rtol=0, atol=EVEN) or abs(at.size * step - cycles) > EVEN:
+        raise ValueError(
+            f"{at.size} positions of the set are not equally spaced over whole mesh cycles: give their number, n >= 2"
+        )
+    needed = cycles_of(curves.meta["case"])
+    if cycles % needed:
+        raise ValueError(
+            f"positions over {cycles} mesh cycles, but this set repeats after {needed}: "
+            f"give planetary_stiffness(case, n, cycles={needed})"
+        )
+    return cycles
+
+
+def _places(machine, case, names):
+    """Numbers of the machine's meshes by ``[inner][planet]``, checked to be the set's."""
+    own = {mesh.name: number for number, mesh in enumerate(machine.meshes)}
+    out: list[list[int]] = []
+    for name, pair, back in zip(names, case.pairs, (1, -1), strict=True):
+        asked = [name.format(planet + 1) for planet in range(case.planets)]
+        lost = [one for one in asked if one not in own]
+        if lost or name.format(case.planets + 1) in own:
+            raise ValueError(f"{case.planets} planets in the set, but the machine's meshes are {', '.join(own)}: give `names`")
+        for one, angle in zip(asked, case.angles, strict=True):
+            _check(machine, machine.meshes[own[one]], pair, angle + back * (math.pi / 2 - pair.alpha_w))
+        out.append([own[one] for one in asked])
+    return out
+
+
+def _check(machine, mesh, pair, direction):
+    """ValueError unless a mesh has the base radii of `pair`, its line of action along `direction` [rad], and no damage."""
+    turns, along, across = (
+        [mesh.row[i] for i, dof in enumerate(machine.dofs) if dof.endswith(f".{axis}")] for axis in ("theta", *"xy")
+    )
+    want = 1e-3 * np.array([pair.gear_1.r_b, pair.gear_2.r_b])
+    radii = np.abs([one for one in turns if one])
+    if not np.isclose(radii[:, None], want, rtol=SAME, atol=0).any(axis=1).all():
+        told = (", ".join(f"{1e3 * one:.6g}" for one in found) for found in (radii, want))
+        raise ValueError("mesh {} has base radii of {} mm, but in the set of {} mm".format(mesh.name, *told))
+    if any(abs(x * math.sin(direction) - y * math.cos(direction)) > SAME for x, y in zip(along, across, strict=True)):
+        raise ValueError(f"mesh {mesh.name} does not lie as in the set: give the machine's planets the set's angles as `places`")
+    if mesh.damage:
+        raise ValueError(f"mesh {mesh.name} has damage besides the set: give it to the PlanetaryCase, and a healthy machine here")
+
+
+def _still(machine):
+    """The machine without the degrees of freedom of its ring."""
+    turn = f"{BODY}.theta"
+    if turn not in machine.dofs:
+        raise ValueError(f"the machine has no body {BODY!r}: give ring = 'body'")
+    place = machine.dofs.index(turn)
+    if not machine.K[place, place] > 0:
+        raise ValueError("the ring of this machine turns freely: a ring in k stands still; give ring = 'body'")
+    stays = np.array([not dof.startswith(f"{BODY}.") for dof in machine.dofs])
+
+    def cut(rows):
+        return tuple(replace(one, row=one.row[stays]) for one in rows if one.row[stays].any())
+
+    meshes = [replace(one, friction=tuple((row[stays], weight) for row, weight in one.friction)) for one in machine.meshes]
+    return replace(
+        machine,
+        dofs=tuple(np.array(machine.dofs)[stays].tolist()),
+        mass=machine.mass[stays],
+        springs=cut(machine.springs),
+        meshes=cut(meshes),
+        loads=cut(machine.loads),
+        rotors={name: speed for name, speed in machine.rotors.items() if name != BODY},
+    )
+
+
+def ring_springs(case: Any) -> NDArray[np.float64]:
+    """Stiffness of a rigid ring on the bed or the pads of a `PlanetaryCase` in x, y and its turn [N/m, N m/rad]; inf: rigid.
+
+    Of n pads, radial k_r and tangential k_t: ``n (k_r + k_t) / 2`` and ``n k_t R**2``; of a bed the same with its length for n.
+    """
+    ring, radius = case.ring, float(case.ring_gear.held)
+    if isinstance(ring, RimBed):
+        n = 2 * math.pi * radius * case.width
+    elif isinstance(ring, RimSupports):
+        n = float(ring.count)
+        if ring.pushes or ring.count < 3:
+            raise ValueError("lugs that only push, or fewer than 3 pads, are no springs of a body: give ring = 'in k'")
+    else:
+        return np.full(3, math.inf)
+    across = 1e3 * n * (ring.radial + ring.tangential) / 2
+    return np.array([across, across, 1e-3 * n * ring.tangential * radius**2])
+
+
+def _on_springs(machine, case):
+    """The machine with its ring on the springs that the set has, its damping ratios kept; rigid ones leave the machine's own."""
+    springs = list(machine.springs)
+    for axis, k in zip(AXES, ring_springs(case), strict=True):
+        dof = f"{BODY}.{axis}"
+        if dof not in machine.dofs or math.isinf(k):
+            continue
+        row, place = machine.row(dof), machine.dofs.index(dof)
+        old = [one for one in springs if one.row[place]]
+        if any((one.row != row).any() for one in old):
+            raise ValueError(f"springs of the machine's ring act between bodies: {', '.join(one.name for one in old)}")
+        damping = sum(one.c for one in old) * math.sqrt(k / sum(one.k for one in old)) if old else 0.0
+        springs = [one for one in springs if not one.row[place]] + [Spring(f"{BODY}-ground {axis}", row, float(k), damping)]
+    return replace(machine, springs=tuple(springs))
+
+
+def _without_body(machine, curves, inner):
+    """`SetCurves.k` without what the ring's springs give way under the loads of its meshes, of numbers `inner`."""
+    place = [machine.dofs.index(f"{BODY}.{axis}") for axis in AXES if f"{BODY}.{axis}" in machine.dofs]
+    gives = 1 / ring_springs(curves.meta["case"])[[AXES.index(machine.dofs[i].split(".")[1]) for i in place]]
+    rows = np.array([machine.meshes[number].row[place] for number in inner])
+    moved = curves.force[1] @ (rows * gives) @ rows.T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        left = np.where(curves.k[1] > 0, curves.force[1] / curves.k[1] - moved, 1.0)
+        if (left <= 0).any():
+            raise ValueError("the springs of the ring move a mesh by more than it gives way in the set: give ring = 'in k'")
+        return np.array([curves.k[0], np.where(curves.k[1] > 0, curves.force[1] / left, 0.0)])

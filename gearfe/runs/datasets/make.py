@@ -1,0 +1,124 @@
+"""`dataset`: all conditions of a data set into a folder, going on where it was stopped."""
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from ...stiffness.cache import program
+from ..runner import Tally, check_workers, results
+from ..store.folder import begin, check_same, durable, locked
+from ..store.shards import arrow, encoded, unfinished, write_shard
+from .card import card
+from .conditions import Condition, conditions
+from .opened import FAILED, FORMAT, WINDOWS, Dataset, open_dataset
+from .plan import Plan, read_plan
+from .windows import check_machine, rows_of, table_of
+
+EXPORTS = ("mat", "hdf5")
+
+
+def dataset(
+    plan: str | os.PathLike[str] | Mapping[str, Any],
+    folder: str | os.PathLike[str],
+    *,
+    also: Sequence[str] = (),
+    workers: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Dataset:
+    """Make a data set of labelled vibration windows; called again after it was stopped, it goes on where it was.
+
+    Every condition (a fault, a severity, a speed, a torque, a machine of its own scatter) is simulated once, heard by all sensors
+    with all levels of noise, cut into windows and written as one Parquet file in ``windows/``, which is whole or not there.
+    ``card.md`` describes the whole.
+
+    Parameters
+    ----------
+    plan : str or path or dict
+        A TOML file, or a dictionary of the same structure: see `gearfe.runs.datasets.plan`.
+    folder : str or path
+        New, empty, or of the same plan.
+    also : sequence of {"mat", "hdf5"}
+        Write every side of the split as one file of these formats too (``train.mat``, ``train.h5`` ...), at the end.
+    workers : int, optional
+        Processes of this machine, one thread each; default one per core. 1: in this process.
+    progress : callable, optional
+        Called with (conditions done, conditions in all).
+
+    Raises
+    ------
+    ValueError
+        If the plan cannot be: an unknown kind of fault, a severity outside its bounds, a rate too low for the mesh harmonics, a
+        window too short to hold the fault, too few conditions for the split...; or the folder holds anything else, was begun by
+        another version, or cannot be written.
+    RuntimeError
+        If pyarrow is missing, or a process ended with a condition, also when it was tried again alone: what is finished stays,
+        call it again.
+    """
+    check_workers(workers)
+    unknown = [export for export in also if export not in EXPORTS]
+    if unknown or isinstance(also, str):
+        raise ValueError(f"also = {also!r}, but it lists {' and '.join(EXPORTS)}")
+    arrow()
+    checked = read_plan(plan)
+    every = conditions(checked)
+    told = check_machine(checked)
+    about = _about(checked, len(every), told)
+    stored = begin(folder, about)
+    place = Path(folder)
+    with locked(place):
+        check_same(place, stored, about, "plan")
+        for name in (WINDOWS, FAILED):
+            (place / name).mkdir(exist_ok=True)
+        with locked(place / WINDOWS):
+            _fill(place, checked, every, workers, progress)
+        made = open_dataset(folder)
+        with durable(place / "card.md") as file:
+            file.write(card(made, checked, every).encode())
+        for form in also:
+            made.export(form)
+    return made
+
+
+def _about(plan, count, told):
+    """Note of a folder of windows."""
+    return {
+        "format": FORMAT,
+        "title": plan.title,
+        "conditions": count,
+        "plan": plan.content(),
+        "units": told["units"],
+        "made": program(),
+    }
+
+
+def _fill(place, plan, every, workers, progress):
+    """Simulate the conditions that are not there yet."""
+    failed = [condition.stem for condition in (place / FAILED).glob("condition-*.txt")]
+    left = unfinished(place / WINDOWS, [condition.name for condition in every], "data set", failed)
+    tally = Tally("conditions", len(every), progress)
+    tally.add(len(every) - len(left))
+    todo = [condition for condition in every if condition.name in left]
+    for _, result in results(partial(simulate_condition, plan), todo, workers):
+        if result is None:
+            raise RuntimeError(
+                "a process ended before its condition was done, alone too: killed, or out of memory; what is finished stays, so "
+                "call it again, with fewer workers if memory was short"
+            )
+        name, content, error = result
+        if error:
+            with durable(place / FAILED / f"{name}.txt") as file:
+                file.write(error.encode())
+        else:
+            write_shard(place / WINDOWS, name, content)
+        tally.add(1)
+
+
+def simulate_condition(plan: Plan, condition: Condition) -> tuple[str, bytes, str]:
+    """Name and encoded windows of a condition, or the error why there are none."""
+    try:
+        table = table_of(plan, rows_of(plan, condition))
+    except (ValueError, RuntimeError) as error:
+        return condition.name, b"", f"{type(error).__name__}: {error}"
+    return condition.name, encoded(table), ""

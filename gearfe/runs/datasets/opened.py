@@ -1,0 +1,171 @@
+"""`Dataset`: windows and labels of a folder, as pandas and numpy, and one file for each side of the split."""
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.extras import needing
+from ...core.files import written
+from ..store.folder import read_about
+from ..store.shards import arrow, fields_of, frame, opened, read, shard_names, where_of
+
+if TYPE_CHECKING:
+    import pandas
+
+FORMAT = "gearfe data set 1"
+WINDOWS = "windows"  # folder of the files
+FAILED = "failed"  # folder of the errors of conditions that could not be simulated
+MOST_MAT = 2**31 - 2**20  # bytes of an array in a MATLAB 5 file
+
+
+@dataclass(frozen=True, slots=True)
+class Dataset:
+    """A data set in a folder; `about` has title, plan, number of conditions, units of the sensors and versions."""
+
+    folder: Path
+    about: dict[str, Any]
+
+    def __repr__(self):
+        """One line: title, how many windows, where."""
+        return f"<Dataset {self.about['title']!r}: {len(self)} windows in {self.folder}>"
+
+    def __len__(self) -> int:
+        """Number of windows."""
+        return opened(self.folder / WINDOWS).count_rows() if shard_names(self.folder / WINDOWS) else 0
+
+    def labels(self, where: Mapping[str, Any] | None = None) -> "pandas.DataFrame":
+        """Labels and metadata, a row for each window.
+
+        Parameters
+        ----------
+        where : dict, optional
+            Which windows, by column: ``{"side": "train", "sensor": "sun", "severity": (0.1, 0.3)}``: a value, a range as a tuple
+            of two, or a list of values.
+
+        Returns
+        -------
+        pandas.DataFrame
+            ``attrs["units"]`` has the units by column.
+
+        Raises
+        ------
+        ValueError
+            If there is no such column, no window yet, or a file is damaged.
+        RuntimeError
+            If pandas is missing; the message names what to install.
+        """
+        return self._read(where, signal=False)[0]
+
+    def windows(self, where: Mapping[str, Any] | None = None) -> tuple[NDArray[np.float32], "pandas.DataFrame"]:
+        """Signals ``(n, samples)`` and, row by row, their labels.
+
+        Parameters
+        ----------
+        where : dict, optional
+            As of `labels`; what is not asked for is not read.
+
+        Returns
+        -------
+        signals : ndarray of float32, shape (n, samples)
+            In the unit of the column ``unit``, `rate_Hz` samples a second.
+        labels : pandas.DataFrame
+        """
+        labels, signals = self._read(where, signal=True)
+        return signals, labels
+
+    def failed(self) -> dict[str, str]:
+        """Errors of the conditions that could not be simulated, by name."""
+        return {path.stem: path.read_text(encoding="utf-8") for path in sorted((self.folder / FAILED).glob("condition-*.txt"))}
+
+    def _read(self, where, *, signal):
+        shards = opened(self.folder / WINDOWS)
+        fields = fields_of(shards.schema)
+        names = [name for name in fields if name != "signal"]
+        rows = read(self.folder / WINDOWS, [*names, *(["signal"] if signal else [])], where_of(where, names))
+        labels = frame(rows.select(names), fields)
+        if not signal:
+            return labels, None
+        size = shards.schema.field("signal").type.list_size
+        flat = rows.column("signal").combine_chunks().flatten().to_numpy(zero_copy_only=False)
+        return labels, flat.reshape(-1, size)
+
+    def export(self, form: str) -> list[Path]:
+        """Write each side of the split that has windows as one file, with ``signals`` and each column of the labels.
+
+        Parameters
+        ----------
+        form : {"mat", "hdf5"}
+            MATLAB 5 (texts are cell arrays), or HDF5.
+
+        Raises
+        ------
+        ValueError
+            If the form is another, the file cannot be written, or is larger than MATLAB 5 files are.
+        RuntimeError
+            If h5py is missing; the message names what to install.
+        """
+        if form not in WRITERS:
+            raise ValueError(f"form = {form!r}, but it must be one of {', '.join(WRITERS)}")
+        suffix, write = WRITERS[form]
+        out = []
+        for side in ("train", "validation", "test"):
+            signals, labels = self.windows({"side": side})
+            if not len(labels):
+                continue
+            path = self.folder / f"{side}{suffix}"
+            with written(path) as name:
+                write(name, signals, labels, self.about)
+            out.append(path)
+        return out
+
+
+def _mat(name, signals, labels, about):
+    from scipy.io import savemat
+
+    if signals.nbytes > MOST_MAT:
+        raise ValueError(f"{signals.nbytes / 1e9:.3g} GB of signals, but an array of a MATLAB 5 file has at most 2: take hdf5")
+    columns = {key.replace(".", "_"): _column(labels[key]) for key in labels}
+    notes = {"about": json.dumps(about), "units_json": json.dumps(labels.attrs["units"])}
+    savemat(name, {"signals": signals} | columns | notes, appendmat=False, oned_as="column", long_field_names=True)
+
+
+def _hdf5(name, signals, labels, about):
+    with needing("h5py"):
+        import h5py
+    with h5py.File(name, "w") as file:
+        file.attrs["about"] = json.dumps(about)
+        file.create_dataset("signals", data=signals, chunks=(1, signals.shape[1]), compression="gzip", shuffle=True)
+        for key in labels:
+            values = _column(labels[key])
+            column = file.create_dataset(key, data=values, dtype=h5py.string_dtype() if values.dtype == object else None)
+            column.attrs["units"] = labels.attrs["units"][key]
+
+
+def _column(values):
+    """Column of labels as an array: numbers, or texts with nothing for none."""
+    if values.dtype.kind in "iufb":
+        return values.to_numpy()
+    return np.array(["" if value is None or value != value else str(value) for value in values], dtype=object)
+
+
+WRITERS = {"mat": (".mat", _mat), "hdf5": (".h5", _hdf5)}
+
+
+def open_dataset(folder: str | os.PathLike[str]) -> Dataset:
+    """Open a data set, finished or not.
+
+    Raises
+    ------
+    ValueError
+        If it is no such folder.
+    RuntimeError
+        If pyarrow is missing; the message names what to install.
+    """
+    arrow()
+    return Dataset(Path(folder), read_about(folder, FORMAT))

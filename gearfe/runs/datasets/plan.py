@@ -1,0 +1,256 @@
+"""What a data set is made of: a strict TOML file, or the same as a dictionary.
+
+::
+
+    title = "cracks of the sun"
+    scene = "planetary_pitting"          # or a file with a [machine]
+    seed = 1
+    repeats = 4                          # conditions of each combination, each with its own start, scatter and noise
+    healthy = 4                          # healthy conditions for each combination of speed and torque; default: repeats
+
+    [window]
+    seconds = 0.2
+    count = 4                            # one after the other, of each condition and sensor
+    rate_Hz = 12800.0
+    harmonics = 5                        # of the mesh that must lie below half the rate
+
+    [operation]                          # every combination
+    speed_rpm = [800.0, 1000.0]
+    torque_Nm = [50.0, 100.0]
+    spread = 0.01                        # of each: uniform within this part above and below, drawn for each condition
+
+    [[fault]]                            # kinds and their keys: `gearfe.runs.datasets.faults.FAULTS`
+    kind = "crack"
+    gear = "sun"
+    severity = [0.1, 0.3, 0.5]
+
+    [[sensor]]
+    name = "sun"
+    channel = "sun.x acceleration"       # of the response; or housing = "planet_ring", heard by a sensor that stands still
+    noise = [0.0, 1.0]                   # rms of white noise [unit of the channel], each a copy of every window
+
+    [scatter]                            # what differs from machine to machine, drawn for each condition, healthy ones too
+    "machine.profile_error_um" = { uniform = [0.2, 1.0] }
+
+    [split]
+    train = 0.5
+    validation = 0.25
+    test = 0.25
+    by = "condition"                     # or "operation": sides share no combination of speed and torque
+"""
+
+import json
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+from ...dynamics.machine.of_scene import MACHINES
+from ...scene.damage_tables import DAMAGE
+from ...scene.load import Scene, scene_of
+from ...scene.strict import NUMBER, NUMBERS, REQUIRED, TABLES, TEXT, VALUES, WHOLE, checked
+from ...scene.toml_file import given_tables
+from ..sweeps.keys import check_key, placed, tables_near
+from ..sweeps.samples import check_shape
+from .faults import FAULTS
+
+SIDES = ("train", "validation", "test")
+TOP = {
+    "title": (TEXT, "data set"),
+    "scene": (TEXT, REQUIRED),
+    "seed": (WHOLE, 0),
+    "repeats": (WHOLE, 1),
+    "healthy": (WHOLE, None),
+    "curves": (TEXT, None),
+    "phases": (WHOLE, 64),
+    "window": (VALUES, REQUIRED),
+    "operation": (VALUES, REQUIRED),
+    "fault": (TABLES, REQUIRED),
+    "sensor": (TABLES, REQUIRED),
+    "scatter": (VALUES, {}),
+    "split": (VALUES, {}),
+}
+WINDOW = {"seconds": (NUMBER, REQUIRED), "count": (WHOLE, 1), "rate_Hz": (NUMBER, REQUIRED), "harmonics": (WHOLE, 3)}
+OPERATION = {"speed_rpm": (NUMBERS, REQUIRED), "torque_Nm": (NUMBERS, REQUIRED), "spread": (NUMBER, 0.0)}
+FAULT = {"kind": (TEXT, REQUIRED), "severity": (NUMBERS, REQUIRED)}
+SENSOR = {"name": (TEXT, REQUIRED), "channel": (TEXT, None), "housing": (TEXT, None), "angle_deg": (NUMBER, 0.0)}
+SENSOR |= {"noise": (NUMBERS, [0.0])}
+SPLIT = {"train": (NUMBER, 0.6), "validation": (NUMBER, 0.2), "test": (NUMBER, 0.2), "by": (TEXT, "condition")}
+MOST = 1_000_000  # conditions
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A data set as it is asked for, checked: the tables of its file with defaults filled in, and those of its scene."""
+
+    title: str
+    seed: int
+    repeats: int
+    healthy: int
+    curves: str
+    phases: int
+    window: dict[str, Any]
+    operation: dict[str, Any]
+    fault: tuple[dict[str, Any], ...]
+    sensor: tuple[dict[str, Any], ...]
+    scatter: dict[str, Any]
+    split: dict[str, Any]
+    scene: str
+    tables: dict[str, Any]
+
+    def content(self) -> dict[str, Any]:
+        """All that decides the data, as JSON: two data sets are the same if this is."""
+        return json.loads(json.dumps({name: getattr(self, name) for name in self.__slots__}))
+
+    def scene_at(self, values: Mapping[str, Any], fault: Mapping[str, Any] | None = None, severity: float = 0.0) -> Scene:
+        """Scene of one condition: the speed, the torque and what scatters by key, and its fault.
+
+        The forces of all pairs, at which their stiffness is computed, go with the torque.
+        """
+        base = self.tables["machine"]["torque_Nm"]
+        tables = placed(self.tables, values)
+        for pair in tables["pair"].values():
+            pair["force_N"] *= tables["machine"]["torque_Nm"] / base
+        if fault is not None:
+            FAULTS[fault["kind"]].enter(tables, severity, fault)
+        return scene_of(f"{self.scene} of {self.title!r}", tables)
+
+
+def read_plan(given: str | os.PathLike[str] | Mapping[str, Any]) -> Plan:
+    """Check what is asked for, and build the scene of every fault once: gears and damage that cannot be are found now.
+
+    Raises
+    ------
+    ValueError
+        Naming file, table and key if anything is unknown, missing or impossible.
+    """
+    file, place, data = given_tables(given, "data set")
+    top = checked(file, "top level", data, TOP)
+    for name, table in (("window", WINDOW), ("operation", OPERATION), ("split", SPLIT)):
+        top[name] = checked(file, name, top[name], table)
+    top["fault"] = tuple(_fault(file, i, entry) for i, entry in enumerate(top["fault"]))
+    top["sensor"] = tuple(_sensor(file, i, entry) for i, entry in enumerate(top["sensor"]))
+    scene, tables = tables_near(place, top.pop("scene"))
+    tables = {kind: entry for kind, entry in tables.items() if kind not in DAMAGE}  # of its own it has none
+    top["healthy"] = top["repeats"] if top["healthy"] is None else top["healthy"]
+    top["curves"] = top["curves"] or ("ritz3d" if any(entry["kind"] == "pits" for entry in top["fault"]) else "auto")
+    plan = Plan(**top, scene=scene, tables=tables)
+    try:
+        _check(plan)
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from error
+    return plan
+
+
+def _fault(file, i, table):
+    where = f"fault {i + 1}"
+    kind = table.get("kind")
+    if kind not in FAULTS:
+        raise ValueError(
+            f"{file} [{where}] kind = {kind!r}, but it must be one of {', '.join(FAULTS)}; healthy windows are always made"
+        )
+    row = checked(file, where, table, FAULT | FAULTS[kind].keys)
+    low, high = FAULTS[kind].bounds
+    if not row["severity"] or len(set(row["severity"])) < len(row["severity"]):
+        raise ValueError(f"{file} [{where}] severity = {row['severity']!r}: give different numbers, one or more")
+    for value in row["severity"]:
+        if not low <= value <= high:
+            raise ValueError(
+                f"{file} [{where}] severity = {value:g}, but give {low:g} to {high:g}: it is the {FAULTS[kind].severity} "
+                f"[{FAULTS[kind].unit}]"
+            )
+    return row
+
+
+def _sensor(file, i, table):
+    where = f"sensor {i + 1}"
+    row = checked(file, where, table, SENSOR)
+    if (row["channel"] is None) == (row["housing"] is None):
+        raise ValueError(f"{file} [{where}]: give channel, a channel of the response, or housing, the meshes heard; one of them")
+    if not row["noise"] or any(not value >= 0 for value in row["noise"]):
+        raise ValueError(f"{file} [{where}] noise = {row['noise']!r}: give rms values >= 0, one or more")
+    return row
+
+
+def _check(plan):
+    """Raise ValueError for a plan that contradicts itself or its scene."""
+    if "machine" not in plan.tables:
+        raise ValueError(f"scene {plan.scene} has no [machine], so that nothing vibrates: add one, or take another scene")
+    if not plan.fault:
+        raise ValueError("no fault, so that there is nothing to learn: give one [[fault]] or more")
+    for name, value in {"repeats": plan.repeats, "healthy": plan.healthy, "[window] count": plan.window["count"]}.items():
+        if value < 1:
+            raise ValueError(f"{name} = {value}: give a whole number >= 1")
+    for key in ("seconds", "rate_Hz", "harmonics"):
+        if not plan.window[key] > 0:
+            raise ValueError(f"[window] {key} = {plan.window[key]:g}, but it must be positive")
+    for key in ("speed_rpm", "torque_Nm"):
+        values = plan.operation[key]
+        if not values or not all(value > 0 for value in values) or len(set(values)) < len(values):
+            raise ValueError(f"[operation] {key} = {values!r}: give different numbers > 0")
+    if not 0 <= plan.operation["spread"] < 0.5:
+        raise ValueError(f"[operation] spread = {plan.operation['spread']}: give a part of speed and torque, from 0 to below 0.5")
+    names = [sensor["name"] for sensor in plan.sensor]
+    if not names or len(set(names)) < len(names):
+        raise ValueError(f"[[sensor]] names {names!r}: give one sensor or more, each with a name of its own")
+    _check_split(plan.split)
+    _check_scatter(plan)
+    _check_scenes(plan)
+    if count_of(plan) > MOST:
+        raise ValueError(f"{count_of(plan):.3g} conditions: give fewer than {MOST:g}, or several data sets")
+
+
+def _check_split(split):
+    shares = [split[side] for side in SIDES]
+    if not all(share >= 0 for share in shares) or not math.isclose(sum(shares), 1.0, abs_tol=1e-6) or not split["train"] > 0:
+        stated = ", ".join(f"{side} = {share:g}" for side, share in zip(SIDES, shares, strict=True))
+        raise ValueError(f"[split] {stated}: shares >= 0 add up to 1, with some to train on")
+    if split["by"] not in ("condition", "operation"):
+        raise ValueError(f"[split] by = {split['by']!r}, but it must be 'condition' or 'operation'")
+
+
+def _check_scatter(plan):
+    ours = {"machine.speed_rpm", "machine.torque_Nm"}
+    ours |= {f"machine.{fault['kind']}_um" for fault in plan.fault if not FAULTS[fault["kind"]].damage}
+    for key, spec in plan.scatter.items():
+        check_key(key, plan.tables, {})
+        if key in ours or (key.startswith("pair.") and key.endswith(".force_N")):
+            raise ValueError(f"[scatter] {key!r} is set by the operation or by a fault: leave it out")
+        if not isinstance(spec, dict):
+            raise ValueError(f"[scatter] {key!r} = {spec!r}: give a distribution, {{ uniform = [low, high] }}")
+        check_shape(f"[scatter] {key!r}", spec)
+
+
+def _check_scenes(plan):
+    """Build the scene of every fault at every severity once, and see that the machine takes it."""
+    model = plan.tables["machine"].get("model")
+    if model not in MACHINES:
+        raise ValueError(f"[machine] model = {model!r} of {plan.scene}, but it must be one of {', '.join(MACHINES)}")
+    if plan.tables["machine"].get("contact", "linear") != "linear":
+        raise ValueError("[machine] contact = 'impact': a data set has linear contact; give a scene with contact = 'linear'")
+    plan.scene_at({})
+    for fault in plan.fault:
+        gear = fault.get("gear")
+        first = next(iter(plan.tables["pair"].values()))["gear_1"]
+        if gear is not None and gear != first:
+            raise ValueError(f"fault of gear {gear!r}, but in a machine {model!r} only the teeth of {first!r} have damage")
+        for severity in fault["severity"]:
+            plan.scene_at({}, fault, severity)
+
+
+def combinations(plan: Plan) -> list[tuple[dict[str, Any] | None, float, int]]:
+    """Fault (None: healthy), severity and repeats of each class."""
+    faults = [(fault, severity, plan.repeats) for fault in plan.fault for severity in fault["severity"]]
+    return [(None, 0.0, plan.healthy), *faults]
+
+
+def operations(plan: Plan) -> list[tuple[float, float]]:
+    """Speed and torque of each combination."""
+    return list(product(plan.operation["speed_rpm"], plan.operation["torque_Nm"]))
+
+
+def count_of(plan: Plan) -> int:
+    """Number of conditions."""
+    return len(operations(plan)) * sum(repeats for *_, repeats in combinations(plan))

@@ -1,0 +1,189 @@
+"""One condition of a data set: its machine simulated, heard by the sensors, cut into windows with their labels."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ...comparison.vibration import recorded
+from ...core.threads import own_warnings
+from ...dynamics.machine.of_scene import build_machine
+from ...dynamics.machine.tables import Machine, Stage
+from ...dynamics.motion.housing import housing_signal
+from ...dynamics.motion.response import Response
+from ...dynamics.motion.step_control import default_step
+from ...signal.series import Signal, decimate
+from ..store.shards import Field, arrow, schema_of
+from .conditions import Condition
+from .faults import CASE, FAULTS
+from .plan import Plan
+
+EDGE = 64  # samples simulated before and after what is kept: the filter of `decimate` sees no end
+COLUMNS = {  # beside the signal: kind and unit, and, where the name does not say it, what it is
+    "condition": (Field("whole"), "number of the simulation"),
+    "window": (Field("whole"), "number within the condition"),
+    "side": (Field("text"), "of the split"),
+    "fault": (Field("text"), "kind, or healthy"),
+    "gear": (Field("text"), "whose tooth is damaged"),
+    "severity": (Field("number", "see severity_unit"), "see the faults above; 0: healthy"),
+    "severity_unit": (Field("text"), ""),
+    "loss_max": (Field("number"), "largest loss of mesh stiffness"),
+    "loss_mean": (Field("number"), "mean over the engagement of the damaged tooth"),
+    "machine": (Field("text"), "scene"),
+    "sensor": (Field("text"), ""),
+    "unit": (Field("text"), "of signal, rms and noise"),
+    "rms": (Field("number", "see unit"), "of the signal before noise, without its mean, over the condition"),
+    "noise": (Field("number", "see unit"), "rms of the white noise added"),
+    "snr_dB": (Field("number", "dB"), "signal over noise; none without noise"),
+    "speed_rpm": (Field("number", "rpm"), ""),
+    "torque_Nm": (Field("number", "N m"), ""),
+    "mesh_Hz": (Field("number", "Hz"), "mesh frequency"),
+    "turning_Hz": (Field("number", "Hz"), "of the driving gear, against the carrier if there is one"),
+    "fault_Hz": (Field("number", "Hz"), "how often a faulty tooth meshes"),
+    "carrier_Hz": (Field("number", "Hz"), ""),
+    "rate_Hz": (Field("number", "Hz"), ""),
+    "start_s": (Field("number", "s"), "of the window, in the simulation"),
+    "error": (Field("number"), "of the motion, relative to its range"),
+    "free": (Field("number"), "what is left of the free vibrations of the start"),
+    "seed": (Field("whole"), ""),
+    "notes": (Field("text"), "warnings"),
+}
+LABELS = {name: field for name, (field, _) in COLUMNS.items()}
+
+
+def fields_of(plan: Plan) -> dict[str, Field]:
+    """Columns of the windows but for the signal: `LABELS`, and what scatters by key."""
+    return LABELS | {key: Field("number") for key in plan.scatter}
+
+
+def schema(plan: Plan) -> Any:
+    """Schema of a file of windows: the labels, then the signal as a list of `samples_of` numbers of 4 bytes."""
+    pa = arrow()
+    signal = pa.field("signal", pa.list_(pa.float32(), samples_of(plan)), metadata={"kind": "signal", "unit": "see unit"})
+    return schema_of(fields_of(plan)).append(signal)
+
+
+def samples_of(plan: Plan) -> int:
+    """Samples of a window."""
+    return round(plan.window["seconds"] * plan.window["rate_Hz"])
+
+
+def stage_of(machine: Machine) -> Stage:
+    """Driven stage of a machine."""
+    return machine.stages[-1]
+
+
+def simulated(plan: Plan, condition: Condition) -> tuple[Machine, Response, int]:
+    """Machine and response of a condition, and how many samples of the response make one sample of a window."""
+    fault = None if condition.fault is None else plan.fault[condition.fault]
+    scene = plan.scene_at(condition.values, fault, condition.severity)
+    case = CASE if fault is not None and FAULTS[fault["kind"]].damage else None
+    machine = build_machine(scene, case, phases=plan.phases, method=plan.curves)
+    rate = plan.window["rate_Hz"]
+    finer = max(1, math.ceil(1 / (default_step(machine) * rate)))
+    count = samples_of(plan) * plan.window["count"] + 2 * EDGE
+    start = condition.start * max(mesh.teeth[0] / abs(mesh.frequency) for mesh in machine.meshes)  # of the slowest turn
+    return machine, recorded(machine, count / rate, rate * finer, start=start), finer
+
+
+def heard(sensor: dict[str, Any], response: Response) -> Signal:
+    """What a sensor makes of a response, at the rate of the response."""
+    if sensor["housing"] is not None:
+        return housing_signal(response, kind=sensor["housing"], sensor=math.radians(sensor["angle_deg"]))
+    name = sensor["channel"]
+    rate = 1 / float(response.time[1] - response.time[0])
+    return Signal(np.asarray(response[name], dtype=float), rate, response.unit(name), name=sensor["name"])
+
+
+def losses(machine: Machine) -> tuple[float, float]:
+    """Largest and mean part of the stiffness that damage takes over the engagement of the damaged tooth, of the worst mesh."""
+    worst = (0.0, 0.0)
+    for mesh in machine.meshes:
+        for _, _, change in mesh.changes:
+            phase = np.linspace(change.start, change.end, 1001)
+            loss = -change(phase) / mesh.cycle(phase % 1.0)
+            worst = max(worst, (float(loss.max()), float(loss.mean())))
+    return worst
+
+
+def rows_of(plan: Plan, condition: Condition) -> list[dict[str, Any]]:
+    """All windows of a condition: the signal and its labels."""
+    with own_warnings() as caught:
+        machine, response, finer = simulated(plan, condition)
+    same = _labels(plan, condition, machine, response)
+    same["notes"] = "; ".join(dict.fromkeys(str(warning.message) for warning in caught)) or None
+    count, size = plan.window["count"], samples_of(plan)
+    first = float(response.time[0]) + EDGE / plan.window["rate_Hz"]
+    out = []
+    for place, sensor in enumerate(plan.sensor):
+        fine = heard(sensor, response)
+        signal = decimate(fine, fine.rate / finer).values[EDGE : EDGE + count * size]
+        for level, noise in enumerate(sensor["noise"]):
+            rng = np.random.default_rng([plan.seed, condition.number, place, level])
+            values = (signal + noise * rng.standard_normal(signal.size)).astype(np.float32).reshape(count, size)
+            labels = {"sensor": sensor["name"], "unit": fine.unit, "rms": float(np.std(signal)), "noise": noise}
+            labels["snr_dB"] = 20 * math.log10(labels["rms"] / noise) if noise and labels["rms"] else None
+            for i, window in enumerate(values):
+                at = {"window": i, "start_s": first + i * size / plan.window["rate_Hz"], "signal": window}
+                out.append(same | labels | at)
+    return out
+
+
+def _labels(plan, condition, machine, response):
+    """What all windows of a condition have in common."""
+    stage, fault = stage_of(machine), None if condition.fault is None else plan.fault[condition.fault]
+    largest, mean = losses(machine)
+    stats = response.stats
+    return condition.scatter | {
+        "condition": condition.number, "side": condition.side, "fault": condition.label, "seed": plan.seed,
+        "gear": fault.get("gear") if fault else None, "severity": condition.severity,
+        "severity_unit": FAULTS[fault["kind"]].unit if fault else "-", "loss_max": largest, "loss_mean": mean,
+        "machine": plan.scene, "speed_rpm": condition.speed, "torque_Nm": condition.torque, "mesh_Hz": stage.mesh,
+        "turning_Hz": stage.turning, "fault_Hz": stage.fault or stage.turning, "carrier_Hz": stage.carrier,
+        "rate_Hz": plan.window["rate_Hz"], "error": stats.get("error"), "free": stats["free"],
+    }  # fmt: skip
+
+
+def table_of(plan: Plan, rows: list[dict[str, Any]]) -> Any:
+    """Windows of `rows_of` as a pyarrow table."""
+    pa, form = arrow(), schema(plan)
+    columns = [pa.array([row.get(name) for row in rows], form.field(name).type) for name in form.names[:-1]]
+    flat = pa.array(np.concatenate([row["signal"] for row in rows]))
+    columns.append(pa.FixedSizeListArray.from_arrays(flat, samples_of(plan)))
+    return pa.Table.from_arrays(columns, schema=form)
+
+
+def check_machine(plan: Plan) -> dict[str, Any]:
+    """Build the healthy machine once, and refuse sensors it has not and rates and windows that do not show its fault.
+
+    Raises
+    ------
+    ValueError
+        With the frequencies.
+    """
+    speeds, torques = plan.operation["speed_rpm"], plan.operation["torque_Nm"]
+    values = {"machine.speed_rpm": max(speeds), "machine.torque_Nm": max(torques)}
+    machine = build_machine(plan.scene_at(values), None, phases=plan.phases, method=plan.curves)
+    stage, window, spread = stage_of(machine), plan.window, plan.operation["spread"]
+    top = stage.mesh * (1 + spread)
+    if window["harmonics"] * top > window["rate_Hz"] / 2:
+        raise ValueError(
+            f"[window] rate_Hz = {window['rate_Hz']:g}, but {window['harmonics']} harmonics of the mesh at {max(speeds):g} rpm "
+            f"reach {window['harmonics'] * top:.4g} Hz: give {2 * window['harmonics'] * top:.4g} or more, or fewer harmonics"
+        )
+    slow = (stage.fault or stage.turning) * min(speeds) / max(speeds) * (1 - spread)
+    if window["seconds"] * slow < 1:
+        raise ValueError(
+            f"[window] seconds = {window['seconds']:g}, but at {min(speeds):g} rpm a faulty tooth meshes every {1 / slow:.4g} s, "
+            f"so that a faulty window may hold nothing of it: give {1 / slow:.3g} s or more"
+        )
+    if samples_of(plan) < 16:
+        raise ValueError(f"a window of {samples_of(plan)} samples: give a longer one")
+    short = recorded(machine, 4 * default_step(machine), 1 / default_step(machine))
+    units = {}
+    for i, sensor in enumerate(plan.sensor):
+        try:
+            units[sensor["name"]] = heard(sensor, short).unit
+        except ValueError as error:
+            raise ValueError(f"[sensor {i + 1}] {sensor['name']}: {error}") from error
+    return {"mesh_Hz": stage.mesh, "fault_Hz": stage.fault or stage.turning, "units": units}

@@ -1,0 +1,228 @@
+"""`error_map`: how far closed forms are from the converged energy model, over thousands of gear pairs."""
+
+import csv
+import math
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import qmc
+
+from ..comparison.own_model import OwnModel, own_curve
+from ..core.case import Case
+from ..core.files import written
+from ..core.material import Material
+from ..core.threads import own_warnings
+from ..geometry.damage.crack import Crack, crack_path
+from ..geometry.pair.gear_pair import GearPair
+from ..geometry.tooth.gear import Gear
+from ..stiffness.methods import ROWS
+from ..stiffness.solve import Solve, solve
+from .batches import batch
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# the sampled space: uniform between these ends; bores in root radii, loads F / (b m_n) in MPa on a logarithmic scale
+RANGES = {
+    "z_1": (12, 80),
+    "z_2": (12, 120),
+    "alpha_deg": (17.5, 25.0),
+    "x_1": (-0.3, 0.6),
+    "x_2": (-0.3, 0.6),
+    "bore_1": (0.2, 0.9),
+    "bore_2": (0.2, 0.9),
+    "tip_radius": (0.2, 0.38),
+    "crack": (0.02, 0.7),
+}
+LOADS = (10.0, 50.0, 250.0)
+ZONES = ("single", "double", "mean", "max")
+CLOSED_FORMS = sorted((row for row in ROWS if not row.converged), key=lambda row: row.kind != "sum")  # the sums first
+HEALTHY = tuple(row.name for row in CLOSED_FORMS)
+CRACKED = {f"{row.name} {model}": (row.name, {"crack_model": model}) for row in CLOSED_FORMS for model in row.crack_models}
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorMap:
+    """Relative errors of formulations against `ritz`, one row for each pair, load and state of damage.
+
+    `columns` maps names to arrays: the sampled numbers, ``load`` [MPa], ``crack`` (0: healthy), and for each zone ``k`` of
+    ritz [N/(mm um)] and the error of each formulation as ``"textbook single"`` and so on (nan: the formulation or the zone
+    does not exist there). ``extended mean`` is what contact beyond the path of contact adds to the mean k. `formulations`
+    are their names; `seconds` (cases,), `elapsed` and `workers` the cost.
+    """
+
+    columns: dict[str, NDArray[np.float64]]
+    formulations: tuple[str, ...]
+    seconds: NDArray[np.float64]
+    elapsed: float
+    workers: int
+
+    def rows(self, **limits: tuple[float, float]) -> NDArray[np.bool_]:
+        """Mask of the rows whose columns lie within the given ``name=(low, high)``."""
+        inside = np.ones(self.columns["load"].size, dtype=bool)
+        for name, (low, high) in limits.items():
+            inside &= (self.columns[name] >= low) & (self.columns[name] <= high)
+        return inside
+
+    def bands(
+        self, formulation: str, zone: str = "mean", **limits: tuple[float, float]
+    ) -> tuple[float, float, float, float, int]:
+        """Errors at 5, 50 and 95 % of the rows within `limits`, the share of them below 3 %, and their number."""
+        error = self.columns[f"{formulation} {zone}"][self.rows(**limits)]
+        error = error[np.isfinite(error)]
+        if error.size == 0:
+            return (math.nan,) * 4 + (0,)
+        return *np.percentile(error, [5, 50, 95]).tolist(), float((np.abs(error) < 0.03).mean()), error.size
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write all columns, with a header."""
+        with written(path) as name, open(name, "w", newline="", encoding="utf-8") as file:
+            table = csv.writer(file)
+            table.writerow(self.columns)
+            table.writerows([f"{value:.6g}" for value in row] for row in zip(*self.columns.values(), strict=True))
+
+    def plot(
+        self,
+        path: str | os.PathLike[str] | None,
+        formulations: Sequence[str] | None = None,
+        x: str = "load",
+        y: str = "bore_1",
+        zone: str = "mean",
+    ) -> "Figure":
+        """Heat maps of the median error of healthy pairs over two columns, one for each formulation."""
+        from ..figures.stiffness_plots import plot_map
+
+        names = formulations or [name for name in self.formulations if name not in CRACKED]
+        return plot_map(self, names, x, y, zone, path)
+
+
+def error_map(
+    pairs: int = 2000,
+    *,
+    seed: int = 0,
+    loads: Sequence[float] = LOADS,
+    models: Mapping[str, Callable[[GearPair, float, Material], OwnModel]] | None = None,
+    phases: int = 24,
+    workers: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> ErrorMap:
+    """Errors of the closed forms, and of your own models, against `ritz` over a sample of gear pairs.
+
+    A scrambled Sobol sequence over `RANGES`; samples that cannot be built or mesh, or whose crack leaves
+    the body, are passed over. Every pair is taken healthy, and every second one also with a pinion crack from the 30-degree point
+    at 45 degrees. Steel (206 GPa, 0.3), plane strain, no contact beyond the path of contact, which closed forms do not know.
+
+    Parameters
+    ----------
+    pairs : int
+        Number of pairs (two gears each).
+    seed : int
+        Of the sample.
+    loads : sequence of float
+        F / (b m_n) [MPa]: geometry and load scale with the module.
+    models : dict of str to callable, optional
+        Your own, healthy pairs only: ``make(pair, force, material)`` returns a model as in `gearfe.compare` (a function of the
+        phase, or a `PairModel`).
+    phases : int
+        Per mesh cycle.
+    workers, progress
+        As of `gearfe.batch`.
+
+    Returns
+    -------
+    ErrorMap
+        A row for each pair, load and state of damage.
+
+    Raises
+    ------
+    ValueError
+        If `pairs` is no whole number from 1 on, `phases` is below 1, `loads` are empty or one is not positive and finite, or so
+        large that teeth would break, `workers` is no whole number from 1 on, or your own model fails or its k is not finite and
+        positive.
+    """
+    if pairs != int(pairs) or pairs < 1:
+        raise ValueError(f"pairs = {pairs}, but give a number of pairs >= 1")
+    shared: dict[str, Any] = {"loads": tuple(loads), "models": dict(models or {}), "phases": int(phases)}
+    cases = [{"sample": sample, **shared} for sample in _samples(int(pairs), seed)]
+    done = batch(cases, work=_one, workers=workers, progress=progress)
+    for result in done.results:
+        if isinstance(result, Exception):
+            raise result
+    names = (*HEALTHY, *shared["models"], *CRACKED)
+    rows = [row for result in done.results for row in result]
+    keys = [*RANGES, "load", *(f"k {zone}" for zone in ZONES), "extended mean", *(f"{n} {zone}" for n in names for zone in ZONES)]
+    columns = {key: np.array([row.get(key, math.nan) for row in rows]) for key in keys}
+    return ErrorMap(columns, names, np.array(done.seconds), done.elapsed, done.workers)
+
+
+def build(sample):
+    """Pair of module 1 and width 1 mm from the sampled numbers."""
+    rack = {"m_n": 1.0, "alpha_n": math.radians(sample["alpha_deg"]), "b": 1.0, "tip_radius": sample["tip_radius"]}
+    with own_warnings():  # tip radii are capped at the full rounding
+        gears = []
+        for k in (1, 2):
+            z, x = sample[f"z_{k}"], sample[f"x_{k}"]
+            gears.append(Gear(z=int(z), x=x, r_bore=sample[f"bore_{k}"] * (z / 2 - 1.25 + x), **rack))
+        return GearPair(*gears)
+
+
+def _samples(count, seed):
+    """`count` samples that can be built."""
+    names, ends = list(RANGES), np.array(list(RANGES.values()))
+    source = qmc.Sobol(len(names), seed=seed)
+    out = []
+    while len(out) < count:
+        for point in qmc.scale(source.random(256), ends[:, 0], ends[:, 1]):
+            sample = dict(zip(names, point.tolist(), strict=True))
+            sample |= {name: float(round(sample[name])) for name in ("z_1", "z_2")}
+            try:
+                crack_path(build(sample).gear_1, Crack(level=sample["crack"]))
+            except ValueError:
+                continue
+            out.append(sample)
+            if len(out) == count:
+                break
+    return [sample | {"crack": sample["crack"] if k % 2 else 0.0} for k, sample in enumerate(out)]
+
+
+def _one(sample, loads, models, phases):
+    """Rows of one pair."""
+    pair, steel = build(sample), Material()
+    forces = [load * 1.0 for load in loads]
+    case, how = Case(pair, forces, steel), Solve("ritz", phases=(np.arange(phases) + 0.5) / phases, extended=False)
+    truth, beyond = solve(case, how), solve(case, replace(how, extended=True))
+    curves = {name: solve(case, replace(how, method=name)) for name in HEALTHY}
+    for name, make in models.items():
+        curves[name] = [
+            own_curve(name, make(pair, force, steel), pair, curve) for force, curve in zip(forces, truth, strict=True)
+        ]
+    rows = [
+        sample
+        | {"crack": 0.0, "load": load, "extended mean": beyond[i].k.mean() / truth[i].k.mean() - 1}
+        | _errors(truth, curves, i)
+        for i, load in enumerate(loads)
+    ]
+    if sample["crack"]:
+        inside = np.linspace(0, pair.eps_alpha, int(phases * pair.eps_alpha) + 1)
+        case = replace(case, damage={"pinion": [Crack(level=sample["crack"])]})
+        how = replace(how, phases=(inside[1:] + inside[:-1]) / 2)
+        truth, curves = solve(case, how), {}
+        for name, (method, variants) in CRACKED.items():
+            try:
+                curves[name] = solve(case, replace(how, method=method, variants=variants))
+            except ValueError:  # nothing is left of the beam: the model has no value here
+                continue
+        rows += [sample | {"load": load} | _errors(truth, curves, i) for i, load in enumerate(loads)]
+    return rows
+
+
+def _errors(truth, found, i):
+    zones = truth[i].zones()
+    out = {f"k {zone}": k * 1e-6 for zone, k in zones.items() if zone in ZONES}
+    for name, curves in found.items():
+        out |= {f"{name} {zone}": k / zones[zone] - 1 for zone, k in curves[i].zones().items() if zone in ZONES}
+    return out

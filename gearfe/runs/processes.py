@@ -1,0 +1,70 @@
+"""Pools of new processes of one thread each, which end when this process does and do not run the caller's script again."""
+
+import contextlib
+import multiprocessing
+import multiprocessing.connection
+import os
+import sys
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+
+from ..core.threads import Shared
+
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@contextlib.contextmanager
+def processes(workers: int, *, own: bool = False) -> Iterator[ProcessPoolExecutor]:
+    """Pool of new processes of one thread each, which end when this one does, however it ends.
+
+    `own`: they need what the caller's script defines; then they run it again.
+    """
+    spawn = multiprocessing.get_context("spawn")
+    with (
+        _told_one,
+        contextlib.nullcontext() if own else _hidden,
+        ProcessPoolExecutor(workers, mp_context=spawn, initializer=_end_with_parent) as pool,
+    ):
+        yield pool
+
+
+@contextlib.contextmanager
+def _one_in_environment():
+    """Processes started here have one thread: the libraries read it from the environment when they start."""
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name, None) if value is None else os.environ.update({name: value})
+
+
+def _end_with_parent():
+    """Leave this process when the one that started it is gone: a killed one can not say so to its workers."""
+    parent = multiprocessing.parent_process()
+
+    def watch():
+        if parent is not None:
+            multiprocessing.connection.wait([parent.sentinel])
+            os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+@contextlib.contextmanager
+def _without_main():
+    """Workers started here do not run the caller's script again: they find no file to import as their main module."""
+    main = sys.modules["__main__"]
+    hidden = {name: getattr(main, name) for name in ("__file__", "__spec__") if getattr(main, name, None) is not None}
+    for name in hidden:
+        setattr(main, name, None)
+    try:
+        yield
+    finally:
+        for name, value in hidden.items():
+            setattr(main, name, value)
+
+
+_told_one, _hidden = Shared(_one_in_environment), Shared(_without_main)  # pools of several threads may overlap

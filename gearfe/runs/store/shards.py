@@ -1,0 +1,279 @@
+"""Shards: Parquet files of rows in a folder, each whole or not there; nothing is ever appended to one. Needs pyarrow."""
+
+import filecmp
+import hashlib
+import json
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...core.extras import needing
+from .folder import durable
+
+if TYPE_CHECKING:
+    import pandas
+    import pyarrow
+    from pyarrow import dataset
+
+SUFFIX = ".parquet"
+
+
+class Field(NamedTuple):
+    """A column of a shard: its `kind`, one of `KINDS`, and unit (``"-"``: none)."""
+
+    kind: str
+    unit: str = "-"
+
+
+KINDS = ("number", "whole", "truth", "text", "list", "json")  # list: of numbers, of any length; json: any value, as JSON text
+
+
+def arrow() -> Any:
+    """Return the package ``pyarrow`` with its parts that read and write Parquet.
+
+    RuntimeError if it is not installed; the message names what to install.
+    """
+    with needing("pyarrow"):
+        import pyarrow
+        import pyarrow.dataset
+        import pyarrow.parquet
+    return pyarrow
+
+
+def where_of(where: Any, names: Sequence[str]) -> Any:
+    """Which rows, as an expression of pyarrow: all if None, an expression as it is, or by column, of those called `names`.
+
+    ``{"status": "done", "level": (0.1, 0.3), "case": ["a", "b"]}``: a value, a range as a tuple of two, or a list of values.
+    ValueError if there is no such column, or it holds no such values.
+    """
+    if not isinstance(where, Mapping):
+        return where
+    field, out = arrow().dataset.field, None
+    for name, value in where.items():
+        if name not in names:
+            raise ValueError(f"where: no column {name!r}; there is {', '.join(names)}")
+        try:
+            if isinstance(value, tuple):
+                low, high = value
+                rows = (field(name) >= low) & (field(name) <= high)
+            else:
+                rows = field(name).isin(value) if isinstance(value, list) else field(name) == value
+        except (TypeError, ValueError) as error:
+            raise ValueError(
+                f"where: {name} = {value!r}; give a value, a range as a tuple of two, or a list of values"
+            ) from error
+        out = rows if out is None else out & rows
+    return out
+
+
+def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, Field]) -> "pyarrow.Table":
+    """Rows as a table with exactly the columns `fields`; what a row lacks is null.
+
+    ValueError if a row has a value that `fields` does not name, or that its column cannot hold: text among numbers, 1.5 among
+    whole numbers.
+    """
+    pa = arrow()
+    extra = sorted({name for row in rows for name in row} - set(fields))
+    if extra:
+        raise ValueError(f"rows have {', '.join(extra)}, but the columns are {', '.join(fields)}")
+    schema = schema_of(fields)
+    columns = [
+        pa.array([_plain(row.get(name), name, field.kind) for row in rows], schema.field(name).type)
+        for name, field in fields.items()
+    ]
+    return pa.Table.from_arrays(columns, schema=schema)
+
+
+def schema_of(fields: Mapping[str, Field]) -> "pyarrow.Schema":
+    """Schema of `table`, with kind and unit of each column in its metadata."""
+    pa = arrow()
+    types = {"number": pa.float64(), "whole": pa.int64(), "truth": pa.bool_(), "text": pa.string(), "json": pa.string()}
+    types["list"] = pa.list_(pa.float64())
+    return pa.schema([pa.field(n, types[f.kind], metadata={"kind": f.kind, "unit": f.unit}) for n, f in fields.items()])
+
+
+def fields_of(schema: "pyarrow.Schema") -> dict[str, Field]:
+    """Columns by name, of a schema that `schema_of` made."""
+    metadata = {field.name: {k.decode(): v.decode() for k, v in (field.metadata or {}).items()} for field in schema}
+    return {name: Field(about.get("kind", "text"), about.get("unit", "-")) for name, about in metadata.items()}
+
+
+def _plain(value, name, kind):
+    """As pyarrow takes it; ValueError if it is not of its kind."""
+    if value is None:
+        return None
+    try:
+        if HELD[kind](value):
+            return TAKEN[kind](value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    text = repr(value)
+    raise ValueError(f"{name} = {text if len(text) < 60 else text[:56] + ' ...'}, but the column holds {TOLD[kind]}")
+
+
+TOLD = {
+    "number": "numbers", "whole": "whole numbers of 64 bits", "truth": "True and False", "text": "texts",
+    "list": "lists of numbers", "json": "what JSON can say",
+}  # fmt: skip
+HELD = {
+    "number": lambda value: isinstance(value, (int, float, np.integer, np.floating)),
+    "whole": lambda value: int(value) == value and not isinstance(value, str) and -(2**63) <= value < 2**63,
+    "truth": lambda value: isinstance(value, (bool, np.bool)),
+    "text": lambda value: isinstance(value, str) and value.encode() is not None,
+    "list": lambda value: np.ndim(value) == 1 and np.asarray(value).dtype.kind in "fiub",
+    "json": lambda value: True,
+}
+TAKEN = {
+    "number": float, "whole": int, "truth": bool, "text": str, "list": lambda value: np.asarray(value, dtype=float),
+    "json": json.dumps,
+}  # fmt: skip
+
+
+def encoded(table: "pyarrow.Table") -> bytes:
+    """Table as the bytes of a Parquet file, compressed, with checksums; the same for the same table."""
+    pa = arrow()
+    out = pa.BufferOutputStream()
+    pa.parquet.write_table(table, out, compression="zstd", write_page_checksum=True)
+    return out.getvalue().to_pybytes()
+
+
+def write_shard(folder: str | os.PathLike[str], name: str, content: bytes) -> None:
+    """Put an `encoded` table into a folder; one of the same name is replaced.
+
+    ValueError if it cannot be written; all other shards stay as they are.
+    """
+    with durable(Path(folder) / f"{name}{SUFFIX}") as file:
+        file.write(content)
+
+
+def shard_names(folder: str | os.PathLike[str]) -> list[str]:
+    """Names of the shards in a folder, sorted."""
+    return sorted(path.name.removesuffix(SUFFIX) for path in Path(folder).glob(f"[!.]*{SUFFIX}"))
+
+
+def check_shards(folder: str | os.PathLike[str]) -> None:
+    """Raise ValueError if a shard is damaged, a copy, or has other columns than the rest: only their ends are read."""
+    pa = arrow()
+    first = None
+    _alike(folder)
+    for name in shard_names(folder):
+        file = Path(folder) / f"{name}{SUFFIX}"
+        try:
+            schema = pa.parquet.read_schema(file)
+        except (OSError, pa.ArrowInvalid) as error:
+            raise _damaged(file, error) from error
+        first = first or schema
+        if schema != first:
+            raise ValueError(f"{file} has other columns than the shards before it: it does not belong here; take it out")
+
+
+def unfinished(folder: str | os.PathLike[str], names: Sequence[str], what: str, failed: Sequence[str] = ()) -> list[str]:
+    """Names, of all that the shards of a folder are to have, that are neither there nor among the `failed`.
+
+    ValueError if a shard is damaged, or there is one that is none of this `what`.
+    """
+    check_shards(folder)
+    present = {*shard_names(folder), *failed}
+    unknown = sorted(present - set(names))
+    if unknown:
+        name = unknown[0] if unknown[0] in failed else f"{unknown[0]}{SUFFIX}"
+        raise ValueError(f"{folder} holds {name}, which is none of this {what}'s: take it out")
+    return [name for name in names if name not in present]
+
+
+def _alike(folder):
+    """Whether all shards say in the same words which columns they have.
+
+    ValueError if a shard is another one, byte for byte: its rows would count twice.
+    """
+    first: dict[tuple[int, bytes], Path] = {}
+    columns = set()
+    for name in shard_names(folder):
+        file = Path(folder) / f"{name}{SUFFIX}"
+        size, end = _end(file)
+        other = first.setdefault((size, hashlib.sha256(end).digest()), file)
+        if other is not file and filecmp.cmp(other, file, shallow=False):
+            raise ValueError(f"{folder} holds {other.name} and {file.name} with the same rows: one is a copy; take it out")
+        columns.add(end[end.rfind(b"ARROW:schema") :])
+    return len(columns) < 2
+
+
+def _end(file):
+    """Size of a shard, and what it says at its end of what it holds: columns, places and extremes of its parts."""
+    with open(file, "rb") as data:
+        size = data.seek(0, os.SEEK_END)
+        data.seek(max(size - 8, 0))
+        length = int.from_bytes(data.read(4), "little")
+        data.seek(max(size - 8 - length, 0))
+        return size, data.read()
+
+
+def opened(folder: str | os.PathLike[str]) -> "dataset.Dataset":
+    """All shards as one pyarrow dataset, which reads the columns and rows that are asked for.
+
+    ValueError if there is no shard, one is damaged, has other columns than the first, or is a copy of another.
+    """
+    pa = arrow()
+    files = [str(Path(folder) / f"{name}{SUFFIX}") for name in shard_names(folder)]
+    if not files:
+        raise ValueError(f"{folder} holds no results yet")
+    try:
+        checked = pa.dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
+        form = pa.dataset.ParquetFileFormat(default_fragment_scan_options=checked)
+        shards = pa.dataset.dataset(files, format=form, schema=pa.parquet.read_schema(files[0]))
+        alike = _alike(folder)
+    except (OSError, pa.ArrowException) as error:
+        raise _damaged(_first_damaged(folder), error) from error
+    if not alike:
+        check_shards(folder)
+    return shards
+
+
+def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":
+    """Columns (None: all) of the rows of all shards that fulfil `where`, a pyarrow expression.
+
+    ValueError if a shard is damaged or a copy, there is no such column, or `where` compares numbers with text.
+    """
+    pa = arrow()
+    shards = opened(folder)
+    unknown = [name for name in columns or () if name not in shards.schema.names]
+    if unknown:
+        raise ValueError(f"no column {unknown[0]!r} in {folder}; it has {', '.join(shards.schema.names)}")
+    try:
+        return shards.to_table(columns=list(columns) if columns is not None else None, filter=where)
+    except (pa.ArrowNotImplementedError, pa.ArrowTypeError) as error:
+        raise ValueError(f"where = {where}: {_line(error)}; a column is compared with values of its own kind") from error
+    except (OSError, pa.ArrowInvalid) as error:
+        raise _damaged(_first_damaged(folder), error) from error
+
+
+def frame(found: "pyarrow.Table", fields: Mapping[str, Field], index: str | None = None) -> "pandas.DataFrame":
+    """A table that was read as pandas has it, by `index`; ``attrs["units"]`` has the units by column. Needs pandas."""
+    with needing("pandas"):
+        data = found.to_pandas()
+    data = data if index is None else data.set_index(index).sort_index()
+    data.attrs["units"] = {name: fields[name].unit for name in data}
+    return data
+
+
+def _line(error):
+    """Message of an error of pyarrow in one line."""
+    return " ".join(str(error).split())
+
+
+def _damaged(file, error):
+    return ValueError(f"{file} is damaged: {_line(error)}; delete it, and what it held is computed anew")
+
+
+def _first_damaged(folder):
+    """First shard in a folder that cannot be read as a whole."""
+    pa = arrow()
+    for name in shard_names(folder):
+        try:
+            pa.parquet.read_table(Path(folder) / f"{name}{SUFFIX}", page_checksum_verification=True)
+        except (OSError, pa.ArrowInvalid):
+            return Path(folder) / f"{name}{SUFFIX}"
+    return f"a shard in {folder}"

@@ -1,0 +1,192 @@
+"""`fit_surrogate`: polynomials by least squares on a Sobol sample of `ritz`, judged on cases that had no part in the fit."""
+
+import itertools
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+from scipy.stats import qmc
+
+from ...core.case import two_materials
+from ...core.checks import is_number
+from ...core.material import Material
+from ...geometry.pair.gear_pair import GearPair
+from ...stiffness.solve import Solve, solve
+from ..batches import batch
+from .space import Space, space_of
+from .surrogate import Surrogate
+from .zoned import DEGREE, breaks_of, phases_of, piece_of, series_of
+
+FEWEST, MOST = 16, 20_000  # cases of a fit
+CHECKED = 64  # phases per mesh cycle at which a held-back case is compared
+SETS = tuple((degree, power) for degree in range(1, 9) for power in (1.0, 0.75, 0.6))  # sums of degrees**power allowed
+BUSY = 0.6  # terms for each case at most
+
+
+def fit_surrogate(
+    pair: GearPair,
+    material: Material | tuple[Material, Material],
+    inputs: Mapping[str, float | tuple[float, float]],
+    *,
+    cases: int = 256,
+    held_back: int = 64,
+    seed: int = 0,
+    workers: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Surrogate:
+    """Fit a stand-in for `mesh_stiffness` by ``ritz`` over ranges of gears, cracks and loads.
+
+    The ranges are sampled (scrambled Sobol sequences) and every case is solved; the breaks of the mesh cycle and, between them,
+    ln k are fitted by products of Legendre polynomials of the inputs by least squares. Which products is decided on the fitted
+    cases by leaving each out; the error stated afterwards is that on `held_back` further cases, at phases that were not fitted.
+
+    Parameters
+    ----------
+    pair : GearPair
+        Spur gears; what `inputs` do not give is taken from it, but the centre distance is that without backlash where teeth or
+        profile shifts vary.
+    material : Material or (Material, Material)
+    inputs : dict
+        Ranges ``(low, high)``, or single numbers to hold, of `gearfe.runs.surrogates.space.INPUTS`: ``force`` [N], crack
+        ``level`` and ``angle`` [rad] of a pinion tooth, ``z_1``, ``z_2``, ``x_1``, ``x_2``, and ``bore_1``, ``bore_2`` in root
+        radii. Without a level the gears are healthy.
+    cases, held_back : int
+        Cases fitted, and cases kept to judge the fit.
+    seed : int
+        Of the samples.
+    workers, progress
+        As of `gearfe.batch`.
+
+    Raises
+    ------
+    ValueError
+        If an input cannot be, or anywhere in the ranges, their corners included, gears or cracks cannot be or the zones of the
+        mesh cycle change their number: a surrogate has no gaps. The message says where.
+
+    References
+    ----------
+    B. Sudret, Global sensitivity analysis using polynomial chaos expansions, Reliab. Eng. Syst. Saf. 93 (2008) 964-979.
+    G. Blatman, B. Sudret, Adaptive sparse polynomial chaos expansion based on least angle regression, J. Comput. Phys. 230
+    (2011) 2345-2367, on sums of powers of the degrees and on leaving one out.
+    """
+    started = time.perf_counter()
+    space, materials = space_of(pair, inputs), two_materials(material)
+    for name, count, least in (("cases", cases, FEWEST), ("held_back", held_back, 8)):
+        if not is_number(count) or count != int(count) or not least <= count <= MOST:
+            raise ValueError(f"{name} = {count!r}, but give a whole number from {least} to {MOST}")
+    _check_corners(space, materials)
+    drawn, fresh = _sample(space, int(cases), seed), _sample(space, int(held_back), seed + 1_000_003)
+    jobs = [
+        {"space": space, "materials": materials, "point": point, "check": i >= len(drawn)}
+        for i, point in enumerate(drawn + fresh)
+    ]
+    done = batch(jobs, work=solved, workers=workers, progress=progress)
+    for point, result in zip(drawn + fresh, done.results, strict=True):
+        if isinstance(result, Exception):
+            raise ValueError(f"the ranges have a gap at {_told(point)}: {result}; narrow them") from result
+    pairs = sorted({result["pairs"] for result in done.results})
+    if len(pairs) > 1:
+        raise ValueError(f"contact ratios from below {pairs[-1]} to above it are in the ranges: k jumps there; narrow them")
+    fitted, judged = done.results[: len(drawn)], done.results[len(drawn) :]
+    points = space.scaled([list(point.values()) for point in drawn])
+    values = np.array([np.append(case["breaks"], case["series"]) for case in fitted])
+    powers, weights, left_out = _regression(points, values, fitted[0]["breaks"].size)
+    meta = {
+        "pairs": pairs[0], "cases": int(cases), "held_back": int(held_back), "seed": seed, "terms": len(powers),
+        "left out, rms of ln k": left_out, "seconds": time.perf_counter() - started, "seconds_cases": sum(done.seconds),
+        "curve": fitted[0]["meta"],
+    }  # fmt: skip
+    blank = Surrogate(space, powers, weights, {}, np.zeros(fitted[0]["breaks"].size - 1), meta)
+    error, worst = held_back_error(blank, fresh, judged)
+    return Surrogate(space, powers, weights, error, worst, meta)
+
+
+def solved(space: Space, materials: tuple[Material, Material], point: dict[str, float], check: bool) -> dict[str, Any]:
+    """Curve of one case by `ritz`: breaks, Chebyshev coefficients of ln k, or with `check` k at phases to compare with."""
+    case = space.case(point, materials)
+    eps_alpha = case.pair.eps_alpha
+
+    def curve(phase):
+        return solve(case, Solve("ritz", phases=phase))
+
+    if check:
+        low = int(eps_alpha)
+        half = (1 - (eps_alpha - low)) / 2
+        span = np.array([-half, eps_alpha + half if space.cracked else 1 - half])
+        phase = np.arange(np.ceil(span[0] * CHECKED), np.floor(span[1] * CHECKED)) / CHECKED + 0.37 / CHECKED
+        sampled = curve(phase[(phase > span[0]) & (phase < span[1])])
+        return {"pairs": low, "phase": sampled.phase, "k": sampled.k}
+    breaks = breaks_of(eps_alpha, curve, cracked=space.cracked)
+    sampled = curve(phases_of(breaks))
+    meta = {name: sampled.meta[name] for name in ("materials", "state", "order", "refine", "versions", "stiffness", "pose")}
+    return {"pairs": int(eps_alpha), "breaks": breaks, "series": series_of(np.log(sampled.k)), "meta": meta}
+
+
+def held_back_error(
+    surrogate: Surrogate, points: list[dict[str, float]], judged: list[dict[str, Any]]
+) -> tuple[dict[str, float], NDArray[np.float64]]:
+    """Differences of a surrogate from cases it was not fitted on: as `Surrogate.error` and `Surrogate.worst` have them."""
+    worst = np.zeros(surrogate.worst.size)
+    differences, means = [], []
+    for point, case in zip(points, judged, strict=True):
+        breaks, _ = surrogate._parts(surrogate.space.point(point))
+        phase = np.clip(case["phase"], breaks[0], breaks[-1]) if surrogate.space.cracked else case["phase"]
+        k = surrogate.k(phase, **point)
+        away = np.abs(k / case["k"] - 1)
+        np.maximum.at(worst, piece_of(surrogate._within(phase, breaks), breaks), away)
+        differences.append(away)
+        means.append(abs(k.mean() / case["k"].mean() - 1))
+    away = np.concatenate(differences)
+    error = {"mean": float(away.mean()), "worst": float(away.max()), "worst mean k": float(max(means))}
+    return error | {"cases": len(judged), "phases": int(away.size)}, worst
+
+
+def _sample(space, count, seed):
+    unit = qmc.Sobol(len(space.ranges), seed=seed).random_base2(int(np.ceil(np.log2(count))))[:count]
+    return [space.at(point) for point in unit]
+
+
+def _check_corners(space, materials):
+    """Build the gears at all ends of the ranges: what is wrong there is said before anything is solved."""
+    for ends in itertools.product(*space.ranges.values()):
+        point = dict(zip(space.ranges, ends, strict=True))
+        try:
+            space.case(point, materials)
+        except ValueError as error:
+            raise ValueError(f"the ranges have a gap at their corner {_told(point)}: {error}; narrow them") from error
+
+
+def _told(point):
+    return ", ".join(f"{name} = {value:g}" for name, value in point.items())
+
+
+def _regression(points, values, breaks):
+    """Products of Legendre polynomials and their weights: of `SETS` the one that predicts cases left out best."""
+    best = None
+    for degree, power in SETS:
+        powers = _products(points.shape[1], degree, power, BUSY * len(points))
+        if powers is None:
+            continue
+        basis = legendre.legvander(points, degree)
+        terms = np.prod([basis[:, j, powers[:, j]] for j in range(points.shape[1])], axis=0)
+        inverse = np.linalg.pinv(terms)
+        weights = inverse @ values
+        leverage = np.einsum("ij,ji->i", terms, inverse)
+        away = (values - terms @ weights) / np.maximum(1 - leverage, 1e-6)[:, None]
+        left_out = float(np.sqrt((away[:, breaks:] ** 2).sum(axis=1).mean() / (values.shape[1] - breaks) * (DEGREE + 1)))
+        if best is None or left_out < best[2]:
+            best = powers, weights, left_out
+    return best
+
+
+def _products(inputs, degree, power, most):
+    """Degrees ``(terms, inputs)`` whose sum of powers is at most ``degree**power``; None if there are more than `most`."""
+    out = [[n] for n in range(degree + 1)]
+    for _ in range(inputs - 1):
+        out = [[*row, n] for row in out for n in range(degree + 1) if sum(m**power for m in (*row, n)) <= degree**power + 1e-9]
+        if len(out) > 50 * most:
+            return None
+    return np.array(out) if len(out) <= most else None

@@ -1,0 +1,172 @@
+"""What a surrogate's gears and cracks may vary in: names, ranges, and the case of `mesh_stiffness` at a point of them."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.case import Case
+from ...core.checks import is_number
+from ...geometry.damage.crack import Crack
+from ...geometry.pair.gear_pair import GearPair, free_centre_distance
+
+INPUTS = {  # name: what it is
+    "force": "force along the line of action over the whole width [N], on a logarithmic scale",
+    "level": "level of a root crack of a pinion tooth, see Crack",
+    "angle": "its angle to the centre-line [rad]",
+    "z_1": "teeth of the pinion",
+    "z_2": "teeth of the wheel",
+    "x_1": "profile shift of the pinion",
+    "x_2": "profile shift of the wheel",
+    "bore_1": "bore of the pinion, in its root radii",
+    "bore_2": "bore of the wheel, in its root radii",
+}
+WHOLE = ("z_1", "z_2")
+SHAPE = ("z_1", "z_2", "x_1", "x_2")  # they move the contact ratio and the centre distance
+
+
+@dataclass(frozen=True, slots=True)
+class Space:
+    """Ranges of some `INPUTS` about a pair of spur gears; the others are held."""
+
+    pair: GearPair  # what is not given is taken from it
+    ranges: dict[str, tuple[float, float]]  # ends of what varies
+    held: dict[str, float]  # what is given as one number
+    logarithmic: int | None = field(init=False, repr=False)  # the place of the force
+    middle: NDArray[np.float64] = field(init=False, repr=False, compare=False)
+    half: NDArray[np.float64] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Keep what `scaled` needs: it is asked thousands of times."""
+        place = list(self.ranges).index("force") if "force" in self.ranges else None
+        ends = np.array(list(self.ranges.values()))
+        if place is not None:
+            ends[place] = np.log(ends[place])
+        object.__setattr__(self, "logarithmic", place)
+        object.__setattr__(self, "middle", ends.mean(axis=1))
+        object.__setattr__(self, "half", (ends[:, 1] - ends[:, 0]) / 2)
+
+    @property
+    def cracked(self) -> bool:
+        """Whether a tooth has a crack."""
+        return "level" in self.ranges or "level" in self.held
+
+    def point(self, given: Mapping[str, Any]) -> list[float]:
+        """Values of `given` in the order of `ranges`, if they are these and lie inside.
+
+        Raises
+        ------
+        ValueError
+            Naming what is missing, unknown or outside.
+        """
+        if given.keys() != self.ranges.keys():
+            unknown, missing = set(given) - set(self.ranges), [name for name in self.ranges if name not in given]
+            wrong = f"{sorted(unknown)[0]!r} is none of its inputs" if unknown else f"no value of {missing[0]!r}"
+            raise ValueError(f"{wrong}: this surrogate is asked by {', '.join(f'{name} = ...' for name in self.ranges)}")
+        out = []
+        for name, (low, high) in self.ranges.items():
+            value = given[name]
+            if not is_number(value) or not low <= value <= high:
+                raise ValueError(
+                    f"{name} = {value!r}, but this surrogate was fitted from {low:g} to {high:g} and knows nothing outside: give "
+                    "a value within, fit another, or ask mesh_stiffness"
+                )
+            if name in WHOLE and value != int(value):
+                raise ValueError(f"{name} = {value!r}, but give a whole number of teeth")
+            out.append(float(value))
+        return out
+
+    def scaled(self, points: Any) -> NDArray[np.float64]:
+        """Points ``(..., d)`` brought to -1 ... 1, forces by their logarithm."""
+        values = np.array(points, dtype=float)
+        if self.logarithmic is not None:
+            values[..., self.logarithmic] = np.log(values[..., self.logarithmic])
+        return (values - self.middle) / self.half
+
+    def at(self, unit: NDArray[np.float64]) -> dict[str, float]:
+        """Point of the ranges for numbers from 0 to 1: whole ones for teeth, forces on a logarithmic scale."""
+        out: dict[str, float] = {}
+        for (name, (low, high)), share in zip(self.ranges.items(), unit.tolist(), strict=True):
+            if name in WHOLE:
+                out[name] = float(min(high, math.floor(low + share * (high - low + 1))))
+            else:
+                out[name] = low * (high / low) ** share if name == "force" else low + share * (high - low)
+        return out
+
+    def case(self, point: Mapping[str, float], material: Any) -> Case:
+        """`Case` at a point of the ranges, of this material (or pair of them).
+
+        ValueError if such gears or such a crack cannot be.
+        """
+        values = self.held | dict(point)
+        gears = []
+        for gear, number in ((self.pair.gear_1, 1), (self.pair.gear_2, 2)):
+            new: dict[str, Any] = {"z": int(values.get(f"z_{number}", gear.z)), "x": values.get(f"x_{number}", gear.x)}
+            bore = values.get(f"bore_{number}")
+            if bore is not None:
+                new["r_bore"] = bore * replace(gear, **new, r_bore=0.1 * gear.m_n).r_f
+            gears.append(replace(gear, **new))
+        pinion, wheel = gears
+        pair = GearPair(pinion, wheel) if any(name in values for name in SHAPE) else GearPair(pinion, wheel, self.pair.a)
+        crack: dict[str, Any] = {name: values[name] for name in ("level", "angle") if name in values}
+        return Case(pair, values["force"], material, damage={"pinion": [Crack(**crack)]} if crack else None)
+
+
+def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
+    """`Space` of a pair from ranges ``name=(low, high)`` and single numbers.
+
+    ValueError if an input is unknown, no range, or does not go with this pair.
+    """
+    if not isinstance(pair, GearPair):
+        raise ValueError(f"pair = {pair!r}, but give a GearPair")
+    if pair.gear_1.beta:
+        raise ValueError("the pair is helical, but a surrogate is one of the transverse section: give spur gears")
+    if not isinstance(inputs, Mapping):
+        raise ValueError(f"inputs = {inputs!r}, but give a dict: {{'force': (500.0, 4000.0), 'level': (0.1, 0.5)}}")
+    for name in inputs:
+        if name not in INPUTS:
+            raise ValueError(f"inputs: {name!r} is unknown; there are {', '.join(INPUTS)}")
+    if "force" not in inputs:
+        raise ValueError("inputs: no 'force', but k depends on the load: give a range or a number [N]")
+    if "angle" in inputs and "level" not in inputs:
+        raise ValueError("inputs: an 'angle' of a crack, but no 'level': give both")
+    ring = [name for name in inputs if pair.gear_2.internal and name in (*SHAPE, "bore_2")]
+    if ring:
+        raise ValueError(f"inputs: {ring[0]!r}, but gear 2 is a ring, whose trimmed tip makes k jump: leave it out")
+    shape = [name for name in inputs if name in SHAPE]
+    if shape and not math.isclose(pair.a, free_centre_distance(pair.gear_1, pair.gear_2), rel_tol=1e-9):
+        raise ValueError(
+            f"inputs: {shape[0]!r} moves the centre distance without backlash, which a surrogate then takes, but the pair has "
+            f"a = {pair.a:g} mm: give a pair with a = None, or leave {shape[0]!r} out"
+        )
+    ranges, held = {}, {}
+    for name, value in inputs.items():
+        if is_number(value):
+            held[name] = _finite(name, value)
+        else:
+            ranges[name] = _range(name, value)
+    if not ranges:
+        raise ValueError(
+            "inputs: only single numbers, so that there is nothing to fit: give a range (low, high), or mesh_stiffness"
+        )
+    return Space(pair, ranges, held)
+
+
+def _range(name, value):
+    if not isinstance(value, (tuple, list)) or len(value) != 2 or not all(is_number(end) for end in value):
+        raise ValueError(f"inputs: {name} = {value!r}, but give a range (low, high) or one number")
+    low, high = (_finite(name, end) for end in value)
+    if not low < high:
+        raise ValueError(f"inputs: {name} from {low:g} to {high:g}, but a range rises: give low < high, or one number")
+    return low, high
+
+
+def _finite(name, value):
+    if not math.isfinite(value) or (name == "force" and not value > 0):
+        raise ValueError(f"inputs: {name} = {value!r}, but give finite numbers{', forces > 0' if name == 'force' else ''}")
+    if name in WHOLE and value != int(value):
+        raise ValueError(f"inputs: {name} = {value!r}, but teeth are whole numbers")
+    return float(value)

@@ -1,0 +1,182 @@
+"""Cases in blocks: sorted so that those that share gears are together; a block is computed by one process and makes one shard."""
+
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+
+from ...core.steps import listening
+from ...core.threads import own_warnings
+from ...scene.load import Scene, scene_of
+from ...stiffness.cache import program
+from ..store.shards import Field, encoded, table
+from .keys import placed, rank, trimmed
+from .kinds import KINDS
+from .study import Study, of_case, values
+
+FAILURES = (ValueError, RuntimeError, ArithmeticError, LookupError, TypeError, AssertionError, MemoryError)
+DONE, FAILED, LOST = "done", "failed", "lost"
+FIRST = {"number": Field("whole"), "point": Field("whole"), "draw": Field("whole")}
+LAST = {"status": Field("text"), "error": Field("text"), "notes": Field("text"), "seconds": Field("number", "s")}
+LAST |= {"version": Field("text"), "source": Field("text")}
+_ONE = threading.Lock()  # processor time is counted for a process, not for a thread
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Cases of one shard `name`: values by key, and of each its ``number`` in the study, ``point`` (combination) and ``draw``."""
+
+    name: str
+    cases: tuple[dict[str, Any], ...]
+    told: tuple[dict[str, int], ...]
+
+    def single(self, i: int) -> "Block":
+        """Its i-th case alone."""
+        return Block(self.name, self.cases[i : i + 1], self.told[i : i + 1])
+
+
+def blocks(study: Study) -> tuple[list[Block], dict[str, Field]]:
+    """All cases of a study in blocks, always the same ones, and the columns of its results.
+
+    Cases are sorted by what the healthy gears depend on, then by damage, then by the rest, which shares both. A block holds whole
+    groups of the same gears and damage where they are not larger than it.
+    """
+    columns, point, draw = values(study)
+    order, group = _sorted(columns, point.size)
+    out = []
+    for i, part in enumerate(_parts(group, study.block)):
+        members = order[part]
+        cases = tuple({key: column[j] for key, column in columns.items()} for j in members)
+        told = tuple({"number": int(j), "point": int(point[j]), "draw": int(draw[j])} for j in members)
+        out.append(Block(f"block-{i:06d}", cases, told))
+    inputs = {key: Field(_kind(column)) for key, column in columns.items()}
+    return out, FIRST | inputs | KINDS[study.kind].fields | LAST
+
+
+def _sorted(columns, count):
+    """Order of the cases, and for each in it the number of its group of the same gears and damage."""
+    codes = {key: _codes(column) for key, column in columns.items()}
+    names = sorted(codes, key=rank)  # a stable sort: the order of the study among those of one rank
+    order = np.lexsort([codes[name] for name in reversed(names)]) if names else np.arange(count)
+    shared = np.array([codes[name][order] for name in names if rank(name) < 2]).reshape(-1, count)
+    new = np.any(np.diff(shared, axis=1) != 0, axis=0)
+    return order, np.concatenate([[0], np.cumsum(new)])
+
+
+def _codes(column):
+    """Numbers of the distinct values by first appearance."""
+    seen: dict[str, int] = {}
+    return np.array([seen.setdefault(repr(value), len(seen)) for value in column])
+
+
+def _parts(group, size):
+    """Slices of about `size` cases that part no group, unless it is larger."""
+    start, ends = 0, np.append(np.flatnonzero(np.diff(group)) + 1, group.size)
+    for end, following in zip(ends, [*ends[1:], None], strict=True):
+        while end - start >= size:
+            cut = end if end - start < 2 * size else start + size
+            yield slice(start, cut)
+            start = cut
+        if start < end and (following is None or following - start > size):
+            yield slice(start, end)
+            start = end
+
+
+def _kind(column):
+    """Kind of column that holds the values of a key."""
+    if all(isinstance(value, bool) for value in column):
+        return "truth"
+    if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in column):
+        return "whole" if all(isinstance(value, int) for value in column) else "number"
+    return "text" if all(isinstance(value, str) for value in column) else "json"
+
+
+def compute(study: Study, fields: Mapping[str, Field], block: Block) -> tuple[bytes, str]:
+    """Encoded shard of a block, and the source code that made it."""
+    return shard(fields, rows(study, block))
+
+
+def shard(fields: Mapping[str, Field], made: Sequence[Mapping[str, Any]]) -> tuple[bytes, str]:
+    """Encoded shard, from the rows of a block, and the source code that made them."""
+    return encoded(table(made, fields)), _program()["source"]
+
+
+def rows(study: Study, block: Block) -> list[dict[str, Any]]:
+    """Rows of a block's cases; a case that cannot be has its error in its row.
+
+    Cases that differ in their load only are computed together. If one of them fails or has something to note, each is computed
+    alone, so that error and note stand in the row they belong to.
+    """
+    cases, out = block.cases, []
+    built: dict[str, Scene] = {}
+    keys = [_key(study, case) for case in cases]
+    with _ONE, listening(lambda text, share: None):  # how far one case is says nothing here
+        for _, same in groupby(range(len(cases)), keys.__getitem__):
+            numbers = list(same)
+            computed = _tried(study, [cases[i] for i in numbers], built)
+            if len(numbers) > 1 and any(row["status"] != DONE or row["notes"] for row in computed):
+                spent = computed[0]["seconds"]
+                computed = [row for i in numbers for row in _tried(study, [cases[i]], built)]
+                computed = [row | {"seconds": row["seconds"] + spent} for row in computed]
+            out += [_told(block, i) | row for i, row in zip(numbers, computed, strict=True)]
+    return out
+
+
+def _tried(study, cases, built):
+    """Rows of cases that differ in their load only, their processor time shared, or with the error of all."""
+    started = time.process_time()
+    with own_warnings() as caught:
+        try:
+            computed = [row | {"status": DONE} for row in _computed(study, cases, built)]
+        except FAILURES as error:
+            computed = [{"status": FAILED, "error": f"{type(error).__name__}: {error}"} for _ in cases]
+    notes = "; ".join(dict.fromkeys(str(warning.message) for warning in caught))
+    shared = {"notes": notes or None, "seconds": (time.process_time() - started) / len(cases)}
+    return [row | shared for row in computed]
+
+
+def lost(block: Block) -> list[dict[str, Any]]:
+    """Rows of a block whose worker ended with it, each time it was tried."""
+    error = "the process that computed it ended: killed, or out of memory"
+    return [_told(block, i) | {"status": LOST, "error": error} for i in range(len(block.cases))]
+
+
+def _told(block, i):
+    """Columns of a row that name its case and the program's versions."""
+    return block.told[i] | block.cases[i] | _program()
+
+
+@cache
+def _program():
+    """What each row says of the program that made it."""
+    versions = program()
+    return {"version": versions["gearfe"], "source": versions["source"]}
+
+
+def _computed(study, cases, built):
+    """Rows of cases that differ in their load only; `built` keeps their scene."""
+    kind, case, key = KINDS[study.kind], cases[0], _key(study, cases[0])
+    pair, damage, options = of_case(study, case)
+    if key not in built:
+        built.clear()
+        tables = placed(study.tables, {name: value for name, value in case.items() if kind.whole or not _is_force(name)})
+        built[key] = scene_of("scene", tables if kind.whole else trimmed(tables, pair, damage))
+    scene, hurt = built[key], None if damage == "healthy" else damage
+    if kind.whole:
+        return kind.work(scene, hurt, options)
+    forces = tuple(load_case.get(f"pair.{pair}.force_N", scene.pair(pair).force) for load_case in cases)
+    return kind.work(replace(scene.case(pair, hurt), force=forces), options)
+
+
+def _key(study, case):
+    """What decides the scene of a case but, where that is one pair, its load."""
+    return repr([(name, value) for name, value in case.items() if KINDS[study.kind].whole or not _is_force(name)])
+
+
+def _is_force(key):
+    return key.startswith("pair.") and key.endswith(".force_N")

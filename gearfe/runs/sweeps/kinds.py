@@ -1,0 +1,142 @@
+"""What is computed of a case: a kind of study is a row of `KINDS`, its options, its columns and one function."""
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from ...comparison.told_set import set_numbers, spread
+from ...comparison.vibration import recorded
+from ...core.case import Case
+from ...dynamics.machine.of_scene import build_machine
+from ...dynamics.motion.step_control import default_step
+from ...flexibility.solved import SolvedGears
+from ...planetary_sets.of_scene import build_set
+from ...planetary_sets.solve import planetary_stiffness
+from ...scene.load import Scene
+from ...scene.strict import NUMBER, TEXT, TRUTH, WHOLE
+from ...signal.series import Signal
+from ...stiffness.curve import StiffnessCurve
+from ...stiffness.solve import Solve, solve
+from ..store.shards import Field
+
+KEPT = SolvedGears(64 * 2**20)  # gears of the cases before, in this process
+CURVE = {
+    "method": (TEXT, "auto"),
+    "phases": (WHOLE, 64),
+    "span": (TEXT, None),
+    "error": (TRUTH, False),
+    "refine": (NUMBER, 1.0),
+    "order": (WHOLE, None),
+    "extended": (TRUTH, True),
+    "pose": (TEXT, "mean"),
+}
+VIBRATION = {
+    "method": (TEXT, "fast"),
+    "curves": (TEXT, "auto"),
+    "phases": (WHOLE, 64),
+    "duration_s": (NUMBER, 1.0),
+    "rate_Hz": (NUMBER, None),
+    "channel": (TEXT, None),
+    "signal": (TRUTH, False),
+}
+SET = {"positions": (WHOLE, 32), "cycles": (WHOLE, None), "refine": (NUMBER, 1.0)}
+MESHES = dict.fromkeys(("k_sun_planet", "k_planet_ring", "k_sun_planet_alone", "k_planet_ring_alone"), Field("number", "N/m"))
+MESHES |= {"K_gamma": Field("number"), "te_peak_to_peak": Field("number", "m")}
+STIFFNESS = dict.fromkeys(("k_mean", "k_min", "k_max", "k_single", "k_double"), Field("number", "N/m"))
+STIFFNESS |= {"k_error": Field("number"), "te_peak_to_peak": Field("number", "m")}
+HARMONICS = 3
+INDICATORS = ("crest factor", "kurtosis", "shape factor", "impulse factor", "sideband index")
+
+
+class Kind(NamedTuple):
+    """A kind of study.
+
+    `options` are checked as a TOML table; `fields` are the columns of its results; `work` is called with a `Case` and the
+    options, and gives a row for each of its loads; `block`: cases in a shard, which takes seconds. `whole`: it needs
+    all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the options.
+    """
+
+    options: dict[str, Any]
+    fields: dict[str, Field]
+    work: Callable[..., list[dict[str, Any]]]
+    block: int
+    whole: bool = False
+
+
+def curves_of(case: Case, options: dict[str, Any]) -> list[StiffnessCurve]:
+    """Stiffness curves of a case by load; gears are solved once for all cases of this process that share them."""
+    span = options["span"] or ("tooth" if case.damaged else "cycle")
+    return cast(list[StiffnessCurve], solve(case, Solve(**options | {"span": span, "cache": KEPT})))
+
+
+def stiffness(case: Case, options: dict[str, Any]) -> list[dict[str, Any]]:
+    """Rows of stiffness curves by load: zones, the largest relative error estimate if asked for, phase and k."""
+    return [_stiffness_row(curve) for curve in curves_of(case, options)]
+
+
+def _stiffness_row(curve):
+    zones, te = curve.zones(), curve.te
+    row = {"k_mean": zones["mean"], "k_max": zones["max"], "k_min": float(curve.k.min())}
+    row |= {f"k_{name}": zones.get(name) for name in ("single", "double")}
+    row |= {"k_error": curve.zone_errors().get("mean"), "te_peak_to_peak": float(np.ptp(te))}
+    return row | {"phase": curve.phase, "k": curve.k}
+
+
+def transmission_error(case: Case, options: dict[str, Any]) -> list[dict[str, Any]]:
+    """Rows of loaded transmission errors by load: mean, peak-to-peak, mesh harmonics (of a whole cycle), phase and te."""
+    whole = not case.damaged and options["span"] in (None, "cycle")
+    return [_te_row(curve, whole) for curve in curves_of(case, options)]
+
+
+def _te_row(curve, whole):
+    te = curve.te
+    row = {"te_mean": float(te.mean()), "te_peak_to_peak": float(np.ptp(te)), "k_mean": float(curve.k.mean())}
+    if whole:
+        lines = 2 / te.size * np.abs(np.fft.rfft(te))[1 : HARMONICS + 1]
+        row |= {f"te_{i + 1}": float(value) for i, value in enumerate(lines)}
+    return row | {"phase": curve.phase, "te": te}
+
+
+def vibration(scene: Scene, case: str | None, options: dict[str, Any]) -> list[dict[str, Any]]:
+    """Row of a machine's vibration: indicators of one channel (default: force of the driven mesh), and the signal if asked for.
+
+    Method and resolution of the curves are the same for all cases only if ``curves`` names one: ``"auto"`` takes three dimensions
+    for pits.
+    """
+    machine = build_machine(scene, case, phases=options["phases"], method=options["curves"])
+    duration = options["duration_s"]
+    rate = options["rate_Hz"] or math.ceil(duration / default_step(machine)) / duration
+    response = recorded(machine, duration, rate, method=options["method"])
+    stage = machine.stages[-1]
+    mesh = next(candidate for candidate in machine.meshes if abs(candidate.frequency - stage.mesh) < 1e-6 * stage.mesh)
+    channel = options["channel"] or f"force {mesh.name}"
+    signal = Signal(np.asarray(response[channel], dtype=float), rate, response.unit(channel), name=channel)
+    fault = stage.fault or stage.turning
+    seen = signal.indicators(*((stage.mesh, fault) if fault else (None, None)))
+    row: dict[str, Any] = {name.replace(" ", "_"): seen.get(name) for name in INDICATORS}
+    row |= {"rms": seen["rms"], "peak": seen["peak"], "mesh_line": seen.get("mesh line"), "unit": signal.unit}
+    row |= {"mesh_Hz": stage.mesh, "fault_Hz": fault, "rate": rate, "free": response.stats["free"]}
+    return [row | ({"signal": signal.values} if options["signal"] else {})]
+
+
+def planetary_set(scene: Scene, case: str | None, options: dict[str, Any]) -> list[dict[str, Any]]:
+    """Row of a whole planetary set: mean stiffness of both kinds of mesh in it and alone, K_gamma, transmission error."""
+    made = build_set(scene, case)
+    at = spread(made, options["positions"], options["cycles"])
+    return [set_numbers(planetary_stiffness(made, at, refine=options["refine"], cache=KEPT))]
+
+
+SEEN = {name.replace(" ", "_"): Field("number") for name in INDICATORS}
+SEEN |= dict.fromkeys(("rms", "peak", "mesh_line"), Field("number", "unit")) | {"unit": Field("text")}
+SEEN |= dict.fromkeys(("mesh_Hz", "fault_Hz", "rate"), Field("number", "Hz")) | {"free": Field("number")}
+TE = dict.fromkeys(("te_mean", "te_peak_to_peak", *(f"te_{i + 1}" for i in range(HARMONICS))), Field("number", "m"))
+KINDS = {
+    "stiffness": Kind(CURVE, STIFFNESS | {"phase": Field("list"), "k": Field("list", "N/m")}, stiffness, 32),
+    "transmission error": Kind(
+        CURVE, TE | {"k_mean": Field("number", "N/m"), "phase": Field("list"), "te": Field("list", "m")}, transmission_error, 32
+    ),
+    "set": Kind(SET, MESHES, planetary_set, 4, whole=True),
+    "vibration": Kind(VIBRATION, SEEN | {"signal": Field("list", "unit")}, vibration, 4, whole=True),
+}

@@ -1,0 +1,98 @@
+"""`sweep`: all cases of a study into a folder, going on where it was stopped."""
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from ...stiffness.cache import program
+from ..runner import Tally, alone, check_workers, results
+from ..store.folder import begin, check_same, locked
+from ..store.shards import unfinished, write_shard
+from .blocks import blocks, compute, lost, rows, shard
+from .runs import FORMAT, Runs, open_runs
+from .study import Study, read_study, slim
+
+
+def sweep(
+    study: str | os.PathLike[str] | Mapping[str, Any],
+    folder: str | os.PathLike[str],
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    mixed: bool = False,
+    progress: Callable[[int, int], object] | None = None,
+) -> Runs:
+    """Compute all cases of a study into a folder; called again after it was stopped, it goes on where it was.
+
+    Cases are computed in blocks of seconds, each written as one file that is whole or not there: a process that is killed at any
+    moment, or a disk that runs full, costs the blocks under way. A case that cannot be has its error in its row, and the others
+    go on.
+
+    Parameters
+    ----------
+    study : str or path or dict
+        A TOML file, or a dictionary of the same structure, see `gearfe.runs.sweeps.study`.
+    folder : str or path
+        New, empty, or of the same study.
+    workers : int, optional
+        Processes of this machine, one thread each; default one per core. 1: in this process.
+    scheduler : str, optional
+        Address of a Dask scheduler, ``"tcp://host:8786"``: its workers compute instead.
+    mixed : bool
+        Go on although the folder was begun by another version of gearfe or of its libraries; each row says by which it was made.
+    progress : callable, optional
+        Called with (cases done, cases in all).
+
+    Raises
+    ------
+    ValueError
+        If the study cannot be; the folder holds another study or anything else, is damaged, cannot be written or is being written
+        by another process; its results were made by another version; or no scheduler answers. What is in the folder stays.
+    RuntimeError
+        If pyarrow or, for a scheduler, distributed is missing; the message names what to install.
+    """
+    check_workers(workers)
+    if scheduler is not None and not (isinstance(scheduler, str) and scheduler.strip()):
+        raise ValueError(f"scheduler = {scheduler!r}, but give the address of a Dask scheduler, such as 'tcp://host:8786'")
+    if workers is not None and scheduler is not None:
+        raise ValueError("workers are processes of this machine, a scheduler has its own: give one of them")
+    checked = read_study(study)
+    every, fields = blocks(checked)
+    stored = begin(folder, _about(checked, sum(len(block.cases) for block in every)))
+    with locked(folder):
+        if stored["study"]["block"] != checked.block:  # how it is cut is no other study
+            checked = replace(checked, block=stored["study"]["block"])
+            every, fields = blocks(checked)
+        about = _about(checked, stored["cases"])
+        check_same(folder, stored, about, "study", mixed=mixed)
+        left = unfinished(folder, [block.name for block in every], "study")
+        todo = [block for block in every if block.name in left]
+        tally = Tally("cases", stored["cases"], progress)
+        tally.add(tally.total - sum(len(block.cases) for block in todo))
+        small = slim(checked)
+        for ended, result in results(partial(compute, small, fields), todo, workers, scheduler=scheduler):
+            content, source = result or shard(fields, lost(ended) if scheduler else _case_by_case(small, ended))
+            if source != about["made"]["source"]:
+                raise RuntimeError(
+                    f"a worker has gearfe of source {source}, this process {about['made']['source']}: install the same there"
+                )
+            write_shard(folder, ended.name, content)
+            tally.add(len(ended.cases))
+    if tally.done != tally.total:
+        raise RuntimeError(
+            f"{tally.total - tally.done} of {tally.total} cases were handed out and never came back: start the sweep again"
+        )
+    return open_runs(folder)
+
+
+def _case_by_case(study, block):
+    """Rows of a block that ended its process: only cases that end theirs once more, computed alone, are recorded as lost."""
+    singles = [block.single(i) for i in range(len(block.cases))]
+    return [row for single, result in alone(partial(rows, study), singles) for row in result or lost(single)]
+
+
+def _about(study: Study, cases: int) -> dict[str, Any]:
+    """Note of a folder of results."""
+    return {"format": FORMAT, "title": study.title, "cases": cases, "study": study.content(), "made": program()}

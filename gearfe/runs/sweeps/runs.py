@@ -1,0 +1,160 @@
+"""`open_runs`: results of a sweep as pandas and xarray, reading only the columns and rows that are asked for."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...core.extras import needing
+from ..store.folder import read_about
+from ..store.shards import Field, fields_of, frame, opened, read, shard_names, where_of
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+FORMAT = "gearfe sweep 1"
+
+
+@dataclass(frozen=True, slots=True)
+class Runs:
+    """Results of a sweep, in a folder.
+
+    `about` has title, study, number of cases and versions; `fields` kind and unit by column, of kind ``list`` curves and signals.
+    """
+
+    folder: Path
+    about: dict[str, Any]
+    fields: dict[str, Field]
+
+    def __repr__(self):
+        """One line: what it is, and how far."""
+        return f"<Runs of {self.about['title']!r}: {len(self)} of {self.about['cases']} cases in {self.folder}>"
+
+    def __len__(self) -> int:
+        """Number of cases that are in the folder."""
+        return opened(self.folder).count_rows() if shard_names(self.folder) else 0
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units by column."""
+        return {name: field.unit for name, field in self.fields.items()}
+
+    @property
+    def inputs(self) -> list[str]:
+        """Columns that vary in this study, by dotted key."""
+        names = list(self.fields)
+        first = names.index("draw") + 1
+        known = [key for axis in self.about["study"]["axes"] for key in axis]
+        known += [
+            key for name, spec in self.about["study"]["sample"].get("of", {}).items() for key in (name, *spec.get("also", []))
+        ]
+        return [name for name in names[first:] if name in known]
+
+    def table(self, columns: Sequence[str] | None = None, where: Any = None) -> "pandas.DataFrame":
+        """Rows as a pandas table, by the number of the case.
+
+        Parameters
+        ----------
+        columns : sequence of str, optional
+            Default: all but curves and signals.
+        where : dict or pyarrow expression, optional
+            Which rows, by column: ``{"status": "done", "crack.cracked.level": (0.1, 0.3)}`` takes a value, a range as a tuple of
+            two, or a list of values.
+
+        Returns
+        -------
+        pandas.DataFrame
+            ``attrs["units"]`` has the units by column.
+
+        Raises
+        ------
+        ValueError
+            If there is no such column, no result yet, or a file is damaged.
+        RuntimeError
+            If pandas is missing; the message names what to install.
+        """
+        if columns is None:
+            columns = [name for name, field in self.fields.items() if field.kind != "list"]
+        wanted = ["number", *(name for name in columns if name != "number")]
+        return frame(read(self.folder, wanted, where_of(where, list(self.fields))), self.fields, "number")
+
+    def curves(self, names: Sequence[str] | None = None, where: Any = None) -> "xarray.Dataset":
+        """Curves and signals as arrays with named axes.
+
+        Parameters
+        ----------
+        names : sequence of str, optional
+            Columns of kind ``list``; default: all of them.
+        where
+            As of `table`.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over ``number`` (of the case) and ``place``, shorter curves filled up with nan, units in ``attrs``; what varies, and
+            ``status``, are coordinates. Where all cases have the same phases, ``phase`` is a coordinate of ``place``.
+
+        Raises
+        ------
+        ValueError
+            If a name is no curve of this study, no result is there yet, or a file is damaged.
+        RuntimeError
+            If xarray is missing; the message names what to install.
+        """
+        with needing("xarray"):
+            import xarray
+        known = [name for name, field in self.fields.items() if field.kind == "list"]
+        names = known if names is None else list(names)
+        for name in names:
+            if name not in known:
+                raise ValueError(f"{name!r} is no curve of this study; it has {', '.join(known)}")
+        beside = ["number", *self.inputs, "status"]
+        lists = list(dict.fromkeys([*(["phase"] if "phase" in known else []), *names]))
+        rows = read(self.folder, [*beside, *lists], where_of(where, list(self.fields))).sort_by("number")
+        values = {name: padded(rows[name]) for name in lists}
+        coords: dict[str, Any] = {name: ("number", rows[name].to_pandas().to_numpy()) for name in beside}
+        if "phase" in values and "phase" not in names and _alike(values["phase"]):
+            coords["phase"] = ("place", _longest(values["phase"]), {"units": "-"})
+        elif "phase" in values and "phase" not in names:
+            names = ["phase", *names]
+        data = {name: (("number", "place"), values[name], {"units": self.fields[name].unit}) for name in names}
+        return xarray.Dataset(data, coords=coords, attrs={"title": self.about["title"]})
+
+
+def padded(column: Any) -> np.ndarray:
+    """Lists of a column as an array ``(n, longest)``, filled up with nan; a null is all nan."""
+    lists = [
+        np.asarray(values, dtype=float) if values is not None else np.empty(0) for values in column.to_numpy(zero_copy_only=False)
+    ]
+    out = np.full((len(lists), max((values.size for values in lists), default=0)), np.nan)
+    for row, values in zip(out, lists, strict=True):
+        row[: values.size] = values
+    return out
+
+
+def _alike(phase):
+    """Whether all curves begin with the same phases, as far as they go."""
+    return bool((np.isnan(phase) | (phase == _longest(phase))).all())
+
+
+def _longest(phase):
+    return phase[np.argmax(np.isfinite(phase).sum(axis=1))] if phase.size else np.empty(0)
+
+
+def open_runs(folder: str | os.PathLike[str]) -> Runs:
+    """Open the folder of a sweep, finished or not.
+
+    Raises
+    ------
+    ValueError
+        If it is no such folder.
+    RuntimeError
+        If pyarrow is missing; the message names what to install.
+    """
+    about = read_about(folder, FORMAT)
+    fields = fields_of(opened(folder).schema) if shard_names(folder) else {}
+    return Runs(Path(folder), about, fields)

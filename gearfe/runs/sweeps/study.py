@@ -1,0 +1,200 @@
+"""A study: a scene, what varies in it and how, what is computed of every case. A strict TOML file, or the same as a dictionary.
+
+::
+
+    title = "cracks under load"
+    scene = "my.toml"                     # or the name of a built-in scene
+    kind = "stiffness"                    # or "transmission error", "set", "vibration"
+    pair = "stage"                        # default: the scene's first
+    case = "cracked"                      # default: healthy
+    seed = 1
+
+    [options]                             # of the kind, see `gearfe.runs.sweeps.kinds`
+    phases = 64
+
+    [vary]                                # every combination of these, by dotted key of the scene
+    "crack.cracked.level" = [0.1, 0.2, 0.3]
+    "pair.stage.force_N" = { from = 500, to = 4000, count = 8, spacing = "log" }
+
+    [[along]]                             # lists that go together, one more axis
+    "gear.pinion.r_bore_mm" = [8.0, 10.0]
+    "gear.wheel.r_bore_mm" = [12.0, 15.0]
+
+    [sample]                              # drawn once: every draw meets every combination
+    method = "sobol"                      # or "random", "latin", "saltelli" (for Sobol indices)
+    count = 256
+    [sample.of]
+    "gear.pinion.x" = { normal = [0.0, 0.01], within = [-0.03, 0.03] }
+    "material.steel.E_MPa" = { uniform = [200e3, 212e3] }
+    [[sample.correlated]]
+    between = ["gear.pinion.x", "material.steel.E_MPa"]
+    value = 0.3
+
+Tables ``[[crack]]``, ``[[pits]]`` and ``[flank.NAME]`` in it are added to the scene's. ``also = ["KEY", ...]`` in a value's table
+gives other keys the same value.
+"""
+
+import json
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...scene.load import DAMAGE, scene_of
+from ...scene.strict import REQUIRED, TABLES, TEXT, VALUES, WHOLE, checked
+from ...scene.toml_file import given_tables
+from . import samples
+from .axes import MOST, axes, checked_sample
+from .keys import check_key, tables_near, trimmed
+from .kinds import KINDS
+
+TOP = {
+    "title": (TEXT, "sweep"),
+    "scene": (TEXT, REQUIRED),
+    "kind": (TEXT, "stiffness"),
+    "pair": (TEXT, None),
+    "case": (TEXT, "healthy"),
+    "seed": (WHOLE, 0),
+    "block": (WHOLE, None),
+    "options": (VALUES, {}),
+    "vary": (VALUES, {}),
+    "along": (TABLES, []),
+    "sample": (VALUES, {}),
+}
+ADDED = (*DAMAGE, "flank")
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """A study, checked."""
+
+    title: str
+    kind: str
+    pair: str
+    case: str  # "healthy" where there is no damage
+    name: str  # of the scene's file
+    tables: dict[str, Any]  # of the scene, with those the study adds
+    options: dict[str, Any]  # of the kind, defaults filled in
+    axes: tuple[dict[str, list], ...]  # each holds lists of the same length by key: one axis of the grid
+    sample: dict[str, Any]  # as ``[sample]``; empty: none
+    seed: int  # of the sample
+    block: int  # cases in a shard
+    keys: tuple[str, ...] = ()  # all that vary
+
+    def content(self) -> dict[str, Any]:
+        """All that decides the results, as JSON: two studies are the same if this is."""
+        names = ("kind", "pair", "case", "tables", "options", "axes", "sample", "seed", "block")
+        return json.loads(json.dumps({name: getattr(self, name) for name in names}, default=str))
+
+
+def read_study(study: str | os.PathLike[str] | Mapping[str, Any]) -> Study:
+    """Check a study, a TOML file or a dictionary of the same structure.
+
+    Raises
+    ------
+    ValueError
+        Naming file, table and key if anything is unknown, missing, of the wrong type or contradicts the rest.
+    """
+    return _study(*given_tables(study, "study"))
+
+
+def _study(file, place, data):
+    added = {name: data.pop(name) for name in ADDED if name in data}
+    top = checked(file, "top level", data, TOP, extra=ADDED)
+    if top["kind"] not in KINDS:
+        raise ValueError(f"{file} kind = {top['kind']!r}, but it must be one of {', '.join(KINDS)}")
+    kind = KINDS[top["kind"]]
+    name, tables = _scene(file, place, top["scene"], added)
+    pair = top["pair"] or next(iter(tables["pair"]))
+    options = checked(file, "options", top["options"], kind.options)
+    grid = tuple(axes(file, top["vary"], top["along"]))
+    sample = checked_sample(file, top["sample"])
+    cases = math.prod([len(next(iter(axis.values()))) for axis in grid]) * sample.get("count", 1)
+    if cases > MOST:
+        raise ValueError(f"{file}: {cases} cases, but a study has at most {MOST:.0e}: vary less, or part it")
+    if top["block"] is not None and top["block"] < 1:
+        raise ValueError(f"{file} block = {top['block']}: give the cases of a shard, a whole number >= 1")
+    if top["seed"] < 0:
+        raise ValueError(f"{file} seed = {top['seed']}: give a whole number >= 0")
+    keys = tuple(key for axis in grid for key in axis) + tuple(_with_also(sample.get("of", {})))
+    for key in keys:
+        try:
+            check_key(key, tables, options)
+        except ValueError as error:
+            raise ValueError(f"{file}: {error}") from error
+        if keys.count(key) > 1:
+            raise ValueError(f"{file}: {key!r} varies twice; leave one out")
+    _check_names(file, tables, pair if "pair" not in keys else None, top["case"] if "case" not in keys else None)
+    copied = {entry: top[entry] for entry in ("title", "kind", "case", "seed")}
+    return Study(
+        **copied, pair=pair, name=name, tables=tables, options=options, axes=grid, sample=sample, keys=keys,
+        block=top["block"] or kind.block,
+    )  # fmt: skip
+
+
+def _scene(file, place, scene, added):
+    """Name and tables of the scene with those that the study adds, tried as a whole."""
+    name, tables = tables_near(place, scene)
+    for kind, extra in added.items():
+        present = tables.get(kind, {} if kind == "flank" else [])
+        if not isinstance(extra, type(present)):
+            raise ValueError(f"{file}: [[{kind}]] is written with two brackets, [flank.NAME] with one")
+        tables[kind] = present | extra if isinstance(present, dict) else present + extra
+    scene_of(f"{name} with {file}" if added else name, tables)
+    return name, tables
+
+
+def _check_names(file, tables, pair, case):
+    if pair is not None and pair not in tables["pair"]:
+        raise ValueError(f"{file} pair = {pair!r}: no such pair; there is {', '.join(tables['pair'])}")
+    cases = {row["case"] for kind in DAMAGE for row in tables.get(kind, [])}
+    if case not in (None, "healthy", *cases):
+        raise ValueError(f"{file} case = {case!r}: no such case; there is healthy, {', '.join(sorted(cases))}")
+
+
+def _with_also(of):
+    """Keys of a sample with those that take the same value."""
+    return [key for name, spec in of.items() for key in (name, *spec.get("also", []))]
+
+
+def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:
+    """All n cases of a study: their values by key, and numbers ``(n,)`` of their combination and of their draw of the sample.
+
+    Each draw meets each combination.
+    """
+    of = study.sample.get("of", {})
+    drawn: dict[str, list] = {}
+    count = 1
+    if of:
+        names = list(of)
+        points = samples.cube(study.sample["method"], study.sample["count"], len(names), study.seed)
+        if study.sample["correlated"]:
+            pairs = [(*one["between"], one["value"]) for one in study.sample["correlated"]]
+            points = samples.correlated(points, names, pairs)
+        for j, (key, spec) in enumerate(of.items()):
+            drawn |= dict.fromkeys((key, *spec.get("also", [])), samples.quantiles(spec, points[:, j]))
+        count = len(points)
+    sizes = [len(next(iter(axis.values()))) for axis in study.axes]
+    total = math.prod(sizes)
+    point, draw = np.repeat(np.arange(total), count), np.tile(np.arange(count), total)
+    places = np.unravel_index(point, sizes) if sizes else ()
+    columns = {key: [one[i] for i in at] for axis, at in zip(study.axes, places, strict=True) for key, one in axis.items()}
+    return columns | {key: one * total for key, one in drawn.items()}, point, draw
+
+
+def of_case(study: Study, case: Mapping[str, Any]) -> tuple[str, str, dict[str, Any]]:
+    """Pair, case of damage and options of a case with its values by key."""
+    options = {key.partition(".")[2]: value for key, value in case.items() if key.startswith("options.")}
+    if options:
+        options = checked("options", "of this case", study.options | options, KINDS[study.kind].options)
+    return case.get("pair", study.pair), case.get("case", study.case), options or study.options
+
+
+def slim(study: Study) -> Study:
+    """The study with the tables that its cases need, to be sent to other processes."""
+    if KINDS[study.kind].whole or {"pair", "case"} & set(study.keys):
+        return replace(study, axes=(), sample={})
+    return replace(study, axes=(), sample={}, tables=trimmed(study.tables, study.pair, study.case))

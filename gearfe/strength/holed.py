@@ -1,0 +1,273 @@
+"""A damaged tooth with its pits as holes and its crack as a seam, under the contact load of its pair: straight second-order tets.
+
+The load is that of `gearfe.contact.wide_contact` along the true contact lines, spread over a narrow strip to either side. The
+sector of the gear is held at the bore (or the outside of a ring) and where it was cut off.
+"""
+
+import math
+from dataclasses import astuple, dataclass, replace
+
+import numpy as np
+
+from ..contact.wide_contact import Contact3D, pair_stiffness3d
+from ..core.steps import part
+from ..flexibility.finite_elements.hexahedron import assemble
+from ..flexibility.finite_elements.solver import factor, plan
+from ..flexibility.finite_elements.tetrahedron import EDGES, nodal_stress, nodes_of, second_order, tet_stiffness
+from ..geometry.mesh.holes import Holed, holed_sector, skin
+from ..geometry.pair.pit_lines import in_both_halves
+from ..geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
+from ..stiffness.supported import check_integral
+from .fields import Field
+
+SPREAD = 0.15  # of the load to either side of its line, in modules
+BEND = math.radians(40)  # edges at which the surface bends by more are drawn
+PARTS = 5  # parts along each side of a loaded triangle: it is cut into the square of this number
+
+
+@dataclass(frozen=True, slots=True)
+class Pressed:
+    """A damaged tooth under load at p phases: `load` ``(p,)`` on tooth 0, at right angles to its flank [N].
+
+    `nodes` ``(3, n)`` are vertices and edge middles of the `sector` [mm], `cells` ``(10, m)`` those of the gear with holes, in
+    VTK's order. `moved` ``(p, 3, n)`` are displacements [mm], nan at nodes inside of the pits; `stress` ``(p, 6, n)`` xx, yy, zz,
+    xy, yz, xz at the nodes [MPa], mean of the tets there weighted by their volume. `gear` is ``pinion`` or ``wheel``.
+
+    `extra` ``(p,)`` says by how much the removed material adds to the approach of the pair under the same loads, relative; empty
+    if not asked for. The loads do not choose anew, which would make it less; loads spread wider than Hertz's pressure make it
+    less, too.
+    """
+
+    sector: Holed
+    nodes: np.ndarray
+    cells: np.ndarray
+    contact: Contact3D
+    gear: str
+    load: np.ndarray
+    moved: np.ndarray
+    stress: np.ndarray
+    extra: np.ndarray
+    unknowns: int
+
+
+def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, sizes=None, strip=None, spread=SPREAD):
+    """`Pressed`: the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
+
+    The damage is that of one tooth of one gear, its pits in one half if herringbone, or the same in both; without any it is tooth
+    0 of the pinion. `phases`: default the one of 16 at which the damaged tooth carries most. `refine`, `teeth`, `sizes` as of
+    `geometry.mesh.holes.holed_sector`; `strip` is the edge length along the loaded contact lines of the damaged tooth [modules],
+    default that of the flank; `spread` that of the load to either side of its line, as a hat [modules]: one of 1.2 Hertz half
+    widths is as wide as his pressure. With `removal` the tooth without its holes is solved too, for `Pressed.extra`.
+
+    ValueError if the damage is not that of one tooth, or cannot be. RuntimeError if a hole was not cut as it should, or the
+    system does not fit.
+    """
+    if not spread > 0:
+        raise ValueError(f"spread = {spread}, but it is a length to either side of the contact line: give spread > 0")
+    pair, materials, face, cracks, pits = case.pair, case.materials, case.runs, case.cracks, case.pits
+    which = [i for i in (0, 1) if cracks[i] or pits[i]] or [0]
+    if len(which) > 1 or len(cracks[which[0]]) > 1:
+        raise ValueError("give damage of the flank, one crack or both, of one tooth of one gear: holes are cut into one tooth")
+    side = which[0]
+    gear, half, own_pits = _own(pair, side, face, case.groove, pits[side])
+    crack = next(iter(cracks[side]), None)
+    tooth = next((one.tooth for one in (*pits[side], *cracks[side])), 0)
+    order = (1, -1)[side] * tooth
+    with part("contact", 0.0, 0.2):
+        contact = contact_of(case, phases, order, extended=False)
+    lines = [_lines(pair, of_phase, side, tooth, half) for of_phase in contact.cells]
+    spread *= gear.m_n
+    strips = () if strip is None else _strips(gear, lines, strip * gear.m_n / refine, spread)
+    with part("mesh", 0.2, 0.5):
+        sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes, strips=strips)
+    nodes, cells, number = second_order(sector.points, sector.cells)
+    kept = cells[:, sector.plug < 0]
+    loads = np.column_stack([_pressure(sector, nodes, number, of_phase, spread) for of_phase in lines])
+    held = nodes_of(np.hstack([sector.faces["held"], sector.faces["sides"]]), number)
+    with part("stress", 0.5, 1.0):
+        moved, unknowns = _moved(nodes, kept, materials[side], held, loads)
+    extra = np.zeros(0)
+    if removal:
+        whole, _ = _moved(nodes, cells, materials[side], held, loads)
+        work = np.einsum("np,np->p", loads, np.where(loads != 0, moved - whole, 0.0))
+        halves = 2 if len(own_pits) < len(pits[side]) else 1  # the same pits in the other half do as much
+        extra = halves * work / (case.forces[0] * contact.approach)
+    moved = moved.reshape(-1, 3, len(lines)).transpose(2, 1, 0)
+    load = np.array([sum(one[3].sum() for one in of_phase.get(0, ())) for of_phase in lines])
+    stress = np.array([nodal_stress(nodes, kept, one, materials[side]) for one in moved])
+    return Pressed(sector, nodes, kept, contact, ("pinion", "wheel")[side], load, moved, stress, extra, unknowns)
+
+
+def tooth_field(pressed, phase=0):
+    """`gearfe.strength.fields.Field` of the gear with holes at one of its phases, without the nodes inside of the pits."""
+    sector = pressed.sector
+    used, cells = np.unique(pressed.cells, return_inverse=True)
+    cells = cells.reshape(pressed.cells.shape)
+    place = np.full(pressed.nodes.shape[1], -1)
+    place[used] = np.arange(used.size)
+    points, moved = pressed.nodes[:, used], pressed.moved[phase][:, used]
+    body, tooth = (place[sector.faces.get(f"crack {name}", np.zeros((3, 0), dtype=int))] for name in ("body", "tooth"))
+    opening = np.linalg.norm(moved[:, tooth] - moved[:, body], axis=0).max(initial=0.0)
+    made = points, "tetra10", cells, moved, pressed.stress[phase][:, used], _edges(points, cells)
+    field = Field(*made, 0.0, float(opening))
+    return replace(field, root=float(field.mises[place[sector.faces["fillets 0"]]].max()))
+
+
+def _edges(points, cells):
+    """Pieces ``(2, k)`` of the edges at which the surface of tets bends by more than `BEND`."""
+    faces = skin(cells[:4])
+    a, b, c = points[:, faces].transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a, axis=0)
+    normal /= np.linalg.norm(normal, axis=0)
+    sides = np.hstack([faces[[0, 1]], faces[[1, 2]], faces[[0, 2]]])
+    order = np.lexsort(sides)
+    first, second = order[::2] % faces.shape[1], order[1::2] % faces.shape[1]
+    sharp = sides[:, order[::2]][:, np.abs((normal[:, first] * normal[:, second]).sum(axis=0)) < math.cos(BEND)]
+    middle = {}
+    for k, (i, j) in enumerate(EDGES):
+        middle |= dict(zip(map(tuple, np.sort(cells[[i, j]], axis=0).T.tolist()), cells[4 + k].tolist(), strict=True))
+    half = np.array([middle[tuple(side)] for side in sharp.T.tolist()], dtype=int)
+    return np.hstack([[sharp[0], half], [half, sharp[1]]])
+
+
+def _own(pair, side, face, groove, pits):
+    """The gear as it is drawn, which half of it that is (0 or 1), and its pits there; half 1 is drawn as its mirror image."""
+    gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
+    if face != "herringbone":
+        return replace(gear, beta=sense * pair.gear_1.beta), 0, pits
+    width = (gear.b - groove) / 2
+    parts = [tuple(pit for pit in pits if (pit.z > gear.b / 2) is upper) for upper in (False, True)]
+    if all(parts) and not _mirrored(gear, *parts):
+        raise ValueError(
+            "holes in both halves of a herringbone gear that are no mirror images: its halves are drawn one at a time, give "
+            "those of one"
+        )
+    half = int(not parts[0] and bool(parts[1]))
+    pits = parts[half]
+    if half:
+        pits = tuple(in_both_halves(gear, pits, face))
+    return replace(gear, beta=-sense * abs(gear.beta), b=width), half, pits
+
+
+def _mirrored(gear, lower, upper):
+    """Whether the pits of one half are the mirror images of those of the other."""
+
+    def rounded(pit):
+        return pit.called, [value if isinstance(value, str) else np.round(value, 9).tolist() for value in astuple(pit)]
+
+    return sorted(map(rounded, lower)) == sorted(map(rounded, in_both_halves(gear, upper, "herringbone")))
+
+
+def contact_of(case, phases, order, *, extended=True):
+    """`Contact3D` of a case at `phases`, or at that of 16 where pair `order` carries most, of several alike at the middle one."""
+    check_integral(case, "ritz3d")
+    given = phases is not None
+    at = phases if given else -order + (case.pair.eps_alpha + case.overlap()) * (np.arange(16) + 0.5) / 16
+    contact = pair_stiffness3d(case, at, extended=extended)
+    if given:
+        return contact
+    carried = contact.load[:, contact.order == order].sum(axis=1)
+    alike = np.flatnonzero(carried > (1 - 1e-9) * carried.max())  # a pair that is alone carries the same at several phases
+    best = int(alike[alike.size // 2])
+    numbers = {name: getattr(contact, name)[[best]] for name in ("phase", "k", "approach", "load", "unloaded")}
+    return replace(contact, cells=(contact.cells[best],), **numbers)
+
+
+def _lines(pair, cells, side, tooth, half):
+    """Contact lines by tooth of the sector: lists of (z [mm], width [mm], roll length [mm], load [N]) of their cells."""
+    gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
+    offset = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
+    out = {}
+    for order in np.unique(cells.order):
+        line = np.flatnonzero((cells.order == order) & (cells.half == half))
+        z = cells.z[line] + offset
+        z = gear.b - z if half else z
+        line, z = line[np.argsort(z)], np.sort(z)
+        place = (sense * int(order) - tooth + gear.z // 2) % gear.z - gear.z // 2
+        roll = (cells.roll_1, cells.roll_2)[side][line]
+        out.setdefault(place, []).append((z, cells.width[line], roll, cells.load[line]))
+    return out
+
+
+def _strips(gear, lines, edge, spread):
+    """Loaded contact lines of tooth 0 in the frame that turns with the helix, for a mesh with edges of a length [mm] there."""
+    out = []
+    for of_phase in lines:
+        for z, _, roll, load in of_phase.get(0, ()):
+            if (load > 0).sum() > 1:
+                radius, angle = flank(gear, roll[load > 0])
+                out.append((np.array([*cartesian(radius, angle), z[load > 0]]), 1.5 * spread, edge))
+    return out
+
+
+def _moved(nodes, cells, material, held, loads):
+    """Displacements ``(3 nodes, phases)`` [mm], nan where there is no cell, and the number of unknowns."""
+    used = np.unique(cells)
+    free = np.setdiff1d(used, held)
+    cost = plan(3 * free.size)
+    rows = (3 * free[:, None] + np.arange(3)).ravel()
+    solve = factor(assemble(nodes, cells, material, free, tet_stiffness), cost)
+    moved = np.full(loads.shape, np.nan)
+    moved[(3 * used[:, None] + np.arange(3)).ravel()] = 0.0
+    moved[rows] = solve(loads[rows])
+    if not np.isfinite(moved[rows]).all():
+        raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
+    return moved, rows.size
+
+
+def _pressure(sector, nodes, number, lines, spread):
+    """Nodal forces ``(3 n,)`` [N] of contact lines on the flanks of a sector, x, y, z of every node together.
+
+    On each line the pressure is its line load times a hat of `spread` [mm] along the profile, at small triangles of the flank; it
+    is scaled to the load of the line, so that nothing is lost where a hat leaves the flank or meets a pit. A line that meets the
+    middle of none of these triangles, as a short one at a corner of the flank, is a force at the nearest of them.
+    """
+    gear, rate = sector.gear, sector.gear.twist_rate
+    force = np.zeros((nodes.shape[1], 3))
+    bary = _thirds()
+    shape = np.vstack([bary * (2 * bary - 1), 4 * bary[[0, 1, 0]] * bary[[1, 2, 2]]])
+    for tooth, on_tooth in lines.items():
+        faces = sector.faces.get(f"flank {tooth}")
+        if faces is None or not faces.size:
+            continue
+        a, b, c = faces
+        six = np.array([a, b, c, number(a, b), number(b, c), number(a, c)])
+        x, y, z = np.einsum("dkf,kq->dfq", nodes[:, six[:3]], bary)
+        area = np.linalg.norm(np.cross((nodes[:, b] - nodes[:, a]).T, (nodes[:, c] - nodes[:, a]).T), axis=1)
+        roll = np.sqrt(np.maximum(np.hypot(x, y) ** 2 - gear.r_b**2, 0.0))
+        normal = _normal(gear, roll, 2 * math.pi * tooth / gear.z + rate * z)
+        for heights, width, rolls, load in on_tooth:
+            if load.sum() <= 0:
+                continue
+            cell = np.clip(np.searchsorted(heights + width / 2, z), 0, heights.size - 1)
+            inside = np.abs(z - heights[cell]) <= width[cell] / 2 * (1 + 1e-9)
+            away = np.abs(arc_at(gear, roll) - arc_at(gear, np.interp(z, heights, rolls)))
+            press = np.where(inside, load[cell] / width[cell] * np.maximum(1 - away / spread, 0.0), 0.0) * area[:, None]
+            if press.sum() <= 0:
+                near = np.hypot(z - heights[cell], away)
+                face = np.unravel_index(near.argmin(), near.shape)
+                if near[face] > math.sqrt(area[face[0]]):  # not even within the size of a triangle
+                    raise RuntimeError("the mesh is too coarse to carry the load of a contact line: raise refine")
+                press[face] = 1.0
+            press *= load.sum() / press.sum()
+            np.add.at(force, six.T, -np.einsum("kq,dfq,fq->fkd", shape, normal, press))
+    return force.ravel()
+
+
+def _thirds():
+    """Barycentric middles ``(3, q)`` of the small triangles a triangle is cut into."""
+    i, j = np.meshgrid(np.arange(PARTS), np.arange(PARTS), indexing="ij")
+    up, down = i + j < PARTS, i + j < PARTS - 1
+    first = np.concatenate([i[up] + 1 / 3, i[down] + 2 / 3]) / PARTS
+    second = np.concatenate([j[up] + 1 / 3, j[down] + 2 / 3]) / PARTS
+    return np.array([first, second, 1 - first - second])
+
+
+def _normal(gear, roll, turn):
+    """Unit normals out of the loaded flank at `roll` on a section turned clockwise by `turn`."""
+    plane = flank_normal(gear, roll)
+    cos, sin, tilt = np.cos(turn), np.sin(turn), math.cos(gear.beta_b)
+    return np.array([
+        tilt * (plane[0] * cos + plane[1] * sin), tilt * (plane[1] * cos - plane[0] * sin),
+        np.full(roll.shape, -math.sin(gear.beta_b)),
+    ])  # fmt: skip

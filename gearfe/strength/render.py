@@ -1,0 +1,293 @@
+"""Pictures of stress fields (pyvista), without a screen."""
+
+import contextlib
+import math
+import os
+from typing import Any
+
+import numpy as np
+
+from ..core.case import Case
+from ..core.checks import checked_refine
+from ..core.files import suffix_of, written
+from ..core.steps import part
+from ..core.threads import single
+from ..figures.contact_plot import plot_contact
+from ..flexibility.finite_elements.solver import plan
+from ..scene.load import ScenePair
+from ..stiffness.limits import check_section
+from .fields import MISES, loaded_phase, stressed_gears, write_vtu
+from .holed import contact_of, pressed_tooth, tooth_field
+from .window import drawing_library, plotting
+
+COLOURS, ABOVE = "viridis", "#d55e00"  # even steps, told apart by the colour-blind too; beyond the scale
+OPENING = 0.2  # of a crack in a picture, in modules
+STEPS = (1, 2, 5)  # by which displacements are enlarged, times powers of ten
+LEAST = 40_000  # unknowns of a tooth in three dimensions at refine 1, at least; they grow with its power 2.5 to 3
+DEEP = 1.6  # modules of the body below the root circle that a picture of a tooth shows
+# edge lengths of such a picture, see gearfe.geometry.mesh.holes.SIZES
+FINE = {"tooth": 0.5, "flank": 0.18, "fillet": 0.22, "tip": 0.1, "rim": 0.3}
+STRIP = 0.08  # edge length along the contact lines of a tooth [modules], about half of the width that the load is spread over
+# corners and middles of a second-order tet (VTK's order) to eight tets
+EIGHT = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3), (4, 5, 6, 8), (4, 6, 7, 8), (6, 5, 9, 8), (6, 9, 7, 8))
+
+
+@single
+def render_stress(
+    pair: Case | ScenePair,
+    path: str | os.PathLike[str],
+    *,
+    case: str | None = None,
+    phase: float | None = None,
+    size: tuple[int, int] = (1400, 1050),
+    refine: float = 1.0,
+    title: str = "",
+) -> dict[str, Any]:
+    """Von Mises stress of loaded gears as a picture, without a screen, or as a VTK file.
+
+    Spur gears without pits: both gears in their transverse section, pressed by Hertz's ellipse on a surface meshed for it.
+    Helical and herringbone gears, pits, and loads that change along the width (crowning, misalignment, shafts that tilt): the
+    damaged tooth in three dimensions, pits as holes, with the load of the pair along its contact lines (`gearfe.strength.holed`).
+    Displacements are enlarged if there is a crack, so that it opens; the picture says how much.
+
+    Parameters
+    ----------
+    pair : Case or ScenePair
+        What is loaded; of a scene's pair its case of damage that is called `case`, default healthy.
+    path : path
+        A ``.png`` file, or ``.vtu``: mesh, displacement and stress.
+    case : str, optional
+    phase : float, optional
+        Mesh phase; default where the damaged tooth carries most, 0 for healthy spur gears.
+    size : tuple of int
+        Pixels.
+    refine : float
+        Divides the edge lengths.
+    title : str
+        First line of the text in the picture.
+
+    Returns
+    -------
+    dict
+        What is shown: ``phase``, ``largest`` and ``root`` (von Mises stress anywhere and on the loaded fillets) [MPa],
+        ``enlarged`` (by which displacements are), ``load`` [N] (on the tooth shown; in a plane on the pair), ``text``.
+
+    Raises
+    ------
+    RuntimeError
+        If pyvista or a renderer is missing; the message names what to install. If the solve does not fit into memory.
+    """
+    suffix, refine = suffix_of(path, "stress"), checked_refine(refine)
+    if suffix == ".png":
+        drawing_library()
+    shown = pair.case(case) if isinstance(pair, ScenePair) else pair
+    wide = bool(shown.pair.gear_1.beta or shown.why_wide)
+    _check_size(wide, refine)
+    with part("", 0.0, 0.85):
+        fields, told = (_tooth if wide else _gears)(shown, phase, refine)
+    told |= {"root": max(field.root for field in fields), "largest": max(float(field.mises.max()) for field in fields)}
+    told["text"] = _text(title or (case or ""), told)
+    if suffix == ".vtu":
+        write_vtu(path, fields)
+    else:
+        with part("picture", 0.85, 1.0):
+            (_draw_tooth if wide else _draw_gears)(shown.pair, fields, told, path, size)
+    return told
+
+
+def render_contact(case, path, *, phase=None, title=""):
+    """Picture of the contact lines with their pressure on the flank, and of the load over the width (`gearfe.plot_contact`).
+
+    By default at the phase at which the damaged tooth pair (or pair 0) carries most. Gives ``phase``, ``k`` [N/m], ``pressure``
+    (the largest of Hertz's) [MPa], and whether a ``corner`` touches: at a tip corner the pressure is unbounded, and the largest
+    is that of the rest; nan if nothing else touches.
+    """
+    contact = contact_of(case, None if phase is None else [phase], case.first_tooth or 0)
+    plot_contact(case.pair, contact, path=path, pits=case.pits[0], title=title)
+    pressure = contact.cells[0].pressure
+    corner = np.isnan(pressure)
+    largest = math.nan if corner.all() else float(pressure[~corner].max())
+    return {"phase": float(contact.phase[0]), "k": float(contact.k[0]), "pressure": largest, "corner": bool(corner.any())}
+
+
+def _check_size(wide, refine):
+    """Refuse a picture whose solve does not fit into memory, before it is meshed; of a tooth in 3-D by a low estimate."""
+    if not wide:
+        check_section(refine)
+    elif refine > 1:
+        plan(int(LEAST * refine**2.5))
+
+
+def _gears(case, phase, refine):
+    phase = loaded_phase(case) if phase is None else phase
+    fields = stressed_gears(case, phase, refine)
+    scale = enlarged(max(field.opening for field in fields), case.pair.gear_1.m_n)
+    return fields, {"phase": phase, "load": case.force, "enlarged": scale, "where": "on the pair"}
+
+
+def _tooth(case, phase, refine):
+    pressed = pressed_tooth(case, phases=None if phase is None else [phase], refine=refine, sizes=FINE, strip=STRIP)
+    field = tooth_field(pressed)
+    told = {
+        "phase": float(pressed.contact.phase[0]),
+        "load": float(pressed.load[0]),
+        "where": "on this tooth",
+        "sector": pressed.sector,
+    }
+    return [field], told | {"enlarged": enlarged(field.opening, pressed.sector.gear.m_n)}
+
+
+def enlarged(opening, module):
+    """Factor of displacements in a picture that opens a crack by about `OPENING` modules; 0 without a crack: not drawn."""
+    if opening <= 0:
+        return 0
+    power = math.floor(math.log10(OPENING * module / opening))
+    return int(max(1, max(s * 10.0**power for s in STEPS if s * 10.0**power <= OPENING * module / opening * (1 + 1e-9))))
+
+
+def _text(title, told):
+    lines = [title, f"phase {told['phase']:.3g}, {told['load']:.0f} N {told['where']}"]
+    if told["enlarged"]:
+        lines.append(f"displacements x {told['enlarged']}, which opens the crack")
+    return "\n".join(line for line in lines if line)
+
+
+@contextlib.contextmanager
+def _picture(path, size, text, top):
+    """A plotter and how to draw stress with it; text and colour bar are added, and the picture is written to `path`."""
+    with plotting(window_size=list(size), lighting="none") as plotter:
+        plotter.set_background("white")
+        look = {"scalars": MISES, "clim": [0, top], "cmap": COLOURS, "above_color": ABOVE, "show_scalar_bar": False}
+        yield plotter, look
+        scale = (size[0] / 1400) ** 0.7  # small pictures keep letters that can be read
+        mapper = next(actor.mapper for name, actor in plotter.actors.items() if name.startswith("stress"))
+        fonts = {"title_font_size": round(26 * scale), "label_font_size": round(24 * scale), "color": "black", "fmt": "%.0f"}
+        place = {"vertical": True, "position_x": 0.89, "position_y": 0.2, "width": 0.06, "height": 0.6, "n_labels": 6}
+        plotter.add_scalar_bar(title="MPa", mapper=mapper, **fonts, **place)
+        plotter.add_text(f"von Mises stress\n{text}", position=(0.012, 0.985), viewport=True, color="black", font_size=1)
+        text_style = plotter.actors[next(reversed(plotter.actors))].prop
+        text_style.SetFontSize(round(28 * scale))
+        text_style.SetVerticalJustificationToTop()
+        text_style.SetBackgroundColor(1.0, 1.0, 1.0)
+        text_style.SetBackgroundOpacity(0.8)
+        plotter.enable_anti_aliasing("ssaa")
+        with written(path) as name:
+            plotter.screenshot(name)
+
+
+def _grid(field, scale):
+    """Pyvista grid of a field, displaced."""
+    import pyvista
+
+    kind = {"triangle6": pyvista.CellType.QUADRATIC_TRIANGLE, "tetra10": pyvista.CellType.QUADRATIC_TETRA}[field.kind]
+    grid = pyvista.UnstructuredGrid({kind: field.cells.T}, (field.points + scale * field.moved).T)
+    grid.point_data[MISES] = field.mises
+    return grid
+
+
+def _lines(field, scale, kept=None, lift=0.0):
+    import pyvista
+
+    pieces = field.lines if kept is None else field.lines[:, kept[field.lines].all(axis=0)]
+    cells = np.hstack([np.full((pieces.shape[1], 1), 2), pieces.T]).ravel()
+    return pyvista.PolyData((field.points + scale * field.moved).T + np.array([0, 0, lift]), lines=cells)
+
+
+def rounded_up(value):
+    """The next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(s * power for s in (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if s * power >= value * (1 - 1e-9))
+
+
+def _length_scale(plotter, size, up, view):
+    """A bar of a round length at the lower left, in the plane of the picture, nearer than all else."""
+    import pyvista
+
+    up, view, focus = np.array(up), np.array(view), np.array(plotter.camera.focal_point)
+    right, half = np.cross(up, view), plotter.camera.parallel_scale
+    wide = half * size[0] / size[1]
+    target = 0.3 * wide
+    power = 10.0 ** math.floor(math.log10(target))
+    length = max(s * power for s in STEPS if s * power <= target)
+    near = 0.15 * np.linalg.norm(np.array(plotter.camera.position) - focus)
+    start = focus - 0.95 * wide * right - 0.93 * half * up + near * view
+    middle = start + length / 2 * right - 0.1 * near * view
+    corners = np.array([middle + i * 0.58 * length * right + j * 0.025 * half * up for j in (-1, 1) for i in (-1, 1)])
+    sheet = pyvista.PolyData(corners, faces=[4, 0, 1, 3, 2])
+    plotter.add_mesh(sheet, color="white", lighting=False)
+    plotter.add_mesh(pyvista.Line(start, start + length * right), color="black", line_width=6, lighting=False)
+    plotter.add_text(f"{length:g} mm", position=(0.028, 0.045), viewport=True, color="black", font_size=1)
+    text_style = plotter.actors[next(reversed(plotter.actors))].prop
+    text_style.SetFontSize(round(24 * (size[0] / 1400) ** 0.7))
+    text_style.SetBackgroundColor(1.0, 1.0, 1.0)
+    text_style.SetBackgroundOpacity(0.8)
+
+
+def _draw_gears(pair, fields, told, path, size):
+    """Both gears; if displacements are enlarged the cracked one alone, and in grey where both were without load."""
+    import pyvista
+
+    scale, shown, focus = told["enlarged"], fields, (0.9 * pair.gear_1.m_n, pair.pitch_radius_1)
+    if scale:
+        shown = [field for field in fields if field.opening > 0]
+    with _picture(path, size, told["text"], rounded_up(max(field.root for field in shown))) as (plotter, look):
+        for k, field in enumerate(shown):
+            plotter.add_mesh(_grid(field, scale), name=f"stress {k}", lighting=False, **look)
+            plotter.add_mesh(_lines(field, scale, lift=0.02), color="black", line_width=2, lighting=False)
+        for field in fields if scale else ():
+            plotter.add_mesh(_lines(field, 0, lift=0.01), color="#9a9a9a", line_width=1.5, lighting=False)
+        half = (2.6 if scale else 3.6) * pair.gear_1.m_n
+        wide = half * size[0] / size[1]
+        middle = (focus[0] + 0.83 * wide, focus[1], 0.1)
+        strip = pyvista.Plane(center=middle, direction=(0, 0, 1), i_size=0.36 * wide, j_size=3 * half)  # behind the colour bar
+        plotter.add_mesh(strip, color="white", lighting=False)
+        plotter.view_xy()
+        plotter.camera.focal_point = (*focus, 0)
+        plotter.camera.position = (*focus, 1)
+        plotter.camera.parallel_projection = True
+        plotter.camera.parallel_scale = half
+        _length_scale(plotter, size, (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def _draw_tooth(pair, fields, told, path, size):
+    """The loaded flank of tooth 0; the tooth before it is cut away, because it would hide it."""
+    import pyvista
+
+    (field,), gear, scale = fields, told["sector"].gear, told["enlarged"]
+    x, y, z = field.points
+    rate = gear.twist_rate
+    angle = (np.arctan2(x, y) - rate * z) * gear.z / (2 * math.pi)  # in pitches from tooth 0
+    deep = gear.outward * (np.hypot(x, y) - gear.r_f) / gear.m_n
+    linear = np.hstack([field.cells[list(corners)] for corners in EIGHT])
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: linear.T}, (field.points + scale * field.moved).T)
+    for name, values in ((MISES, field.mises), ("pitch", angle), ("deep", deep)):
+        grid.point_data[name] = values
+    for name, value, invert in (("pitch", 0.5, True), ("pitch", -0.5, False), ("deep", -DEEP, False)):
+        grid = grid.clip_scalar(scalars=name, value=value, invert=invert)
+    surface = grid.extract_surface(algorithm="dataset_surface").compute_normals(feature_angle=50, split_vertices=True)
+    turn = rate * gear.b / 2
+    out = np.array([math.cos(turn), -math.sin(turn), 0.0])
+    up = gear.outward * np.array([math.sin(turn), math.cos(turn), 0.0])
+    view = out + 0.45 * up + np.array([0, 0, 0.6])
+    view /= np.linalg.norm(view)
+    right = np.cross(up, view) / np.linalg.norm(np.cross(up, view))
+    plane = np.array([right, np.cross(view, right)])  # of the picture
+    low, high = (edge((plane @ surface.points.T).T, axis=0) for edge in (np.min, np.max))
+    focus = plane.T @ ((low + high) / 2)
+    wide, tall = (high - low) / (0.76, 0.76)  # text above, colour bar on the right
+    size = size[0], round(size[0] * min(max(tall / wide, 0.5), size[1] / size[0]))
+    with _picture(path, size, told["text"], rounded_up(told["root"])) as (plotter, look):
+        plotter.add_mesh(surface, name="stress", smooth_shading=True, ambient=0.55, diffuse=0.5, specular=0.0, **look)
+        kept = (np.abs(angle) < 0.5) & (deep > -DEEP)
+        plotter.add_mesh(_lines(field, scale, kept), color="black", line_width=2, lighting=False)
+        half = max(tall, wide * size[1] / size[0]) / 2
+        focus = focus + plane.T @ np.array([0.08 * half * size[0] / size[1], 0.18 * half])
+        plotter.camera.focal_point = focus
+        plotter.camera.position = focus + 200 * gear.m_n * view
+        plotter.camera.up = plane[1]
+        plotter.camera.parallel_projection = True
+        plotter.camera.parallel_scale = half
+        light = focus + 200 * gear.m_n * (view + 0.7 * up)
+        plotter.add_light(pyvista.Light(position=light, focal_point=focus, intensity=1.0))
+        plotter.camera.clipping_range = (10 * gear.m_n, 500 * gear.m_n)
+        _length_scale(plotter, size, plane[1], view)

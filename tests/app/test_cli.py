@@ -1,0 +1,201 @@
+import sys
+from dataclasses import replace
+from importlib import resources
+
+import numpy as np
+import pytest
+
+import gearfe as gf
+from gearfe.app.cli import main
+from gearfe.strength.fields import stressed_gears
+from gearfe.strength.render import render_contact
+
+
+@pytest.mark.quick
+def test_stiffness_writes_curve_and_plot(tmp_path, capsys):
+    out, plot = tmp_path / "k.csv", tmp_path / "k.png"
+    assert main(["stiffness", "planetary_pitting", "--phases", "8", "-o", str(out), "--plot", str(plot)]) == 0
+    assert gf.StiffnessCurve.from_csv(out).phase.size == 8
+    assert plot.read_bytes().startswith(b"\x89PNG")
+    assert "assumed: face width" in capsys.readouterr().out
+
+
+def test_stiffness_of_one_gear_turned_against_the_other(tmp_path):
+    out = tmp_path / "k.csv"
+    assert main(["stiffness", "planetary_pitting", "--phases", "4", "--pose", "pinion", "-o", str(out)]) == 0
+    case = gf.load_scene("planetary_pitting").pair().case(None)
+    expected = gf.mesh_stiffness(**case, phases=4, span="cycle", pose="pinion")
+    np.testing.assert_allclose(gf.StiffnessCurve.from_csv(out).k, expected.k, rtol=1e-9)
+    mean = gf.mesh_stiffness(**case, phases=4, span="cycle")
+    assert abs(mean.k / expected.k - 1).max() > 1e-6
+
+
+def test_stiffness_of_a_case_is_told_as_compare_tells_it(capsys):
+    """One number for one question: zones over the same cycle, losses against the same healthy gears."""
+    run = ["compound_planetary", "--case", "crack30", "--phases", "8"]
+    assert main(["stiffness", *run]) == 0
+    text = capsys.readouterr().out
+    rows = {
+        line.split("|")[1].strip(): [cell.strip() for cell in line.split("|")[2:-1]] for line in text.splitlines() if "|" in line
+    }
+    told = gf.compare("compound_planetary", case="crack30", phases=8)
+    for zone, lost in told.losses()["ritz"].items():
+        assert rows[zone][2] == f"{100 * lost:.1f} %"
+    assert rows["single"][1] == f"{next(told.rows())[3]['ritz'][0] / 1e6:.1f}"
+    assert told.definition in text
+    assert "3.07 mm crack" in text
+
+
+def test_compare_prints_errors_by_zone(capsys):
+    assert main(["compare", "planetary_pitting", "--phases", "8", "--refine", "0.6"]) == 0
+    text = capsys.readouterr().out
+    rows = {line.split("|")[1].strip(): line.split("|")[2:-1] for line in text.splitlines() if line.startswith("| ")}
+    assert {"single", "double", "mean", "max", "seconds"} <= rows.keys()
+    fe, textbook = float(rows["double"][0]), float(rows["double"][2])
+    assert abs(100 * (textbook / fe - 1) - float(rows["double"][3].replace("%", ""))) < 0.1
+    assert 0 < float(rows["double"][1].strip("+- %\u00b1")) < 1
+
+
+def test_ring_pair_and_error_estimate(capsys):
+    assert main(["stiffness", "planetary_pitting", "--pair", "planet_ring", "--phases", "8", "--error"]) == 0
+    assert "error at most about" in capsys.readouterr().out
+
+
+def test_warnings_become_notes(tmp_path, capsys):
+    text = (resources.files("gearfe.scene.scenes") / "planetary_pitting.toml").read_text()
+    path = tmp_path / "untrimmed.toml"
+    path.write_text(text.replace("addendum = 0.859\n", ""))
+    assert main(["stiffness", str(path), "--method", "textbook"]) == 0
+    assert "note: the ring's tip (z = 84) was trimmed" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_render_makes_a_picture_of_stress(tmp_path, capsys):
+    path = tmp_path / "stress.png"
+    assert main(["render", "planetary_pitting", "--refine", "0.5", "-o", str(path)]) == 0
+    from matplotlib.image import imread
+
+    picture = imread(path)
+    assert picture.shape[:2] == (1050, 1400)
+    assert np.unique((picture[..., :3] * 8).astype(int).reshape(-1, 3), axis=0).shape[0] > 50, "colours, not a blank"
+
+
+def test_render_opens_a_crack_and_says_how_far(tmp_path, capsys):
+    import meshio
+
+    path = tmp_path / "cracked.vtu"
+    assert main(["render", "compound_planetary", "--case", "crack30", "--refine", "0.5", "-o", str(path)]) == 0
+    assert "which opens the crack" in capsys.readouterr().out
+    found = meshio.read(path)
+    assert set(found.cells_dict) == {"triangle6"}
+    assert {"displacement [mm]", "stress [MPa]", "von Mises stress [MPa]"} == set(found.point_data)
+    assert np.isfinite(found.point_data["stress [MPa]"]).all()
+
+
+@pytest.mark.slow
+def test_pictures_have_the_flanks_and_shafts_of_their_scene(tmp_path):
+    """k of the picture of contact is that of `mesh_stiffness`; a relieved neighbour leaves its load to the tooth shown."""
+    chosen = gf.load_scene("planetary_pitting").pair()
+    askew = replace(chosen, misalignment=gf.Misalignment(F_beta=0.01), supports={"pinion": gf.Support(radial=2e5, tilt=5e7)})
+    told = render_contact(askew.case(), tmp_path / "contact.svg", phase=0.9)
+    solved = gf.mesh_stiffness(**askew.case(), method="ritz3d", phases=[0.9])
+    assert told["k"] == pytest.approx(solved.k[0], rel=1e-9)
+    assert told["k"] < 0.6 * render_contact(chosen.case(), tmp_path / "contact.svg", phase=0.9)["k"]
+    gears = ("pinion", chosen.pair.gear_1), ("wheel", chosen.pair.gear_2)
+    relieved = replace(chosen, flanks={n: gf.Flank(tip_relief=0.1, tip_start_diameter=2 * g.r_a - 1.0) for n, g in gears})
+    plain, more = (max(field.root for field in stressed_gears(one.case(), 0.1, 0.5)) for one in (chosen, relieved))
+    share = gf.mesh_stiffness(**chosen.case(), phases=[0.1]).force[0].max() / chosen.force
+    assert more == pytest.approx(plain / share, rel=0.1), "one tooth carries all of it"
+
+
+def test_check_draws_the_pair_with_its_damage(tmp_path, capsys):
+    path = tmp_path / "pair.svg"
+    assert main(["check", "compound_planetary", "--picture", str(path)]) == 0
+    assert f"written: {path}" in capsys.readouterr().out
+    assert main(["check", "compound_planetary", "--case", "crack30"]) == 1
+    assert "give --picture FILE too" in capsys.readouterr().err
+
+
+def test_scenes_and_info(capsys):
+    assert main(["scenes"]) == 0
+    assert main(["info"]) == 0
+    text = capsys.readouterr().out
+    assert "planetary_pitting: pairs sun_planet, planet_ring" in text
+    assert "gmsh starts" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["stiffness", "nowhere"], "built in are"),
+        (["stiffness", "planetary_pitting", "--method", "magic"], "auto, ritz, ritz3d, fe, fe3d, coupled, textbook, published"),
+        (["stiffness", "planetary_pitting", "--method", "textbook", "-o", "/no/such/folder/k.csv"], "cannot write"),
+        (["stiffness", "planetary_pitting", "--force", "-5"], "force = -5.0"),
+        (["render", "planetary_pitting", "-o", "stress.jpg"], "use one of .png, .vtu"),
+        (["render", "planetary_pitting", "--case", "x", "-o", "s.png"], "no case 'x' of this pair"),
+        (["compare", "planetary_pitting", "--pair", "x"], "it has sun_planet, planet_ring"),
+    ],
+)
+def test_errors_go_to_stderr(arguments, message, capsys):
+    assert main(arguments) == 1
+    captured = capsys.readouterr()
+    assert message in captured.err
+    assert "Traceback" not in captured.err
+
+
+@pytest.mark.parametrize(
+    ("verb", "option", "good"),
+    [
+        (["stiffness", "planetary_pitting", "--method", "fe3d"], "-o", "k.csv"),
+        (["stiffness", "planetary_pitting", "--method", "fe3d"], "--plot", "k.png"),
+        (["compare", "planetary_pitting"], "--plot", "k.svg"),
+        (["render", "planetary_pitting"], "-o", "s.vtu"),
+        (["render", "planetary_pitting", "--what", "contact"], "-o", "s.png"),
+        (["check", "planetary_pitting"], "--picture", "s.png"),
+        (["dynamics", "planetary_pitting"], "-o", "r.mat"),
+        (["dynamics", "planetary_pitting"], "--plot", "r.pdf"),
+        (["dynamics", "planetary_pitting"], "--kurtogram", "r.png"),
+        (["signal", "none.csv"], "--plot", "r.png"),
+        (["signal", "none.csv"], "--kurtogram", "r.png"),
+        (["signal", "none.csv"], "--cepstrum", "r.png"),
+        (["signal", "none.csv"], "--spectrogram", "r.png"),
+    ],
+)
+def test_outputs_are_checked_before_any_work(verb, option, good, tmp_path, monkeypatch, capsys):
+    def work(*_, **__):
+        raise AssertionError("work began")
+
+    for name in ("gearfe.scene.load.load_scene", "gearfe.signal.signal_file.read_signals"):
+        monkeypatch.setattr(name, work)
+    (tmp_path / "folder.png").mkdir()
+    suffix = good.rpartition(".")[2]
+    for given, message in (
+        ("", "empty file name"),
+        (str(tmp_path / "x.xlsx"), "no format for '.xlsx'; use one of "),
+        (str(tmp_path / "nosuffix"), "no format for 'a file without a suffix'"),
+        (str(tmp_path / "missing" / good), "cannot write"),
+        (str(tmp_path / f"{'long' * 100}.{suffix}"), "cannot write"),
+    ):
+        assert main([*verb, option, given]) == 1, given
+        assert message in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["folder.png"], "a check leaves nothing behind"
+    with pytest.raises(AssertionError, match="work began"):
+        main([*verb, option, str(tmp_path / good)])
+
+
+def test_two_outputs_do_not_share_a_file(tmp_path, capsys):
+    same = str(tmp_path / "x.png")
+    assert main(["signal", "none.csv", "--plot", same, "--kurtogram", same]) == 1
+    assert "--plot and --kurtogram name the same file" in capsys.readouterr().err
+
+
+def test_missing_renderer_names_the_package(monkeypatch, tmp_path, capsys):
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    assert main(["render", "planetary_pitting", "-o", str(tmp_path / "s.png")]) == 1
+    assert "pip install pyvista" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_law_of_contact_for_a_scene_without_machine_is_refused(capsys):
+    assert main(["dynamics", "herringbone_contact_line", "--contact", "impact"]) == 1
+    assert "has no [machine] table" in capsys.readouterr().err

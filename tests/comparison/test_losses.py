@@ -1,0 +1,193 @@
+"""What damage takes: beside the healthy pair, one number for one question wherever it is asked."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.app.cli import main
+from gearfe.comparison.case_table import case_table
+from gearfe.comparison.losses import (
+    damage_phases,
+    headline,
+    kind_of,
+    loss,
+    loss_errors,
+    percent_with_doubt,
+    told_damage,
+    within,
+)
+from gearfe.comparison.told_scene import told_supports
+from gearfe.reports.page import _comparison
+from gearfe.stiffness.methods import METHODS
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    path = tmp_path_factory.mktemp("losses") / "my.toml"
+    return gf.new_scene(path, teeth=(17, 23), width=8.0)
+
+
+@pytest.fixture(scope="module")
+def found(scene):
+    return gf.compare(scene, case="cracked", phases=16)
+
+
+def test_healthy_curves_are_of_the_same_phases(found):
+    assert found.healthy.keys() == found.curves.keys()
+    for name, curve in found.healthy.items():
+        assert_allclose(curve.phase, found.curves[name].phase, rtol=0, atol=1e-12)
+        assert (curve.k >= found.curves[name].k * (1 - 1e-9)).all(), name
+        assert "damage" not in curve.meta or not any(curve.meta["damage"].values())
+
+
+def test_mean_of_a_healthy_pair_is_the_same_over_any_cycle(found, scene):
+    healthy = gf.compare(scene, phases=16)
+    by_zone = {zone: k for zone, k, *_ in healthy.rows()}
+    same = within(found.healthy["fe"], found.cycle).zones()
+    for zone in ("single", "double", "mean", "max"):
+        assert_allclose(same[zone], by_zone[zone], rtol=1e-6, err_msg=zone)
+
+
+def test_phases_have_the_tooth_in_the_middle_and_in_contact(pair):
+    for tooth in (0, 2, -1):
+        phase = damage_phases(gf.Case(pair, 1000.0, gf.Material()), 64, tooth) + tooth
+        assert abs(phase.mean() - pair.eps_alpha / 2) < 1 / 64
+        assert 0 <= phase.min() < phase.max() <= pair.eps_alpha
+        assert_allclose(np.sort(phase % 1), np.arange(64) / 64, atol=1e-12)
+
+
+@pytest.mark.slow
+def test_any_tooth_loses_as_tooth_nought():
+    chosen = gf.load_scene("planetary_pitting").pair()
+    run = {"force": chosen.force, "material": chosen.materials, "phases": 8, "refine": 0.3}
+    zero, two = (gf.compare(chosen.pair, damage={"pinion": gf.Crack(level=0.3, tooth=n)}, **run) for n in (0, 2))
+    for zone, value in zero.losses()["ritz"].items():
+        assert_allclose(two.losses()["ritz"][zone], value, rtol=1e-3, err_msg=zone)
+
+
+def test_every_method_has_a_column_or_a_reason(found, scene):
+    for one in (
+        found,
+        gf.compare(scene, phases=4, refine=0.5),
+        gf.compare("planetary_pitting", "planet_ring", phases=4, refine=0.5),
+    ):
+        assert one.curves.keys() | one.left_out.keys() == set(METHODS)
+        assert not one.curves.keys() & one.left_out.keys()
+    assert "healthy gears only" in found.left_out["coupled"]
+    assert "not for rings" in one.left_out["textbook"]
+
+
+@pytest.mark.slow
+def test_losses_are_judged_by_a_finer_solve(found, scene):
+    """The estimate covers what a two and a half times finer mesh of the finite elements changes."""
+    rough = gf.compare(scene, case="cracked", phases=16, refine=0.4)
+    for zone, value in rough.losses()["fe"].items():
+        assert abs(found.losses()["fe"][zone] - value) <= rough.doubt[zone], zone
+
+
+def test_case_and_cases_give_the_same_numbers(found, scene):
+    table = case_table(gf.load_scene(scene), phases=16)
+    mean = {zone: k for zone, k, *_ in found.rows()}
+    assert_allclose(table.curves["stage", "cracked", "fe"].mean, mean["mean"], rtol=1e-6)
+    assert_allclose(table.curves["stage", "cracked", "fe"].largest, mean["max"], rtol=1e-6)
+    for name in ("fe", "ritz", "textbook", "published"):
+        own = found.losses()[name]
+        assert_allclose(table.drops("stage", "cracked", name)[:2], [own["most at a phase"], own["mean"]], rtol=1e-5)
+
+
+def test_cases_with_damage_in_several_teeth_are_each_looked_at(tmp_path):
+    path = gf.new_scene(tmp_path / "two.toml", teeth=(17, 23), width=8.0)
+    path.write_text(path.read_text() + "\n[[crack]]\ncase = 'third'\ngear = 'pinion'\nlevel = 0.3\ntooth = 2\n")
+    table = case_table(gf.load_scene(path), phases=8)
+    for name in ("fe", "textbook"):
+        assert_allclose(table.drops("stage", "third", name), table.drops("stage", "cracked", name), rtol=2e-3)
+
+
+def test_terminal_report_and_python_say_the_same(found, scene, capsys):
+    assert main(["compare", str(scene), "--case", "cracked", "--phases", "16"]) == 0
+    text = capsys.readouterr().out
+    assert text.splitlines()[2] == found.headline
+    shown = _comparison(found, "cracked", lambda _: "")
+    assert shown["headline"] == found.headline
+    cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| ")]
+    for row in shown["losses"]:
+        assert row in cells
+    assert "assumed: bore" in text
+    assert main(["compare", str(scene), "--cases", "--phases", "16"]) == 0
+    told = capsys.readouterr().out
+    single, mean = re.findall(r"(\d+\.\d) ±", found.headline)
+    assert f"{mean} % of its mean" in told
+    assert float(single) > float(mean)
+
+
+def test_losses_of_known_curves():
+    """Half of a cycle with two pairs, 300 N/um, loses a tenth; the other, 200 N/um, a fifth."""
+    phase, none = np.arange(8) / 8, np.zeros((8, 1))
+    k = np.where(phase <= 0.5, 3e8, 2e8)
+    made = [
+        gf.StiffnessCurve(phase, one, one, none[:, 0], np.array([0]), none, none, meta={"eps_alpha": 1.5})
+        for one in (k, k * np.where(phase <= 0.5, 0.9, 0.8))
+    ]
+    lost = loss(*made)
+    assert_allclose([lost["double"], lost["single"], lost["most at a phase"]], [0.1, 0.2, 0.2], rtol=1e-12)
+    assert_allclose(lost["mean"], (5 * 30 + 3 * 40) / (5 * 300 + 3 * 200), rtol=1e-12)
+    assert headline("a crack", "cracked", lost, {}).endswith(
+        "20.0 % softer where the cracked tooth carries alone; 12.9 % in the mean"
+    )
+
+
+def test_doubt_by_whole_gears_adds_both_estimates():
+    """Finite elements in three dimensions are not solved again: 1 % of healthy and 2 % of damaged k make 3 % of what is left."""
+    phase, none = np.arange(8) / 8, np.zeros((8, 1))
+    two = [
+        gf.StiffnessCurve(phase, k, k, none[:, 0], np.array([0]), none, none, error=part * k, meta={"eps_alpha": 1.5})
+        for k, part in ((np.full(8, 3e8), 0.01), (np.full(8, 2.4e8), 0.02))
+    ]
+    case = gf.load_scene("planetary_pitting").case()
+    doubt = loss_errors(*two, case, gf.Solve("fe3d"))
+    assert doubt.keys() == loss(*two).keys()
+    assert_allclose(list(doubt.values()), 0.8 * 0.03, rtol=1e-12)
+    assert loss_errors(*two, case, gf.Solve("fe", refine=0.3)) == {}, "there are no meshes so coarse"
+
+
+def test_doubts_are_rounded_up():
+    assert percent_with_doubt(0.158, 0.00201) == "15.8 ± 0.3 %"
+    assert percent_with_doubt(0.158, 0.0) == "15.8 ± 0.1 %"
+    assert percent_with_doubt(0.158, float("nan")) == "15.8 %"
+
+
+def test_damage_in_words(pair):
+    pit = gf.Pit(radius=21.0, z=10.0, axes=(0.5, 0.5), depth=0.2)
+    crack = gf.Crack(length=2.0, angle=np.radians(60))
+    assert told_damage(pair, {"pinion": [crack]}) == "2 mm crack at 60 degrees"
+    assert told_damage(pair, {"pinion": [crack], "wheel": [replace(crack, length=1.0)]}) == "2 cracks"
+    assert told_damage(pair, {"pinion": [gf.Crack(level=0.7, turning=True)]}).startswith("turning crack of level 0.7")
+    assert kind_of({"pinion": [crack]}) == "cracked"
+    assert told_damage(pair, {"pinion": [crack, pit]}) == "2 mm crack at 60 degrees and 1 pit"
+    assert [kind_of({"pinion": one}) for one in ([crack], [pit], [crack, pit])] == ["cracked", "pitted", "damaged"]
+
+
+def test_reference_that_cannot_be_is_refused(scene):
+    with pytest.raises(ValueError, match="must be one of fe, ritz3d, fe3d"):
+        gf.compare(scene, reference="textbook")
+    with pytest.raises(ValueError, match="pits change along the width"):
+        gf.compare("planetary_pitting", case="mild", reference="fe")
+
+
+def test_what_shafts_and_springs_take_is_told(scene, tmp_path, capsys):
+    text = scene.read_text()
+    for line in ("[support.output]", 'gear = "wheel"\n#pair = "stage"\n#radial_N_per_um = 200.0'):
+        text = text.replace(f"#{line}", line.replace("\n#", "\n"))
+    (tmp_path / "soft.toml").write_text(text)
+    assert main(["stiffness", str(tmp_path / "soft.toml"), "--phases", "8"]) == 0
+    (alone,) = re.findall(
+        r"take \d+ % of the deflection, and are in k; teeth and bodies alone have (\S+) N/um", capsys.readouterr().out
+    )
+    chosen = gf.load_scene(scene).pair()
+    rigid = gf.mesh_stiffness(**chosen.case(), phases=8)
+    assert float(alone) == pytest.approx(rigid.k.mean() / 1e6, rel=0.01)
+    assert not told_supports(rigid)

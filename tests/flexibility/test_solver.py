@@ -1,0 +1,132 @@
+"""The solver of bodies against known solutions, with and without METIS; what does not fit is refused beforehand."""
+
+import gc
+
+import numpy as np
+import pytest
+from cvxopt import cholmod
+from numpy.testing import assert_allclose
+from scipy.sparse import block_diag, diags, eye, kron, tril
+
+from gearfe.core.memory import free_memory
+from gearfe.core.steps import listening
+from gearfe.flexibility.finite_elements import solver
+
+LINE = diags([-1.0, 2.0, -1.0], [-1, 0, 1], shape=(12, 12))
+GRID = (kron(kron(LINE, eye(12)), eye(12)) + kron(kron(eye(12), LINE), eye(12)) + kron(eye(144), LINE)).tocsc()
+BODY = kron(GRID, np.ones((3, 3)) + np.eye(3)).tocsc()[:1500, :1500]  # three unknowns of a node
+
+
+@pytest.fixture(params=[True, False], ids=["nested dissection", "least degree"])
+def ordered(request, monkeypatch):
+    """With METIS, and as it is where it cannot be had."""
+    monkeypatch.setattr(solver, "dissects", lambda: request.param)
+    return request.param
+
+
+def test_the_known_solution_is_found(ordered):
+    want = np.random.default_rng(0).normal(size=(GRID.shape[0], 3))
+    for matrix in (GRID, tril(GRID)):
+        solve = solver.factor(matrix)
+        assert_allclose(solve(GRID @ want), want, rtol=1e-10, atol=1e-11, err_msg="only the lower triangle is read")
+        assert_allclose(solve.gram(GRID @ want), want.T @ GRID @ want, rtol=1e-10, atol=1e-8)
+        assert_allclose(solve(GRID @ want[:, 0]), want[:, 0], rtol=1e-10, atol=1e-11)
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 5, 700])
+def test_any_size_and_any_pattern_is_solved(ordered, size):
+    """Not only nodes of three unknowns; bodies apart from each other, too."""
+    random = np.random.default_rng(size)
+    one = diags([-1.0, 2.0, -1.0], [-1, 0, 1], shape=(size, size)).toarray() + np.diag(random.uniform(0.1, 1, size))
+    matrix = block_diag([one, one[: size // 2 + 1, : size // 2 + 1]]).tocsc()
+    want = random.normal(size=matrix.shape[0])
+    assert_allclose(solver.factor(matrix)(matrix @ want), want, rtol=1e-9, atol=1e-10)
+
+
+def test_the_right_hand_sides_stay_as_they_are(ordered):
+    given = np.asfortranarray(np.random.default_rng(0).normal(size=(GRID.shape[0], 2)))
+    kept, solve = given.copy(), solver.factor(GRID)
+    solve(given), solve.gram(given)
+    assert np.array_equal(given, kept)
+
+
+@pytest.mark.parametrize(
+    "most", [1, 8 * GRID.shape[0], 20 * GRID.shape[0], solver.BLOCK], ids=["a byte", "a column", "two columns", "as it is"]
+)
+def test_right_hand_sides_are_given_in_blocks(monkeypatch, most):
+    """cvxopt reads and writes memory that is not its own from 2**31 bytes on: of fewer at once the numbers are the same."""
+    given, sizes, solve = [], [], cholmod.spsolve
+    want = np.random.default_rng(0).normal(size=(GRID.shape[0], 5))
+    factored = solver.factor(GRID)
+    whole = factored(want), factored.gram(want)
+
+    def spied(factor, block, sys=0):
+        sizes.append(8 * block.size[0] * block.size[1])
+        given.append(sys)
+        return solve(factor, block, sys=sys)
+
+    monkeypatch.setattr(cholmod, "spsolve", spied)
+    monkeypatch.setattr(solver, "BLOCK", most)
+    parts = factored(want), factored.gram(want)
+    assert max(sizes) <= max(most, 8 * GRID.shape[0]) < 2**31
+    assert given.count(solver.A) == given.count(solver.L) == -(-5 // max(1, min(5, most // (8 * GRID.shape[0]))))
+    for one, other in zip(whole, parts, strict=True):
+        # sums are rounded by their largest terms: small entries have no digits of their own
+        assert_allclose(one, other, rtol=0, atol=1e-13 * abs(other).max())
+
+
+def test_the_factor_lives_as_long_as_it_is_used(ordered):
+    gram = solver.factor(GRID).gram
+    gc.collect()
+    want = np.ones((GRID.shape[0], 2))
+    assert_allclose(gram(GRID @ want), want.T @ GRID @ want, rtol=1e-10)
+
+
+def test_indefinite_matrices_are_refused(ordered):
+    with pytest.raises(RuntimeError, match="not held"):
+        solver.factor(GRID - 2 * eye(GRID.shape[0]))
+
+
+def test_nested_dissection_orders_nodes_and_keeps_their_unknowns_together():
+    """And fills in less than the order as it stands: the numbers of a factor are counted by its elimination."""
+    rows, columns = tril(BODY).tocoo().coords
+    by_column = np.lexsort((rows, columns))
+    order = solver.dissection(rows[by_column], columns[by_column])
+    assert np.array_equal(np.sort(order), np.arange(BODY.shape[0]))
+    assert (order.reshape(-1, 3) // 3 == order[::3, None] // 3).all()
+    as_it_is, moved = (np.linalg.cholesky(one.toarray()) for one in (BODY, BODY[order][:, order]))
+    assert np.count_nonzero(np.abs(moved) > 1e-14) < 0.6 * np.count_nonzero(np.abs(as_it_is) > 1e-14)
+
+
+def test_an_empty_diagonal_is_refused():
+    with pytest.raises(RuntimeError, match="empty or negative diagonal"):
+        solver.factor(diags([1.0, 0.0]))
+
+
+def test_the_plan_says_what_it_takes(ordered):
+    made = solver.plan(30_000, free=8e9)
+    assert 0 < made.memory < 8e9
+    assert str(made).startswith("30000 unknowns, about ")
+    assert str(made).endswith(" GB of 8 GB free")
+    twice = solver.plan(400_000, free=1e12)
+    assert twice.memory > 2 * solver.plan(200_000, free=1e12).memory
+    assert twice.seconds > 2 * solver.plan(200_000, free=1e12).seconds
+    more = solver.plan(400_000, columns=100, free=1e12)
+    assert more.memory == twice.memory + 24 * 100 * 400_000
+    assert 1.1 * twice.seconds < more.seconds < 3 * twice.seconds, "each reads the whole factor"
+
+
+def test_what_does_not_fit_is_refused_with_memory_time_and_remedy(ordered):
+    with pytest.raises(RuntimeError, match=r"3000000 unknowns need about [\d.]+ GB and \d+ s, but 1 GB are free: coarsen"):
+        solver.plan(3_000_000, free=1e9)
+
+
+def test_a_listener_hears_what_is_solved():
+    told = []
+    with listening(lambda text, done: told.append(text)):
+        solver.factor(GRID)
+    assert [text[:22] for text in told] == ["solving 1728 unknowns,"]
+
+
+def test_free_memory_is_that_of_this_machine():
+    assert 1e7 < free_memory() < 1e15

@@ -1,0 +1,27 @@
+"""Sets of the tests, of 21/31/84 teeth."""
+
+import math
+from functools import cache
+
+import gearfe as gf
+from gearfe.planetary_sets.case import PlanetaryCase
+
+STEEL = gf.Material(E=207e3, nu=0.3)
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+FORCE = 2000.0  # N
+
+
+@cache
+def gears(planets=3, rim=95.0):
+    sun, planet = gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK)
+    ring = gf.Gear(z=84, r_rim=rim, x=-0.4617, addendum=0.85, tip_radius=0.3, **RACK)
+    return gf.PlanetarySet(sun, planet, ring, planets)
+
+
+def case(planets=3, rim=95.0, **options):
+    return PlanetaryCase(gears(planets, rim), FORCE, STEEL, **options)
+
+
+def unequal(*places, rim=95.0, **options):
+    """Planets at so many hundred-and-fifths of a turn."""
+    return PlanetaryCase(gears(1, rim), FORCE, STEEL, angles=[2 * math.pi / 105 * k for k in places], **options)

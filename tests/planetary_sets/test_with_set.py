@@ -1,0 +1,185 @@
+"""Machines whose meshes are those of a set: at rest they turn as far as the set does, whoever has the ring's motion."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from sets import FORCE, case, unequal
+
+import gearfe as gf
+from gearfe.planetary_sets.standing import standing
+from gearfe.planetary_sets.with_set import cycles_of, ring_springs
+
+MESH = 280.0  # Hz
+HELD = 1e17  # N/m, N m/rad: beside it meshes are soft, 1e-9
+SOFT = gf.RimSupports(6, 4.8, radial=2e5, tangential=1e5)
+PADS = gf.RimSupports(6, 4.8)
+BED = gf.RimBed(30.0, 50.0)
+ERRORS = [(0.004, -0.003), (0, 0), (0, 0.002)]
+RELIEF = {"sun": gf.Flank(tip_relief=0.01, tip_start_diameter=44.5)}
+
+
+def machine(given, **changed):
+    """A machine with the bearings that the set has, its carrier held; k to be replaced."""
+    gears = given.gears
+    body = {
+        name: gf.Member(1.0, 1e-3, HELD, 1e-3 * radius, torsion)
+        for name, radius, torsion in (
+            ("ring", gears.ring.r_b, HELD), ("carrier", gears.a, HELD),
+        )
+    }  # fmt: skip
+    body["sun"] = gf.Member(1.0, 1e-3, 0.0 if given.floating else HELD, 1e-3 * gears.sun.r_b)
+    body["planet"] = gf.Member(1.0, 1e-3, min(1e3 * given.pin, HELD), 1e-3 * gears.planet.r_b)
+    phases = gf.stage_phases(given.pairs, given.planets, frequency=MESH, places=given.angles, start=0.4)
+    options = {
+        "n_planets": given.planets,
+        "alpha": tuple(pair.alpha_w for pair in given.pairs),
+        "stiffness": {"sun_planet": 1e8, "planet_ring": 1e8},
+        "mesh": lambda kind, i: phases[f"{kind}{i + 1}"],
+        "loads": {"sun": 1e-3 * given.planets * FORCE * gears.sun.r_b},
+        "places": given.angles,
+    }
+    return gf.planetary(**(body | options | changed))
+
+
+def at_rest(made, t):
+    """Displacements and mesh forces under the loads, stiffnesses and errors of time t."""
+    k, e = (
+        np.array([one(t) for one in values])
+        for values in ([m.k for m in made.meshes], [lambda t, m=m: m.e(t)[0] for m in made.meshes])
+    )
+    q = np.linalg.solve(made.K + made.G.T @ (k[:, None] * made.G), made.load() + made.G.T @ (k * e))
+    return q, k * (made.G @ q - e)
+
+
+@pytest.mark.parametrize(
+    ("given", "cycles", "ring"),
+    [
+        (case(), 1, "in k"),
+        (unequal(0, 30, 71, errors=ERRORS, pin=3e5, floating=True, flanks=RELIEF), 1, "in k"),
+        (unequal(0, 30, 71, errors=ERRORS, ring=BED), 1, "in k"),
+        (unequal(0, 30, 71, errors=ERRORS, ring=BED), 1, "body"),
+        (unequal(0, 30, 71, errors=ERRORS, ring=SOFT, pin=3e5), 14, "in k"),
+        (unequal(0, 30, 71, errors=ERRORS, ring=SOFT, pin=3e5), 14, "body"),
+        (unequal(0, 30, 71, ring=PADS), 14, "in k"),
+    ],
+    ids=["equal", "relief", "bed in k", "bed", "soft pads in k", "soft pads", "rigid pads in k"],
+)
+def test_a_machine_turns_as_far_as_its_set(given, cycles, ring):
+    """Turn of the sun and load of every mesh at rest, at several positions: what gives way is there once, and all of it."""
+    found = gf.planetary_stiffness(given, 4, cycles=cycles)
+    made = gf.with_set(machine(given), found, ring=ring)
+    names = [mesh.name for mesh in made.meshes]
+    for i in range(0, found.position.size, 5 if cycles > 1 else 1):
+        q, forces = at_rest(made, (found.position[i] - 0.4) / MESH)
+        turn = 1e-3 * given.gears.sun.r_b * q[made.dofs.index("sun.theta")]
+        assert_allclose(turn, found.te[i], rtol=1e-6)
+        for inner, kind in enumerate(("sun_planet", "planet_ring")):
+            own = [forces[names.index(f"{kind}{planet + 1}")] for planet in range(3)]
+            assert_allclose(own, found.force[inner, i], rtol=1e-6)
+
+
+def test_only_the_motion_of_a_rigid_ring_is_taken_out():
+    """Beside soft springs the ring is rigid: what is left in k is that a free ring bends, whatever the springs."""
+    means = []
+    for k in (0.5, 1.0):
+        given = case(ring=gf.RimBed(k, k))
+        found = gf.planetary_stiffness(given, [0.3, 0.8])
+        made = gf.with_set(machine(given), found, ring="body")
+        means.append((found.k[1].mean(), made.meshes[1].cycle.mean))
+    (soft, left), (stiff, also) = means
+    assert soft < 0.6 * stiff
+    assert_allclose(left, also, rtol=0.05)
+
+
+def test_springs_softer_than_what_tip_corners_pass_on_are_refused():
+    """At position 0 planet and ring touch at a corner alone, and the ring feels less torque than the row of a mesh says."""
+    given = case(ring=gf.RimBed(0.1, 0.1))
+    with pytest.raises(ValueError, match="by more than it gives way"):
+        gf.with_set(machine(given), gf.planetary_stiffness(given, 2), ring="body")
+
+
+def test_springs_of_a_rigid_ring_are_those_of_its_pads():
+    """By the sum over pads, each a spring along and across."""
+    given = case(ring=SOFT)
+    angle = 0.3 + 2 * math.pi / 6 * np.arange(6)
+    out, along = np.array([np.sin(angle), np.cos(angle)]), np.array([np.cos(angle), -np.sin(angle)])
+    want = 2e5 * out @ out.T + 1e5 * along @ along.T
+    x, y, turn = ring_springs(given)
+    assert_allclose(1e3 * want, np.diag([x, y]), atol=1e-9 * x)
+    assert_allclose(turn, 1e-3 * 6 * 1e5 * given.ring_gear.r_rim**2)
+    assert np.isinf(ring_springs(case(ring=PADS))).all()
+
+
+def test_a_rigidly_held_ring_keeps_the_springs_of_its_machine():
+    found = gf.planetary_stiffness(case(ring=PADS), 2, cycles=14)
+    plain = machine(case())
+    made = gf.with_set(plain, found, ring="body")
+    assert_allclose(made.K, plain.K, rtol=1e-12)
+    assert_allclose(made.meshes[1].stiffness, found.k[1, :, 0])
+    assert made.dofs == plain.dofs
+
+
+def test_damping_ratios_of_the_ring_stay():
+    given = case(ring=BED)
+    made = gf.with_set(machine(given, zeta=0.03), gf.planetary_stiffness(given, 2), ring="body")
+    own = [one for one in made.springs if one.name.startswith("ring")]
+    assert len(own) == 3
+    for one in own:
+        size = (one.row**2 * made.mass).sum()
+        assert_allclose(one.c / (2 * math.sqrt(one.k * size)), 0.03)
+
+
+def test_phases_of_the_set_are_those_of_the_stage():
+    """Planets and both meshes apart, from two derivations: fractions of a cycle between any two meshes agree."""
+    given = unequal(0, 30, 71)
+    stand = standing(given.gears, np.array(given.angles), [0.0])
+    own = gf.stage_phases(given.pairs, 3, places=given.angles)
+    apart = [
+        one - own[f"{kind}{planet + 1}"]["phase"]
+        for kind, row in (("sun_planet", stand.outer[0]), ("planet_ring", stand.inner[0]))
+        for planet, one in enumerate(row)
+    ]
+    assert_allclose((np.array(apart) - apart[0] + 0.5) % 1.0, 0.5, atol=1e-6)
+
+
+def test_sets_repeat_by_their_pads_and_their_faults():
+    assert cycles_of(case()) == 1
+    assert cycles_of(case(ring=PADS)) == 14
+    assert cycles_of(case(ring=gf.RimSupports(5, 4.8))) == 84
+    assert cycles_of(case(damage={"sun": [gf.Crack(level=0.3)]}, flanks=RELIEF)) == 21
+    pitch = [0.01] + [0.0] * 30
+    assert cycles_of(case(damage={"sun": [gf.Crack(level=0.3)]}, flanks={("planet", 1): gf.Flank(pitch=pitch)})) == 21 * 31
+
+
+def test_machines_and_sets_that_do_not_fit_are_refused():
+    given = case()
+    found, made = gf.planetary_stiffness(given, 2), machine(given)
+    pads = gf.planetary_stiffness(case(ring=PADS), 2)
+    uneven = gf.planetary_stiffness(given, [0.0, 0.1, 0.5])
+    lugs = gf.RimSupports(6, 4.8, radial=0, tangential=1e5, pushes=True)
+    other = machine(unequal(0, 30, 71))
+    hurt = made.with_meshes(damage=(gf.ToothDamage(0, 0, gf.Samples(np.array([0.0, 1.0]), np.array([1e8, 1e8]))),))
+    smaller = gf.PlanetarySet(*(gf.Gear(z=z, m_n=2.0, alpha_n=math.radians(20), b=20.0, **o) for z, o in (
+        (18, {"r_bore": 6.0}), (27, {"r_bore": 8.0}), (72, {"r_rim": 83.0, "addendum": 0.8, "tip_radius": 0.3})
+    )), 3)  # fmt: skip
+    for options, message in (
+        ((made, pads, "in k"), "repeats after 14"),
+        ((made, uneven, "in k"), "not equally spaced"),
+        ((made, gf.planetary_stiffness(given, [0.3]), "in k"), "not equally spaced"),
+        ((made, found, None), "ring = None"),
+        ((made, 3, "in k"), "give a Machine"),
+        ((machine(unequal(0, 50)), found, "in k"), "3 planets in the set"),
+        ((machine(unequal(0, 26, 53, 79)), found, "in k"), "3 planets in the set"),
+        ((other, found, "in k"), "does not lie as in the set"),
+        ((hurt, found, "in k"), "has damage besides"),
+        ((machine(gf.PlanetaryCase(smaller, FORCE, given.material)), found, "in k"), "base radii"),
+        ((made, gf.planetary_stiffness(case(ring=lugs), 1, cycles=14), "body"), "no springs of a body"),
+        ((gf.with_set(made, found, ring="in k"), found, "in k"), "has no body 'ring'"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            gf.with_set(options[0], options[1], ring=options[2])
+    free = machine(given, ring=gf.Member(1.0, 1e-3, 1e8, 1e-3 * given.gears.ring.r_b))
+    with pytest.raises(ValueError, match="turns freely"):
+        gf.with_set(free, found, ring="in k")
