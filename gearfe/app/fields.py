@@ -97,7 +97,7 @@ FIELDS = (
     Field("crack_length", "Crack", "length", "mm", 2.0, (), 0.01, 60, 0.05, when="crack=length"),
     Field("crack_level", "Crack", "level (0.5: centre-line)", "", 0.3, (), 0.01, 0.95, 0.01, when="crack=level"),
     Field("crack_angle", "Crack", "angle to the centre-line", "°", 60.0, (), 5, 90, 1, when=CRACKED),
-    Field("crack_start", "Crack", "starts at", "", "30deg", choices=("30deg", "root", "middle"), when=CRACKED),
+    Field("crack_start", "Crack", "starts at", "", "30deg", choices=("30deg", "60deg", "root", "middle"), when=CRACKED),
     Field("turning", "Crack", "turns at the centre-line", "", "no", choices=("no", "yes"), when="crack=level"),
     Field("part", "Crack", "through the width", "", "all of it", choices=("all of it", "a part"), when=CRACKED),
     Field("part_first", "Crack", "from the height", "mm", 0.0, (), 0, 400, 0.5, when="part=a part"),

@@ -40,7 +40,7 @@ CRACK_WORDS = """\
 #     ___|___              angle_deg, the angle between crack and centre-line: 90 runs straight across, 45 is usual, small
 #    /   |   \\             angles run down into the rim.
 #   /    |    \\
-#  /\\    |     \\           start: "30deg", where the fillet's tangent makes 30 degrees with the centre-line (ISO 6336-3);
+#  /\\    |     \\           start: "30deg" or "60deg", where the fillet's tangent makes this angle with the centre-line;
 # /  \\   |      \\                 "root", where the fillet meets the root circle; "middle" of the fillet's arc.
 #     \\  |
 #      \\ | angle_deg
