@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.scene import verdicts
 from validation.make import machines
-from validation.shared import openings, places, simulated, state, table_rows
+from validation.shared import openings, places, simulated, table_rows
+from validation.shared import page as pages
 from validation.shared.openings import OPENINGS
 
 PAGES = list(machines.PAGES)
@@ -20,7 +21,7 @@ def test_every_simulated_row_names_its_run(page):
     told = table_rows.read_runs(page)
     home = machines.module(page)
     for row in table_rows.read(page):
-        assert row.run == home.RUN_OF.get(row.id, ""), f"{row.id}: run python -m validation machines {page}"
+        assert row.run == home.RUN_OF.get(row.id, ""), f"{row.id}: run python -m validation PAGE {page}"
         if row.id in home.SIMULATED and row.id != "degrees":
             assert row.run in told, f"{row.id}, {row.case}: {row.run!r} is not among {', '.join(told)}"
 
@@ -58,8 +59,8 @@ def test_the_errors_of_the_herringbone_stage_are_those_of_its_scene():
 def test_pages_open_with_what_is_claimed_found_and_decides(page):
     parts = OPENINGS[page](machines.Found(table_rows.read(page)))
     assert len(parts) == 3
-    head = state.without_first_line(page).splitlines()[4]
-    assert "of a model" in state.without_first_line(page).splitlines()[2], "the counts are the answer"
+    head = pages.read(page)[0].splitlines()[4]
+    assert "of a model" in pages.read(page)[0].splitlines()[2], "the counts are the answer"
     for part in parts:
         assert part in head
 
@@ -140,7 +141,7 @@ def test_a_finer_sampled_sideband_is_computed_again():
     side = (simulated.amplitude(found, mesh - fault) + simulated.amplitude(found, mesh + fault)) / 2
     rows = table_rows.rows_of(places.TABLES / "planetary_pitting_laws.csv")
     (row,) = (row for row in rows if row["quantity"].startswith("the same, sampled") and row["case"] == "mild")
-    assert_allclose(side, float(row["impact law"]), rtol=0.02, err_msg="run python -m validation machines planetary_pitting")
+    assert_allclose(side, float(row["impact law"]), rtol=0.02, err_msg="run python -m validation PAGE planetary_pitting")
 
 
 def test_dominant_frequencies_are_judged_of_what_s2_simulates_too():

@@ -4,7 +4,7 @@ from numpy.testing import assert_allclose
 
 from gearfe.dynamics.motion.simulate import simulate
 from validation.make import dynamics, hard_dynamics
-from validation.shared.kept_rows import kept, stored
+from validation.shared.kept_rows import stored
 from validation.shared.places import PAGES
 from validation.shared.stages import machines, stage
 
@@ -30,13 +30,3 @@ def test_a_step_and_an_estimate_on_file_are_those_of_the_code():
     row = stored("dynamics_steps")["herringbone, damaged"]
     got = simulate(stage(True), 0.005, rate=dynamics.RATES[0])
     assert_allclose([1e6 * got.stats["dt"], got.stats["error"]], [row["step"][0], row["estimate"][0]], rtol=0.01)
-
-
-def test_a_row_is_computed_once_and_anew_when_asked_for(tmp_path, monkeypatch):
-    monkeypatch.setattr("validation.shared.kept_rows.TABLES", tmp_path)
-    made = iter(range(9))
-    rows = [
-        kept("t", key, lambda: {"n": next(made)}, again)["n"] for key, again in (("a", ()), ("b", ()), ("a", ()), ("a", ("a",)))
-    ]
-    assert rows == [0, 1, 0, 2]
-    assert stored("t") == {"a": {"row": "a", "n": 2}, "b": {"row": "b", "n": 1}}

@@ -1,6 +1,6 @@
 """Committed tables: cheap rows computed again, and pages that are what their tables say.
 
-Made anew by ``python -m validation machines``.
+Made anew by ``python -m validation PAGE``.
 """
 
 import math
@@ -12,9 +12,11 @@ import gearfe as gf
 from gearfe.comparison.case_table import case_curve, damage_cycle, printed_cases
 from gearfe.scene import verdicts
 from gearfe.scene.stored import read_curves
-from validation import __main__ as pages
+from validation import __main__ as main
+from validation import check
 from validation.make import assumptions, herringbone, machines, speed
-from validation.shared import herringbone_page, places, state, table_rows
+from validation.shared import herringbone_page, places, table_rows
+from validation.shared import page as pages
 from validation.shared.page import text
 
 PAGES = list(machines.PAGES)
@@ -25,9 +27,9 @@ def test_every_printed_number_has_a_function_and_rows(page):
     asked, rows = machines.references(page), table_rows.read(page)
     assert {one.id for one in asked} == set(machines.functions(page)), "a reference without function, or a function without one"
     wanted = [(one.id, row.case, row.pair or "") for one in asked for row in one.rows]
-    assert [row[:3] for row in rows] == wanted, "run python -m validation machines"
+    assert [row[:3] for row in rows] == wanted, "run python -m validation PAGE"
     printed = [row.value for one in asked for row in one.rows]
-    assert_allclose([row.printed for row in rows], printed, rtol=1e-5, err_msg="run python -m validation machines")
+    assert_allclose([row.printed for row in rows], printed, rtol=1e-5, err_msg="run python -m validation PAGE")
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -41,14 +43,13 @@ def test_what_is_not_reproduced_has_a_reason(page):
 @pytest.mark.parametrize("page", PAGES)
 def test_cheap_rows_are_what_the_table_says(page):
     known = {row[:3]: row for row in table_rows.read(page)}
-    for row in machines.cheap(page).values():
+    for row in machines.quick_rows(page).values():
         old = known[row[:3]]
         assert row.verdict == old.verdict, f"{row.id}, {row.case}"
         assert math.isnan(row.ours) == math.isnan(old.ours)
         assert_allclose(row.ours, old.ours, rtol=machines.GOLDEN_RTOL, atol=1e-12, err_msg=f"{row.id}, {row.case}")
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("page", PAGES)
 def test_verdicts_follow_from_the_numbers(page):
     rows = table_rows.read(page)
@@ -60,10 +61,10 @@ def test_verdicts_follow_from_the_numbers(page):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_pages_are_not_stale(page):
-    assert state.without_first_line(page) == machines.text(page), f"{page}.md is stale: run python -m validation machines"
+    assert pages.read(page)[0] == machines.text(page), f"{page}.md is stale: run python -m validation PAGE"
     for name in machines.module(page).PICTURES:
         picture = machines.FOLDER / f"{name}.png"
-        assert picture.is_file(), f"{name}.png is missing: run python -m validation machines"
+        assert picture.is_file(), f"{name}.png is missing: run python -m validation PAGE"
         assert picture.stat().st_size < 120_000
 
 
@@ -73,7 +74,7 @@ def test_references_computed_elsewhere_exist():
 
 
 def test_assumptions_page_is_not_stale():
-    on_disk = state.without_first_line("assumptions")
+    on_disk = pages.read("assumptions")[0]
     assert on_disk == text("assumptions", *assumptions.text()), "run python -m validation assumptions"
     (name, pair, _, base) = assumptions.read()[0]
     one = machines.gf.load_scene(name).pairs[pair]
@@ -89,9 +90,10 @@ def test_every_assumption_says_what_depends_on_it(name):
 
 
 def test_every_page_can_be_asked_for():
-    assert set(pages.PARTS) | set(pages.ROWS) | {job.split()[0] for job in pages.CONTINUED} < set(pages.PAGES)
-    for page in pages.PAGES:
+    for page in main.PAGES:
         assert (places.HOME / "make" / f"{page}.py").is_file(), page
+    assert set(check.PAGES) < set(main.PAGES)
+    assert set(machines.PAGES) == set(pages.MACHINES)
 
 
 @pytest.mark.slow
@@ -106,7 +108,7 @@ def test_page_of_the_ten_rows_is_not_stale(monkeypatch):
         return known[key]
 
     monkeypatch.setattr(gf, "mesh_stiffness", once)
-    on_disk = state.without_first_line("herringbone")
+    on_disk = pages.read("herringbone")[0]
     assert on_disk == text("herringbone", *herringbone.text()), "herringbone.md is stale: run python -m validation herringbone"
 
 
@@ -145,4 +147,4 @@ def test_energy_model_of_the_ten_rows(pair):
 
 
 def test_speed_page_is_not_stale():
-    assert state.without_first_line("speed") == text("speed", *speed.text()), "run python -m validation speed"
+    assert pages.read("speed")[0] == text("speed", *speed.text()), "run python -m validation speed"

@@ -10,8 +10,9 @@ import gearfe as gf
 from validation.shared import herringbone_contact_line as line
 from validation.shared import herringbone_layouts as layouts
 from validation.shared import herringbone_layouts_page as page
-from validation.shared import herringbone_page, state, table_rows
+from validation.shared import herringbone_page, table_rows
 from validation.shared import herringbone_statements as statements
+from validation.shared import page as pages
 from validation.shared.places import PAGES, TABLES
 
 
@@ -105,7 +106,7 @@ def test_conclusions_are_judged_by_what_each_fault_takes():
 
 
 def test_the_page_opens_with_the_answer_and_old_sentences_are_gone():
-    text = state.without_first_line("herringbone")
+    text = pages.read("herringbone")[0]
     first = text.splitlines()[2]
     assert first.startswith("S4's finite element column comes out")
     assert "a fit, no evidence" in first
@@ -158,7 +159,7 @@ def test_notes_of_the_fit_name_the_method_that_is_judged():
 
 def test_what_speaks_against_the_fit_is_on_the_page():
     """Pits of S4's test gears, two rows of pits in case 4, twice its number of pits: as the tables have it."""
-    text = " ".join(state.without_first_line("herringbone").split())
+    text = " ".join(pages.read("herringbone")[0].split())
     small = [row for row in page.of("sample", "contact line, both halves") if float(row["pit"]) <= 0.5]
     most = max(100 * (1 - float(row["sun_planet case4"]) / float(row["sun_planet healthy"])) for row in small)
     assert f"of the {len(small)} readings of the sample with pits so small" in text

@@ -10,7 +10,8 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from validation.make import joint, machines, planetary_numbers, planetary_repeats
-from validation.shared import joint_inputs, places, simulated, state, table_rows
+from validation.shared import joint_inputs, places, simulated, table_rows
+from validation.shared import page as pages
 from validation.shared.kept_rows import stored
 
 PAGES = list(joint_inputs.RANGES)
@@ -96,7 +97,7 @@ def test_pages_say_what_the_draws_found(page):
     assert len(rows) == joint_inputs.DRAWS, "run python -m validation joint"
     for row, draw in zip(joint.rows_of(page), joint_inputs.draws(page), strict=True):
         assert_allclose(list(row["inputs"].values()), [value for _, value in draw.values])
-    text = state.without_first_line(page)
+    text = pages.read(page)[0]
     assert machines.drawn_jointly(page) in text
     for line in joint.section(page):
         assert line in text

@@ -14,7 +14,8 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.scene import verdicts
 from validation.make import machines, truth
-from validation.shared import reference, state, table_rows
+from validation.shared import page as pages
+from validation.shared import reference, table_rows
 
 TABLES = reference.load()
 
@@ -119,7 +120,7 @@ def test_verdict_on_a_printed_number(page, row, source):
         assert math.isnan(ours), "something is computed now: judge it"
         return
     if row.verdict not in (verdicts.NOT, verdicts.TREND):
-        assert_allclose(ours, row.ours, rtol=1e-2, atol=1e-9, err_msg="not as on the page: run python -m validation machines")
+        assert_allclose(ours, row.ours, rtol=1e-2, atol=1e-9, err_msg="not as on the page: run python -m validation PAGE")
     if row.verdict == verdicts.FORMULA:
         return
     target = row.printed if math.isnan(row.corrected) else row.corrected
@@ -134,7 +135,7 @@ def test_verdict_on_a_printed_number(page, row, source):
             for one in sorted(found.values(), key=lambda one: one.printed if math.isnan(one.corrected) else one.corrected)
         ]
         assert values == sorted(values), f"{source.source}: the order of the cases"
-    assert found[row[1:3]].verdict == row.verdict, "the recorded verdict no longer holds: run python -m validation machines"
+    assert found[row[1:3]].verdict == row.verdict, "the recorded verdict no longer holds: run python -m validation PAGE"
 
 
 @pytest.mark.parametrize("page", machines.PAGES)
@@ -147,7 +148,7 @@ def test_every_machine_has_rows_in_the_ordinary_run(page):
 
 
 def test_truth_page_is_not_stale():
-    assert state.without_first_line("truth") == truth.text(), "run python -m validation truth"
+    assert pages.read("truth")[0] == truth.text(), "run python -m validation truth"
 
 
 def test_rows_of_the_truth_page():

@@ -3,9 +3,9 @@
 from numpy.testing import assert_allclose
 
 from validation.make import measured
-from validation.shared import state
+from validation.shared import page as pages
 
-TEXT = state.without_first_line("measured")
+TEXT = pages.read("measured")[0]
 
 
 def test_the_lines_of_the_phm_train_and_the_error_of_its_tachometer():

@@ -3,7 +3,8 @@
 import pytest
 
 from validation.make import printed
-from validation.shared import places, state
+from validation.shared import page as pages
+from validation.shared import places
 
 ROWS = printed.ledger()
 
@@ -58,6 +59,6 @@ def test_every_judged_number_is_printed_somewhere():
 
 
 def test_the_page_is_made_of_the_ledger():
-    text = state.without_first_line("printed")
+    text = pages.read("printed")[0]
     assert printed.answer(ROWS) in text
     assert (places.PAGES / "tables" / "printed.csv").is_file()

@@ -1,18 +1,13 @@
 """What the literature and independent solvers report, and how close gearfe is.
 
-`make` computes one page each, `shared` is what several of them use, `sources` are values of others as written, `pages` is what
-was generated: Markdown, pictures, tables. Everything runs on one thread: seconds stand beside errors.
+`make` computes one page each, `shared` is what several pages use, `sources` are printed values, `pages` is what was generated:
+Markdown, pictures, tables. Everything runs on one thread, since seconds stand beside errors::
 
-`pages/tables/state.jsonl` says of every row which commit and which code computed it, where and in how many seconds; the first
-line of a page counts those of the present code. After a change of code::
-
-    python -m validation --stale               # what is old, how long it takes; brings the first lines of pages up to date
-    python -m validation renew --minutes 60    # computes the oldest again, slow tests too; whole files, at any stop
-    python -m validation renew three slow      # the same of some pages
-    python -m validation slow tests/FILE       # the slow tests of a file
-
-Old is what called a function, imported a module or read a data file that says something else now; a function that was not called
-counts with its signature only (`shared/state.py`, `shared/calls.py`). CI fails when something is old for more than 30 days.
+    python -m validation --list                 # pages, and the CPU seconds of each
+    python -m validation truth map              # computes these pages; all: every page
+    python -m validation three --reference      # computes the independent values of a page first
+    python -m validation three --text           # writes a page from its tables
+    python -m validation check                  # computes some cheap rows again and compares them with the tables
 """
 
 import os

@@ -1,146 +1,87 @@
-"""``python -m validation PAGE``: rebuild a validation page; ``--stale``: what is old; ``renew``: compute that again."""
+"""``python -m validation PAGE ... | all | check``: compute validation pages, or compare cheap rows with the tables."""
 
 import argparse
 import importlib
 import os
-import subprocess
+import re
 import sys
-import time
 
-from .shared import kept_rows, places, renew, slow, state
-from .shared.page import QUESTIONS
+from .shared import kept_rows, page
+from .shared.page import MACHINES, QUESTIONS
 
-PAGES = QUESTIONS | {
-    "own_model": "(a file: the example of a curve exported by MATLAB)",
-    "readme": "(a file: the table and the program output in the README)",
-    "tutorials": "(files: what the scripts of the documentation print, for their test)",
-}
-
-PARTS = {  # what is computed at once, where that is not the page
-    "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary"),
-    **dict.fromkeys(("herringbone", "sample"), ("all",)),
-    "outlines": ("", "arbiter"),
-    "three": ("", "decks"),
-}
-ROWS = (
-    "detection",
-    "dynamics",
-    "hard",
-    "holes",
-    "joint",
-    "map",
-    "outlines",
-    "rig",
-    "sample",
-    "sets",
-    "sweeps",
-    "three",
-)  # parts: rows, by beginnings
-ALONE = ("speed", "sweeps")  # pages that say what time things take
-CONTINUED = {  # tables that a job continues where they lie: it counts as computed only if it begins without them
-    "herringbone --reference": (str(places.ROOT / "gearfe/scene/scenes/herringbone_fe3d.csv"),),  # where gearfe reads it: by hand
-    "outlines arbiter": ("outlines.csv", "outlines_fresh.csv", "outlines_plane.csv", "outlines_unloaded.csv"),
-    "three --reference": ("pairs_three.csv",),
-}
+PAGES = (
+    QUESTIONS
+    | MACHINES
+    | {
+        "own_model": "(a file: the example of a curve exported by MATLAB)",
+        "readme": "(a file: the table and the program output in the README)",
+        "tutorials": "(files: what the scripts of the documentation print, for their test)",
+    }
+)
 
 
 def main():
-    """Do what is asked for."""
-    parser = argparse.ArgumentParser(prog="python -m validation", description="Rebuild validation pages; see what is old.")
-    parser.add_argument("page", nargs="?", choices=[*PAGES, "slow", "renew"], metavar="PAGE", help="a page, slow or renew")
-    parts = "of pages that keep rows: beginnings of those to compute anew, or all; of machines and renew: pages; of slow: files"
-    takes = ("slow", "renew", *PARTS, *ROWS)
-    parser.add_argument("parts", nargs="*", metavar="PART", help=parts)
-    parser.add_argument("--list", action="store_true", help="name the pages, what is on them and what they take")
-    parser.add_argument("--stale", action="store_true", help="list what other code computed, and bring first lines up to date")
-    parser.add_argument("--age", type=int, metavar="DAYS", help="with --stale: change nothing, fail if it is so for longer")
-    parser.add_argument("--minutes", type=float, default=60.0, help="with renew: how long (default 60)")
-    parser.add_argument("--processes", type=int, default=1, help="with renew: how many jobs at a time (default 1)")
-    parser.add_argument("--reference", action="store_true", help="compute independent values that are not on file, or PART anew")
-    arguments = parser.parse_intermixed_args()
-    page, parts = arguments.page, arguments.parts
-    if parts and page not in takes and not arguments.reference:
-        parser.error(f"only {', '.join(sorted(set(takes)))} take parts; {page} is made as a whole")
-    if arguments.stale:
-        sys.exit(stale(arguments.age))
-    elif page == "renew":
-        failed = renewed(parts, arguments.minutes, arguments.processes)
-        sys.exit(f"failed, and nothing of theirs was kept: {', '.join(failed)}" if failed else None)
-    elif arguments.list or page is None:
-        print(listed())
-    elif page in ("slow", "machines") and len(parts) != 1:
-        for part in parts or (slow.files() if page == "slow" else PARTS[page]):
-            subprocess.run([sys.executable, "-m", "validation", page, part], check=True)
+    """Compute what the command line names."""
+    parser = argparse.ArgumentParser(prog="python -m validation", description="Compute validation pages.")
+    parser.add_argument("pages", nargs="*", choices=[*PAGES, "all", "check", []], metavar="PAGE", help="pages, all, or check")
+    parser.add_argument("--list", action="store_true", help="list the pages and the CPU seconds of each")
+    parser.add_argument("--text", action="store_true", help="write pages from their tables, compute nothing that is on file")
+    parser.add_argument("--reference", action="store_true", help="compute the independent values of the pages first")
+    arguments = parser.parse_args()
+    os.environ["GEARFE_CACHE"] = ""  # gears of the disk may be those of other sources
+    if arguments.list or not arguments.pages:
+        print("\n".join(listed()))
+    elif arguments.pages == ["check"]:
+        from .check import check
+
+        sys.exit(check())
     else:
-        compute(page, parts, arguments.reference)
-
-
-def renewed(pages, minutes, processes):
-    """Compute again what is old, of some pages or of all; decks first, since they tell which runs are old. What failed."""
-    end = time.monotonic() + 60 * minutes
-    decks = [job for job in found() if " ".join(job.words) == state.DECKS and job.old]
-    failed = renew.renew(decks, minutes, {}) if decks and (not pages or {"three", "outlines"} & set(pages)) else []
-    wanted = [job for job in found() if not pages or job.words[0] in pages]
-    left = (end - time.monotonic()) / 60
-    return failed + renew.renew(wanted, left, CONTINUED, processes=processes, alone=ALONE)
-
-
-def whole():
-    """What is computed as a whole: pages or parts of them, and independent values."""
-    pages = [f"{page} {part}".strip() for page in PAGES for part in PARTS.get(page, ("",))]
-    return [*pages, *(job for job in CONTINUED if job.endswith("--reference"))]
-
-
-def found():
-    """All jobs: with the rows that are kept one by one and the slow tests."""
-    return renew.jobs(whole(), ROWS)
+        for name in PAGES if "all" in arguments.pages else arguments.pages:
+            compute(name, again=not arguments.text, reference=arguments.reference)
 
 
 def listed():
-    """Pages, CPU seconds of the last run of each, and what is on them."""
-    jobs = found()
-    return "\n".join(f"{page:14s} {PAGES[page]} {renew.cost([j for j in jobs if j.words[0] == page])}" for page in PAGES)
+    """Lines: pages, what is on them, and the CPU seconds of each, of its independent values and of all."""
+    lines, total = [], [0.0, 0.0]
+    for name, question in PAGES.items():
+        parts = page.read(name)[1].split(page.REFERENCES)
+        seconds = [float(re.search(r"(\d+) CPU s", part)[1]) for part in parts if part]
+        total = [one + two for one, two in zip(total, [*seconds, 0.0, 0.0], strict=False)]
+        lines.append(f"{name:20s} {' + '.join(f'{one:.0f}' for one in seconds):>12s} CPU s  {question}")
+    return [*lines, f"{'all':20s} {' + '.join(f'{one:.0f}' for one in total):>12s} CPU s  (+: independent values)"]
 
 
-def stale(age):
-    """Print what is old; with an age, the text of a failure: what is old for longer, pages that say another number; else None."""
-    jobs = found()
-    print("\n".join(renew.report(jobs)))
-    if age is None:
-        print("\n".join(f"{page}.md: first line brought up to date" for page in state.stamp()))
-        return None
-    late = sorted({" ".join(job.words[:1]) for job in renew.too_old(jobs, age)})
-    wrong, out = state.stamp(write=False), []
-    if late:
-        out.append(f"old for more than {age} days, see python -m validation renew: {', '.join(late)}")
-    if wrong:
-        out.append(f"first lines that python -m validation --stale brings up to date: {', '.join(wrong)}")
-    return "\n".join(out) or None
+def compute(name, *, again=True, reference=False):
+    """Compute a page, and state at its foot what computed it.
 
-
-def compute(page, parts, reference):
-    """Compute a page, parts of one or its independent values in this process, and record what with."""
-    os.environ["GEARFE_CACHE"] = ""  # what is read from the disk was not computed by what is imported
-    state.watch(finely=page not in ALONE)  # noting calls takes time
-    if page == "slow":
-        slow.run(parts[0])
+    Parameters
+    ----------
+    name : str
+        One of `PAGES`.
+    again : bool
+        False: write the page from its tables.
+    reference : bool
+        Compute its independent values first.
+    """
+    made = importlib.import_module(f"validation.make.{'machines' if name in MACHINES else name}")
+    own = (name,) if name in MACHINES else ()
+    if reference and hasattr(made, "reference"):
+        seconds = spent(made.reference)
+        page.sign(name, seconds, reference=True)
+    if again:
+        seconds = spent(made.run, *own)
+        page.sign(name, seconds)
+        print(f"{name}: {seconds:.1f} s of CPU", flush=True)
     else:
-        job = f"{page} --reference" if reference else " ".join([page, *parts])
-        tables = [places.TABLES / name for name in CONTINUED.get(job, ())]
-        begun = [table for table in tables if table.is_file()]
-        state.run.job = job
-        made = importlib.import_module(f"validation.make.{page}")
-        if reference:
-            for table in {table for name, table in state.read()[0] if parts and name.startswith(f"{job} ")}:
-                kept_rows.forget(table.removesuffix(".jsonl"), parts)
-            made.reference()
-        else:
-            made.run(parts) if parts else made.run()
-        if job in whole() and not begun and all(table.is_file() for table in tables):
-            state.ended(state.cpu(), tables)
-    if "GEARFE_PAGES" not in os.environ:  # else `renew` moves the pages, and does it then
-        state.stamp()
-    print(f"{' '.join([page, *parts])}: {state.cpu():.1f} s of CPU")
+        made.run(*own, again=False)
+
+
+def spent(work, *inputs):
+    """CPU seconds of a computation, with those of its rows that an earlier run of the same sources computed."""
+    kept_rows.before.clear()
+    started = kept_rows.cpu()
+    work(*inputs)
+    return kept_rows.cpu() - started + sum(kept_rows.before)
 
 
 if __name__ == "__main__":

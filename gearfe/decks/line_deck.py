@@ -16,7 +16,7 @@ from ..geometry.damage.crack import Crack
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import arc_at
 from .pressed import read_rows, write_lines
-from .solid_deck import Part, element_lines, node_lines, part_of
+from .solid_deck import Part, element_lines, node_lines, part_of, set_lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,11 +108,9 @@ def _text(part, material, load):
     yield "*NODE, NSET=ALL"
     yield from node_lines(part, 0)
     yield from element_lines(part, 1, 0, 0, material)
-    yield "*NSET, NSET=HELD"
-    yield from (f"{node}," for node in (part.held + 1).tolist())
+    yield from set_lines("HELD", part.held)
     loaded = np.flatnonzero(load.any(axis=1))
-    yield "*NSET, NSET=LOADED"
-    yield from (f"{node}," for node in (loaded + 1).tolist())
+    yield from set_lines("LOADED", loaded)
     yield "*BOUNDARY\nHELD, 1, 3"
     yield "*STEP\n*STATIC\n*CLOAD"
     for node in loaded.tolist():

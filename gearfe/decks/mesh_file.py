@@ -13,7 +13,8 @@ from ..geometry.damage.kinds import NAMES, Damage, are, split
 from ..geometry.mesh.holes import holed_sector
 from ..geometry.mesh.solid import solid
 from ..geometry.tooth.gear import Gear
-from .solid_deck import Part, holed_part, part_of
+from .pressed import write_lines
+from .solid_deck import Part, cell_lines, holed_part, node_lines, part_of, set_lines
 
 KINDS = {"tetrahedra": "tetra10", "hexahedra": "hexahedron20"}
 LAYER = 1.0  # height of the layers of hexahedra [m_n]
@@ -37,8 +38,9 @@ def export_mesh(
     Parameters
     ----------
     path : path
-        ``.msh`` (Gmsh), ``.vtu`` (ParaView) or ``.inp`` (Abaqus, CalculiX). Named places (``held``, ``flank 0``, ``pits``,
-        ``crack 0 body``, ...) are node sets in ``.inp`` and point data of 0 and 1 in the others.
+        ``.msh`` (Gmsh), ``.vtu`` (ParaView) or ``.inp`` (CalculiX, Abaqus). The named boundaries are ``held``, ``flank 0``,
+        ``pits``, ``crack 0 body`` and so on. In ``.inp`` they are node sets (``HELD``, ``FLANK_0``, ...), and all elements are
+        the set ``GEAR`` of type C3D20R or C3D10. In the other formats they are point data of 0 and 1.
     gear : Gear
     damage : sequence of damage
         Of this gear, teeth numbered in its own frame.
@@ -92,15 +94,24 @@ def _hexes(gear, pits, cracks, teeth, refine):
 
 
 def _write(path, suffix, part, kind):
-    import meshio
-
-    check_folds(part.points, part.cells)
     sets = {name.replace(" ", "_"): np.unique(faces) for name, faces in part.faces.items() if faces.size}
     sets["held"] = part.held
     if suffix == ".inp":
-        mesh = meshio.Mesh(part.points.T, [(kind, part.cells.T)], point_sets=sets)
-    else:
-        marks = {name: np.isin(np.arange(part.points.shape[1]), nodes).astype(np.int32) for name, nodes in sets.items()}
-        mesh = meshio.Mesh(part.points.T, [(kind, part.cells.T)], point_data=marks)
+        return write_lines(path, _deck(part, sets))
+    import meshio
+
+    check_folds(part.points, part.cells)
+    marks = {name: np.isin(np.arange(part.points.shape[1]), nodes).astype(np.int32) for name, nodes in sets.items()}
+    mesh = meshio.Mesh(part.points.T, [(kind, part.cells.T)], point_data=marks)
     with written(path) as name:
-        meshio.write(name, mesh, file_format={".msh": "gmsh", ".vtu": "vtu", ".inp": "abaqus"}[suffix])
+        meshio.write(name, mesh, file_format={".msh": "gmsh", ".vtu": "vtu"}[suffix])
+
+
+def _deck(part, sets):
+    """Lines of a deck; meshio 5.3.5 writes elements, numbers and lines that CalculiX rejects."""
+    yield "** gearfe: mesh of one gear, in mm, to be used by *INCLUDE"
+    yield "*NODE, NSET=ALL"
+    yield from node_lines(part, 0)
+    yield from cell_lines(part, "GEAR")
+    for name, nodes in sets.items():
+        yield from set_lines(name.upper(), nodes)

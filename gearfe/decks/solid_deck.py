@@ -110,15 +110,25 @@ def node_lines(part, first):
     return [f"{first + i}, {x:.12e}, {y:.12e}, {z:.12e}" for i, (x, y, z) in enumerate(part.points.T.tolist(), 1)]
 
 
-def element_lines(part, number, first, element, material):
-    """Elements, numbered from `element` + 1, material and section of body `number`; RuntimeError if some fold."""
+def cell_lines(part, name, first=0, element=0):
+    """Elements of the set `name`, numbered from `element` + 1; RuntimeError if some fold."""
     check_folds(part.points, part.cells)
-    out = [f"*ELEMENT, TYPE={KINDS[len(part.cells)]}, ELSET=G{number}"]
+    out = [f"*ELEMENT, TYPE={KINDS[len(part.cells)]}, ELSET={name}"]
     for j, row in enumerate((part.cells + first + 1).T.tolist(), 1):
         row = [element + j, *row]
         out += [",".join(map(str, row[k : k + ROW])) + ("," if k + ROW < len(row) else "") for k in range(0, len(row), ROW)]
-    out += [f"*MATERIAL, NAME=M{number}\n*ELASTIC\n{material.E!r}, {material.nu!r}"]
-    return [*out, f"*SOLID SECTION, ELSET=G{number}, MATERIAL=M{number}"]
+    return out
+
+
+def element_lines(part, number, first, element, material):
+    """Elements, numbered from `element` + 1, material and section of body `number`."""
+    out = [f"*MATERIAL, NAME=M{number}\n*ELASTIC\n{material.E!r}, {material.nu!r}"]
+    return [*cell_lines(part, f"G{number}", first, element), *out, f"*SOLID SECTION, ELSET=G{number}, MATERIAL=M{number}"]
+
+
+def set_lines(name, nodes):
+    """Node set `name` of `nodes` ``(n,)``, numbered from 0."""
+    return [f"*NSET, NSET={name}", *(f"{node + 1}," for node in nodes.tolist())]
 
 
 def surface_lines(part, name, faces, element):

@@ -2,9 +2,10 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
+from typing import Any, TypedDict, Unpack
 
-from ..core.markdown import table_row
+from ..core.table import Column, Table
 from .series import Signal
 
 LABELS = {  # in tables: words; rms may be larger than the peak, of a signal with a mean
@@ -27,20 +28,29 @@ def increment(value, healthy):
     return 100 * (value - healthy) / healthy
 
 
+class IndicatorOptions(TypedDict, total=False):
+    """Options of `Signal.indicators`."""
+
+    window: str | tuple[Any, ...]
+    tolerance: float | None
+    harmonics: int
+
+
 def indicator_table(
     signals: Mapping[str, Signal],
     mesh_frequency: float | None = None,
     fault_frequency: float | None = None,
     *,
     healthy: str = "healthy",
-    **options: Any,
+    **options: Unpack[IndicatorOptions],
 ) -> dict[str, dict[str, tuple[float, float]]]:
     """Indicators of several cases, each with its increment against the healthy one.
 
     Parameters
     ----------
     signals : dict of str to Signal
-        Signals by case, all of the same unit, rate and length: the sideband indicators depend on them.
+        Signals by case, of the same unit and rate. Longer ones are cut to the shortest, since the sideband indicators depend on
+        the length.
     mesh_frequency, fault_frequency, **options
         See `Signal.indicators`.
     healthy : str
@@ -54,7 +64,7 @@ def indicator_table(
     Raises
     ------
     ValueError
-        If there is no case called `healthy`; if a signal differs from it in unit, rate or length; if a signal is constant. With
+        If there is no case called `healthy`; if a signal differs from it in unit or rate; if a signal is constant. With
         frequencies also: if only one is given, or one is no positive number of Hz; if the fault frequency is not below the mesh
         frequency, or less than 4 bins of the spectrum; if a line or a sideband lies above half of the rate, or has no bin within
         `tolerance`; if the spectrum is zero around the mesh frequency; if scipy does not know `window`.
@@ -63,12 +73,13 @@ def indicator_table(
         raise ValueError(f"no case {healthy!r} to compare with; there are {', '.join(signals) or 'none'}: give one as healthy=")
     first = signals[healthy]
     for case, signal in signals.items():
-        if (signal.unit, signal.rate, signal.values.size) != (first.unit, first.rate, first.values.size):
+        if (signal.unit, signal.rate) != (first.unit, first.rate):
             raise ValueError(
-                f"{case}: {signal.values.size} samples at {signal.rate:g} Hz in {signal.unit}, but {healthy} has "
-                f"{first.values.size} at {first.rate:g} Hz in {first.unit}: compare like with like"
+                f"{case}: {signal.rate:g} Hz in {signal.unit}, but {healthy} has {first.rate:g} Hz in {first.unit}: "
+                "compare records of the same rate and unit"
             )
-    indicators = {case: signal.indicators(mesh_frequency, fault_frequency, **options) for case, signal in signals.items()}
+    alike = _of_one_length(signals)
+    indicators = {case: signal.indicators(mesh_frequency, fault_frequency, **options) for case, signal in alike.items()}
     reference = indicators[healthy]
     return {
         case: {name: (value, increment(value, reference[name]) if reference[name] else math.nan) for name, value in row.items()}
@@ -76,21 +87,31 @@ def indicator_table(
     }
 
 
-def table_text(table):
-    """`indicator_table` as Markdown: a row for each indicator, a column for each case, increments over healthy in brackets.
+def _of_one_length(signals):
+    """The beginning of each record, as long as the shortest."""
+    count = min(signal.values.size for signal in signals.values())
+    return {
+        case: replace(signal, values=signal.values[:count], angle=None if signal.angle is None else signal.angle[:count])
+        for case, signal in signals.items()
+    }
+
+
+def tabulate_indicators(found: Mapping[str, Mapping[str, tuple[float, float]]]) -> Table:
+    """`Table` of `indicator_table`: a row for each indicator; of each case its value and, if it grew, its increment over healthy.
 
     A healthy value that is a millionth or less of the faulty one is printed as none.
     """
-    names = list(next(iter(table.values())))
-    grown = {case for case, row in table.items() if any(growth and not math.isnan(growth) for _, growth in row.values())}
-    lines = [["indicator", *table], ["---"] * (len(table) + 1)]
-    lines += [[LABELS.get(name, name), *(_cell(*row[name], case in grown) for case, row in table.items())] for name in names]
-    return "\n".join(map(table_row, lines))
+    columns, parts = [Column("indicator")], []
+    for case, row in found.items():
+        columns.append(Column(case, form="{:.4g}"))
+        grown = any(growth and not math.isnan(growth) for _, growth in row.values())
+        columns += [Column(f"{case}, change", "%", _growth)] * grown
+        parts.append((row, 1 + grown))
+    names = next(iter(found.values()))
+    return Table(columns, [[LABELS.get(name, name), *(x for row, n in parts for x in row[name][:n])] for name in names])
 
 
-def _cell(value, more, grown):
-    if not grown or math.isnan(more):
-        return f"{value:.4g}"
+def _growth(more):
     if abs(more) < TENFOLD:
-        return f"{value:.4g} ({more:+.1f} %)"
-    return f"{value:.4g} ({f'{1 + more / 100:.3g} x healthy' if abs(more) < GREAT else 'healthy: none'})"
+        return f"{more:+.1f} %"
+    return f"{1 + more / 100:.3g} x healthy" if abs(more) < GREAT else "healthy: none"

@@ -1,17 +1,27 @@
 """Meshes for other programs: read back, volumes and faces as they should be, what cannot be meshed refused."""
 
 import math
+import shutil
+import subprocess
 
 import meshio
 import numpy as np
 import pytest
+from scipy.sparse import tril
+from scipy.sparse.linalg import spsolve
 
 import gearfe as gf
 from gearfe.app.cli import main
+from gearfe.decks.pressed import read_rows
+from gearfe.flexibility.finite_elements.hexahedron import TWENTY, assemble, gauss, shapes, slopes_at, stiffness_of
+from gearfe.flexibility.finite_elements.tetrahedron import EDGES, INNER, OUTER, tet_slopes
 from gearfe.geometry.mesh.holes import holed_sector
 
 pytestmark = pytest.mark.quick
 
+needs_ccx = pytest.mark.skipif(
+    shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed: apt-get install calculix-ccx"
+)
 GEAR = gf.Gear(z=13, x=0.3, r_bore=8.0, b=6.0, m_n=2.0, alpha_n=math.radians(20), beta=math.radians(15))
 PIT = gf.Pit(radius=14.0, z=2.0, axes=(0.4, 0.4), depth=0.2)
 
@@ -31,12 +41,79 @@ def test_a_cracked_gear_is_read_back(tmp_path, suffix):
     assert [block.type for block in found.cells] == ["hexahedron20"]
     np.testing.assert_array_equal(found.cells[0].data, made.cells.T)
     np.testing.assert_allclose(found.points, made.points.T, atol=1e-12)
-    sets = found.point_sets if suffix == ".inp" else {name: np.flatnonzero(v) for name, v in found.point_data.items()}
+    marks = {name: np.flatnonzero(values) for name, values in found.point_data.items()}
+    sets = {name.lower(): nodes for name, nodes in found.point_sets.items()} if suffix == ".inp" else marks
     body, tooth = (np.sort(sets[f"crack_0_{side}"]) for side in ("body", "tooth"))
     front = np.intersect1d(body, tooth)
     assert 0 < front.size < body.size  # the faces share their front and nothing else
     assert found.points[tooth, 2].max() <= 3.0 + 1e-9
     np.testing.assert_allclose(np.hypot(*found.points[sets["held"], :2].T), 8.0, rtol=1e-12)
+
+
+LOADED = """*INCLUDE, INPUT=gear.inp
+*MATERIAL, NAME=STEEL
+*ELASTIC
+207000., 0.3
+*SOLID SECTION, ELSET=GEAR, MATERIAL=STEEL
+*BOUNDARY
+HELD, 1, 3
+*STEP
+*STATIC
+*CLOAD
+FLANK_0, 1, -1.
+FLANK_0, 3, 0.5
+*NODE PRINT, NSET=ALL
+U
+*END STEP
+"""
+
+
+def displaced(part, element):
+    """Displacements ``(nodes, 3)`` by gearfe's matrices under the nodal forces of `LOADED`."""
+    free = np.setdiff1d(np.arange(part.points.shape[1]), part.held)
+    cells = part.cells[np.argsort(TWENTY)] if len(part.cells) == 20 else part.cells
+    lower = assemble(part.points, cells, gf.Material(E=207e3, nu=0.3), free, element=element)
+    force = np.zeros((part.points.shape[1], 3))
+    force[np.unique(part.faces["flank 0"])] = -1.0, 0.0, 0.5
+    moved = np.zeros_like(force)
+    moved[free] = spsolve(lower + tril(lower, -1).T, force[free].ravel()).reshape(-1, 3)
+    return moved
+
+
+def reduced(nodes, lam, mu):
+    """Stiffness of 20-node hexahedra by 2 x 2 x 2 Gauss points, as CalculiX integrates C3D20R."""
+    points, weight = gauss(2)
+    slopes, size = slopes_at(nodes, shapes(points)[1])
+    return stiffness_of(slopes, size * weight, lam, mu)
+
+
+def curved(nodes, lam, mu):
+    """Stiffness of 10-node tetrahedra with curved edges by 4 Gauss points, as CalculiX integrates C3D10."""
+    inner = np.full((4, 4), OUTER) + (INNER - OUTER) * np.eye(4)
+    unit = np.hstack([np.zeros((3, 1)), np.eye(3)])
+    reference = tet_slopes(
+        np.hstack([unit, *[unit[:, list(edge)].mean(axis=1, keepdims=True) for edge in EDGES]])[..., None], inner
+    )
+    slopes, size = slopes_at(nodes, reference[0][0])
+    return stiffness_of(slopes, size / 24, lam, mu)
+
+
+@needs_ccx
+@pytest.mark.parametrize(
+    ("damage", "options", "element"),
+    [([gf.Crack(level=0.5, width=(0.0, 3.0))], {"refine": 0.4}, reduced), ([PIT], {"teeth": 1, "refine": 0.5}, curved)],
+    ids=["hexahedra", "tetrahedra"],
+)
+def test_calculix_solves_the_mesh(tmp_path, damage, options, element):
+    """The two sides share nodes and elements, and nothing of how they are read, integrated and solved."""
+    part = gf.export_mesh(tmp_path / "gear.inp", GEAR, damage, **options)
+    (tmp_path / "load.inp").write_text(LOADED, encoding="ascii")
+    done = subprocess.run(["ccx", "-i", "load"], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
+    assert "ERROR" not in done.stdout, done.stdout[-2000:]
+    found = read_rows(tmp_path / "load.dat")
+    moved = np.array([found[node] for node in range(1, part.points.shape[1] + 1)])
+    own = displaced(part, element)
+    np.testing.assert_allclose(moved, own, rtol=0, atol=1e-6 * np.abs(own).max())
 
 
 def test_a_pit_is_missing_from_the_tooth(tmp_path):

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,7 +7,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.signal import indicators as ind
-from gearfe.signal.indicator_table import increment, table_text
+from gearfe.signal.indicator_table import increment, tabulate_indicators
 from gearfe.signal.spectrum import Spectrum
 from validation.make import centroid
 from validation.shared import places
@@ -181,7 +182,7 @@ def test_printed_349_8_and_352_9_are_impossible():
 def test_the_page_says_what_the_formulas_do():
     assert [holds for _, holds, _ in centroid.verdicts(centroid.study())] == [False, False, True, False]
     text = (places.PAGES / "planetary_pitting.md").read_text(encoding="utf-8")
-    assert "\n".join(centroid.section()) in text, "remake: python -m validation machines planetary_pitting"
+    assert "\n".join(centroid.section()) in text, "remake: python -m validation PAGE planetary_pitting"
 
 
 @pytest.mark.parametrize("noise", [0.3, 3.0, 30.0])
@@ -230,9 +231,9 @@ def test_table_of_increments():
     table = gf.indicator_table({"healthy": family(0.1), "mild": family(0.15), "severe": family(0.3)}, F_M, F_FAULT)
     assert_allclose([table[case]["sideband index"][1] for case in table], [0, 50, 200], atol=1e-6)
     assert_allclose(table["severe"]["sideband index"][0], 0.3)
-    text = table_text(table).splitlines()
-    assert text[0] == "| indicator | healthy | mild | severe |"
-    assert "| mean amplitude of the first sidebands | 0.1 | 0.15 (+50.0 %) | 0.3 (+200.0 %) |" in text
+    text = tabulate_indicators(table).markdown().splitlines()
+    assert text[0] == "| indicator | healthy | mild | mild, change | severe | severe, change |"
+    assert "| mean amplitude of the first sidebands | 0.1 | 0.15 | +50.0 % | 0.3 | +200.0 % |" in text
     assert len(text) == 2 + len(ind.SOURCES)
 
 
@@ -246,14 +247,19 @@ def test_increment():
 @pytest.mark.parametrize(
     "other",
     [
-        gf.Signal(np.ones(N - 1), RATE, "N"),
         gf.Signal(np.ones(N), 2 * RATE, "N"),
         gf.Signal(np.ones(N), RATE, "m/s^2"),
     ],
 )
 def test_table_compares_like_with_like(other):
-    with pytest.raises(ValueError, match=r"bad: .* but healthy has 51200 at 5120 Hz in N: compare like with like"):
+    with pytest.raises(ValueError, match=r"bad: .* but healthy has 5120 Hz in N: compare records of the same rate and unit"):
         gf.indicator_table({"healthy": family(), "bad": other}, F_M, F_FAULT)
+
+
+def test_longer_records_are_cut_to_the_shortest():
+    whole, part = family(), replace(family(), values=family().values[: N - 700])
+    found = gf.indicator_table({"healthy": part, "again": whole}, F_M, F_FAULT)
+    assert all(growth == 0 or math.isnan(growth) for _, growth in found["again"].values())
 
 
 def test_table_needs_the_healthy_case():
@@ -264,10 +270,10 @@ def test_table_needs_the_healthy_case():
 
 
 def test_what_grows_from_nothing_has_no_percentage():
-    text = table_text({"healthy": {"sideband index": (1e-12, 0.0)}, "cracked": {"sideband index": (0.07, 7e12)}})
-    assert text.splitlines()[-1] == "| mean amplitude of the first sidebands | 1e-12 | 0.07 (healthy: none) |"
+    table = tabulate_indicators({"healthy": {"sideband index": (1e-12, 0.0)}, "cracked": {"sideband index": (0.07, 7e12)}})
+    assert table.cells()[-1] == ["mean amplitude of the first sidebands", "1e-12", "0.07", "healthy: none"]
 
 
 def test_more_than_ten_times_is_told_as_a_factor():
-    text = table_text({"healthy": {"kurtosis": (2.0, 0.0)}, "cracked": {"kurtosis": (50.0, 2400.0)}})
-    assert text.splitlines()[-1] == "| kurtosis | 2 | 50 (25 x healthy) |"
+    table = tabulate_indicators({"healthy": {"kurtosis": (2.0, 0.0)}, "cracked": {"kurtosis": (50.0, 2400.0)}})
+    assert table.cells()[-1] == ["kurtosis", "2", "50", "25 x healthy"]

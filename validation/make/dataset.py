@@ -30,7 +30,7 @@ PLAN = {
 ALARMS = 0.05  # of healthy machines taken for faulty, set on the validation side
 
 
-def section(again=()):
+def section(again=False):
     """Lines of the page."""
     found = kept("detection", "classifier", classified, again)
     return [

@@ -5,7 +5,7 @@ from ..shared.kept_rows import stored
 from . import dataset, diagnosis, tolerances
 
 HOW = """
-`python -m validation detection` makes this page from `tables/detection.jsonl`; `... detection all` computes all parts anew (the
+`python -m validation detection` computes this page and `tables/detection.jsonl` (the
 classifier needs scikit-learn). All machines are simulated, and their scatter is assumed.
 """
 
@@ -26,8 +26,7 @@ def _false():
     return f"{100 * worst:.1f} % of {diagnosis.HEALTHY}" if worst else f"none of {diagnosis.HEALTHY}"
 
 
-def run(parts=()):
-    """Write the page; `parts`: ``tolerances``, ``classifier``, ``diagnosis`` or ``all``, to compute anew."""
-    again = page.anew(parts)
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
     sections = tolerances.section(again), dataset.section(again), diagnosis.section(again)
     page.write("detection", answer(), HOW.strip().splitlines(), *sections)

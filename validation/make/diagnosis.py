@@ -24,7 +24,7 @@ PLAN = dataset.PLAN | {
 KNOWN = {"mesh": "mesh_Hz", "fault": "fault_Hz", "turning": "turning_Hz", "carrier": "carrier_Hz"}
 
 
-def section(again=()):
+def section(again=False):
     """Lines of the page."""
     found = kept("detection", "diagnosis", judged, again)
     return [

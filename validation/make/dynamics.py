@@ -14,7 +14,7 @@ from gearfe.dynamics.motion.response import acceleration
 from gearfe.dynamics.motion.simulate import simulate
 
 from ..shared import page
-from ..shared.kept_rows import check, kept, stored
+from ..shared.kept_rows import kept, stored
 from ..shared.stages import article, compound, helical, machines, shaken, spur, stage
 
 KEPT = ("dynamics_steps", "dynamics_chatter")  # tables of rows
@@ -23,8 +23,8 @@ RATES = (2e3, 5e3, 1e4, 2.5e4, 5e4)  # of the output [Hz]; the last holds all ot
 SPAN = 0.03  # of the chattering stage [s]
 
 HOW = """
-`python -m validation dynamics` makes this page from `tables/dynamics_*.jsonl`: a row is computed once; `... dynamics ROW ...`
-computes those whose names begin so anew, `... dynamics all` every one. Seconds of the integrators: [speed.md](speed.md); extreme
+`python -m validation dynamics` makes this page from `tables/dynamics_*.jsonl` and computes them.
+Seconds of the integrators: [speed.md](speed.md); extreme
 cases: [hard.md](hard.md). Both sides integrate the same equations of the same machine; those are held against modes and values
 of others in [truth.md](truth.md).
 """
@@ -53,7 +53,7 @@ CHATTER = [
 ]
 
 
-def accuracy(again=()):
+def accuracy(again=False):
     """Lines: errors of the fast path at its own steps against DOP853 (rtol 1e-10), at all rates; last how many were covered."""
     runs, covered = 0, 0
     for name, build, duration in machines():
@@ -86,7 +86,7 @@ def exact(made, duration):
     return simulate(made, duration, rate=RATES[-1], method="DOP853", rtol=1e-10, filtered=False)
 
 
-def chatter(again=()):
+def chatter(again=False):
     """Lines: the chattering stage by the fast path, and by DOP853 with and without located changes of contact."""
     names = ["fast, step chosen", *(f"DOP853, rtol {r:g}, {how}" for r in (1e-8, 1e-10) for how in ("located", "not located"))]
     for name in names:
@@ -221,10 +221,8 @@ def answer():
     )
 
 
-def run(parts=()):
-    """Write the page; `parts`: beginnings of the rows that are computed anew (``all``: every one)."""
-    again = page.anew(parts)
-    check(again, *KEPT)
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
     sections = [*HEAD, *accuracy(again)], [*CHATTER, *chatter(again)]
     page.write("dynamics", answer(), HOW.strip().splitlines(), *sections)
 
@@ -247,3 +245,17 @@ def _moved(got, want, whole=None):
     away, size = np.abs(got.q - want.q).max(axis=0), np.ptp((whole or want).q, axis=0)
     turns = np.array([name.endswith(("theta", "tilt_x", "tilt_y")) for name in want.machine.dofs])
     return float(max(away[kind].max() / size[kind].max() for kind in (turns, ~turns)))
+
+
+def cheap():
+    """Rows that `validation.check` computes again: the steps that `simulate` chooses, and the losses of contact."""
+    known = stored("dynamics_steps")
+    for name, build, duration in machines():
+        if "law" not in name:
+            yield name, {one: known[name][one] for one in ("step", "losses")}, lambda build=build, d=duration: chosen(build(), d)
+
+
+def chosen(made, duration):
+    """Steps [us] and losses of contact of a machine at all rates."""
+    stats = [simulate(made, duration, rate=rate, filtered=False).stats for rate in RATES]
+    return {"step": [float(f"{1e6 * one['dt']:.3g}") for one in stats], "losses": [float(one.get("losses", 0)) for one in stats]}

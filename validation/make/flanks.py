@@ -1,7 +1,4 @@
-"""The page `flanks.md`: modified flanks against CalculiX in nonlinear contact, and tip relief against transmission error.
-
-Rows of CalculiX and of finite elements are kept one by one, those of CalculiX for as long as their decks stay the same.
-"""
+"""The page `flanks.md`: modified flanks against CalculiX in nonlinear contact, and tip relief against transmission error."""
 
 import math
 import shutil
@@ -72,17 +69,6 @@ def row_of(case):
         return {"deck": digest(folder / "pair.inp"), "approach": approach, "load": load}
 
 
-def write_decks(folder):
-    """Write the decks of the rows on file in a folder, one after the other: jobs of their rows and paths."""
-    three = flanks_three.TABLE, flanks_three.RUNS, flanks_three.told, flanks_three.deck_of
-    for table, runs, name_of, write in ((TABLE, CASES, told, deck_of), three):
-        known = stored(table)
-        for run in runs:
-            if row := known.get(name_of(run)):
-                write(folder, run, row["approach"])
-                yield f"flanks --reference {name_of(run)}", folder / "pair.inp"
-
-
 def differences(case, row):
     """Transmission error and deflection [um] of `ritz` today and those of CalculiX, at the same load.
 
@@ -145,23 +131,31 @@ def text():
     )
     how = [
         "`python -m validation flanks` makes this page from `tables/flanks_*` and new solves of gearfe; `... flanks --reference`",
-        "computes rows of CalculiX and of finite elements that are not on file. Shared with CalculiX: the shapes of the flanks",
+        "computes the rows of CalculiX and of finite elements. Shared with CalculiX: the shapes of the flanks",
         "and where they stand.",
     ]
     return answer, how, lines, flanks_wide.text(), flanks_three.text()
 
 
 def reference():
-    """Compute the rows of CalculiX, if it is installed, and of finite elements that are not on file."""
+    """Compute the rows of CalculiX, if it is installed, and of finite elements."""
     flanks_wide.reference()
     if not shutil.which("ccx"):
         print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
         return
     for case in CASES:
-        kept(TABLE, told(case), lambda case=case: row_of(case))
+        kept(TABLE, told(case), lambda case=case: row_of(case), again=True)
     flanks_three.reference()
 
 
-def run():
-    """Write the page: new solves of gearfe beside what is on file."""
+def run(again=True):
+    """Write the page: new solves of gearfe beside the independent values on file."""
     page.write("flanks", *text())
+
+
+def cheap():
+    """Rows that `validation.check` computes again: `ritz` against `fe`, their difference over k."""
+    known = stored(flanks_wide.SECTIONS)
+    for seed in flanks_wide.SECTION_SEEDS:
+        row = known[f"section, seed {seed}"]
+        yield row["row"], 1 + row["difference"], lambda seed=seed: 1 + flanks_wide.against_fe(seed)

@@ -7,13 +7,12 @@ from ..shared.kept_rows import kept
 from ..shared.ladder import ladder
 
 
-def section(again=()):
+def section(again=False):
     """Lines of the page."""
     tables = reference.load()
     pairs = tables["healthy"]["rows"]
-    jobs = {"earlier study": _study, "load": _trend, "rungs": _ladders}
     study, trend, rungs = (
-        kept("map", name, lambda job=job: {"lines": job(tables)}, again)["lines"] for name, job in jobs.items()
+        kept("map", name, lambda job=job: {"lines": job(tables)}, again)["lines"] for name, job in JOBS.items()
     )
     return [
         "## Below 3 % is a coincidence of load and zone",
@@ -87,3 +86,6 @@ def _ladders(tables):
             cells.append(f"{100 * single:+.1f} / {100 * double:+.1f}, {100 * mean:+.1f}")
         lines.append(f"| {rung.name} | " + " | ".join(cells) + " |")
     return lines
+
+
+JOBS = {"earlier study": _study, "load": _trend, "rungs": _ladders}  # rows of the table

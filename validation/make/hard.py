@@ -8,7 +8,7 @@ import numpy as np
 import gearfe as gf
 
 from ..shared import page
-from ..shared.kept_rows import check, kept, stored
+from ..shared.kept_rows import kept, stored
 from . import hard_dynamics, hard_three
 
 TABLES = ("hard", "hard_three", "hard_dynamics")
@@ -98,7 +98,7 @@ def outcome(case):
     return {"cells": f"{text} | {away.mean():.3f} %, {away.max():.3f} %", "covered": covered}
 
 
-def section(again=()):
+def section(again=False):
     """Lines of the cases in the section."""
     lines = [
         "## In the section",
@@ -127,14 +127,11 @@ def answer():
 
 
 HOW = """
-`python -m validation hard` makes this page from `tables/hard*.jsonl`: a case is computed once; `... hard CASE ...` computes those
-whose names begin so anew, `... hard all` every one.
+`python -m validation hard` makes this page from `tables/hard*.jsonl` and computes them.
 """
 
 
-def run(parts=()):
-    """Write the page; `parts`: beginnings of the cases that are computed anew, or ``all``."""
-    again = page.anew(parts)
-    check(again, *TABLES)
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
     sections = section(again), hard_three.section(again), hard_dynamics.section(again)
     page.write("hard", answer(), HOW.strip().splitlines(), *sections)

@@ -28,7 +28,7 @@ SCENE = gf.load_scene("planetary_pitting")
 def sun_and_planet():
     """Sun and planet of the planetary scene as a pair, and its curve by `ritz`."""
     chosen = SCENE.pairs["sun_planet"]
-    return chosen.pair, gf.mesh_stiffness(**chosen.case(), phases=64, method="ritz")
+    return chosen.pair, gf.mesh_stiffness(chosen.case(), phases=64, method="ritz")
 
 
 def pair(*, stiffness=None, zeta=0.02, torque=TORQUE, **mesh):
@@ -159,7 +159,7 @@ def long_run():
     return judged(text, got.stats["error"], away, "shooting")
 
 
-def section(again=()):
+def section(again=False):
     """Lines of the page."""
     lines = [
         "## In the dynamics",

@@ -107,7 +107,7 @@ def _listed(phases):
     return ", ".join(f"{p:g}" for p in phases)
 
 
-def section(again=()):
+def section(again=False):
     """Lines of the page."""
     lines = [
         "## In three dimensions",

@@ -30,7 +30,7 @@ def solve(pair, case, refine=1.0):
     return {"k": float(k.mean()), "mean": float(mean), "largest": float(change.min()), "unknowns": int(found.unknowns)}
 
 
-def section(again=()):
+def section(again=False):
     """Lines of the page."""
     lines = [
         *TEXT.strip().splitlines(),

@@ -7,7 +7,7 @@ from gearfe.core.case import by_gear, overlap
 from gearfe.strength.holed import pressed_tooth
 
 from ..shared import outsider, page
-from ..shared.kept_rows import check, kept, stored
+from ..shared.kept_rows import kept, stored
 from ..shared.solid_pair import solid_contact
 from . import holed_cracks, outsider_three
 
@@ -38,8 +38,7 @@ Hertz's pressure, which makes the answer less, since the walls of a pit give way
 estimates leave out, CalculiX has: it solves the contact around the holes itself, see [three.md](three.md).
 """
 HOW = """
-`python -m validation holes` makes this page from `tables/holes.jsonl` and `tables/holed_cracks.jsonl`; `... holes ROW ...`
-computes rows whose names begin so anew, `... holes all` every one.
+`python -m validation holes` makes this page from `tables/holes.jsonl` and `tables/holed_cracks.jsonl` and computes them.
 """
 
 
@@ -68,7 +67,7 @@ def row(scene, case):
     }
 
 
-def section(again=()):
+def section(again=False):
     """Lines of the layouts of the scenes."""
     lines = [
         *TEXT.strip().splitlines(),
@@ -102,9 +101,7 @@ def answer():
     )
 
 
-def run(parts=()):
-    """Write the page; `parts`: beginnings of the rows that are computed anew, or ``all``."""
-    again = page.anew(parts)
-    check(again, "holes", "holed_cracks")
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
     sections = section(again), holed_cracks.section(again)
     page.write("holes", answer(), HOW.strip().splitlines(), *sections, SHARED.strip().splitlines())

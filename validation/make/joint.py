@@ -5,7 +5,7 @@ import importlib
 import numpy as np
 
 import gearfe as gf
-from gearfe.core.markdown import table_row
+from gearfe.core.table import Column, Table
 
 from ..shared import joint_inputs, page
 from ..shared.kept_rows import kept, stored
@@ -14,9 +14,9 @@ from ..shared.table_rows import read
 NAME = "joint"
 DECIDES = joint_inputs.DRAWS // 4  # draws by which the halves of an input must differ to be called what decides
 HOW = f"""
-`python -m validation joint` makes this page and the sections of the four pages from `tables/joint.jsonl`: a row is one draw;
-`... joint PAGE` computes those of a page anew, `... joint all` every one. The {joint_inputs.DRAWS} draws of a page are a Latin
-hypercube, even in the logarithm of each input; ranges, statements and thresholds were fixed in a commit before the first run
+`python -m validation joint` makes this page and the sections of the four pages from `tables/joint.jsonl`: a row is one draw.
+The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, even in the logarithm of each input; ranges,
+statements and thresholds were fixed in a commit before the first run
 (`validation/shared/joint_inputs.py`). A number without a unit is a factor of what the scene or its machine assumes. Masses and
 curves of stiffness stay; channel and path are crossed with every draw. Whether a statement holds is decided as on its page.
 """
@@ -33,8 +33,8 @@ def rows_of(name):
     return [found[key] for key in sorted(found) if key.startswith(f"{name} ")]
 
 
-def compute(name, again=()):
-    """Rows of a page, those missing or asked for computed."""
+def compute(name, again=False):
+    """Rows of a page; `again`: compute them again."""
     for draw in joint_inputs.draws(name):
         key = f"{name} {draw.number:02d}"
         kept(NAME, key, lambda draw=draw: {"inputs": dict(draw.values)} | home(name).drawn(draw), again)
@@ -111,13 +111,13 @@ def section(name):
         "in how many draws a statement holds, by channel, and the input that goes with it most on the channel that is judged "
         f"and counted: {judges(name)}.",
         "",
-        table_row(["statement", *channels, "input that goes with it"]),
-        "|---" * (len(channels) + 2) + "|",
     ]
+    rows = []
     for statement, one in found.items():
         cells = [f"{one[channel].sum()} of {one[channel].size}" if channel in one else "" for channel in channels]
-        lines.append(table_row([statement, *cells, decides(name, own[statement])]))
-    return [*lines, "", *numbers(name)]
+        rows.append([statement, *cells, decides(name, own[statement])])
+    table = Table(("statement", *channels, "input that goes with it"), rows).markdown()
+    return [*lines, *table.splitlines(), "", *numbers(name)]
 
 
 def judges(name):
@@ -138,8 +138,7 @@ def numbers(name):
         return []
     rows, judged = rows_of(name), read(name)
     scene = {one.id: one for one in gf.load_scene(SCENES.get(name, name)).references}
-    lines = ["| number | case | printed | on this page | least to largest of the draws | draws within the tolerance |"]
-    lines.append("|---|---|---|---|---|---|")
+    lines = []
     for word, reference in named.items():
         for i, row in enumerate(one for one in judged if one.id == reference):
             values = [draw["numbers"][word][i] for draw in rows]
@@ -147,9 +146,11 @@ def numbers(name):
             channel = word.partition(", ")[2]
             meant = scene[reference].quantity.replace("its centre", "centre of the band of largest spectral kurtosis")
             quantity = ", ".join(filter(None, (meant, channel)))
-            cells = [quantity if not i else "", row.case, f"{row.printed:g}", f"{row.ours:.3g}"]
-            lines.append(table_row([*cells, f"{min(values):.3g} to {max(values):.3g}", f"{inside} of {len(values)}"]))
-    return [*lines, ""]
+            span = f"{min(values):.3g} to {max(values):.3g}", f"{inside} of {len(values)}"
+            lines.append([quantity if not i else "", row.case, row.printed, row.ours, *span])
+    ours = Column("printed", form="{:g}"), Column("on this page", form="{:.3g}")
+    head = ("number", "case", *ours, "least to largest of the draws", "draws within the tolerance")
+    return [*Table(head, lines).markdown().splitlines(), ""]
 
 
 SCENES = {"herringbone_machine": "herringbone"}
@@ -178,25 +179,31 @@ def notes():
 def ranges():
     """Lines: inputs and their ranges by page."""
     names = list(joint_inputs.RANGES)
-    lines = [table_row(["input", *names]), "|---" * (len(names) + 1) + "|"]
+    rows = []
     for word, meant in joint_inputs.MEANT.items():
         ends = [joint_inputs.RANGES[name].get(word) for name in names]
-        lines.append(table_row([meant, *("" if end is None else f"{end[0]:g} to {end[1]:g}" for end in ends)]))
-    return lines
+        rows.append([meant, *("" if end is None else f"{end[0]:g} to {end[1]:g}" for end in ends)])
+    return Table(("input", *names), rows).markdown().splitlines()
 
 
-def run(parts=()):
-    """Compute what is missing, or the rows that begin with `parts`, and write this page and those of the machines."""
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
     for name in joint_inputs.RANGES:
-        compute(name, page.anew(parts))
+        compute(name, again)
     tell()
 
 
 def tell():
     """Write this page and those of the machines."""
-    small = ["| page | statements | hold in all draws | in none | in some |", "|---|---|---|---|---|"]
-    for name in joint_inputs.RANGES:
-        small.append(table_row([f"[{name}.md]({name}.md)", str(sum(counts(name))), *map(str, counts(name))]))
-    page.write(NAME, answer(), HOW.strip().splitlines(), small, notes(), ranges())
+    head = ("page", *(Column(name, form="{}") for name in ("statements", "hold in all draws", "in none", "in some")))
+    rows = [[f"[{name}.md]({name}.md)", sum(counts(name)), *counts(name)] for name in joint_inputs.RANGES]
+    page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges())
     for name in joint_inputs.RANGES:
         home("machines").write_page(name)  # which looks in here for its section
+
+
+def cheap():
+    """Rows that `validation.check` computes again: draws of the cheapest page."""
+    name = "helical_pitting"
+    for draw, row in zip(joint_inputs.draws(name), rows_of(name), strict=True):
+        yield row["row"], row["holds"], lambda draw=draw: home(name).drawn(draw)["holds"]

@@ -5,15 +5,16 @@ import time
 import tomllib
 import warnings
 from functools import cache
-from pathlib import Path
 
 import gearfe as gf
-from gearfe.core.files import written
+from gearfe.core.table import Table
 from gearfe.scene import verdicts
 from gearfe.scene.references import read_references
+from gearfe.scene.schema import checked
 
 from ..shared import places, table_rows
 from ..shared.openings import OPENINGS
+from ..shared.page import put
 from . import joint
 
 FOLDER = places.PAGES
@@ -50,7 +51,8 @@ def references(page):
     """References of its scene that the page computes, and further statements."""
     more = tomllib.loads(FURTHER.read_text(encoding="utf-8"))
     own = [one for one in gf.load_scene(PAGES[page]).references if one.id not in ELSEWHERE]
-    return [*own, *read_references(FURTHER.name, more[page], {})]
+    rows = [checked("gearfe.scene", "reference", FURTHER.name, f"reference {i + 1}", row) for i, row in enumerate(more[page])]
+    return [*own, *read_references(FURTHER.name, rows)]
 
 
 def functions(page, *, quick=False):
@@ -72,7 +74,7 @@ def computed(page, names):
 
 
 @cache
-def cheap(page):
+def quick_rows(page):
     """Rows of a page that need no simulation, by id, case and pair, computed once."""
     return {row[:3]: row for row in computed(page, set(functions(page, quick=True)))}
 
@@ -80,6 +82,7 @@ def cheap(page):
 def text(page):
     """The page as Markdown, from its committed rows and its scene."""
     scene, home = gf.load_scene(PAGES[page]), module(page)
+    told = scene.assumptions
     rows = table_rows.read(page)
     claim, find, decide = OPENINGS[page](Found(rows))
     drawn = f" {drawn_jointly(page)}" if joint.rows_of(page) else ""
@@ -92,7 +95,7 @@ def text(page):
         "",
         f"{scene.source}.",
         "",
-        f"Made by `python -m validation machines {page}` from [tables/{page}.csv](tables/{page}.csv); the printed values",
+        f"Made by `python -m validation {page}` from [tables/{page}.csv](tables/{page}.csv); the printed values",
         f"are the `[[reference]]` rows of `gearfe/scene/scenes/{PAGES[page]}.toml`, the last statements those of "
         "`validation/sources/statements.toml`.",
         "Verdicts are computed: *reproduced*: within the tolerance; *after a stated correction*: of the corrected value, "
@@ -103,7 +106,7 @@ def text(page):
         "*input*: put in, or found from this very value; *arithmetic*: follows from printed numbers; *model*:",
         "could have come out otherwise. Reasons: below.",
         "",
-        with_draws(page, verdicts.text(references(page), rows)),
+        verdicts.text(references(page), rows, draws(page)),
         "",
         *runs_of(page, rows),
         *joint.section(page),
@@ -114,23 +117,16 @@ def text(page):
     lines += [
         "What the scene assumes, and how much depends on it:",
         "",
-        "| assumed | why | what depends on it |",
-        "|---|---|---|",
+        Table(
+            ("assumed", "why", "what depends on it"), [[one[key] for key in ("what", "why", "depends")] for one in told]
+        ).markdown(),
     ]
-    lines += [f"| {one['what']} | {one['why']} | {one['depends']} |" for one in scene.assumptions]
     return "\n".join(lines) + "\n"
 
 
-def with_draws(page, table):
-    """The table with the share of joint draws in which a statement holds beside its verdict."""
-    found = joint.judged(page)
-    out = []
-    for line in table.splitlines():
-        cells = line.split(" | ")
-        held = found.get(cells[1]) if len(cells) > 3 and cells[2] == "model" else None
-        share = "" if held is None else f"; holds in {held.sum()} of {held.size} draws"
-        out.append(line[:-2] + f"{share} |" if share else line)
-    return "\n".join(out)
+def draws(page):
+    """Words on the share of joint draws in which a statement holds, by case."""
+    return {case: f"; holds in {held.sum()} of {held.size} draws" for case, held in joint.judged(page).items()}
 
 
 def drawn_jointly(page):
@@ -172,24 +168,17 @@ def runs_of(page, rows):
     if not by_run:
         return []
     told = table_rows.read_runs(page)
-    lines = [
-        "Simulations behind the rows, as read from the machines that ran:",
-        "",
-        "| run | what it was made with | rows |",
-        "|---|---|---|",
-    ]
-    named = {name: by_run.get(name, []) for name in told}
-    lines += [f"| {name} | {told[name]} | {', '.join(dict.fromkeys(ids)) or 'beside'} |" for name, ids in named.items()]
-    return [*lines, ""]
+    named = [(name, made, ", ".join(dict.fromkeys(by_run.get(name, []))) or "beside") for name, made in told.items()]
+    table = Table(("run", "what it was made with", "rows"), named).markdown()
+    return ["Simulations behind the rows, as read from the machines that ran:", "", table, ""]
 
 
 def write_page(page):
     """Write the Markdown of a page from its rows."""
-    with written(FOLDER / f"{page}.md") as name:
-        Path(name).write_text(text(page), encoding="utf-8")
+    put(page, text(page))
 
 
-def rebuild(page):
+def compute(page):
     """Compute all rows and pictures of a page and write them."""
     started, rows = time.perf_counter(), []
     for one in references(page):
@@ -202,13 +191,22 @@ def rebuild(page):
     if hasattr(home, "write_more"):
         home.write_more()
     home.draw(FOLDER)
+    print(f"{page}: {verdicts.counts(rows)}", flush=True)
+
+
+def run(page, again=True):
+    """Write a page; `again`: compute its rows again."""
+    if again:
+        compute(page)
     write_page(page)
-    print(f"wrote {page}.md: {verdicts.counts(rows)}", flush=True)
 
 
-def run(pages=()):
-    """Rebuild some pages, or all."""
-    for page in pages or PAGES:
-        if page not in PAGES:
-            raise ValueError(f"{page} is no page of a machine; there is {', '.join(PAGES)}")
-        rebuild(page)
+def cheap(page):
+    """Rows of a page that `validation.check` computes again: those that need no simulation."""
+    known = table_rows.read(page)
+    for name in functions(page, quick=True):
+        yield name, _judged(row for row in known if row.id == name), lambda name=name: _judged(computed(page, {name}))
+
+
+def _judged(rows):
+    return [[row.verdict, row.ours] for row in rows]

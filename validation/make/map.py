@@ -8,8 +8,8 @@ import numpy as np
 import gearfe as gf
 from gearfe.runs.errormap import CRACKED, HEALTHY, LOADS, ZONES, build
 
-from ..shared import page
-from ..shared.kept_rows import check, kept
+from ..shared import page, reference
+from ..shared.kept_rows import kept, stored
 from ..shared.places import PAGES
 from . import formulations
 
@@ -91,7 +91,7 @@ def section(found):
     ]
 
 
-def corners(again=()):
+def corners(again=False):
     """Lines: the reference against finite elements."""
     return [
         "## The reference at the corners of the map",
@@ -106,15 +106,12 @@ def corners(again=()):
 
 
 HOW = """
-`python -m validation map` makes this page from `tables/map.jsonl`; `... map ROW ...` computes the rows whose names begin so anew,
-`... map all` every one (sample, corners, earlier study, load, rungs).
+`python -m validation map` makes this page from `tables/map.jsonl` and computes them.
 """
 
 
-def run(parts=()):
-    """Write the page; `parts`: beginnings of the rows that are computed anew, or ``all``."""
-    again = page.anew(parts)
-    check(again, "map")
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
     found = kept("map", "sample", sampled, again)
     best = ", ".join(f"`{name}` in {100 * share:.0f} %" for name, share in found["within"].items())
     held = "; ".join(f"`{name}`: {', '.join(parts)}" for name, parts in found["held"].items() if parts) or "in none"
@@ -164,3 +161,10 @@ def _corners():
 def _progress(done, total):
     if done % max(1, total // 20) == 0:
         print(f"{done} of {total} pairs", file=sys.stderr, flush=True)
+
+
+def cheap():
+    """Rows that `validation.check` computes again."""
+    for name, row in stored("map").items():
+        if name in formulations.JOBS:
+            yield name, row["lines"], lambda name=name: formulations.JOBS[name](reference.load())

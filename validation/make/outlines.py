@@ -1,34 +1,29 @@
 """The page `outlines`: whole outlines of gears, without load and pressed together, beside gearfe.
 
-The arbiter needs no more of gearfe than the shape of gears, so that no change of its contact or flexibility makes rows old; what
-else is needed is imported where it is used.
+The arbiter needs no more of gearfe than the shape of gears.
 """
 
+from ..shared import outlines_page, outlines_plane, outlines_three
+from ..shared.arbiter import kept, unloaded_table
+from ..shared.arbiter.cases import fresh
+from ..shared.kept_rows import stored
 
-def arbiter():
-    """Compute what is not on file: gaps of random pairs, sections pressed by the arbiter, and by CalculiX."""
-    from ..shared import outlines_plane
-    from ..shared.arbiter import kept, unloaded_table
-    from ..shared.arbiter.cases import fresh
 
+def reference():
+    """Compute gaps of random pairs, sections pressed by the arbiter and by CalculiX, and whole gears by CalculiX."""
     unloaded_table.reference()
     kept.reference()
     kept.reference(fresh(), kept.FRESH)
     outlines_plane.reference()
-
-
-def reference():
-    """Compute what is not on file of whole gears by CalculiX."""
-    from ..shared import outlines_three
-
     outlines_three.reference()
 
 
-def run(parts=()):
-    """Write the page; `parts`: ``arbiter``, or beginnings of the rows whose `ritz3d` is computed anew, or ``all``."""
-    if "arbiter" in parts:
-        arbiter()
-        return
-    from ..shared import outlines_page, page
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
+    outlines_page.write(again)
 
-    outlines_page.write(page.anew(parts))
+
+def cheap():
+    """Rows that `validation.check` computes again: `ritz3d` of the pairs that CalculiX pressed."""
+    for name, row in stored(outlines_three.OURS).items():
+        yield name, row, lambda name=name: outlines_three.ours_row(name)

@@ -12,7 +12,7 @@ do are CalculiX's own. `ritz3d` has pits as lost contact.
 In contact: 13/16 teeth (in a ring 13/36), m_n 2 mm, b 6 mm, 15 degrees unless spur, {LOAD:g} N/mm (with pits {PITTED:g}), phase
 0.45, tooth 0 of the pinion damaged; the gears are turned by the approach that `ritz3d` found when CalculiX was run, frictionless
 surface-to-surface contact of all flanks, large displacements. k is force over approach. Under a line load: the deflection of a
-strip of pressure under itself. A run counts as one of the present code as long as this writes the same deck (`decks.csv`).
+strip of pressure under itself. A test compares the decks of the present code with those of the runs.
 
 `per_width`: edges per Hertz half width along the contact lines; there are 3 layers of elements along the width; `refine`
 divides all edges, these too. Edges of tets are half as long across the width as along it, and rims of pits have edges of 0.6 of

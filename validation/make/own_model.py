@@ -22,7 +22,7 @@ def table():
     return "\r\n".join(["phase,k_N_per_m", *rows, ""])
 
 
-def run():
+def run(again=True):
     """Write the example anew."""
     with written(EXAMPLE) as name:
         Path(name).write_bytes(table().encode())

@@ -16,7 +16,7 @@ import gearfe as gf
 from gearfe.core.files import written
 from gearfe.geometry.damage.pit import pit_row
 
-from ..shared.kept_rows import kept
+from ..shared.kept_rows import begin, kept
 from ..shared.places import TABLES
 
 TABLE = TABLES / "pairs_three.csv"
@@ -124,10 +124,11 @@ def stored():
 
 
 def reference():
-    """Compute the runs that the table lacks and append each when it is done."""
+    """Compute the runs and append each when it is done."""
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+    begin(TABLE)
     made, known = pairs(), stored()
     left = [key for key in wanted() if key not in known]
     columns = (TextColumn("{task.description}"), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
@@ -176,8 +177,8 @@ def row(name, about, case, known, model):
     return f"| {name}, {about} | {case}{closed} | {sizes} | {text} | {worst} | {step} | {lost or ' | | '} |"
 
 
-def section(again=()):
-    """Lines of the page; `again`: beginnings of the rows whose `ritz3d` is computed anew."""
+def section(again=False):
+    """Lines of the page; `again`: compute the rows of `ritz3d` again."""
     known = stored()
     lines = [
         *TEXT.strip().splitlines(),
@@ -194,7 +195,7 @@ def section(again=()):
     return [*lines, *SHARED.rstrip().splitlines()]
 
 
-def worst(again=()):
+def worst(again=False):
     """Largest difference of `ritz3d` from the finest hexahedra, in the mean over the phases of a case and at a phase."""
     known, means, phases = stored(), [], []
     for name, (_, pair) in pairs().items():

@@ -89,7 +89,7 @@ def sections(parts):
         yield lines + [line for task, part in parts.items() if task[0] == name for line in part]
 
 
-def run():
+def run(again=True):
     """Write the pictures, several at a time, and the page."""
     FOLDER.mkdir(exist_ok=True)
     with ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context("spawn")) as pool:

@@ -40,7 +40,7 @@ def _printed(program):
     return printed.getvalue()
 
 
-def run():
+def run(again=True):
     """Write the README anew."""
     text = README.read_text(encoding="utf-8")
     gf.compare(gf.load_scene("planetary_pitting"))  # warm

@@ -13,7 +13,7 @@ import numpy as np
 import gearfe as gf
 from gearfe.core.files import written
 
-from ..shared import page
+from ..shared import kept_rows, page
 from ..shared.places import TABLES
 from . import sample_three
 
@@ -71,14 +71,21 @@ def row(seed):
 HOW = """
 What is asked of pairs that were drawn at random from seeds that nobody had looked at: do two methods differ by less than both
 estimates together, and each from a finer solution by less than its own? A pair is covered if all of its phases are; a solve that
-fails counts as not covered. `python -m validation sample` computes the rows that `tables/sample*` lack; `... sample all` computes
-those of the section anew, `... sample ROW` those in three dimensions that begin so.
+fails counts as not covered. `python -m validation sample` computes the rows of the section, `... sample --reference` those in
+three dimensions.
 """
 
 
-def run(parts=()):
-    """Compute the rows that are missing and write the page; ``all``: the section anew; else rows in 3-D by beginnings."""
-    rows = [] if "all" in parts else rows_on_file()
+def reference():
+    """Compute the rows in three dimensions, each of which takes minutes."""
+    sample_three.rows(again=True)
+
+
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
+    if again:
+        kept_rows.begin(TABLE)
+    rows = rows_on_file()
     seed = max((int(r["seed"]) for r in rows), default=FIRST - 1) + 1
     while len(rows) < COUNT:
         found = row(seed)
@@ -91,7 +98,7 @@ def run(parts=()):
             writer.writerows(rows)
             with written(TABLE) as name:
                 Path(name).write_text(text.getvalue(), encoding="utf-8")
-    solid = sample_three.rows([part for part in parts if part != "all"])  # by their names alone: each takes minutes
+    solid = sample_three.rows()
     page.write(
         "sample",
         answer(rows, solid),
@@ -149,3 +156,14 @@ def _line(rows, name, text):
 
 def _count(rows, name):
     return f"{sum(r[name] == 'True' for r in rows)} of {len(rows)}"
+
+
+def cheap():
+    """Rows that `validation.check` computes again: differences and estimates over k."""
+    for one in rows_on_file():
+        if float(one["cpu_s"]) < 3.0:
+            yield one["seed"], _over_k(one), lambda seed=int(one["seed"]): _over_k(row(seed))
+
+
+def _over_k(row):
+    return [1 + float(row[name]) / 100 for name in FIELDS[5:10]]

@@ -42,8 +42,8 @@ TEXT = f"""
 Each pair is solved by the energy model (`ritz3d`, its defaults) and by hexahedra of both whole gears (`fe3d`,
 resolution {KINDS["narrow"][4]:g}, of the wide {KINDS["wide"][4]:g}), both with `error=True`, at {PHASES} random phases, and by a
 finer energy model: order {FINE["order"]} instead of 3, {FINE["refine"]:g} times the resolution, {FURTHER} axial degrees more,
-half the cell length. The three are of one code in each row of `tables/{TABLE}.jsonl`, which `python -m validation sample ROW`
-computes anew in one to four minutes. Kinds: external pairs of b/m 2 to 6 (narrow), of b/m 10 to 20 (wide), rings,
+half the cell length. The three are of one code in each row of `tables/{TABLE}.jsonl`, each of one to seven minutes.
+Kinds: external pairs of b/m 2 to 6 (narrow), of b/m 10 to 20 (wide), rings,
 cracks of 20 to 60 % (over the whole width or 30 to 70 % of it, on pinion, wheel or ring); 12 to 34 teeth, modules 1, 2, 4, six
 of ten helical (5 to 28 degrees). Of ten pairs of each kind that were solved once, those that an earlier version's estimates
 missed are kept ({", ".join(f"{kind} {seed}" for kind, seed in MISSED)}) and, of the others, the first two or three seeds:
@@ -160,8 +160,8 @@ def judged(found):
     return {name: gap <= said for name, gap, said in zip(ASKED, away, (own[0] + own[1], *own), strict=True)}
 
 
-def rows(again=()):
-    """All rows; those that are missing, or begin with one of `again`, are computed."""
+def rows(again=False):
+    """All rows; `again`: compute them again."""
     every = [(kind, seed) for kind in KINDS for seed in seeds(kind)]
     return [kept(TABLE, f"{kind} {seed}", lambda kind=kind, seed=seed: row(kind, seed), again) for kind, seed in every]
 

@@ -13,7 +13,7 @@ from gearfe.planetary_sets.standing import standing, tooth_angles
 
 from ..shared import page
 from ..shared.decks import calculix
-from ..shared.kept_rows import check, kept, stored
+from ..shared.kept_rows import kept, stored
 from ..shared.places import PAGES
 from . import sets_dynamics
 
@@ -86,8 +86,8 @@ rigid. Where a mesh carries much less than others, its k says little about its t
 loads of the others move its gears.
 """
 HOW = """
-`python -m validation sets` makes this page; runs of CalculiX are kept in `tables/sets_calculix.jsonl`, the machines in
-`tables/sets_machines.jsonl`, and `python -m validation sets NAME` makes those anew whose names begin with NAME.
+`python -m validation sets` makes this page and computes the machines of `tables/sets_machines.jsonl`; `... sets --reference` has
+CalculiX compute `tables/sets_calculix.jsonl`.
 """
 
 
@@ -230,12 +230,15 @@ def cost():
     ]
 
 
-def run(parts=()):
-    """Make the page; rows of CalculiX whose names begin with one of `parts` anew."""
-    check(parts, TABLE, sets_dynamics.TABLE)
-    sets_dynamics.compute(page.anew(parts))
+def reference():
+    """Compute the runs of CalculiX."""
     for name, first in STANDS.items():
-        kept(TABLE, name, lambda first=first: outside(first), page.anew(parts))
+        kept(TABLE, name, lambda first=first: outside(first), again=True)
+
+
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
+    sets_dynamics.compute(again)
     shown = small(STANDS["between two"]).with_(gears=_thin(), errors=None)
     gf.plot_planetary_set(gf.planetary_stiffness(shown, [AT]), 0, PICTURE)
     lines, least, most = table()
@@ -267,3 +270,9 @@ def run(parts=()):
 def _thin():
     made = small(0.0).gears
     return gf.PlanetarySet(made.sun, made.planet, gf.Gear(z=84, r_rim=91.0, x=-0.4617, addendum=0.85, tip_radius=0.3, **RACK), 3)
+
+
+def cheap():
+    """Rows that `validation.check` computes again: k of the sets of machines and of their isolated pairs."""
+    for name in sets_dynamics.NAMES:
+        yield name, stored(sets_dynamics.TABLE)[name]["k"], lambda name=name: sets_dynamics.means(sets_dynamics.curves(name))

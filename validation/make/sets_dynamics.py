@@ -121,7 +121,7 @@ def both(name):
     }
     home, maker = homes[name]
     old = getattr(home, maker)
-    out = {"k": {"alone": found.k_alone.mean(axis=(1, 2)).tolist(), "set": found.k.mean(axis=(1, 2)).tolist()}}
+    out = {"k": means(found)}
     out[ALONE] = heard(name)
     made = {}
 
@@ -134,6 +134,11 @@ def both(name):
         out[TOGETHER] = heard(name)
     forget()
     return out
+
+
+def means(found):
+    """Mean stiffness of both kinds of mesh [N/m], of isolated pairs and in the set."""
+    return {"alone": found.k_alone.mean(axis=(1, 2)).tolist(), "set": found.k.mean(axis=(1, 2)).tolist()}
 
 
 def forget():

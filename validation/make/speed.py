@@ -11,7 +11,6 @@ import gearfe as gf
 
 from ..shared import machine, page, speed_page
 from ..shared.places import TABLES
-from ..shared.state import replace
 from . import cost_three, dynamics, limits, speed_three
 
 TABLE = TABLES / "speed.json"
@@ -31,8 +30,8 @@ def median_seconds(work, repeats=5):
     return float(np.median(seconds)), result
 
 
-def run():
-    """Measure everything, then write the table, the picture and the page."""
+def measure():
+    """Measure everything and write the table and the picture."""
     with tempfile.TemporaryDirectory() as folder:
         os.environ["GEARFE_CACHE"] = folder
         found = {"machine": machine.describe(), "three": {"rows": speed_three.rows()}}  # a child's peak counts its parent's
@@ -43,8 +42,14 @@ def run():
             "steps": dynamics.speeds(),
             "limits": limits.measured(),
         }
-    replace(TABLE, json.dumps(found, indent=1) + "\n")
+    page.replace(TABLE, json.dumps(found, indent=1) + "\n")
     speed_page.plot(found)
+
+
+def run(again=True):
+    """Write the page; `again`: measure again."""
+    if again:
+        measure()
     page.write("speed", *text())
 
 

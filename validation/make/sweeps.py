@@ -10,7 +10,7 @@ import numpy as np
 import gearfe as gf
 
 from ..shared import machine, page, sweep_trials, sweeps_page
-from ..shared.kept_rows import check, kept
+from ..shared.kept_rows import kept
 from . import surrogate, threads
 
 GRID = sweep_trials.BASE | {  # 2000 cases
@@ -35,7 +35,7 @@ def new_cracks():
         alone = []
         for level in levels:
             begun = time.process_time()
-            run = pair.case() | {"damage": {"pinion": [gf.Crack(level=float(level))]}, "span": "tooth"}
+            run = pair.case().as_dict() | {"damage": {"pinion": [gf.Crack(level=float(level))]}, "span": "tooth"}
             gf.mesh_stiffness(**run, method="ritz", phases=32)
             alone.append(time.process_time() - begun)
     return {
@@ -65,8 +65,8 @@ PARTS = {
     "stand-ins": (surrogate.fitted, surrogate.told),
 }
 HOW = """
-`python -m validation sweeps` makes this page from `tables/sweeps.jsonl`; `... sweeps PART ...` computes parts whose names
-begin so anew, `... sweeps all` every one ({parts}). The full disk needs leave to mount, the cluster needs dask. Seconds are of
+`python -m validation sweeps` makes this page from `tables/sweeps.jsonl` and computes them ({parts}).
+The full disk needs leave to mount, the cluster needs dask. Seconds are of
 the machine named beside them.
 """
 
@@ -85,10 +85,8 @@ def answer(found):
     )
 
 
-def run(parts=()):
-    """Write the page; `parts`: beginnings of the parts that are computed anew, or ``all``."""
-    again = page.anew(parts)
-    check(again, "sweeps")
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
     found = {}
     for name, (make, _) in PARTS.items():
         found[name] = kept("sweeps", name, lambda make=make: make() | {"machine": machine.describe()}, again)

@@ -1,12 +1,12 @@
 """The page `three`: `ritz3d` beside CalculiX, and beside hexahedra of both whole gears."""
 
-from ..shared import decks, outlines_three, outsider, page
+from ..shared import outsider, page
+from ..shared.kept_rows import stored
 from . import outsider_three, pairs_three
 
 HOW = """
-`python -m validation three` makes this page from `tables/outsider_three*` and `tables/pairs_three*`; `... three all` computes
-gearfe's `ritz3d` anew; `... three --reference` computes the runs of CalculiX (`ccx`) and of the hexahedra that are not on file;
-`... three decks` writes the decks of all runs, which tells those that a change of gearfe made old.
+`python -m validation three` makes this page from `tables/outsider_three*` and `tables/pairs_three*` and
+computes gearfe's `ritz3d`; `... three --reference` computes the runs of CalculiX (`ccx`) and of the hexahedra.
 """
 
 
@@ -20,25 +20,29 @@ def answer():
     )
 
 
-def text(again=()):
+def text(again=False):
     """The page."""
     pairs = pairs_three.section(again)
     return answer(), HOW.strip().splitlines(), outsider_three.section(), pairs
 
 
 def reference():
-    """Compute the runs that are not on file."""
+    """Compute the runs."""
     outsider.reference()
     pairs_three.reference()
 
 
-def run(parts=()):
-    """Write the page; `parts`: beginnings of the rows of `ritz3d` that are computed anew, or ``all``; or write ``decks``."""
-    if "decks" in parts:
-        from . import flanks  # here, so that no row of this page depends on it
-
-        decks.write(outsider.write_decks, outlines_three.write_decks, flanks.write_decks)
-        return
-    again = page.anew(parts)
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
     outsider.refresh(again)
     page.write("three", *text(again))
+
+
+def cheap():
+    """Rows that `validation.check` computes again: `ritz3d` of all cases."""
+    for name, row in stored(outsider.OURS).items():
+        yield name, row, lambda name=name: outsider.ritz3d_row(name)
+    for name, (_, pair) in pairs_three.pairs().items():
+        for case in pairs_three.CASES:
+            row = stored(pairs_three.OURS)[f"{name}, {case}"]
+            yield row["row"], row["k"], lambda pair=pair, case=case: pairs_three.model_curve(pair, case)[0].tolist()

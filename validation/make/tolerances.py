@@ -72,7 +72,7 @@ def scattered():
     return out
 
 
-def section(again=()):
+def section(again=False):
     """Lines of the page."""
     found = kept("detection", "tolerances", scattered, again)
     states = found["states"]

@@ -17,8 +17,7 @@ from gearfe.core.units import in_newton_per_um
 from gearfe.flexibility.finite_elements.elasticity import Body
 
 from ..shared import page, reference
-from ..shared.places import PAGES, TABLES
-from ..shared.state import replace
+from ..shared.places import TABLES
 
 CSV = TABLES / "truth.csv"
 CONTACT = TABLES / "calculix.csv"
@@ -233,7 +232,7 @@ def text():
     )
     how = [
         "`python -m validation truth` computes gearfe's side of [tables/truth.csv](tables/truth.csv) and",
-        "[tables/calculix.csv](tables/calculix.csv) anew, CalculiX's where it is installed; the values of others are in",
+        "[tables/calculix.csv](tables/calculix.csv), CalculiX's where it is installed; the values of others are in",
         "`validation/sources/reference.toml`. Shared with others: the shapes of gears as they describe them; with CalculiX:",
         "the meshes, which gearfe writes.",
     ]
@@ -304,8 +303,8 @@ def _contact_text():
     return lines
 
 
-def run():
-    """Compute all rows, CalculiX's if it is installed, and write tables and page."""
+def compute():
+    """Compute all rows, CalculiX's if it is installed, and write the tables."""
     tables, rows = reference.load(), []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
@@ -324,5 +323,20 @@ def run():
         rows += [row for row in read() if row.table == "calculix_linear"]
         print("  CalculiX (ccx) is not installed: its committed rows are kept")
     _write(CSV, Row._fields, rows)
-    replace(PAGES / "truth.md", text())
-    print("wrote truth.md")
+
+
+def run(again=True):
+    """Write the page; `again`: compute its rows again."""
+    if again:
+        compute()
+    page.put("truth", text())
+
+
+def cheap():
+    """Rows that `validation.check` computes again."""
+    tables, known = reference.load(), {row[:2]: row for row in read()}
+    for row in quick_rows(tables):
+        yield f"{row.table}, {row.case}", known[row[:2]].ours, lambda row=row: row.ours
+    phase, ours, _ = read_contact()
+    pair, steel = contact_pair()
+    yield "pair pressed by CalculiX", ours, lambda: gf.mesh_stiffness(pair, LINE_LOAD * pair.gear_1.b, steel, phases=phase).k

@@ -11,7 +11,7 @@ SITE = ROOT / "gearfe" / "docs"
 RECORD = ROOT / "tests" / "docs" / "printed"
 
 
-def run():
+def run(again=True):
     """Run every script in an empty folder and write what it prints."""
     own = {"PYTHONPATH": str(ROOT), "MPLBACKEND": "Agg", "OMP_NUM_THREADS": "1"}
     for script in sorted(SITE.glob("tutorials/*.py")) + sorted(SITE.glob("gallery/*.py")):

@@ -58,21 +58,27 @@ def load():
 
 def compute(methods=QUICK):
     """Compute the rows that are not in the table; each is kept at once."""
-    known, scene = stored(), gf.load_scene(SCENE)
+    known = stored()
     for name, pair, case in [(name, *row) for name in methods for row in rows()]:
-        if (name, pair, case) in known:
-            continue
-        started, (method, variants) = time.process_time(), METHODS[name]
-        chosen = scene.pairs[pair]
-        phase = chosen.pair.pitch_phase + overlap(chosen.pair, chosen.face, chosen.groove) / 2 + np.array(OFFSETS)
-        loads = (chosen.force, LESS * chosen.force)
-        known, needed, _ = fitted(method, replace(chosen.case(None if case == "healthy" else case), force=loads))
-        refine = REFINE[pair] if method == "fe3d" else 1.0
-        how = gf.Solve(method, phase, variants=(needed or {}) | (variants or {}), refine=refine)
-        k, less = (one.k / 1e6 for one in gf.solve(known, how))
-        power = float((np.log(LESS) / np.log(LESS * k / less)).mean())
-        keep(path(name), HEADER, [name, pair, case, *(f"{v:.6g}" for v in (*k, power)), f"{time.process_time() - started:.2f}"])
-        print(f"{name} {pair} {case}: {time.process_time() - started:.1f} s", flush=True)
+        if (name, pair, case) not in known:
+            started = time.process_time()
+            k, power = solved(name, pair, case)
+            spent = time.process_time() - started
+            keep(path(name), HEADER, [name, pair, case, *(f"{v:.6g}" for v in (*k, power)), f"{spent:.2f}"])
+            print(f"{name} {pair} {case}: {spent:.1f} s", flush=True)
+
+
+def solved(name, pair, case):
+    """Stiffness ``(offsets,)`` [N/um] of one of `METHODS`, and its exponent: k is proportional to ``F**(1 - 1 / exponent)``."""
+    method, variants = METHODS[name]
+    chosen = gf.load_scene(SCENE).pairs[pair]
+    phase = chosen.pair.pitch_phase + overlap(chosen.pair, chosen.face, chosen.groove) / 2 + np.array(OFFSETS)
+    loads = (chosen.force, LESS * chosen.force)
+    known, needed, _ = fitted(method, replace(chosen.case(None if case == "healthy" else case), force=loads))
+    refine = REFINE[pair] if method == "fe3d" else 1.0
+    how = gf.Solve(method, phase, variants=(needed or {}) | (variants or {}), refine=refine)
+    k, less = (one.k / 1e6 for one in gf.solve(known, how))
+    return k, float((np.log(LESS) / np.log(LESS * k / less)).mean())
 
 
 def ours(method, found=None):

@@ -56,7 +56,7 @@ where it says that in case 4 'the contact loss dominates' and that sun and plane
 cracked-only stiffness' ([below](#what-s4-concludes-from-its-stiffness)), and where case 4 'is computed with two rows of pits': here its pits
 lie in one row, 14 in each half; in two rows of seven {two}.
 
-Finite elements of these ten rows: `python -m validation herringbone fe3d`, {seconds:.0f} s of one processor.
+Finite elements of these ten rows: `python -m validation herringbone --reference`, {seconds:.0f} s of one processor.
 
 {verdicts}
 

@@ -105,7 +105,7 @@ def default_published():
     """`published` of the scene as it is [N/m], computed now, by (pair, case, foundation of the ring)."""
     scene, out = gf.load_scene(SCENE), {}
     for pair, case in herringbone_scan.rows():
-        run = scene.pairs[pair].case(case) | {"phases": damage_cycle(scene.pairs[pair]), "method": "published"}
+        run = scene.pairs[pair].case(case).as_dict() | {"phases": damage_cycle(scene.pairs[pair]), "method": "published"}
         for kind in READINGS:
             found = gf.mesh_stiffness(**run, variants={"foundation": kind})
             out[pair, case or "healthy", kind] = float(found.k.mean())

@@ -1,75 +1,66 @@
-"""Rows of a page that are computed once: one JSON object a line in `pages/tables`, so that a stop loses one row at most."""
+"""Rows of a page that take long: one JSON object a line in `pages/tables`, so that a stop loses one row at most.
+
+Each row has the digest of the sources that computed it. A page that is computed again keeps the rows of the present sources.
+"""
 
 import json
-from collections.abc import Mapping
+import resource
 
-from . import state
-from .places import TABLES
+from gearfe.core.files import written
+
+from .places import TABLES, digest
+
+BY, TIME = "made_by", "cpu_s"
+before = []  # CPU seconds of rows that an earlier run of the same sources computed
 
 
-class Row(Mapping):
-    """A row on file: once it is looked into, what made it counts as called by this process. Not a dict, which C reads unseen."""
-
-    def __init__(self, table, row):
-        self._table, self._row = table, row
-
-    def _read(self):
-        state.bring(self._table, self._row["row"])
-        return self._row
-
-    def __getitem__(self, name):
-        return self._read()[name]
-
-    def __iter__(self):
-        return iter(self._read())
-
-    def __len__(self):
-        return len(self._read())
-
-    def __or__(self, other):
-        return self._read() | dict(other)
-
-    def __ror__(self, other):
-        return other | self._read()
+def cpu():
+    """CPU seconds of this process and of those it waited for."""
+    return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
 
 
 def stored(name):
-    """All rows on file, each a `Row`, by their keys."""
-    return {key: Row(name, row) for key, row in _on_file(name).items()}
-
-
-def _on_file(name):
+    """All rows on file by their keys."""
     file = TABLES / f"{name}.jsonl"
     lines = file.read_text(encoding="utf-8").splitlines() if file.is_file() else []
     return {row["row"]: row for row in map(json.loads, lines)}
 
 
-def check(parts, *names):
-    """Raise ValueError if a beginning of `parts` is that of no row of the tables `names`; with what rows there are."""
-    known = [key for name in names for key in _on_file(name)]
-    lost = [part for part in parts if part and not any(key.startswith(part) for key in known)]
-    if known and lost:
-        raise ValueError(f"no row begins with {', '.join(lost)}; there are: {'; '.join(known)}")
+def begin(table):
+    """Empty a table, unless the present sources began it in a run that was stopped: a mark beside it has their digest."""
+    mark = table.with_name(f".{table.name}.made_by")
+    if not mark.is_file() or mark.read_text(encoding="utf-8") != digest():
+        table.unlink(missing_ok=True)
+        mark.write_text(digest(), encoding="utf-8")
 
 
-def forget(name, parts):
-    """Take rows whose keys begin with one of `parts` out of a table, so that they are missing."""
-    left = [row for key, row in _on_file(name).items() if not key.startswith(tuple(parts))]
-    state.replace(TABLES / f"{name}.jsonl", "".join(f"{json.dumps(row)}\n" for row in left))
+def kept(name, key, make, again=False):
+    """Row `key` of table `name`: the one on file, or the dict ``make()``, which is then put on file.
 
+    Parameters
+    ----------
+    name : str
+        Stem of the table.
+    key : str
+        Name of the row.
+    make : callable
+        Computes the row.
+    again : bool
+        Compute rows of other sources again.
 
-def kept(name, key, make, again=()):
-    """Row `key` of table `name`: the one on file, or ``make()``, a dict, which is then put on file.
-
-    `again`: beginnings of the keys of rows that are made anew.
+    Returns
+    -------
+    dict
     """
-    known, started = _on_file(name), state.cpu()
-    state.run.tables.add(name)
-    if key in known and not any(key.startswith(part) for part in again):
-        return Row(name, known[key])
-    known[key] = {"row": key} | make()
+    known, started = stored(name), cpu()
+    if key in known and not again:
+        return known[key]
+    if key in known and known[key].get(BY) == digest():
+        before.append(known[key][TIME])
+        return known[key]
+    known[key] = {"row": key} | make() | {BY: digest(), TIME: round(cpu() - started, 1)}
     TABLES.mkdir(exist_ok=True)
-    state.replace(TABLES / f"{name}.jsonl", "".join(f"{json.dumps(row)}\n" for row in known.values()))
-    state.kept(name, key, state.cpu() - started, **{word: known[key][word] for word in ("deck",) if word in known[key]})
+    with written(TABLES / f"{name}.jsonl") as file, open(file, "w", encoding="utf-8") as out:
+        out.writelines(f"{json.dumps(row)}\n" for row in known.values())
     print(f"{name}: {key}", flush=True)
     return known[key]

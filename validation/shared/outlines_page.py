@@ -28,8 +28,8 @@ stiff, which is not understood; their estimates of 0.7 to 1.0 % know it. The fle
 pointed tooth: with `refine=2` it is 0.09 % off. Away from corners the largest differences are of heavy loads: 14/13 (26/48,
 200 N/mm at a module of 1 mm) -0.20 % with `ritz`, -0.08 % at a tenth of the load.
 
-`python -m validation outlines` makes this page; `... outlines arbiter` computes the gaps and presses the cases that are not on
-file, with `geometry` alone; `... outlines --reference` has CalculiX press the pairs in three dimensions that are not.
+`python -m validation outlines` makes this page; `... outlines --reference` computes the gaps and presses the cases, with the
+geometry alone, and has CalculiX press the pairs in three dimensions.
 
 """
 
@@ -41,8 +41,8 @@ once, after the last change above. Differences in per cent.
 """
 
 
-def write(again=()):
-    """Write the page; `again`: beginnings of the rows in three dimensions whose `ritz3d` is computed anew."""
+def write(again=False):
+    """Write the page; `again`: compute the rows of `ritz3d` again."""
     outlines_three.refresh(again)
     parts, answers = [INTRODUCTION, unloaded_table.section()], []
     for method in METHODS:

@@ -2,7 +2,7 @@
 
 It shares outlines, meshes and the pose without load with the arbiter, but neither its contact nor its elastic solution: faces in
 contact are found by CalculiX from the moved nodes, with its own normals. Small strains, as everywhere else here. `reference`
-computes what `tables/outlines_plane.csv` lacks if `ccx` is there, a run at a time.
+computes `tables/outlines_plane.csv` if `ccx` is there, a run at a time.
 """
 
 import shutil
@@ -22,6 +22,7 @@ from .arbiter.pressing import FIRST, Contact, _bodies, _Phase
 from .arbiter.side import Side
 from .arbiter.touching import Press
 from .decks import calculix
+from .kept_rows import begin
 from .places import TABLES
 from .table_rows import rows_of, write_table
 
@@ -140,10 +141,11 @@ def row_of(seed, phase, part, refine, penalty):
 
 
 def reference():
-    """Compute the runs that the table lacks, each kept at once; without CalculiX say so."""
+    """Compute all runs, each kept at once; without CalculiX say so."""
     if not shutil.which("ccx"):
         print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
         return
+    begin(TABLE)
     for case, run in RUNS:
         known = rows_of(TABLE)
         if not any(_key(row) == (*case, *run) for row in known):

@@ -103,26 +103,17 @@ def stored():
     ]
 
 
-def write_decks(folder):
-    """Write the decks of the rows on file in a folder, one after the other: jobs of their rows and paths."""
-    known = kept_rows.stored(TABLE)
-    for name, mesh, key in wanted():
-        if key in known:
-            deck_of(folder, name, mesh, known[key]["approach"])
-            yield f"outlines --reference {key}", folder / "pair.inp"
-
-
 def reference():
-    """Compute the runs that the table lacks, each kept at once; without CalculiX say so."""
+    """Compute all runs; without CalculiX say so."""
     if not shutil.which("ccx"):
         print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
         return
     for name, mesh, key in wanted():
-        kept_rows.kept(TABLE, key, lambda name=name, mesh=mesh: row_of(name, mesh))
+        kept_rows.kept(TABLE, key, lambda name=name, mesh=mesh: row_of(name, mesh), again=True)
 
 
-def refresh(again=()):
-    """Compute what `ritz3d` finds in the cases that are not on file, or begin with one of `again`."""
+def refresh(again=False):
+    """Compute what `ritz3d` finds in the cases ; `again`: compute it again."""
     for name in cases():
         kept_rows.kept(OURS, name, lambda name=name: ours_row(name), again)
 

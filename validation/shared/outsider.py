@@ -1,7 +1,7 @@
 """CalculiX on whole gears, under line loads and in contact, beside `ritz3d`: the cases, and every run kept in a table.
 
-A run depends on its deck alone, which `validation.shared.decks` knows by its digest: gears in contact are turned by the approach
-that `ritz3d` had when the run was made, which the row keeps, so that a change of `ritz3d` alone asks for no other deck.
+A run depends on its deck alone, whose digest is in its row: gears in contact are turned by the approach that `ritz3d` had when
+the run was made, which the row keeps, so that a change of `ritz3d` alone asks for no other deck.
 """
 
 import math
@@ -229,32 +229,20 @@ def stored():
     return out
 
 
-def refresh(again=()):
-    """Compute what `ritz3d` finds in the cases that are not on file, or begin with one of `again`."""
+def refresh(again=False):
+    """Compute what `ritz3d` finds in the cases; `again`: compute it again."""
     for name in (*cases(), *lines()):
         kept_rows.kept(OURS, name, lambda name=name: ritz3d_row(name), again)
 
 
 def reference():
-    """Compute the runs that the table lacks, each kept at once; without CalculiX say so and compute nothing."""
+    """Compute all runs; without CalculiX say so and compute nothing."""
     if not shutil.which("ccx"):
         print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
         return
     for name, mesh in wanted():
         work = line_row if name in lines() else contact_row
-        kept_rows.kept(TABLE, key_of(name, mesh), lambda work=work, name=name, mesh=mesh: work(name, mesh))
-
-
-def write_decks(folder):
-    """Write the decks of the rows on file in a folder, one after the other: keys of their rows and paths."""
-    known = kept_rows.stored(TABLE)
-    for name, mesh in wanted():
-        if row := known.get(key_of(name, mesh)):
-            if name in lines():
-                line_deck(folder, name, mesh)
-            else:
-                contact_deck(folder, name, mesh, row["approach"])
-            yield f"three --reference {row['row']}", folder / ("gear.inp" if name in lines() else "pair.inp")
+        kept_rows.kept(TABLE, key_of(name, mesh), lambda work=work, name=name, mesh=mesh: work(name, mesh), again=True)
 
 
 def apart(row):

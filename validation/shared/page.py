@@ -1,11 +1,18 @@
-"""A page: the question of a reader as its title, the answer in a sentence, then sections of Markdown."""
+"""A page: the question of a reader as its title, the answer in a sentence, then sections of Markdown.
+
+Its last line, the foot, states the version, the date and the digest of the sources that computed it.
+"""
 
 import re
 import textwrap
+import tomllib
+from datetime import date
 from itertools import groupby
+from pathlib import Path
 
-from .places import PAGES
-from .state import replace
+from gearfe.core.files import written
+
+from .places import PAGES, ROOT, digest
 
 WRAP = {"break_long_words": False, "break_on_hyphens": False}
 
@@ -26,11 +33,17 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "dynamics": "Are simulated vibrations integrated correctly?",
     "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
     "printed": "What became of every number that the articles print?",
-    "machines": "Which printed numbers of four machines are reproduced?",
     "joint": "Which statements of the articles hold whatever the inputs that they do not print?",
     "measured": "Does gearfe find what others measured?",
     "rig": "Do resonances and jumps of a single pair on a test rig come out?",
     "pictures": "What do the damaged teeth of the scenes look like under load?",
+}
+
+MACHINES = {
+    "planetary_pitting": "Which printed numbers of articles S0 and S1 are reproduced?",
+    "compound_planetary": "Which printed numbers of article S2 are reproduced?",
+    "helical_pitting": "Which printed numbers of article S3 are reproduced?",
+    "herringbone_machine": "Which printed numbers of article S4 are reproduced?",
 }
 
 
@@ -51,10 +64,49 @@ def filled(lines):
 
 def write(name, *parts):
     """Write ``pages/NAME.md`` of the arguments of `text`."""
-    replace(PAGES / f"{name}.md", text(name, *parts))
+    put(name, text(name, *parts))
     print(f"wrote {name}.md")
 
 
-def anew(parts):
-    """Beginnings of rows to compute anew, as of `kept_rows.kept`, of the words of the command line: ``all`` is every row."""
-    return ("",) if "all" in parts else tuple(parts)
+def put(name, lines):
+    """Write a page of these lines, with the foot that it has."""
+    foot = read(name)[1]
+    replace(PAGES / f"{name}.md", lines + (f"\n{foot}\n" if foot else ""))
+
+
+def read(name):
+    """Markdown of a page, and its foot; empty if there is none."""
+    path = PAGES / f"{name}.md"
+    whole = path.read_text(encoding="utf-8") if path.is_file() else ""
+    head, _, last = whole.rstrip("\n").rpartition("\n\n")
+    return (f"{head}\n", last) if last.startswith("Computed ") else (whole, "")
+
+
+def sign(name, seconds, *, reference=False):
+    """State at the foot of a page what computed it now, or its independent values.
+
+    Parameters
+    ----------
+    name : str
+        The page; nothing happens if there is no such file.
+    seconds : float
+        CPU seconds.
+    reference : bool
+        Whether the independent values were computed.
+    """
+    lines, foot = read(name)
+    own, _, other = foot.partition(REFERENCES)
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    now = f"on {date.today()} in {seconds:.0f} CPU s by gearfe {version}, sources {digest()}."
+    own, other = (own, now) if reference else (f"Computed {now}", other)
+    if lines:
+        replace(PAGES / f"{name}.md", f"{lines}\n{own}{REFERENCES + other if other else ''}\n")
+
+
+REFERENCES = " Independent values computed "
+
+
+def replace(path, lines):
+    """Write a text file that is whole at every moment."""
+    with written(path) as name:
+        Path(name).write_text(lines, encoding="utf-8")

@@ -1,10 +1,20 @@
-"""Where generated pages and tables, independent values and the README lie."""
+"""Where generated pages and tables, independent values and the README lie, and which sources compute them."""
 
-import os
+import hashlib
+from functools import cache
 from pathlib import Path
 
+from gearfe.stiffness.cache import sources
+
 HOME = Path(__file__).parents[1]
-PAGES = Path(os.environ.get("GEARFE_PAGES") or HOME / "pages")  # `renew` lets a job write beside them until it has ended
+PAGES = HOME / "pages"
 TABLES = PAGES / "tables"
 SOURCES = HOME / "sources"
 ROOT = HOME.parent
+
+
+@cache
+def digest():
+    """Twelve hexadecimal digits of the sources of the library and of the validation."""
+    text = b"".join(path.read_bytes() for path in [*sources(), *sorted(HOME.rglob("*.py"))])
+    return hashlib.sha256(text).hexdigest()[:12]

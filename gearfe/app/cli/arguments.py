@@ -8,7 +8,17 @@ from ...stiffness.methods import NAMES, described, having
 from . import filling, sets, shell, signals, tools
 from . import verbs as run
 
-SIGNALS = (".csv", ".txt", ".mat", ".npz", ".h5", ".wav", ".uff", ".tdms", ".parquet")  # as of gearfe.core.files
+SIGNALS = (".csv", ".txt", ".mat", ".npz", ".h5", ".wav", ".uff", ".tdms", ".parquet", ".lvm")  # as of gearfe.core.files
+
+
+def _ratio(text):
+    """Ratio of speeds, ``0.305`` or ``29/95``."""
+    from fractions import Fraction
+
+    try:
+        return Fraction(text)
+    except (ValueError, ZeroDivisionError):
+        raise argparse.ArgumentTypeError(f"{text!r} is no ratio of speeds: give 29/95 or 0.305") from None
 
 
 def main(argv=None):
@@ -129,7 +139,8 @@ def main(argv=None):
     add("--teeth", type=int, metavar="Z", help="of a gear: FM0, FM4, NA4 and others from the mean of its turns")
     add("--shaft", type=float, metavar="HZ", help="turns of that gear in a second")
     add("--tacho", metavar="NAME", help="column with pulses of its shaft, or its speed in rpm, in place of --shaft")
-    add("--pulses", type=int, default=1, metavar="N", help="pulses of the tachometer in a turn (default: 1)")
+    add("--pulses", type=int, default=1, metavar="N", help="pulses per revolution of the tachometer's shaft (default: 1)")
+    add("--tacho-ratio", type=_ratio, default=1, metavar="R", help="speed of the gear's shaft over the tachometer's (29/95)")
     add("--level", type=float, metavar="X", help="height at which a pulse counts (default: half the highest)")
     _analysis_arguments(add)
     add("--cepstrum", metavar="FILE", help="draw the cepstrum of the last case: .png, .svg or .pdf")
@@ -174,6 +185,8 @@ def main(argv=None):
     add("--picture", metavar="FILE", help="draw a pair with its damage to scale: .png, .svg or .pdf")
     add("--pair", metavar="NAME", help="which pair is drawn (default: its first)")
     add("--case", metavar="NAME", help="which case of damage is drawn (default: the first of the pair)")
+    add = verb("schema", tools.schema, "print the JSON schema of scenes, by which an editor completes and checks their keys")
+    add("--page", action="store_true", help="instead a page of all keys of scenes, studies and data sets, as Markdown")
     add = verb("app", tools.app, "a page in the browser: turn a slider, see mesh, stiffness and transmission error at once")
     add("scene", metavar="SCENE", nargs="?", help="opened in it: a built-in scene or a .toml file (default: an example)")
     add("--pair", metavar="NAME", help="pair of the scene (default: its only one)")

@@ -6,6 +6,7 @@ import numpy as np
 
 from gearfe.core.files import written
 
+from ..kept_rows import begin
 from ..places import TABLES
 from .cases import LOADED, loaded_case
 from .pressing import pressed
@@ -73,7 +74,8 @@ def case_rows(row):
 
 
 def reference(rows=LOADED, table=TABLE):
-    """Press all of `rows` that are not on file (resumable: a stop loses one case at most)."""
+    """Press all of `rows` (resumable: a stop loses one case at most)."""
+    begin(table)
     for row in rows:
         known = rows_on_file(table)
         if any(old["seed"] == str(row[0]) for old in known):
