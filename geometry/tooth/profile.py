@@ -208,7 +208,7 @@ def root_curve(gear, arc):
 
 
 def _fillet_slope(gear):
-    """Rack tip angles [rad] and, falling from root to form point, angles [rad] of the fillet's tangent to the tooth centre-line."""
+    """Rack tip angles [rad], and angles of the fillet's tangent to the centre-line of the tooth [rad], falling from the root."""
     phi = np.linspace(math.pi / 2, form_point(gear)[0], 2001)
     x, y = cartesian(*fillet(gear, phi))
     return (phi[1:] + phi[:-1]) / 2, np.arctan2(-np.diff(x), gear.outward * np.diff(y))

@@ -76,8 +76,9 @@ def test_tips_of_rings_meet_those_of_pinions_on_both_sides_of_the_path():
 def test_a_ring_tip_after_the_path():
     """19/47, trimmed: 0.82 base pitches after the end the outlines are 0.84 um apart, not 12."""
     rack = {"m_n": 4.0, "alpha_n": math.radians(20), "b": 10.0}
-    with pytest.warns(UserWarning):
-        pair = gf.GearPair(gf.Gear(z=19, x=0.27, r_bore=15.0, **rack), gf.Gear(z=47, x=-0.29, r_rim=110.0, **rack))
+    ring = gf.Gear(z=47, x=-0.29, r_rim=110.0, tip_radius=0.3, **rack)
+    with pytest.warns(UserWarning, match="trimmed"):
+        pair = gf.GearPair(gf.Gear(z=19, x=0.27, r_bore=15.0, **rack), ring)
     phase = pair.eps_alpha + 0.82
     found = contacts(pair, [phase])
     column = int(np.flatnonzero(found.order == 0)[0])
