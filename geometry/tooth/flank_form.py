@@ -14,7 +14,7 @@ from .relief import relief_start
 from .tables import covering, each_tooth
 from .tip_edge import TipEdge
 
-LARGEST = 0.1  # most that may be removed [m_n]: the tooth's flexibility is that of the unmodified tooth
+LARGEST = 0.1  # most that may be removed [m_n]: the flexibility is that of the unmodified tooth and a beam's difference
 STEP = 1e-6  # roll length over which a slope is taken [m_n]
 
 
@@ -114,19 +114,28 @@ class FlankForm:
         Derivatives are those of the flank without the edge of its tip (for that see `bend`).
         The fillet goes on with what is removed at the form point.
         """
-        rolls, n = np.asarray(roll, dtype=float), derivative
-        at = np.maximum(rolls, self.low) if self.high > self.low else np.minimum(rolls, self.low)
-        out = self._shaped(at, n)
-        if self._scales.size:
-            factor = self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], at)
-            out = out * factor
-        if self._worn is not None:
-            out = out + self._wear(at, n)
+        n, at = derivative, self._above(roll)
+        out = self._lacking(at, n)
         if self.edge is not None and n == 0:
             out = out + self.edge.removed(at)
         if self.flank.eccentricity and self._tooth is not None:
             out = out + self._off_centre(at, n)
         return out
+
+    def thinned(self, roll: ArrayLike, tooth: int) -> NDArray[np.float64]:
+        """Material removed from a tooth at roll lengths [mm], which leaves it thinner; its edge, place and pitch left out."""
+        return self.of(np.array([tooth]))._lacking(self._above(roll)[None, :], 0)[0]
+
+    def _above(self, roll: ArrayLike) -> NDArray[np.float64]:
+        rolls = np.asarray(roll, dtype=float)
+        return np.maximum(rolls, self.low) if self.high > self.low else np.minimum(rolls, self.low)
+
+    def _lacking(self, at: NDArray, n: int) -> NDArray[np.float64]:
+        """What is removed by design and wear, or its derivative."""
+        out = self._shaped(at, n)
+        if self._scales.size:
+            out = out * (self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], at))
+        return out if self._worn is None else out + self._wear(at, n)
 
     def slope(self, roll: ArrayLike) -> NDArray[np.float64]:
         """How far the flank leans towards its gear's tip, the tip's edge included: what is removed by arc length [mm/mm].
