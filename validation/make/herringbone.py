@@ -62,7 +62,7 @@ def sensitivity(variation, pair):
     chosen = varied(gf.load_scene(SCENE).pair(pair), **VARIATIONS[variation])
     phase = damage_cycle(chosen)[EVERY // 2 :: EVERY]
     return [
-        [variation, pair, case or "healthy", *(case_curve(chosen.case(case), m, phase).mean for m in ("ritz3d", *SUMS))]
+        [variation, pair, case or "healthy", *(case_curve(chosen.case(case), gf.Solve(m, phase)).mean for m in ("ritz3d", *SUMS))]
         for name, case in printed_cases(gf.load_scene(SCENE))
         if name == pair
     ]
@@ -90,7 +90,8 @@ def reference():
             pair = scene.pairs[name]
             phase = damage_cycle(pair)
             # of the ring pair a coarser mesh cannot carry the patches, and a finer one does not fit into 24 GB
-            one = case_curve(pair.case(case), "fe3d", phase, error=name != "planet_ring", refine=REFINE[name], tell=_tell)
+            how = gf.Solve("fe3d", phase, error=name != "planet_ring", refine=REFINE[name], tell=_tell)
+            one = case_curve(pair.case(case), how)
             kept[name, case] = phase, one.k, one.tooth, one.estimate, one.seconds
             write_curves(scene, kept, Path(stored_file(scene)))
             print(f"  {one.seconds:.0f} s, mean {one.mean:.4e} N/m, estimate {100 * one.estimate:.2f} %", flush=True)
