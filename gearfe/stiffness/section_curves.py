@@ -13,13 +13,10 @@ from ..core.steps import part, steps
 from ..flexibility.energy.closed.plain_sum import plain_sum
 from ..geometry.pair.contacts import near_pitches
 from .curve import StiffnessCurve
-from .estimate import coarser, estimate, finer_hats, fixed_phases
+from .estimate import MODEL, coarser, estimate, finer_hats, fixed_phases
 from .own_flexibility import flexibility_of
 from .provenance import provenance
 from .supported import yielding
-
-# error of the section's contact against pressed whole outlines where no mesh is to blame, as a part of k, in nine of ten phases
-MODEL = 1e-3
 
 
 def sum_curves(row, case, how, phase):

@@ -141,11 +141,6 @@ def union_length(low, high):
     return np.maximum(high - np.maximum(low, before), 0.0).sum(axis=0)
 
 
-def lost_width(gear, hollows, arc):
-    """Width [mm] the hollows of one flank take away at profile arcs `arc` [mm]: length of the union of `intervals`."""
-    return union_length(*intervals(gear, hollows, arc))
-
-
 def in_circle(p, q, dp, dq, flat):
     """Where lines ``(p + t dp, q + t dq)`` are in the circle of radius 1: from t to t, equal where nowhere.
 
