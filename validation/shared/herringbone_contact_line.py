@@ -11,9 +11,8 @@ from gearfe.scene.verdicts import judge, text
 from gearfe.stiffness.methods import fitted
 
 from . import herringbone_layouts as layouts
-from .herringbone_scan_nodes import keep
 from .places import TABLES
-from .table_rows import rows_of
+from .table_rows import append, rows_of
 
 SCENE = "herringbone_contact_line"
 OFFSETS = (-0.25, -0.12, -0.09, -0.06, -0.03, 0.0, 0.03, 0.06, 0.09, 0.12, 0.25)  # base pitches from the pitch point
@@ -64,7 +63,7 @@ def compute(methods=QUICK):
             started = time.process_time()
             k, power = solved(name, pair, case)
             spent = time.process_time() - started
-            keep(path(name), HEADER, [name, pair, case, *(f"{v:.6g}" for v in (*k, power)), f"{spent:.2f}"])
+            append(path(name), HEADER, [name, pair, case, *(f"{v:.6g}" for v in (*k, power)), f"{spent:.2f}"])
             print(f"{name} {pair} {case}: {spent:.1f} s", flush=True)
 
 

@@ -9,6 +9,7 @@ pair's load over its approach.
 """
 
 import time
+from dataclasses import replace
 from functools import cache
 from itertools import product
 
@@ -22,12 +23,11 @@ from gearfe.flexibility.solved import SolvedGears
 from gearfe.geometry.damage.pit import pit_row
 from gearfe.geometry.pair.pit_lines import in_both_halves, pit_line
 
-from . import herringbone_scan_nodes as nodes
-from .herringbone_scan_nodes import PAIRS, SCENE
 from .places import TABLES
 from .solid_pair import solid_contact
-from .table_rows import rows_of
+from .table_rows import append, rows_of
 
+SCENE, PAIRS = "herringbone", ("sun_planet", "planet_ring")
 PATH = TABLES / "herringbone_layouts.csv"
 SIZE, SEED = 64, 31
 RANGES = {
@@ -49,7 +49,7 @@ LAYOUTS = {  # (along, touching or spread over 24 mm, rows in case 4, both halve
 }  # a column up the profile holds four pits of 1 mm at most, where S4 has 14
 CASES = {"case1": (0.1, 3), "case2": (0.3, 7), "case3": (0.6, 7), "case4": (0.3, 14)}  # printed: crack, pits
 OFFSETS = np.array([-0.25, -0.06, 0.0, 0.06, 0.25])  # base pitches
-COARSE = nodes.COARSE | {"axial": nodes.AXIAL[30.0]}
+COARSE = {"order": 2, "refine": 0.7, "step": 1.5, "axial": 8}  # of the energy model
 FORMULAS = {  # `published` at the bores of the layout that fits best: variants, levels over the printed ones, pits' radii [mm]
     "lost": ("hertz", "summed"),
     "root": ("prism", "base"),
@@ -93,6 +93,13 @@ def pits(pair, layout, count, radius):
     return out
 
 
+def changed(pair, bores, rim):
+    """The scene's pair with other bores of the external gears, parts of the root radius, and another rim of the ring."""
+    bores = iter(bores)
+    gears = (replace(g, r_rim=rim) if g.internal else replace(g, r_bore=g.r_f * next(bores)) for g in (pair.gear_1, pair.gear_2))
+    return gf.GearPair(*gears, pair.a)
+
+
 class Model:
     """`ritz3d` of the gears of a reading, whose bodies all layouts share."""
 
@@ -104,7 +111,7 @@ class Model:
         """The scene's pair, and the one with the bores and the rim of the reading."""
         chosen = gf.load_scene(SCENE).pairs[name]
         bores = [self.values[key] for key in (("sun", "planet") if name == "sun_planet" else ("planet",))]
-        return chosen, nodes.changed(chosen.pair, bores=bores, rim=self.values["rim"])
+        return chosen, changed(chosen.pair, bores, self.values["rim"])
 
     def middle(self, name):
         """Phase at which the middle of a half touches at the pitch point."""
@@ -166,7 +173,7 @@ def reductions(k):
 
 def keep(row):
     """Append a row to the table."""
-    nodes.keep(PATH, HEADER, [f"{v:.5g}" if isinstance(v, float) else v for v in row])
+    append(PATH, HEADER, [f"{v:.5g}" if isinstance(v, float) else v for v in row])
 
 
 def load():

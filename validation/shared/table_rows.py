@@ -51,6 +51,13 @@ def rows_of(table):
         return list(csv.DictReader(file))
 
 
+def append(table, header, row):
+    """Append a row to a CSV table, which begins with its header."""
+    lines = [row] if table.exists() else [header, row]
+    with table.open("a", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(lines)
+
+
 def write_table(rows, table, columns):
     """Write a CSV table."""
     with written(table) as name, open(name, "w", encoding="utf-8", newline="") as file:
