@@ -6,23 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.checks import whole
-from ..core.markdown import table_row
-from ..core.units import in_newton_per_um
+from ..core.table import Column, Table, stiffness_column
+from ..core.units import NEWTON_PER_UM, in_newton_per_um
 from ..planetary_sets.case import PlanetaryCase
 from ..planetary_sets.curves import SetCurves
 from ..planetary_sets.rim_supports import RimBed, RimSupports
 from ..planetary_sets.set_file import MESHES
 
-HEAD = (
+COLUMNS = (
     "mesh",
-    "planet",
-    "k mean [N/um]",
-    "least",
-    "largest",
-    "alone [N/um]",
-    "difference",
-    "load, least [N]",
-    "largest [N]",
+    Column("planet", form="{}"),
+    *(stiffness_column(name) for name in ("k mean", "least", "largest", "alone")),
+    Column("difference", "%", "{:+.1f}"),
+    *(Column(f"load, {name}", "N") for name in ("least", "largest")),
 )
 
 MOST = 10_000  # positions, and cycles that they are spread over
@@ -69,17 +65,15 @@ def set_headline(curves: SetCurves, healthy: SetCurves | None = None) -> str:
     return text if healthy is None else f"{text}; {_taken(curves, healthy)}"
 
 
-def set_table(curves: SetCurves) -> str:
-    """Markdown table of every mesh: its stiffness in the set and alone over the positions, and its load."""
-    rows = [table_row(HEAD), table_row("---" for _ in HEAD).replace(" ", "")]
+def set_table(curves: SetCurves) -> Table:
+    """`Table` of every mesh: its stiffness in the set and alone over the positions, and its load."""
+    rows = []
     for k, kind in enumerate(MESHES):
         for planet in range(curves.force.shape[2]):
             inside, alone, load = (one[k, :, planet] for one in (curves.k, curves.k_alone, curves.force))
-            numbers = _mean(inside), inside.min(), inside.max(), alone.mean()
-            change = f"{100 * (numbers[0] / numbers[3] - 1):+.1f} %"
-            told = [in_newton_per_um(value) for value in numbers]
-            rows.append(table_row([kind, str(planet), *told, change, f"{load.min():.5g}", f"{load.max():.5g}"]))
-    return "\n".join(rows)
+            numbers = [value / NEWTON_PER_UM for value in (_mean(inside), inside.min(), inside.max(), alone.mean())]
+            rows.append([kind, planet, *numbers, 100 * (numbers[0] / numbers[3] - 1), load.min(), load.max()])
+    return Table(COLUMNS, rows)
 
 
 def told_span(positions: NDArray[np.float64]) -> str:

@@ -7,15 +7,15 @@ from numbers import Real
 
 import numpy as np
 
-from ..core.markdown import table_row
 from ..core.steps import part, steps
+from ..core.table import Column, Table
 from ..dynamics.machine.of_scene import build_machine
 from ..dynamics.motion.reference import SOLVERS
 from ..dynamics.motion.simulate import simulate
 from ..dynamics.motion.step_control import default_step
 from ..dynamics.motion.thinned import REACH
 from ..signal.demodulation import Demodulated, demodulate
-from ..signal.indicator_table import indicator_table, table_text
+from ..signal.indicator_table import indicator_table, tabulate_indicators
 from ..signal.indicators import LOBES
 from ..signal.series import Signal
 from ..signal.spectra import spectrum
@@ -79,20 +79,21 @@ class Analysis:
         grown = RISE * self.amplitudes[healthy][name]
         return any(self.amplitudes[case][name] > max(least[case], grown) for case in others)
 
-    def lines_text(self):
-        """Amplitudes of the lines that stand out (see `standing`) as Markdown, and in a sentence those that do not."""
-        rows = [["line", "Hz", *self.spectra], ["---"] * (2 + len(self.spectra))]
+    def lines_table(self):
+        """`Table` of the amplitudes of the lines that stand out (see `standing`), by case."""
+        columns = ["line", Column("frequency", "Hz", "{:.2f}"), *(Column(case, self.unit, "{:.3g}") for case in self.spectra)]
+        sizes = self.amplitudes.values()
+        return Table(columns, [[in_words(n), self.lines[n], *(of_case[n] for of_case in sizes)] for n in self.standing()])
+
+    def hidden_lines(self):
+        """Sentence on the lines that do not stand out; empty if all do."""
         shown = self.standing()
-        for name in shown:
-            sizes = (f"{self.amplitudes[case][name]:.3g}" for case in self.spectra)
-            rows.append([in_words(name), f"{self.lines[name]:.2f}", *sizes])
         hidden = [f"{in_words(name)} ({value:.2f} Hz)" for name, value in self.lines.items() if name not in shown]
+        if not hidden:
+            return ""
         against = f" or {RISE:g} times the healthy one" if len(self.spectra) > 1 else ""
         least = f"{FLOOR:g} times the noise around it, {RANGE:g} of the record's rms{against}"
-        note = f"\n\nno more than {least}: {', '.join(hidden)}" if hidden else ""
-        if hidden and self.too_short:
-            note += f"\n\n{self.too_short}"
-        return "\n".join(map(table_row, rows)) + note
+        return "\n\n".join(filter(None, (f"no more than {least}: {', '.join(hidden)}", self.too_short)))
 
     def envelope(self):
         """`Demodulated` of the last case at the fault frequency, and in a sentence the lines that stand out of its envelope.
@@ -124,9 +125,9 @@ class Analysis:
         risen = {name: text for name in demodulated.lines if (text := _risen(demodulated, name, before.get(name)))}
         return demodulated, risen if len(risen) >= PULSES else {}, bool(before)
 
-    def indicators_text(self):
-        """Indicators as Markdown, increments against healthy in brackets."""
-        return table_text(self.indicators)
+    def indicators_table(self):
+        """`Table` of the indicators by case, with increments over healthy."""
+        return tabulate_indicators(self.indicators)
 
     def plot(self, path=None, title=""):
         """Spectra below each other under a `title` (default: the channel); returns the figure."""

@@ -272,7 +272,7 @@ class Format(NamedTuple):
 
 
 FORMATS = {
-    ".csv": Format(("curve", "response"), ("curve", "signal"), write_csv, read_text),
+    ".csv": Format(("curve", "response", "table"), ("curve", "signal"), write_csv, read_text),
     ".txt": Format((), ("signal",), None, read_text),
     ".npz": Format(("curve", "response", "surrogate"), ("signal", "surrogate"), write_npz, read_npz),
     ".mat": Format(("curve", "response"), ("signal",), write_mat, read_mat),
@@ -282,6 +282,7 @@ FORMATS = {
     **{suffix: Format(("picture",)) for suffix in (".svg", ".pdf", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".eps")},
     ".vtu": Format(("stress", "mesh")),
     ".msh": Format(("mesh",)),
+    **{suffix: Format(("table",)) for suffix in (".md", ".tex")},
     ".html": Format(("page",)),
     ".inp": Format(("deck", "mesh")),
 }

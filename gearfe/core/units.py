@@ -13,7 +13,11 @@ def in_newton_per_um(k: float, digits: int = 4) -> str:
     >>> in_newton_per_um(2.58123e8), in_newton_per_um(1.367541e9, 5), in_newton_per_um(3.0e6)
     ('258.1', '1367.5', '3.000')
     """
-    value = k / NEWTON_PER_UM
+    return significant(k / NEWTON_PER_UM, digits)
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """A number with so many significant digits, without an exponent where it can be read so."""
     if not math.isfinite(value) or not 1e-3 <= abs(value) < 1e7:
         return f"{value:.{digits}g}"
     return f"{value:.{max(0, digits - 1 - math.floor(math.log10(abs(value))))}f}"

@@ -10,6 +10,7 @@ from pathlib import Path
 from ..comparison.told_scene import told_details, told_load, told_supports
 from ..core.markdown import table_cells
 from ..core.steps import part
+from ..core.table import Column, Table
 from ..scene.load import Scene, scene_names
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import versions
@@ -59,14 +60,17 @@ def report(
     with part("stress pictures", 0.85, 1.0):
         drawing = time.perf_counter()
         pictures = _pictures(found)
-        sets = [one | {"table": _table(one["table"])} for one in set_section(found.sets)]
+        sets = set_section(found.sets)
         found.seconds["stress pictures"] = time.perf_counter() - drawing
     figures = _Figures()
+    cost = [*found.seconds.items(), ("all", time.perf_counter() - started)]
     return write(
         found=found, headline=found.headline, scene=found.scene, command=_command(found), case=found.case,
         pairs=_pairs(found, figures), pictures=pictures, sets=sets,
         tooth=_tooth(found, figures), vibration=_vibration(found, figures), methods=_methods(found),
-        versions=versions(), duration=duration, seconds=found.seconds, total=time.perf_counter() - started,
+        versions=versions(), duration=duration, total=cost[-1][1],
+        cost=Table(("part", Column("time", "s", "{:.1f}")), cost, "What it cost"),
+        libraries=Table(["library", "version"], list(versions().items()), "Versions"), assumed=_assumed(found.scene),
         turning=(resources.files("gearfe.reports") / "page.js").read_text(encoding="utf-8"),
     )  # fmt: skip
 
@@ -163,9 +167,9 @@ def _vibration(found, figures):
         return None
     return {
         "figure": figures(spectra_figure(found.vibration)),
-        "lines": _table(found.vibration.lines_text()),
-        "hidden": found.vibration.lines_text().partition("\n\n")[2],
-        "indicators": _table(found.vibration.indicators_text()),
+        "lines": found.vibration.lines_table(),
+        "hidden": found.vibration.hidden_lines(),
+        "indicators": found.vibration.indicators_table(),
         "stats": {case: one.stats for case, one in found.responses.items()},
         "machine": repr(next(iter(found.responses.values())).machine).strip("<>"),
     }
@@ -178,9 +182,19 @@ def _table(markdown):
 
 
 def _methods(found):
-    """Methods that were used, and what each is."""
+    """`Table` of the methods that were used, what each is, and its error."""
     used = dict.fromkeys(name for comparison in found.comparisons.values() for name in comparison.curves)
-    return {name: METHODS[name] for name in used if name in METHODS}
+    closed = "a closed form: no estimate of its own, its error is that of the table"
+    error = {False: closed, True: "can be refined to the limit"}
+    rows = [(row.name, row.about, error[row.converged] + "; estimated from coarser solves" * (row.converged and bool(row.error)))
+            for name in used if (row := METHODS.get(name))]  # fmt: skip
+    return Table(("method", "what it is", "its error"), rows, "methods")
+
+
+def _assumed(scene):
+    """`Table` of what a scene assumes."""
+    rows = [(one["what"], one["why"], one["depends"] or "not stated") for one in scene.assumptions]
+    return Table(("assumed", "why", "what depends on it"), rows, "assumptions")
 
 
 def _command(found):

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..core.table import Column, Table
 from ..runs.sweeps.effects import curve_bands, main_effects
 from ..runs.sweeps.runs import Runs, open_runs
 from .figures import BAND, blank, part_of_page, style
@@ -52,31 +53,31 @@ def sweep_report(runs: Runs | str | os.PathLike[str], path: str | os.PathLike[st
 
 
 def _varied(table, runs):
-    """Inputs with their values."""
-    rows = [["input", "distinct values", "from", "to"]]
+    """`Table` of the inputs with their values."""
+    rows = []
     for name in runs.inputs:
         column = table[name]
         plain = column.dtype.kind in "if"
-        ends = (f"{column.min():.6g}", f"{column.max():.6g}") if plain else (str(column.iloc[0]), str(column.iloc[-1]))
+        ends = (column.min(), column.max()) if plain else (str(column.iloc[0]), str(column.iloc[-1]))
         rows.append([name, column.nunique(), *ends])
-    return rows
+    whole, value = Column("distinct values", form="{}"), Column("", form="{:.6g}")
+    return Table(("input", whole, value._replace(name="from"), value._replace(name="to")), rows)
 
 
 def _numbers(table, runs):
-    """Percentiles of the outputs."""
-    rows = [["output", "unit", "least", "5 %", "middle", "95 %", "largest"]]
-    skipped = {*runs.inputs, "point", "draw", "seconds"}
+    """`Table` of the percentiles of the outputs."""
+    rows, skipped = [], {*runs.inputs, "point", "draw", "seconds"}
     for name, field in runs.fields.items():
         column = table[name].dropna() if name in table and field.kind == "number" and name not in skipped else ()
         if len(column):
-            rows.append([name, field.unit, *(f"{value:.5g}" for value in np.percentile(column, (0, 5, 50, 95, 100)))])
-    return rows
+            rows.append([name, field.unit, *np.percentile(column, (0, 5, 50, 95, 100))])
+    return Table(("output", "unit", "least", "5 %", "middle", "95 %", "largest"), rows)
 
 
 def _failed(table):
-    """Errors with their numbers of cases."""
+    """`Table` of the errors with their numbers of cases."""
     count = table.loc[table["status"] != "done", "error"].value_counts()
-    return [["cases", "error"], *([n, text] for text, n in count.head(20).items())]
+    return Table((Column("cases", form="{}"), "error"), [(n, text) for text, n in count.head(20).items()])
 
 
 def _effects(runs, output):

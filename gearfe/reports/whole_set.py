@@ -35,7 +35,7 @@ def find_set(scene: Scene, case: str | None) -> tuple[dict[str, SetCurves], list
 
 
 def set_section(found: dict[str, SetCurves]) -> list[dict[str, Any]]:
-    """What the page shows of each of these sets: a sentence, what it is, a table in Markdown, pictures as data of the page."""
+    """What the page shows of each of these sets: a sentence, what it is, a `Table`, pictures as data of the page."""
     out = []
     for name, curves in found.items():
         healthy = found.get("healthy") if name != "healthy" else None

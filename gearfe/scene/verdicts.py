@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from ..core.markdown import table_row
+from ..core.table import Table
 from ..core.units import NEWTON_PER_UM
 
 REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
@@ -130,11 +130,9 @@ def _words(rows):
     return ", ".join(f"{n} {word}" for word, n in many.items() if n)
 
 
-def text(references, rows):
-    """Rows as Markdown: one table for each quantity that has its own tolerance and source."""
-    lines = [f"{counts(rows)}.", ""]
-    lines += ["| quantity | case | kind | printed | gearfe | difference | verdict |", "|---|---|---|---|---|---|---|"]
-    notes = []
+def text(references, rows, beside=None):
+    """Rows as Markdown, with sources, tolerances and reasons below; `beside`: more words on verdicts of a model, by case."""
+    cells, notes = [], []
     for reference in references:
         mark = ""
         judged = [row for row in rows if row.id == reference.id]
@@ -149,9 +147,20 @@ def text(references, rows):
             if not math.isnan(row.corrected):
                 printed += f" (corrected {_shown(reference, row.corrected)})"
             verdict = f"**{row.verdict}**" if row.verdict in (NOT, NEVER) else row.verdict
-            cells = (name, case, row.kind, printed, _shown(reference, row.ours), _away(reference, row), verdict)
-            lines.append(table_row(cells))
-    return "\n".join([*lines, "", "Sources, tolerances, reasons:", "", *(f"{i}. {line}" for i, line in enumerate(notes, 1))])
+            verdict += (beside or {}).get(case, "") if row.kind == "model" else ""
+            cells.append((name, case, row.kind, printed, _shown(reference, row.ours), _away(reference, row), verdict))
+    table = Table(("quantity", "case", "kind", "printed", "gearfe", "difference", "verdict"), cells).markdown()
+    return "\n".join(
+        [
+            f"{counts(rows)}.",
+            "",
+            table,
+            "",
+            "Sources, tolerances, reasons:",
+            "",
+            *(f"{i}. {line}" for i, line in enumerate(notes, 1)),
+        ]
+    )
 
 
 def _told(reference, rows):

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import fft, ifft, rfft
 
-from ..core.markdown import table_row
+from ..core.table import Column, Table
 from .given import oscillation, samples
 from .orders import residual_signal, synchronous_average
 from .series import Signal
@@ -130,13 +130,10 @@ def gear_indicator_table(
     return out
 
 
-def gear_table_text(table: Mapping[str, Mapping[str, float]]) -> str:
-    """`gear_indicator_table` as Markdown: a row for each indicator, a column for each record."""
-    lines = [["indicator", *table], ["---"] * (len(table) + 1)]
-    lines += [
-        [name, *(f"{row[name]:.4g}" if math.isfinite(row[name]) else "-" for row in table.values())] for name in GEAR_SOURCES
-    ]
-    return "\n".join(map(table_row, lines))
+def tabulate_gear_indicators(found: Mapping[str, Mapping[str, float]]) -> Table:
+    """`Table` of `gear_indicator_table`: a row for each indicator, a column for each record."""
+    columns = ["indicator", *(Column(record, form="{:.4g}") for record in found)]
+    return Table(columns, [[name, *(row[name] for row in found.values())] for name in GEAR_SOURCES])
 
 
 def _turn(average: Any) -> NDArray[np.float64]:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ..core.markdown import table_row
+from ..core.table import Column, Table
 from .series import Signal
 
 LABELS = {  # in tables: words; rms may be larger than the peak, of a signal with a mean
@@ -76,21 +76,22 @@ def indicator_table(
     }
 
 
-def table_text(table):
-    """`indicator_table` as Markdown: a row for each indicator, a column for each case, increments over healthy in brackets.
+def tabulate_indicators(found: Mapping[str, Mapping[str, tuple[float, float]]]) -> Table:
+    """`Table` of `indicator_table`: a row for each indicator; of each case its value and, if it grew, its increment over healthy.
 
     A healthy value that is a millionth or less of the faulty one is printed as none.
     """
-    names = list(next(iter(table.values())))
-    grown = {case for case, row in table.items() if any(growth and not math.isnan(growth) for _, growth in row.values())}
-    lines = [["indicator", *table], ["---"] * (len(table) + 1)]
-    lines += [[LABELS.get(name, name), *(_cell(*row[name], case in grown) for case, row in table.items())] for name in names]
-    return "\n".join(map(table_row, lines))
+    columns, parts = [Column("indicator")], []
+    for case, row in found.items():
+        columns.append(Column(case, form="{:.4g}"))
+        grown = any(growth and not math.isnan(growth) for _, growth in row.values())
+        columns += [Column(f"{case}, change", "%", _growth)] * grown
+        parts.append((row, 1 + grown))
+    names = next(iter(found.values()))
+    return Table(columns, [[LABELS.get(name, name), *(x for row, n in parts for x in row[name][:n])] for name in names])
 
 
-def _cell(value, more, grown):
-    if not grown or math.isnan(more):
-        return f"{value:.4g}"
+def _growth(more):
     if abs(more) < TENFOLD:
-        return f"{value:.4g} ({more:+.1f} %)"
-    return f"{value:.4g} ({f'{1 + more / 100:.3g} x healthy' if abs(more) < GREAT else 'healthy: none'})"
+        return f"{more:+.1f} %"
+    return f"{1 + more / 100:.3g} x healthy" if abs(more) < GREAT else "healthy: none"

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.case import Case
+from ..core.table import Column, Table
 from ..figures.error_plots import plot_transmission_error
 from ..geometry.pair.gear_pair import GearPair
 from .curve import StiffnessCurve
@@ -60,13 +61,21 @@ class TransmissionError:
             )
         return 2 / n * np.abs(np.fft.rfft(self.te, axis=1))[:, round(cycles) * np.arange(1, count + 1)]
 
-    def table(self) -> str:
-        """Peak-to-peak and the first harmonics by load, as text [um]."""
-        lines = ["   force [N]  peak-to-peak      mean  harmonics 1 to 3 [um]"]
-        for force, te, span, parts in zip(self.force, self.te, self.peak_to_peak, self.harmonics(3), strict=True):
-            amplitudes = "  ".join(f"{1e6 * part:7.3f}" for part in parts)
-            lines.append(f"{force:12.6g}  {1e6 * span:12.3f}  {1e6 * te.mean():8.3f}  {amplitudes}")
-        return "\n".join([*lines, f"    unloaded  {1e6 * np.ptp(self.unloaded):12.3f}  {1e6 * self.unloaded.mean():8.3f}"])
+    def table(self, plain: TransmissionError | None = None, r_b: float | None = None) -> Table:
+        """`Table` of peak-to-peak, mean and first harmonics by load [um].
+
+        With the peak-to-peak of plain involutes and, if the base radius of the pinion `r_b` [mm] is given, the torque.
+        """
+        shown: dict[Column, list[Any]] = {Column("force", "N", "{:.6g}"): [*self.force, "unloaded"]}
+        if r_b is not None:
+            shown[Column("torque", "N m", "{:.4g}")] = [*1e-3 * r_b * self.force, None]
+        spans = {"peak-to-peak": self} | ({} if plain is None else {"of involutes": plain})
+        in_um = {name: [*one.peak_to_peak, np.ptp(one.unloaded)] for name, one in spans.items()}
+        in_um["mean"] = [*self.te.mean(axis=1), self.unloaded.mean()]
+        in_um |= {f"harmonic {n + 1}": [*part, np.nan] for n, part in enumerate(self.harmonics(3).T)}
+        for name, values in in_um.items():
+            shown[Column(name, "um", "{:z.3f}")] = [1e6 * value for value in values]
+        return Table(tuple(shown), list(zip(*shown.values(), strict=True)))
 
     def plot(self, path: str | Path | None = None, title: str | None = None) -> Any:
         """Draw it over phase, and peak-to-peak over load; save to `path` if given. Returns the matplotlib figure."""

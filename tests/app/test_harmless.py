@@ -12,8 +12,7 @@ import pytest
 
 import gearfe as gf
 from gearfe.app.cli import main, shell
-from gearfe.core.markdown import table_cells
-from gearfe.signal.indicator_table import table_text
+from gearfe.signal.indicator_table import tabulate_indicators
 
 STEERS = "\x1b[31m\x1b]0;owned\x07\x9b2J\u202e"
 QUOTED = "\\u001b[31m\\u001b]0;owned\\u0007\\u009b2J\\u202e"  # the same in TOML
@@ -126,6 +125,7 @@ def test_tables_keep_their_columns():
     """A name with a bar or a line end stays one cell of a Markdown table."""
     noise = np.random.default_rng(1).normal(size=256)
     signals = {name: gf.Signal(noise, 1000.0, "g") for name in ("plain", "a|b\nc")}
-    rows = [table_cells(line) for line in table_text(gf.indicator_table(signals, healthy="plain")).splitlines()]
-    assert {len(row) for row in rows} == {3}
-    assert rows[0] == ["indicator", "plain", "a|b c"]
+    table = tabulate_indicators(gf.indicator_table(signals, healthy="plain"))
+    for text in (table.markdown(), str(table)):
+        assert {line.replace(r"\|", "").count("|") for line in text.splitlines()} == {4}
+    assert table.cells()[0] == ["indicator", "plain", "a|b c"]

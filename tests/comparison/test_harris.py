@@ -8,8 +8,8 @@ from gearfe.app.cli import main
 
 def rows(text):
     """Numbers of the lines of the table, those of the load first."""
-    lines = text[text.index("force [N]") :].splitlines()[1:]
-    return [[float(word) for word in line.split()] for line in lines if line.strip() and line.split()[0][0].isdigit()]
+    lines = [line.strip("|").replace("|", " ").split() for line in text.splitlines() if line.startswith("|")]
+    return [[float(word) for word in line] for line in lines if line[0][0].isdigit()]
 
 
 def test_relief_is_told_beside_plain_involutes(tmp_path, capsys):

@@ -37,7 +37,7 @@ def test_the_crack_shows_at_its_sidebands_only(found):
         assert hurt[name] > 20 * healthy[name], name
     assert_allclose(hurt["2 f_m"], healthy["2 f_m"], rtol=0.1)
     assert report.indicators["crack50"]["sideband index"][0] > report.indicators["healthy"]["sideband index"][0]
-    assert "| mesh frequency | 182.00 |" in report.lines_text()
+    assert "| mesh frequency | 182.00 |" in report.lines_table().markdown()
     assert {"f_m - f_r", "f_m + f_r", "f_r"} <= set(report.standing())
     assert "f_m - f_fault" not in report.standing(), "as weak as what is between the lines"
     assert "times healthy" in report.envelope()[1]
@@ -47,8 +47,8 @@ def test_a_healthy_machine_is_told_without_a_fault(found):
     report = analysis({"healthy": found["healthy"]})
     assert report.fault is None
     assert not [name for name in report.lines if "f_fault" in name or "f_r" in name]
-    assert "fault" not in report.lines_text()
-    assert "%" not in report.indicators_text()
+    assert "fault" not in report.lines_table().markdown()
+    assert "%" not in report.indicators_table().markdown()
     twice = analysis({"healthy": found["healthy"], "the same": found["healthy"]})
     assert not [name for name in twice.standing() if "f_fault" in name or "f_r" in name]
     assert "fewer than 2 lines of the fault have" in twice.envelope()[1]
@@ -144,7 +144,7 @@ def test_a_short_record_says_how_long_it_should_be():
 
     short = found(0.2)
     assert short.standing() == ["f_m", "2 f_m"]
-    needed = float(re.search(r"0.2 s are too short .* record ([\d.]+) s or longer", short.lines_text())[1])
+    needed = float(re.search(r"0.2 s are too short .* record ([\d.]+) s or longer", short.hidden_lines())[1])
     enough = found(needed)
     assert {"f_fault", "f_m - f_fault", "f_m + f_fault"} <= set(enough.standing())
     assert enough.too_short == ""

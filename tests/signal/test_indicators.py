@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.signal import indicators as ind
-from gearfe.signal.indicator_table import increment, table_text
+from gearfe.signal.indicator_table import increment, tabulate_indicators
 from gearfe.signal.spectrum import Spectrum
 from validation.make import centroid
 from validation.shared import places
@@ -230,9 +230,9 @@ def test_table_of_increments():
     table = gf.indicator_table({"healthy": family(0.1), "mild": family(0.15), "severe": family(0.3)}, F_M, F_FAULT)
     assert_allclose([table[case]["sideband index"][1] for case in table], [0, 50, 200], atol=1e-6)
     assert_allclose(table["severe"]["sideband index"][0], 0.3)
-    text = table_text(table).splitlines()
-    assert text[0] == "| indicator | healthy | mild | severe |"
-    assert "| mean amplitude of the first sidebands | 0.1 | 0.15 (+50.0 %) | 0.3 (+200.0 %) |" in text
+    text = tabulate_indicators(table).markdown().splitlines()
+    assert text[0] == "| indicator | healthy | mild | mild, change | severe | severe, change |"
+    assert "| mean amplitude of the first sidebands | 0.1 | 0.15 | +50.0 % | 0.3 | +200.0 % |" in text
     assert len(text) == 2 + len(ind.SOURCES)
 
 
@@ -264,10 +264,10 @@ def test_table_needs_the_healthy_case():
 
 
 def test_what_grows_from_nothing_has_no_percentage():
-    text = table_text({"healthy": {"sideband index": (1e-12, 0.0)}, "cracked": {"sideband index": (0.07, 7e12)}})
-    assert text.splitlines()[-1] == "| mean amplitude of the first sidebands | 1e-12 | 0.07 (healthy: none) |"
+    table = tabulate_indicators({"healthy": {"sideband index": (1e-12, 0.0)}, "cracked": {"sideband index": (0.07, 7e12)}})
+    assert table.cells()[-1] == ["mean amplitude of the first sidebands", "1e-12", "0.07", "healthy: none"]
 
 
 def test_more_than_ten_times_is_told_as_a_factor():
-    text = table_text({"healthy": {"kurtosis": (2.0, 0.0)}, "cracked": {"kurtosis": (50.0, 2400.0)}})
-    assert text.splitlines()[-1] == "| kurtosis | 2 | 50 (25 x healthy) |"
+    table = tabulate_indicators({"healthy": {"kurtosis": (2.0, 0.0)}, "cracked": {"kurtosis": (50.0, 2400.0)}})
+    assert table.cells()[-1] == ["kurtosis", "2", "50", "25 x healthy"]

@@ -5,7 +5,7 @@ import importlib
 import numpy as np
 
 import gearfe as gf
-from gearfe.core.markdown import table_row
+from gearfe.core.table import Column, Table
 
 from ..shared import joint_inputs, page
 from ..shared.kept_rows import kept, stored
@@ -111,13 +111,13 @@ def section(name):
         "in how many draws a statement holds, by channel, and the input that goes with it most on the channel that is judged "
         f"and counted: {judges(name)}.",
         "",
-        table_row(["statement", *channels, "input that goes with it"]),
-        "|---" * (len(channels) + 2) + "|",
     ]
+    rows = []
     for statement, one in found.items():
         cells = [f"{one[channel].sum()} of {one[channel].size}" if channel in one else "" for channel in channels]
-        lines.append(table_row([statement, *cells, decides(name, own[statement])]))
-    return [*lines, "", *numbers(name)]
+        rows.append([statement, *cells, decides(name, own[statement])])
+    table = Table(("statement", *channels, "input that goes with it"), rows).markdown()
+    return [*lines, *table.splitlines(), "", *numbers(name)]
 
 
 def judges(name):
@@ -138,8 +138,7 @@ def numbers(name):
         return []
     rows, judged = rows_of(name), read(name)
     scene = {one.id: one for one in gf.load_scene(SCENES.get(name, name)).references}
-    lines = ["| number | case | printed | on this page | least to largest of the draws | draws within the tolerance |"]
-    lines.append("|---|---|---|---|---|---|")
+    lines = []
     for word, reference in named.items():
         for i, row in enumerate(one for one in judged if one.id == reference):
             values = [draw["numbers"][word][i] for draw in rows]
@@ -147,9 +146,11 @@ def numbers(name):
             channel = word.partition(", ")[2]
             meant = scene[reference].quantity.replace("its centre", "centre of the band of largest spectral kurtosis")
             quantity = ", ".join(filter(None, (meant, channel)))
-            cells = [quantity if not i else "", row.case, f"{row.printed:g}", f"{row.ours:.3g}"]
-            lines.append(table_row([*cells, f"{min(values):.3g} to {max(values):.3g}", f"{inside} of {len(values)}"]))
-    return [*lines, ""]
+            span = f"{min(values):.3g} to {max(values):.3g}", f"{inside} of {len(values)}"
+            lines.append([quantity if not i else "", row.case, row.printed, row.ours, *span])
+    ours = Column("printed", form="{:g}"), Column("on this page", form="{:.3g}")
+    head = ("number", "case", *ours, "least to largest of the draws", "draws within the tolerance")
+    return [*Table(head, lines).markdown().splitlines(), ""]
 
 
 SCENES = {"herringbone_machine": "herringbone"}
@@ -178,11 +179,11 @@ def notes():
 def ranges():
     """Lines: inputs and their ranges by page."""
     names = list(joint_inputs.RANGES)
-    lines = [table_row(["input", *names]), "|---" * (len(names) + 1) + "|"]
+    rows = []
     for word, meant in joint_inputs.MEANT.items():
         ends = [joint_inputs.RANGES[name].get(word) for name in names]
-        lines.append(table_row([meant, *("" if end is None else f"{end[0]:g} to {end[1]:g}" for end in ends)]))
-    return lines
+        rows.append([meant, *("" if end is None else f"{end[0]:g} to {end[1]:g}" for end in ends)])
+    return Table(("input", *names), rows).markdown().splitlines()
 
 
 def run(again=True):
@@ -194,10 +195,9 @@ def run(again=True):
 
 def tell():
     """Write this page and those of the machines."""
-    small = ["| page | statements | hold in all draws | in none | in some |", "|---|---|---|---|---|"]
-    for name in joint_inputs.RANGES:
-        small.append(table_row([f"[{name}.md]({name}.md)", str(sum(counts(name))), *map(str, counts(name))]))
-    page.write(NAME, answer(), HOW.strip().splitlines(), small, notes(), ranges())
+    head = ("page", *(Column(name, form="{}") for name in ("statements", "hold in all draws", "in none", "in some")))
+    rows = [[f"[{name}.md]({name}.md)", sum(counts(name)), *counts(name)] for name in joint_inputs.RANGES]
+    page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges())
     for name in joint_inputs.RANGES:
         home("machines").write_page(name)  # which looks in here for its section
 

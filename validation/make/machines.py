@@ -7,6 +7,7 @@ import warnings
 from functools import cache
 
 import gearfe as gf
+from gearfe.core.table import Table
 from gearfe.scene import verdicts
 from gearfe.scene.references import read_references
 
@@ -79,6 +80,7 @@ def quick_rows(page):
 def text(page):
     """The page as Markdown, from its committed rows and its scene."""
     scene, home = gf.load_scene(PAGES[page]), module(page)
+    told = scene.assumptions
     rows = table_rows.read(page)
     claim, find, decide = OPENINGS[page](Found(rows))
     drawn = f" {drawn_jointly(page)}" if joint.rows_of(page) else ""
@@ -102,7 +104,7 @@ def text(page):
         "*input*: put in, or found from this very value; *arithmetic*: follows from printed numbers; *model*:",
         "could have come out otherwise. Reasons: below.",
         "",
-        with_draws(page, verdicts.text(references(page), rows)),
+        verdicts.text(references(page), rows, draws(page)),
         "",
         *runs_of(page, rows),
         *joint.section(page),
@@ -113,23 +115,16 @@ def text(page):
     lines += [
         "What the scene assumes, and how much depends on it:",
         "",
-        "| assumed | why | what depends on it |",
-        "|---|---|---|",
+        Table(
+            ("assumed", "why", "what depends on it"), [[one[key] for key in ("what", "why", "depends")] for one in told]
+        ).markdown(),
     ]
-    lines += [f"| {one['what']} | {one['why']} | {one['depends']} |" for one in scene.assumptions]
     return "\n".join(lines) + "\n"
 
 
-def with_draws(page, table):
-    """The table with the share of joint draws in which a statement holds beside its verdict."""
-    found = joint.judged(page)
-    out = []
-    for line in table.splitlines():
-        cells = line.split(" | ")
-        held = found.get(cells[1]) if len(cells) > 3 and cells[2] == "model" else None
-        share = "" if held is None else f"; holds in {held.sum()} of {held.size} draws"
-        out.append(line[:-2] + f"{share} |" if share else line)
-    return "\n".join(out)
+def draws(page):
+    """Words on the share of joint draws in which a statement holds, by case."""
+    return {case: f"; holds in {held.sum()} of {held.size} draws" for case, held in joint.judged(page).items()}
 
 
 def drawn_jointly(page):
@@ -171,15 +166,9 @@ def runs_of(page, rows):
     if not by_run:
         return []
     told = table_rows.read_runs(page)
-    lines = [
-        "Simulations behind the rows, as read from the machines that ran:",
-        "",
-        "| run | what it was made with | rows |",
-        "|---|---|---|",
-    ]
-    named = {name: by_run.get(name, []) for name in told}
-    lines += [f"| {name} | {told[name]} | {', '.join(dict.fromkeys(ids)) or 'beside'} |" for name, ids in named.items()]
-    return [*lines, ""]
+    named = [(name, made, ", ".join(dict.fromkeys(by_run.get(name, []))) or "beside") for name, made in told.items()]
+    table = Table(("run", "what it was made with", "rows"), named).markdown()
+    return ["Simulations behind the rows, as read from the machines that ran:", "", table, ""]
 
 
 def write_page(page):

@@ -7,7 +7,7 @@ from importlib import import_module, resources
 
 import gearfe as gf
 from gearfe.core.files import written
-from gearfe.core.markdown import table_row
+from gearfe.core.table import Column, Table
 
 from ..shared import page
 from ..shared.places import ROOT, SOURCES, TABLES
@@ -87,7 +87,7 @@ def counts(rows, article):
 
 def lines(rows):
     """The table."""
-    out = ["| article | printed | what | became of it |", "|---|---|---|---|"]
+    out = []
     for row in rows:
         which = kind(row)
         told = row[which]
@@ -100,8 +100,8 @@ def lines(rows):
             told = f"input: used, {places}"
         else:
             told = f"input: not used, because {told}"
-        out.append(table_row([row["article"], ", ".join(f"{value:.6g}" for value in row["values"]), row["what"], told]))
-    return out
+        out.append([row["article"], ", ".join(f"{value:.6g}" for value in row["values"]), row["what"], told])
+    return Table(("article", "printed", "what", "became of it"), out).markdown().splitlines()
 
 
 def answer(rows):
@@ -130,6 +130,6 @@ def run(again=True):
         "compares it with scenes, references and code. A number that is printed twice stands where its rows do. Statements",
         "without a number are rows of the pages of the machines.",
     ]
-    small = ["| article | results | inputs used | inputs not used |", "|---|---|---|---|"]
-    small += [table_row([name, *map(str, counts(rows, name))]) for name in articles(rows)]
+    head = ("article", *(Column(name, form="{}") for name in ("results", "inputs used", "inputs not used")))
+    small = Table(head, [[name, *counts(rows, name)] for name in articles(rows)]).markdown().splitlines()
     page.write("printed", answer(rows), how, small, lines(rows))

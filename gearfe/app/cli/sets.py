@@ -9,7 +9,6 @@ FRAMES = 16  # of a moving picture, in each mesh cycle
 def planetary_set(arguments):
     """``gearfe set``."""
     from ...comparison.told_set import set_headline, set_table, spread, told_set, told_span
-    from ...core.markdown import aligned
     from ...figures.set_motion import check_moving
     from ...planetary_sets.animation import animate_planetary_set
     from ...planetary_sets.loaded_gears import check_meshable
@@ -29,7 +28,7 @@ def planetary_set(arguments):
     with working("loads of all meshes"):
         healthy = planetary_stiffness(build_set(scene), at, refine=refine) if arguments.case else None
         found = planetary_stiffness(case, at, refine=refine)
-    print(f"{scene.title}\n\n{set_headline(found, healthy)}\n\n{told_set(case)};\n{told_span(at)}\n\n{aligned(set_table(found))}")
+    print(f"{scene.title}\n\n{set_headline(found, healthy)}\n\n{told_set(case)};\n{told_span(at)}\n\n{set_table(found)}")
     _print_assumptions(scene, arguments.assumptions)
     if arguments.output:
         found.save(arguments.output)

@@ -6,7 +6,6 @@ from dataclasses import replace
 def signal(arguments):
     """``gearfe signal``."""
     from ...comparison.vibration import analyse
-    from ...core.markdown import aligned
     from ...core.steps import part
     from .progress import working
     from .verbs import _check_outputs, _print_analysis
@@ -29,10 +28,10 @@ def signal(arguments):
         print(_told(record))
     _print_analysis(analysed, arguments)
     if arguments.teeth is not None:
-        from ...signal.gear_indicators import gear_indicator_table, gear_table_text
+        from ...signal.gear_indicators import gear_indicator_table, tabulate_gear_indicators
 
         table = gear_indicator_table(signals, arguments.teeth)
-        print(f"\ngear of {arguments.teeth} teeth, from the average of its turns\n\n{aligned(gear_table_text(table))}")
+        print(f"\ngear of {arguments.teeth} teeth, from the average of its turns\n\n{tabulate_gear_indicators(table)}")
     _draw(list(signals.values())[-1], arguments)
     if arguments.orders:
         _draw_orders(signals, arguments)

@@ -78,7 +78,7 @@ def stiffness(arguments):
 
 def _transmission_error(scene, arguments, case, variants):
     """``gearfe stiffness --forces`` and ``--torques``."""
-    from ...comparison.harris import harris, harris_table
+    from ...comparison.harris import harris
     from ...figures.error_plots import plot_transmission_error
     from ...figures.stiffness_plots import told
 
@@ -91,7 +91,7 @@ def _transmission_error(scene, arguments, case, variants):
         many = replace(case, force=tuple(forces))
         found, plain = harris(many, method=arguments.method, phases=arguments.phases, **options)
     print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle\n")
-    print(harris_table(found, plain, r_b))
+    print(found.table(plain, r_b))
     if arguments.plot:
         title = _title(scene, arguments, told(found.curves[0], load=False))
         plot_transmission_error(found, arguments.plot, title, plain)
@@ -277,11 +277,11 @@ def dynamics(arguments):
 
 def _print_analysis(report, arguments, name=""):
     """Tables, envelope and plots of a `gearfe.comparison.vibration.Analysis`; `name` of the scene, if it is one."""
-    from ...core.markdown import aligned
-
     if report.lines:
-        print(f"\n{report.channel} [{report.unit}], amplitude of the lines\n\n{aligned(report.lines_text())}")
-    print(f"\n{aligned(report.indicators_text())}\n")
+        print(f"\n{report.channel}, amplitude of the lines\n\n{report.lines_table()}")
+        if hidden := report.hidden_lines():
+            print(f"\n{hidden}")
+    print(f"\n{report.indicators_table()}\n")
     last = list(report.signals.values())[-1]
     if report.fault:
         found, told = report.envelope()

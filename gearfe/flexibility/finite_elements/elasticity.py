@@ -5,18 +5,29 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, coo_matrix, csc_matrix, spmatrix
-from scipy.sparse.linalg import splu
-from skfem import Basis, ElementTriP2, MeshTri2
-from skfem.quadrature import get_quadrature
+from scipy.sparse import bmat, coo_array, coo_matrix, csc_matrix, spmatrix
+from skfem import Basis, BilinearForm, ElementTriP2, MeshTri2, asm
 
 from ...core.material import Material
-from ..condense import condense
-from ..plane_elements import bent_stiffness, stiffness
+from .solver import factor
 
 GAUSS_3 = (np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)]), np.array([5.0, 8.0, 5.0]) / 9)
-STRAIGHT = 1e-12  # edges whose middle is closer to that of their chord, by the size of the mesh
-LEAF = 24  # triangles that `Body.between` assembles at a time, at least; at most twice as many
+LEAF = 24  # triangles of a `Body` that `gearfe.flexibility.condense` puts together at a time, at least; at most twice as many
+
+
+@BilinearForm
+def _dx_dx(u, v, _):
+    return v.grad[0] * u.grad[0]
+
+
+@BilinearForm
+def _dy_dy(u, v, _):
+    return v.grad[1] * u.grad[1]
+
+
+@BilinearForm
+def _dx_dy(u, v, _):
+    return v.grad[0] * u.grad[1]
 
 
 class Body:
@@ -47,59 +58,53 @@ class Body:
         free = np.ones(2 * mesh.doflocs.shape[1], dtype=bool)
         free[2 * fixed] = free[2 * fixed + 1] = False
         self.free, self.held = np.flatnonzero(free), np.flatnonzero(~free)
-        self._factor: Any = None
+
+    @cached_property
+    def _factor(self) -> Any:
+        return factor(self.stiffness()[self.free][:, self.free], node=2)
 
     @cached_property
     def basis(self) -> Basis:
         """Shape functions at the quadrature points."""
         return Basis(self.mesh, ElementTriP2(), intorder=self.order)
 
-    def local(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """Stiffness matrices of the triangles ``(m, 12, 12)`` [N/mm per mm of width] and their unknowns ``(m, 12)``."""
-        shapes = ElementTriP2()
-        points, weight = get_quadrature(shapes, self.order)
-        slope = np.array([shapes.lbasis(points, i)[1] for i in range(6)]).transpose(1, 0, 2)
-        lame = self.material.lame(self.state)
-        place = self.mesh.doflocs[:, self.nodes]
-        corners, middles = place[:, :3], place[:, 3:]
-        local = stiffness(slope, weight, (corners[:, 1:] - corners[:, :1]).transpose(2, 0, 1), *lame)
-        away = np.abs(middles - (corners[:, [0, 1, 0]] + corners[:, [1, 2, 2]]) / 2).max(axis=(0, 1))
-        bent = np.flatnonzero(away > STRAIGHT * np.ptp(self.mesh.doflocs))
-        local[bent] = bent_stiffness(slope, weight, np.einsum("dim,eiq->mdeq", place[:, :, bent], slope, optimize=True), *lame)
-        return local, (2 * self.nodes.T[:, :, None] + np.arange(2)).reshape(-1, 12)
-
     def stiffness(self) -> csc_matrix:
         """Stiffness matrix (sparse, 2 nodes square) [N/mm per mm of width].
 
-        The weak form is ``lambda div u div v + 2 mu eps(u) : eps(v)``.
+        The weak form is ``lambda div u div v + 2 mu eps(u) : eps(v)``. Its blocks are combined from three scalar forms, which
+        scikit-fem assembles several times as fast as the form of the vector field.
         """
-        local, dofs = self.local()
-        size = 2 * self.mesh.doflocs.shape[1]
-        i = np.repeat(dofs, 12, axis=1).ravel()
-        j = np.tile(dofs, (1, 12)).ravel()
-        return coo_matrix((local.ravel(), (i, j)), shape=(size, size)).tocsc()
+        lam, mu = self.material.lame(self.state)
+        xx, yy, xy = (asm(form, self.basis) for form in (_dx_dx, _dy_dy, _dx_dy))
+        shear = mu * xy
+        blocks = [[(lam + 2 * mu) * xx + mu * yy, lam * xy + shear.T], [None, (lam + 2 * mu) * yy + mu * xx]]
+        blocks[1][0] = blocks[0][1].T
+        by_component = coo_array(bmat(blocks))
+        nodes = self.mesh.doflocs.shape[1]
+        row, column = (2 * (place % nodes) + place // nodes for place in by_component.coords)
+        return coo_matrix((by_component.data, (row, column)), shape=by_component.shape).tocsc()
+
+    def local(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Stiffness matrices of the triangles ``(m, 12, 12)`` [N/mm per mm of width] and their unknowns ``(m, 12)``."""
+        lam, mu = self.material.lame(self.state)
+        xx, yy, xy = (form.elemental(self.basis).tolocal().transpose(0, 2, 1) for form in (_dx_dx, _dy_dy, _dx_dy))
+        yx = xy.transpose(0, 2, 1)
+        rows = [[(lam + 2 * mu) * xx + mu * yy, lam * xy + mu * yx], [lam * yx + mu * xy, (lam + 2 * mu) * yy + mu * xx]]
+        local = np.array(rows).transpose(2, 3, 0, 4, 1).reshape(-1, 12, 12)
+        return local, (2 * self.nodes.T[:, :, None] + np.arange(2)).reshape(-1, 12)
 
     def between(self, load: spmatrix) -> NDArray[np.float64]:
         """Displacements of the columns of `load` (sparse, ``(2 nodes, n)``) under each other: ``load' K^-1 load`` ``(n, n)``.
 
-        Three times as fast as `solve`, since no displacement is computed.
+        It takes half of a solution: the product of ``L^-1 load`` with itself, where ``K = L L'``.
         """
-        local, dofs = self.local()
-        corners = self.mesh.doflocs[:, self.mesh.t[:3]].mean(axis=1)
-        radius = np.hypot(*corners)
-        around = np.array([np.arctan2(*corners) * radius.mean(), radius])  # a cut of a ring is short in these coordinates
-        return -condense(local, dofs, around, coo_array(load), np.arange(0), self.held, leaf=LEAF)
+        return self._factor.gram(load.tocsr()[self.free].toarray())
 
     def solve(self, load: NDArray[np.float64] | spmatrix) -> NDArray[np.float64]:
         """Displacements for the columns of `load` (dense or sparse, ``(2 nodes, n)``) [N/mm]."""
-        if self._factor is None:
-            free = self.stiffness()[self.free][:, self.free]
-            self._factor = splu(
-                csc_matrix(free), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-            )
         dense = load.toarray() if hasattr(load, "toarray") else np.asarray(load)
         out = np.zeros(dense.shape)
-        out[self.free] = self._factor.solve(np.ascontiguousarray(dense[self.free]))
+        out[self.free] = self._factor(dense[self.free])
         if not np.isfinite(out).all():
             raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
         return out

@@ -17,7 +17,6 @@ A, L, P = 0, 4, 7  # what CHOLMOD solves with: all of it, the lower factor, the 
 # of right-hand sides given to cvxopt at once [bytes]: it counts the bytes to a column in 32 bits, so that from 2**31 on it reads
 # and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
 BLOCK = 2**27
-NODE = 3  # unknowns of a node, one after the other
 MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] of n and n**(4/3), with and without METIS, see `plan`
 SECONDS = {True: (5e-5, 1.9e-10, 5e-9), False: (5e-5, 3.2e-10, 6e-9)}  # of n, n**2 and n**(4/3) for each right-hand side
 
@@ -87,16 +86,17 @@ def plan(unknowns, *, columns=0, free=None):
     return cost
 
 
-def factor(matrix, plan_=None):
+def factor(matrix, plan_=None, *, node=3):
     """Factor a symmetric positive definite matrix.
 
     Parameters
     ----------
     matrix : sparse matrix, shape (n, n)
-        Only its lower triangle is read. The unknowns of a node are `NODE` that follow each other; others are right too, but
-        ordered less well.
+        Only its lower triangle is read.
     plan_ : Plan, optional
-        Default: `plan` of its size. `gearfe.core.steps` is told of it.
+        Of a body in three dimensions; default: `plan` of its size. `gearfe.core.steps` receives it.
+    node : int
+        Unknowns of a node, which follow each other: 3, or 2 in the plane. They are ordered together.
 
     Returns
     -------
@@ -112,14 +112,15 @@ def factor(matrix, plan_=None):
     from cvxopt import cholmod, sparse, spmatrix
     from cvxopt import matrix as dense
 
-    reached(f"solving {plan_ or plan(matrix.shape[0])}", 0.0)
+    if node == 3:  # the memory of a plane body never matters
+        reached(f"solving {plan_ or plan(matrix.shape[0])}", 0.0)
     lower = csc_array(tril(matrix, format="csc"), dtype=float)
     lower.sum_duplicates()
     if not (lower.diagonal() > 0).all():
         raise RuntimeError("the stiffness matrix has an empty or negative diagonal: the body is not held")
     rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(lower.shape[0]), np.diff(lower.indptr))
     held = spmatrix(dense(lower.data), dense(rows), dense(columns), lower.shape)
-    factored = cholmod.symbolic(held, p=dense(dissection(rows, columns))) if dissects() else cholmod.symbolic(held)
+    factored = cholmod.symbolic(held, p=dense(dissection(rows, columns, node))) if dissects() else cholmod.symbolic(held)
     del rows, columns, lower
     try:
         cholmod.numeric(held, factored)
@@ -146,7 +147,7 @@ def factor(matrix, plan_=None):
     return solve
 
 
-def dissection(rows, columns):
+def dissection(rows, columns, node=3):
     """Order of elimination by nested dissection of the nodes; `rows` and `columns` of the entries of the lower triangle.
 
     References
@@ -155,10 +156,10 @@ def dissection(rows, columns):
     """
     import pymetis
 
-    n, i, j = int(rows[-1]) + 1, rows // NODE, columns // NODE
+    n, i, j = int(rows[-1]) + 1, rows // node, columns // node
     apart = i != j
     shape = (int(i[-1]) + 1,) * 2
     half = coo_array((np.ones(np.count_nonzero(apart), dtype=bool), (i[apart], j[apart])), shape=shape).tocsr()
     graph = half + half.T
     _, rank = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
-    return np.argsort(np.asarray(rank)[np.arange(n) // NODE], kind="stable")
+    return np.argsort(np.asarray(rank)[np.arange(n) // node], kind="stable")

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ...core.markdown import table_row
+from ...core.table import Column, Table
 from .conditions import Condition
 from .faults import FAULTS, HEALTHY
 from .plan import SIDES, Plan
@@ -79,17 +79,16 @@ def _classes(labels):
         return "None yet."
 
     def counts(part):
-        return [*(str(int((part["side"] == side).sum())) for side in SIDES), str(part["condition"].nunique())]
+        return [*(int((part["side"] == side).sum()) for side in SIDES), int(part["condition"].nunique())]
 
-    return _by_class(labels, [*SIDES, "conditions"], counts)
+    return _by_class(labels, [Column(name, form="{}") for name in (*SIDES, "conditions")], counts)
 
 
 def _by_class(labels, head, cells):
     """Table with a row for each class: the `cells` of its part of the labels."""
-    rows = [["fault", "severity", *head], ["---"] * (2 + len(head))]
-    for (fault, severity), part in labels.groupby(["fault", "severity"]):
-        rows.append([fault, "" if fault == HEALTHY else f"{severity:g}", *cells(part)])
-    return _table(rows)
+    classes = labels.groupby(["fault", "severity"])
+    rows = [[fault, None if fault == HEALTHY else severity, *cells(part)] for (fault, severity), part in classes]
+    return Table(("fault", Column("severity", form="{:g}"), *head), rows).markdown()
 
 
 def _split(plan):
@@ -107,9 +106,10 @@ def _errors(labels):
         return ""
 
     def cells(part):
-        return [*(f"{100 * part[name].mean():.2f} %" for name in ("loss_max", "loss_mean")), f"{100 * part['error'].max():.2g} %"]
+        return [100 * part["loss_max"].mean(), 100 * part["loss_mean"].mean(), 100 * part["error"].max()]
 
-    return f"{_by_class(labels, ['largest loss of stiffness', 'mean loss', 'error of the motion, worst'], cells)}\n\n{ERRORS}"
+    head = [Column(name, "%", "{:.2f}") for name in ("largest loss of stiffness", "mean loss")]
+    return f"{_by_class(labels, [*head, Column('error of the motion, worst', '%', '{:.2g}')], cells)}\n\n{ERRORS}"
 
 
 def _levels(labels):
@@ -122,9 +122,9 @@ def _levels(labels):
     units = labels.groupby("sensor")["unit"].first()
 
     def cells(part):
-        return [f"{part.loc[part['sensor'] == sensor, 'rms'].median():.3g}" for sensor in sensors]
+        return [part.loc[part["sensor"] == sensor, "rms"].median() for sensor in sensors]
 
-    table = _by_class(labels, [f"{sensor} [{units[sensor]}]" for sensor in sensors], cells)
+    table = _by_class(labels, [Column(sensor, units[sensor], "{:.3g}") for sensor in sensors], cells)
     silent = [
         channel
         for channel in sensors
@@ -139,9 +139,9 @@ def _levels(labels):
 
 def _columns(plan):
     fields = LABELS | {key: LABELS["error"]._replace(unit="as in the scene") for key in plan.scatter}
-    rows = [["column", "unit", "meaning"], ["---"] * 3]
-    rows += [[f"`{name}`", field.unit, COLUMNS[name][1] if name in COLUMNS else ""] for name, field in fields.items()]
-    return _table([*rows, ["`signal`", "see `unit`", f"{samples_of(plan)} numbers of 4 bytes"]])
+    rows = [[f"`{name}`", field.unit, COLUMNS[name][1] if name in COLUMNS else ""] for name, field in fields.items()]
+    rows.append(["`signal`", "see `unit`", f"{samples_of(plan)} numbers of 4 bytes"])
+    return Table(("column", "unit", "meaning"), rows).markdown()
 
 
 def _failed(made, every):
@@ -154,7 +154,3 @@ def _failed(made, every):
 
 def _made(made):
     return "Made by " + ", ".join(f"{name} {value}" for name, value in made.about["made"].items()) + "."
-
-
-def _table(rows):
-    return "\n".join(map(table_row, rows))
