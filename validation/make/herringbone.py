@@ -11,9 +11,8 @@ from gearfe.scene.stored import read_curves, stored_file, write_curves
 
 from ..shared import (
     herringbone_contact_line,
-    herringbone_layouts,
-    herringbone_layouts_page,
     herringbone_page,
+    herringbone_reading,
     herringbone_section,
     herringbone_statements,
     page,
@@ -129,13 +128,13 @@ def sensitivities():
 
 def text():
     """Arguments of `page.text`, from the tables."""
-    answer = herringbone_layouts_page.answer(_claim(), herringbone_page.beyond())
+    answer = herringbone_reading.answer(_claim(), herringbone_page.beyond())
     how = [
         "`python -m validation herringbone` computes this page and `tables/herringbone*.csv`.",
         "The finite elements, in `gearfe/scene/scenes/herringbone_fe3d.csv`, are computed by `... herringbone --reference`.",
     ]
-    layouts, said = herringbone_layouts_page.section(), herringbone_statements.section()
-    return answer, how, layouts, said, herringbone_page.ten_rows(), herringbone_page.as_printed()
+    reading, said = herringbone_reading.section(), herringbone_statements.section()
+    return answer, how, reading, said, herringbone_page.ten_rows(), herringbone_page.as_printed()
 
 
 def _claim():
@@ -151,10 +150,8 @@ def run(again=True):
         sensitivities()
         section = herringbone_section.rows(gf.load_scene(SCENE), REFINE)
         save(f"{SCENE}_section", ["pair", "resolution", "mean", "least", "most"], section)
-        for table in (herringbone_layouts.PATH, herringbone_contact_line.path("ritz3d")):
-            begin(table)
+        begin(herringbone_contact_line.path("ritz3d"))
         herringbone_contact_line.compute()
-        herringbone_layouts.compute()
     page.write("herringbone", *text())
 
 
