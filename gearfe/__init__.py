@@ -1,183 +1,28 @@
 """Gear mesh stiffness with its error: finite elements beside energy methods.
 
-Everything public is a name of this package. Its packages, and which imports which, are listed in `docs/where.md`.
+Everything public is a name of this package, loaded on first use. `__init__.pyi` states where each is defined. The packages, and
+which imports which, are listed in `docs/where.md`.
 """
 
-import importlib
+from typing import Any
 
-_HOME = {
-    "Body": "gearfe.dynamics.machine.layout",
-    "Case": "gearfe.core.case",
-    "Crack": "gearfe.geometry.damage.crack",
-    "Dataset": "gearfe.runs.datasets.opened",
-    "Flank": "gearfe.geometry.tooth.modified",
-    "FrontIntensity": "gearfe.strength.crack_front",
-    "Gear": "gearfe.geometry.tooth.gear",
-    "GearMesh": "gearfe.dynamics.machine.gear_mesh",
-    "GearPair": "gearfe.geometry.pair.gear_pair",
-    "IsoRootStress": "gearfe.comparison.root_iso",
-    "Layout": "gearfe.dynamics.machine.layout",
-    "Load": "gearfe.dynamics.machine.tables",
-    "Machine": "gearfe.dynamics.machine.tables",
-    "Material": "gearfe.core.material",
-    "Member": "gearfe.dynamics.machine.member",
-    "Misalignment": "gearfe.geometry.pair.flanks",
-    "OwnFlexibility": "gearfe.stiffness.own_flexibility",
-    "PairModel": "gearfe.comparison.own_model",
-    "Pit": "gearfe.geometry.damage.pit",
-    "PlanetaryCase": "gearfe.planetary_sets.case",
-    "PlanetarySet": "gearfe.geometry.pair.planetary",
-    "RimBed": "gearfe.planetary_sets.rim_supports",
-    "RimSupports": "gearfe.planetary_sets.rim_supports",
-    "Response": "gearfe.dynamics.motion.response",
-    "RootStress": "gearfe.strength.root_stress",
-    "Samples": "gearfe.dynamics.machine.gear_mesh",
-    "Shaft": "gearfe.core.supports.shaft",
-    "Signal": "gearfe.signal.series",
-    "Spall": "gearfe.geometry.damage.spall",
-    "Spring": "gearfe.dynamics.machine.tables",
-    "Stage": "gearfe.dynamics.machine.tables",
-    "StiffnessCurve": "gearfe.stiffness.curve",
-    "Support": "gearfe.core.supports.support",
-    "Surrogate": "gearfe.runs.surrogates.surrogate",
-    "ToothDamage": "gearfe.dynamics.machine.gear_mesh",
-    "batch": "gearfe.runs.batches",
-    "cepstrum": "gearfe.signal.time_frequency",
-    "compare": "gearfe.comparison.by_zone",
-    "curve_bands": "gearfe.runs.sweeps.effects",
-    "demodulate": "gearfe.signal.demodulation",
-    "contact_pattern": "gearfe.stiffness.pattern",
-    "decimate": "gearfe.signal.series",
-    "envelope": "gearfe.signal.spectra",
-    "animate_planetary_set": "gearfe.planetary_sets.animation",
-    "build_machine": "gearfe.dynamics.machine.of_scene",
-    "build_set": "gearfe.planetary_sets.of_scene",
-    "compound_planetary": "gearfe.dynamics.machine.compound_planetary",
-    "dataset": "gearfe.runs.datasets.make",
-    "disc": "gearfe.dynamics.machine.member",
-    "error_map": "gearfe.runs.errormap",
-    "gear_pair": "gearfe.dynamics.machine.gear_pair",
-    "gear_indicator_table": "gearfe.signal.gear_indicators",
-    "gear_indicators": "gearfe.signal.gear_indicators",
-    "herringbone_planetary": "gearfe.dynamics.machine.herringbone_planetary",
-    "natural_frequencies": "gearfe.dynamics.machine.modes",
-    "mesh_excitation": "gearfe.dynamics.machine.mesh_excitation",
-    "simulate": "gearfe.dynamics.motion.simulate",
-    "single_mesh": "gearfe.dynamics.machine.single_mesh",
-    "BackFlanks": "gearfe.dynamics.machine.back_flanks",
-    "back_phase": "gearfe.dynamics.machine.back_flanks",
-    "with_back_flanks": "gearfe.dynamics.machine.back_flanks",
-    "force_law": "gearfe.dynamics.machine.force_law",
-    "ForceLaw": "gearfe.dynamics.machine.force_law",
-    "LawError": "gearfe.dynamics.machine.law_error",
-    "law_error": "gearfe.dynamics.machine.law_error",
-    "law_within": "gearfe.dynamics.machine.law_error",
-    "stage_phases": "gearfe.dynamics.machine.planetary",
-    "planetary_stiffness": "gearfe.planetary_sets.solve",
-    "plot_planetary_set": "gearfe.planetary_sets.shape",
-    "SetCurves": "gearfe.planetary_sets.curves",
-    "write_set_inp": "gearfe.planetary_sets.deck",
-    "steady_state": "gearfe.dynamics.motion.steady",
-    "with_tachometer": "gearfe.signal.tachometer",
-    "with_errors": "gearfe.dynamics.machine.mesh_errors",
-    "Speed": "gearfe.dynamics.machine.speed",
-    "with_speed": "gearfe.dynamics.machine.run_up",
-    "with_set": "gearfe.planetary_sets.with_set",
-    "expected_lines": "gearfe.signal.spectral_lines",
-    "fit_surrogate": "gearfe.runs.surrogates.fit",
-    "export_mesh": "gearfe.decks.mesh_file",
-    "face_load": "gearfe.comparison.pattern",
-    "fast_kurtogram": "gearfe.signal.kurtogram",
-    "find_lines": "gearfe.signal.spectral_lines",
-    "housing_signal": "gearfe.dynamics.motion.housing",
-    "ring_window": "gearfe.dynamics.motion.housing",
-    "stage_lines": "gearfe.signal.stage_lines",
-    "indicator_table": "gearfe.signal.indicator_table",
-    "integrate": "gearfe.signal.series",
-    "iso_root_stress": "gearfe.comparison.root_iso",
-    "load_scene": "gearfe.scene.load",
-    "main_effects": "gearfe.runs.sweeps.effects",
-    "mesh_stiffness": "gearfe.stiffness.solve",
-    "Solve": "gearfe.stiffness.solve",
-    "solve": "gearfe.stiffness.solve",
-    "new_scene": "gearfe.scene.new",
-    "open_dataset": "gearfe.runs.datasets.opened",
-    "order_spectrum": "gearfe.signal.orders",
-    "phase_portrait": "gearfe.dynamics.motion.portrait",
-    "pitted_helical": "gearfe.dynamics.machine.helical_pair",
-    "pitted_planetary": "gearfe.dynamics.machine.pitted_planetary",
-    "planetary": "gearfe.dynamics.machine.planetary",
-    "plot_contact": "gearfe.figures.contact_plot",
-    "plot_kurtogram": "gearfe.figures.vibration_plots",
-    "plot_pair": "gearfe.figures.pair_plot",
-    "plot_phase": "gearfe.figures.vibration_plots",
-    "plot_spectrogram": "gearfe.figures.vibration_plots",
-    "plot_spectra": "gearfe.figures.vibration_plots",
-    "poincare_section": "gearfe.dynamics.motion.portrait",
-    "power_spectral_density": "gearfe.signal.spectra",
-    "pulses": "gearfe.dynamics.machine.tables",
-    "random_pitch": "gearfe.geometry.tooth.pitch",
-    "read_model": "gearfe.comparison.model_file",
-    "read_topography": "gearfe.stiffness.topography_file",
-    "read_signal": "gearfe.signal.signal_file",
-    "read_signals": "gearfe.signal.signal_file",
-    "render_mesh": "gearfe.strength.mesh_picture",
-    "render_stress": "gearfe.strength.render",
-    "Runs": "gearfe.runs.sweeps.runs",
-    "open_runs": "gearfe.runs.sweeps.runs",
-    "plan_sweep": "gearfe.runs.sweeps.plan",
-    "report": "gearfe.reports.page",
-    "residual_signal": "gearfe.signal.orders",
-    "root_stress": "gearfe.strength.loaded_tooth",
-    "spectrogram": "gearfe.signal.time_frequency",
-    "root_stress_along_width": "gearfe.strength.root_stress",
-    "root_stress_of_contact": "gearfe.strength.root_of_contact",
-    "spectral_kurtosis": "gearfe.signal.kurtogram",
-    "TransmissionError": "gearfe.stiffness.transmission_error",
-    "transmission_error": "gearfe.stiffness.transmission_error",
-    "sobol_indices": "gearfe.runs.sweeps.effects",
-    "spectrum": "gearfe.signal.spectra",
-    "told_apart": "gearfe.runs.sweeps.effects",
-    "squared_envelope_spectrum": "gearfe.signal.spectra",
-    "stress_intensity": "gearfe.strength.fracture",
-    "stress_intensity_along_front": "gearfe.strength.crack_front",
-    "sweep": "gearfe.runs.sweeps.run",
-    "sweep_report": "gearfe.reports.sweep_page",
-    "synchronous_average": "gearfe.signal.orders",
-    "tooth_flexibility": "gearfe.strength.loaded_tooth",
-    "bearing_lines": "gearfe.signal.bearing_lines",
-    "Campbell": "gearfe.dynamics.machine.campbell",
-    "campbell": "gearfe.dynamics.machine.campbell",
-    "plot_campbell": "gearfe.figures.campbell_plot",
-    "deconvolve": "gearfe.signal.deconvolution",
-    "dynamic_factors": "gearfe.dynamics.motion.dynamic_factor",
-    "frequency_response": "gearfe.dynamics.machine.frequency_response",
-    "mesh_modulation": "gearfe.signal.mesh_modulation",
-    "modal_energy": "gearfe.dynamics.machine.modal_energy",
-    "with_own_speed": "gearfe.signal.shaft_speed",
-    "write_contact_inp": "gearfe.decks.contact_inp",
-    "write_inp": "gearfe.decks.deck",
-    "write_line_inp": "gearfe.decks.line_deck",
-}
-__all__ = sorted(_HOME)
+import lazy_loader
+
+_load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
-def __getattr__(name):
-    """Load the public names on first use, so that ``gearfe --help`` stays quick."""
+def __getattr__(name: str) -> Any:
+    """Load a public name; AttributeError with the nearest names if there is none of this name."""
     if name == "__version__":
         from importlib.metadata import version
 
         return version("gearfe")
-    if name not in _HOME:
-        raise AttributeError(f"gearfe has no {name!r}; it has {', '.join(__all__)}")
+    if name not in __all__:
+        from difflib import get_close_matches
+
+        near = get_close_matches(name, __all__, cutoff=0.5) or __all__
+        raise AttributeError(f"gearfe has no {name!r}; it has {', '.join(near)}")
     from .core.threads import loading
 
     with loading:
-        value = getattr(importlib.import_module(_HOME[name]), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__():
-    """Public names."""
-    return __all__
+        return _load(name)

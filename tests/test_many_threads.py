@@ -1,5 +1,6 @@
 """Threads of a caller do not matter: the bits of one thread, every gear solved once, nothing of the process left changed."""
 
+import importlib
 import math
 import os
 import signal
@@ -227,7 +228,7 @@ def test_batches_that_overlap_leave_the_environment_as_it_was(monkeypatch):
 
 def test_public_names_are_loaded_by_one_thread_at_a_time(monkeypatch):
     """Two threads that load parts of a package at once can be told by Python that they wait for each other."""
-    inside, most, real = [], [], gf.importlib.import_module
+    inside, most, real = [], [], importlib.import_module
 
     def load(name):
         inside.append(name)
@@ -236,7 +237,7 @@ def test_public_names_are_loaded_by_one_thread_at_a_time(monkeypatch):
         inside.remove(name)
         return real(name)
 
-    monkeypatch.setattr(gf.importlib, "import_module", load)
+    monkeypatch.setattr(importlib, "import_module", load)
     names = ["Crack", "Gear", "GearPair", "Material"]
     for name in names:
         monkeypatch.delitem(vars(gf), name, raising=False)

@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
@@ -13,6 +14,8 @@ import pytest
 from conftest import ROOT
 
 import gearfe
+from gearfe.core.case import NAMES
+from gearfe.stiffness.solve import OPTIONS, StiffnessOptions
 
 pytestmark = pytest.mark.quick
 
@@ -107,16 +110,54 @@ def test_an_untyped_function_is_found():
     assert lacking(half) == ["width", "sides", "done", "return"]
 
 
-def test_type_checkers_see_every_public_name():
-    """`gearfe/__init__.pyi` says where each is, since ``__getattr__`` hides it from them: one import of it under its own name."""
-    stub = ast.parse((ROOT / "gearfe/__init__.pyi").read_text(encoding="utf-8"))
-    seen = {}
-    for node in (node for node in stub.body if isinstance(node, ast.ImportFrom)):
-        module = f"gearfe.{node.module}" if node.level else node.module
-        seen |= {alias.asname: module for alias in node.names if alias.name == alias.asname}
-    assert sorted(gearfe._HOME.items() - seen.items()) == []  # add `from .room.file import name as name`
-    assert sorted(seen.items() - gearfe._HOME.items()) == []  # no longer public
-
-
 def test_packages_say_that_they_are_typed():
     assert all((ROOT / package / "py.typed").is_file() for package in ("gearfe", "geometry"))
+
+
+WRONG = {  # lines of a user's program, and what mypy must say of each
+    "gf.mesh_stiffness(pair, 2000.0, phases=16, span='tooth', error=True, damage={'pinion': [gf.Crack(level=0.3)]})": "",
+    "gf.mesh_stiffness(pair, 2000.0, phase=16)": 'keyword argument "phase"',
+    "gf.mesh_stiffness(pair, 2000.0, refine='fine')": 'No overload variant of "mesh_stiffness"',
+    "gf.transmission_error(pair, [1.0], pose='pinion', misalignment=gf.Misalignment())": "",
+    "gf.transmission_error(pair, [1.0], posed='pinion')": 'keyword argument "posed"',
+    "gf.force_law(pair, [1.0, 2.0], flanks={'wheel': gf.Flank()}, refine=2.0)": "",
+    "gf.force_law(pair, [1.0, 2.0], flank={})": 'keyword argument "flank"',
+    "gf.law_within(pair, 1.0, 2.0, groove='4 mm')": 'expected "float"',
+    "gf.contact_pattern(pair, 1.0, face='spur', phases=[0.5])": "",
+    "gf.contact_pattern(pair, 1.0, method='ritz3d')": 'keyword argument "method"',
+    "gf.compare(pair, force=1.0, material=gf.Material())": "",
+    "gf.compare(pair, forces=1.0)": 'keyword argument "forces"',
+    "gf.write_contact_inp('a.inp', pair, 0.5, 0.01, 100.0, penalty=50.0, pits='cut')": "",
+    "gf.write_contact_inp('a.inp', pair, 0.5, 0.01, 100.0, penalties=50.0)": 'keyword argument "penalties"',
+    "gf.indicator_table({}, harmonics=2)": "",
+    "gf.indicator_table({}, harmonic=2)": 'keyword argument "harmonic"',
+}
+
+
+@pytest.mark.slow
+def test_type_checkers_know_every_option(tmp_path):
+    """An editor completes the options, and mypy rejects a misspelt one."""
+    program = tmp_path / "program.py"
+    program.write_text("import gearfe as gf\n\npair: gf.GearPair\n" + "\n".join(WRONG) + "\n", encoding="utf-8")
+    command = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--config-file",
+        str(ROOT / "pyproject.toml"),
+        "--cache-dir",
+        str(ROOT / ".mypy_cache"),
+    ]
+    out = subprocess.run([*command, str(program)], cwd=ROOT, capture_output=True, text=True).stdout
+    for line, (text, message) in enumerate(WRONG.items(), 4):
+        said = [row for row in out.splitlines() if row.startswith(f"{program}:{line}:")]
+        assert bool(said) == bool(message), (text, said or out)
+        assert message in "".join(said), text
+
+
+def test_options_are_those_of_case_and_solve():
+    """Names and types of the options of functions are those of the fields of `Case` and `Solve`."""
+    whole = hints_of(gearfe.Case) | hints_of(gearfe.Solve)
+    options = hints_of(StiffnessOptions)
+    assert set(options) == {*NAMES, *OPTIONS} - {"pair", "force", "material", "torque"}
+    assert {name: whole[name] for name in options} == options

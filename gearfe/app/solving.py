@@ -23,12 +23,13 @@ from ..flexibility.solved import PROCESS
 from ..geometry.tooth.drawing import outline_points
 from ..scene.assumed import of_stiffness
 from ..scene.load import Scene, scene_names, scene_of
-from ..scene.strict import shown
+from ..scene.schema import shown
+from ..scene.toml_file import toml
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve, solve
 from .fields import START
 from .program import program
-from .state import CASE, SeveralError, read, tables_of, title_of, toml
+from .state import CASE, SeveralError, read, tables_of, title_of
 
 QUICK, FINE, SOLID = 32, 64, 16  # phases per mesh cycle
 KEPT = 128 * 2**20  # memory of solved gears in one process [bytes]

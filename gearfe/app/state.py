@@ -1,32 +1,17 @@
 """The state of the page is a scene: written from the fields, read back from a scene that the page can show whole."""
 
-import json
 import math
 import tomllib
 from collections.abc import Iterator
 from typing import Any
 
-from ..scene.load import DAMAGE, TABLES, Scene, scene_of
-from ..scene.machine_table import checked_machine
-from ..scene.strict import checked, shown
-from .fields import FIELDS, SIDES, SPELLED, START, checked_state
+from ..scene.dotted_keys import set_values, trimmed
+from ..scene.load import Scene, scene_of
+from ..scene.parts import DAMAGE
+from ..scene.schema import NAMES, REQUIRED, Reading, scene_schema, shown
+from .fields import FIELDS, SIDES, START, checked_state, key_at
 
 CASE, PAIR = "damaged", "stage"
-ENDS = ("tip", "root")  # of a flank that may be relieved
-FLANK = {f"{end}_relief": f"{end}_relief_um" for end in ENDS} | {  # a gear without any has no table
-    "crowning": "crowning_um", "lead": "lead_crowning_um", "tip_rounding": "tip_rounding_mm", "tip_chamfer": "tip_chamfer_mm",
-}  # fmt: skip
-SUPPORT = {
-    "radial": "radial_N_per_um",
-    "tilt": "tilt_Nm_per_mrad",
-    "torsion": "torsion_Nm_per_mrad",
-}  # one that is rigid has no key
-CRACK = {"crack_angle": "angle_deg", "crack_start": "start", "crack_gear": "gear"}
-PITS = {
-    "pit_gear": "gear", "pit_radius": "radius_mm", "pit_count": "count", "pit_first": "first_mm", "pit_last": "last_mm",
-    "pit_depth": "depth_mm",
-}  # fmt: skip
-FACE = "by the helix angle"
 RUN = {"model", "speed_rpm", "torque_Nm"}  # keys of a machine that the page has
 CLOSE = 1e-9  # numbers are the same within it: a torque is computed from a force
 
@@ -46,89 +31,24 @@ def title_of(state: dict[str, Any]) -> str:
 
 def tables_of(state: dict[str, Any]) -> dict[str, Any]:
     """Tables of the scene that a checked state stands for, as `gearfe.scene.load.scene_of` takes them."""
-    out: dict[str, Any] = {"title": title_of(state), "source": state["source"], "material": {}, "gear": {}, "pair": {PAIR: {}}}
-    for field in FIELDS:
-        for place in field.places:
-            kind, name, key = place.split(".")
-            out[kind].setdefault(name, {})[key] = state[field.name]
-    ring = state["wheel"] == "ring"
-    for i, side in SPELLED.items():
-        held = "r_rim_mm" if ring and side == "wheel" else "r_bore_mm"
-        out["gear"][side] |= {held: state[f"held_{i}"], "material": side}
-    out["gear"]["wheel"]["beta_deg"] = (state["beta"] if ring else -state["beta"]) + 0.0
-    out["pair"][PAIR] |= {"gear_1": "pinion", "gear_2": "wheel"}
-    out["pair"][PAIR] |= {"a_mm": state["a"]} if state["a"] else {}
-    face = ("helical" if state["beta"] else None) if state["face"] == FACE else state["face"]
-    out["pair"][PAIR] |= {"face": face} if face else {}
-    flanks = {side: _flank(state, i, side) for i, side in SPELLED.items()}
-    out |= {"flank": modified} if (modified := {side: table for side, table in flanks.items() if table}) else {}
-    soft = {side: {key: value for name, key in SUPPORT.items() if (value := state[f"{name}_{i}"])} for i, side in SPELLED.items()}
-    soft = {side: {"gear": side} | springs for side, springs in soft.items() if springs}
-    out |= {"support": soft} if soft else {}
-    if state["crack"] != "none":
-        size = {"length_mm": state["crack_length"]} if state["crack"] == "length" else {"level": state["crack_level"]}
-        turning = {"turning": True} if state["turning"] == "yes" and state["crack"] == "level" else {}
-        part: dict[str, Any] = {"width_mm": [state["part_first"], state["part_last"]]} if state["part"] == "a part" else {}
-        part |= {"rounded": True} if part and state["part_rounded"] == "rounded" else {}
-        out["crack"] = [{"case": CASE} | {key: state[name] for name, key in CRACK.items()} | size | turning | part]
-    if state["pits"] == "yes":
-        axes = {"axes_mm": [state["pit_along"], state["pit_across"]]}
-        out["pits"] = [{"case": CASE} | {key: state[name] for name, key in PITS.items()} | axes]
-    if state["speed"]:
-        torque = state["drive"] or state["force"] * scene_of("page", out).gears["pinion"].r_b * 1e-3
-        out["machine"] = {"model": "helical_pair", "speed_rpm": state["speed"], "torque_Nm": torque}
-    return out | ({"assumption": state["assumption"]} if state["assumption"] else {})
-
-
-def _flank(state, i, side):
-    out = {key: state[f"{name}_{i}"] for name, key in FLANK.items() if state[f"{name}_{i}"]}
-    for end in ENDS:
-        if f"{end}_relief_um" in out:
-            out |= {f"{end}_start_length_mm": state[f"{end}_length_{i}"], f"{end}_exponent": state[f"{end}_exponent_{i}"]}
-    return {"gear": side} | out if out else {}
-
-
-def toml(tables: dict[str, Any]) -> str:
-    """Tables of a scene as a TOML file that `gearfe compare` and all other verbs read.
-
-    >>> print(toml({"title": "t", "pair": {"stage": {"force_N": 2000.0}}, "crack": [{"case": "a"}]}), end="")
-    title = "t"
-    <BLANKLINE>
-    [pair.stage]
-    force_N = 2000.0
-    <BLANKLINE>
-    [[crack]]
-    case = "a"
-    """
-    return "\n\n".join(filter(None, _written(tables, ""))) + "\n"
-
-
-def _written(table, head, mark=""):
-    plain = {key: value for key, value in table.items() if not (_tables(value) or (isinstance(value, dict) and not mark))}
-    lines = [f"{mark or '['}{head}{']]' if mark else ']'}"] if head and (plain or mark) else []
-    yield "\n".join([*lines, *(f"{_key(key)} = {_value(value)}" for key, value in plain.items())])
-    for key, value in table.items():
-        if _tables(value):
-            for row in value:
-                yield from _written(row, key, "[[")
-        elif key not in plain:
-            yield from _written(value, f"{head}.{_key(key)}" if head else _key(key))
-
-
-def _tables(value):
-    return isinstance(value, list) and bool(value) and all(isinstance(entry, dict) for entry in value)
-
-
-def _value(value):
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{_key(key)} = {_value(entry)}" for key, entry in value.items()) + " }" if value else "{}"
-    if isinstance(value, list):
-        return f"[{', '.join(map(_value, value))}]"
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f") if isinstance(value, (str, bool)) else repr(value)
-
-
-def _key(key):
-    return key if key.isascii() and key.replace("_", "").isalnum() else _value(key)
+    gears = {side: {"material": side} for side in SIDES}
+    pair = {"gear_1": "pinion", "gear_2": "wheel"}
+    tables = {"title": title_of(state), "source": state["source"], "material": {}, "gear": gears, "pair": {PAIR: pair}}
+    lists = {"crack": {"width_mm": [0.0, 0.0]} if state["part"] == "a part" else {}, "pits": {"axes_mm": [0.0, 0.0]}}
+    tables |= {kind: [{"case": CASE, **row}] for kind, row in lists.items() if state[kind] not in ("none", "no")}
+    counted = [field for field in FIELDS if field.places and field.counts(state)]
+    tables = set_values(tables, {place: field.typed(state[field.name]) for field in counted for place in field.places})
+    wheel, ring = tables["gear"]["wheel"], state["wheel"] == "ring"
+    wheel["beta_deg"] = (state["beta"] if ring else -state["beta"]) + 0.0
+    if ring:
+        wheel["r_rim_mm"] = wheel.pop("r_bore_mm")
+    for kind in ("flank", "support"):
+        if kind in tables:
+            tables[kind] = {side: {"gear": side} | row for side, row in tables[kind].items()}
+    if run := tables.pop("machine", {}):
+        torque = state["drive"] or state["force"] * scene_of("page", tables).gears["pinion"].r_b * 1e-3
+        tables["machine"] = {"model": "helical_pair"} | run | {"torque_Nm": torque}
+    return tables | ({"assumption": state["assumption"]} if state["assumption"] else {})
 
 
 def read(name: str, text: str, pair: str | None = None, case: str | None = None) -> tuple[dict[str, Any], list[str]]:
@@ -156,14 +76,16 @@ def read(name: str, text: str, pair: str | None = None, case: str | None = None)
     case = next(iter(chosen.damage), "") if case is None else case
     chosen.case(case or None)
     rest = _rest(scene, tables, pair, case)
-    own, notes = _renamed(name, tables, pair, case)
+    own, notes = _renamed(name, tables, pair, case), []
     state = _fields(name, own, chosen.force * chosen.pair.gear_1.r_b * 1e-3)
-    stated, page = dict(_flat(_filled(name, own))), dict(_flat(_filled(name, tables_of(state))))
-    for place in [*stated, *page]:
-        if place == "gear.wheel.beta_deg" and stated[place] and _same(stated[place], -page[place]):
-            notes.append(f"the hand of the wheel's helix, given as {stated[place]:g}°, is written as {page[place]:g}°")
-        elif not _same(stated.get(place), page.get(place)):
-            raise ValueError(f"{name}: {place} = {shown(stated.get(place))}, but the page has {shown(page.get(place))} there: no "
+    stated, page = _values(name, own), _values(name, tables_of(state))
+    for place in sorted({**stated, **page}, key=lambda place: stated.get(place) is None):
+        given, ours = (one.get(place, key_at(place).default) for one in (stated, page))
+        if place == "gear.wheel.beta_deg" and given and _same(given, -ours):
+            notes.append(f"the hand of the wheel's helix, given as {given:g}°, is written as {ours:g}°")
+        elif not _same(given, ours) and not (REQUIRED in (given, ours) and key_at(place).type in NAMES):
+            here = "nothing" if ours is REQUIRED else shown(ours)
+            raise ValueError(f"{name}: {place.replace(f'.{CASE}', '')} = {shown(given)}, but the page has {here} there: no "
                              "field of it holds this; nothing is dropped, so compute this scene by gearfe compare")  # fmt: skip
     return checked_state(state), [*(f"not taken from {name}: {one}" for one in rest), *notes]
 
@@ -188,67 +110,58 @@ def _runs(tables):
 
 
 def _renamed(name, tables, pair, case):
-    """The scene of one pair in one case with the names that the page gives, and what was changed in it, in words."""
-    row, notes = dict(tables["pair"][pair]), []
+    """The scene of one pair in one case with the names that the page gives."""
+    row = tables["pair"][pair]
     sides = {row["gear_1"]: "pinion", row["gear_2"]: "wheel"}
-    gears = {side: dict(tables["gear"][gear]) for gear, side in sides.items()}
-    materials = {side: dict(tables["material"][gear["material"]]) for side, gear in gears.items()}
-    names = {f"gear.{gear}.": f"gear.{side}." for gear, side in sides.items()} | {f"pair.{pair}.": f"pair.{PAIR}."}
-    out = {"title": tables["title"], "source": tables["source"], "material": materials, "gear": gears}
-    out["pair"] = {PAIR: row | {"gear_1": "pinion", "gear_2": "wheel"}}
-    for gear, side in sides.items():
-        names |= {f"material.{tables['gear'][gear]['material']}.": f"material.{side}."}
-        gears[side]["material"] = side
-    for kind in ("flank", "support", "shaft"):
-        for key, entry in tables.get(kind, {}).items():
-            if entry["gear"] in sides and entry.get("pair") in (None, pair):
-                if kind == "shaft":
-                    raise ValueError(
-                        f"{name}: [shaft.{key}] holds a gear of this pair; the page has supports by their stiffness only"
-                    )
-                table = {k: v for k, v in entry.items() if k != "pair"}
-                out.setdefault(kind, {})[sides[entry["gear"]]] = table | {"gear": sides[entry["gear"]]}
-    for kind in DAMAGE:
-        for entry in tables.get(kind, []):
-            if entry["case"] == case and entry["gear"] in sides and entry.get("pair") in (None, pair):
-                table = {k: v for k, v in entry.items() if k != "pair"}
-                out.setdefault(kind, []).append(table | {"case": CASE, "gear": sides[entry["gear"]]})
-    for kind, entries in ((kind, out.get(kind, [])) for kind in DAMAGE):
-        if len(entries) > 1:
-            raise ValueError(f"{name}: {len(entries)} tables [[{kind}]] in one case; the page has fields for one")
+    names = {"gear": sides, "pair": {pair: PAIR}, "material": {}}
+    given, out = trimmed(tables, pair, case), {"title": tables["title"], "source": tables["source"]}
+    if given["shaft"]:
+        raise ValueError(f"{name}: [shaft.{next(iter(given['shaft']))}] holds a gear of this pair; the page has springs only")
+    for kind in ("gear", "pair", "flank", "support", *DAMAGE):
+        rows = given[kind] if kind in DAMAGE else given[kind].values()
+        renamed = [_with_names(scene_schema()[kind], one, names) for one in rows]
+        if kind in DAMAGE:
+            if len(renamed) > 1:
+                raise ValueError(f"{name}: {len(renamed)} tables [[{kind}]] in one case; the page has fields for one")
+            out[kind] = [one | {"case": CASE} for one in renamed]
+        else:
+            own = [names[kind][key] for key in given[kind]] if kind in names else [one["gear"] for one in renamed]
+            out[kind] = dict(zip(own, renamed, strict=True))
+    of_gear = {side: tables["gear"][gear]["material"] for gear, side in sides.items()}
+    out["material"] = {side: given["material"][material] for side, material in of_gear.items()}
+    for side in out["gear"]:
+        out["gear"][side]["material"] = side
     if _runs(tables):
         out["machine"] = tables["machine"]
+    starts = {f"{kind}.{old}.": f"{kind}.{new}." for kind, new_names in names.items() for old, new in new_names.items()}
+    starts |= {f"material.{material}.": f"material.{side}." for side, material in of_gear.items()}
     for entry in tables.get("assumption", []):
         held = {new + key.removeprefix(old): value for key, value in entry.get("holds", {}).items()
-                for old, new in names.items() if key.startswith(old)}  # fmt: skip
+                for old, new in starts.items() if key.startswith(old)}  # fmt: skip
         if held or not entry.get("holds"):
             out.setdefault("assumption", []).append(entry | ({"holds": held} if held else {}))
-    return out, notes
-
-
-def _filled(name, tables):
-    """Tables with the defaults of their keys filled in; tables that may be left out are there too, with their defaults."""
-    out = {"title": tables["title"], "source": tables["source"]}
-    wanted = [("material", side) for side in SIDES] + [("gear", side) for side in SIDES] + [("pair", PAIR)]
-    for kind, key in wanted + [(kind, side) for kind in ("flank", "support") for side in SIDES]:
-        row = tables.get(kind, {}).get(key, {"gear": key})
-        out[f"{kind}.{key}"] = checked(name, f"{kind}.{key}", row, TABLES[kind])
-    if not out[f"pair.{PAIR}"]["face"] and out["gear.pinion"]["beta_deg"]:
-        out[f"pair.{PAIR}"]["face"] = "helical"
-    for kind, keys in DAMAGE.items():
-        for entry in tables.get(kind, []):
-            row = checked(name, kind, entry, keys)
-            if kind == "pits":  # of a row about its middle something else is left that no field holds
-                first = row["first_mm"] or 0.0
-                row |= {"first_mm": first, "last_mm": first if row["last_mm"] is None else row["last_mm"]}
-            out[kind] = row
-    if "machine" in tables:
-        out["machine"] = checked_machine(name, tables["machine"])
-    out["assumption"] = [{"why": "", "depends": "", "holds": {}} | entry for entry in tables.get("assumption", [])]
     return out
 
 
-def _flat(table, head="") -> Iterator[tuple[str, Any]]:
+def _with_names(table, row, names):
+    """Row of a table with the names that the page gives; a `pair` that the row is restricted to is left out."""
+    keys = {key: table.keys[key].type for key in row if key in table.keys}
+    return {
+        key: names[keys[key]].get(value, value) if keys[key] in names else value for key, value in row.items() if key != "pair"
+    }
+
+
+def _values(name: str, tables: dict[str, Any]) -> dict[str, Any]:
+    """Values of the scene by dotted key, with defaults of all tables that are there."""
+    rows = Reading(name, scene_schema()).row("scene", "top level", tables)
+    rows |= {kind: {row["case"]: row for row in rows[kind]} for kind in DAMAGE}
+    for row in rows["pits"].values():
+        row["last_mm"] = row["first_mm"] if row["last_mm"] is None else row["last_mm"]
+    rows["machine"] = {key: value for key, value in (rows["machine"] or {}).items() if key not in ("impact", "bodies")}
+    return dict(_flat({kind: rows[kind] for kind in ("material", "gear", "pair", "flank", "support", "machine", *DAMAGE)}))
+
+
+def _flat(table: dict[str, Any], head: str = "") -> Iterator[tuple[str, Any]]:
     for key, value in table.items():
         place = f"{head}.{key}" if head else key
         if isinstance(value, dict):
@@ -266,43 +179,20 @@ def _same(one, other):
 
 def _fields(name, tables, torque):
     """Values of the fields from renamed tables; what no field holds is left out, and found when `read` compares."""
-    out, filled = dict(START) | {"crack": "none"}, _filled(name, tables)
+    out, values = dict(START), _values(name, tables)
+    if values.get("gear.wheel.r_bore_mm") is None:
+        values["gear.wheel.r_bore_mm"] = values["gear.wheel.r_rim_mm"]
     for field in FIELDS:
-        if field.places:
-            place, key = field.places[0].rsplit(".", 1)
-            out[field.name] = filled[place][key]
-    for i, side in SPELLED.items():
-        gear, flank = filled[f"gear.{side}"], filled[f"flank.{side}"]
-        out[f"held_{i}"] = gear["r_rim_mm"] if gear["r_bore_mm"] is None else gear["r_bore_mm"]
-        out |= {f"{field}_{i}": flank[key] for field, key in FLANK.items()}
-        out |= {f"{field}_{i}": filled[f"support.{side}"][key] or 0.0 for field, key in SUPPORT.items()}
-        for end in ENDS:
-            out[f"{end}_exponent_{i}"] = flank[f"{end}_exponent"]
-            if flank[f"{end}_start_length_mm"] is not None:
-                out[f"{end}_length_{i}"] = flank[f"{end}_start_length_mm"]
-    pair = filled[f"pair.{PAIR}"]
-    out |= {"wheel": "ring" if filled["gear.wheel"]["r_rim_mm"] is not None else "external", "a": pair["a_mm"] or 0.0}
-    out["face"] = FACE if pair["face"] == ("helical" if filled["gear.pinion"]["beta_deg"] else None) else pair["face"]
-    if "crack" in filled:
-        row = filled["crack"]
-        out |= {field: row[key] for field, key in CRACK.items()}
-        out |= {"crack": "length", "crack_length": row["length_mm"]} if row["level"] is None else {
-            "crack": "level", "crack_level": row["level"], "turning": "yes" if row["turning"] else "no"}  # fmt: skip
-        if row["width_mm"] is not None:
-            rounded = "rounded" if row["rounded"] else "straight"
-            out |= {"part": "a part", "part_first": row["width_mm"][0], "part_last": row["width_mm"][1], "part_rounded": rounded}
-    if "pits" in filled:
-        row = filled["pits"]
-        out |= {field: row[key] for field, key in PITS.items()} | {"pits": "yes"}
-        out |= {"pit_along": row["axes_mm"][0], "pit_across": row["axes_mm"][1]}
-    if "machine" in filled:
-        drive = filled["machine"]["torque_Nm"]
-        out |= {"speed": filled["machine"]["speed_rpm"], "drive": 0.0 if _same(drive, torque) else drive}
-    for field in (numeric for numeric in FIELDS if numeric.whole or not numeric.choices):
-        value = out[field.name]
-        out[field.name] = float(value) if isinstance(value, int) and not field.whole else value
-    title = tables["title"]
+        if field.by:
+            out[field.name] = next(
+                (choice for choice, place in field.by.items() if values.get(place) is not None), field.choices[0]
+            )
+        elif field.places:
+            place, _, at = field.places[0].partition("_mm.")
+            value = values.get(f"{place}_mm" if at else place)
+            out[field.name] = field.from_typed(value[int(at)] if at and value else value)
+    out["drive"] = 0.0 if not out["speed"] or _same(out["drive"], torque) else out["drive"]
     out |= {"source": tables["source"], "title": "", "assumption": tables.get("assumption", [])}
     checked_state(out)
-    out["title"] = "" if title == title_of(out) else title
+    out["title"] = "" if tables["title"] == title_of(out) else tables["title"]
     return out

@@ -5,14 +5,15 @@ import os
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.case import Case, case_of
+from ..core.case import Case, CaseOptions, case_of
 from ..core.checks import one_of
 from ..core.markdown import table_row
+from ..core.material import Material
 from ..core.steps import steps
 from ..core.units import in_newton_per_um
 from ..geometry.mesh.mesher import gmsh_session
@@ -156,6 +157,14 @@ class Comparison:
         return "\n".join(lines)
 
 
+class OwnPair(CaseOptions, total=False):
+    """Load and material of a pair of one's own, and the options of its `Case`."""
+
+    force: float
+    torque: float
+    material: Material | tuple[Material, Material]
+
+
 def compare(
     scene: Scene | Case | GearPair | str | os.PathLike[str] | None = None,
     pair: str | GearPair | None = None,
@@ -165,7 +174,7 @@ def compare(
     phases: int | ArrayLike = 64,
     refine: float = 1.0,
     reference: str | None = None,
-    **given: Any,
+    **given: Unpack[OwnPair],
 ) -> Comparison:
     """Compare every formulation that models it with the reference, on one pair of a scene or of your own, healthy or damaged.
 

@@ -10,7 +10,7 @@ from ..core.case import overlap
 from ..core.markdown import table_row
 from ..core.steps import steps
 from ..core.units import in_newton_per_um
-from ..scene.damage_tables import DAMAGE
+from ..scene.parts import DAMAGE
 from ..scene.stored import read_curves
 from ..scene.verdicts import judge, text
 from ..stiffness.methods import METHODS, SUMS, fitted

@@ -1,18 +1,15 @@
 """S. L. Harris's map of a scene's pair: transmission error under a row of loads, with its flanks and beside plain involutes."""
 
-from typing import Any
+from dataclasses import replace
 
 from ..core.case import Case
-from ..stiffness.transmission_error import TransmissionError, transmission_error
+from ..stiffness.solve import Solve
+from ..stiffness.transmission_error import TransmissionError, errors_under_loads
 
 
-def harris(case: Case, **options: Any) -> tuple[TransmissionError, TransmissionError | None]:
-    """Transmission error of a pair as it is and, if its flanks are modified, by the same method of the pair without `flanks`.
-
-    Of a case under several loads; `options` as of `gearfe.Solve`.
-    """
-    error = transmission_error(case, **options)
+def harris(case: Case, how: Solve) -> tuple[TransmissionError, TransmissionError | None]:
+    """Transmission error of a case under its loads and, if its flanks are modified, by the same method without `flanks`."""
+    error = errors_under_loads(case, how)
     if not case.flanks:
         return error, None
-    options["method"] = error.curves[0].meta["method"]
-    return error, transmission_error(case, flanks=None, **options)
+    return error, errors_under_loads(replace(case, flanks=None), replace(how, method=error.curves[0].meta["method"]))

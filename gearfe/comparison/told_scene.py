@@ -152,13 +152,9 @@ def _machine(scene: Scene) -> str:
 
 
 def _set(scene: Scene) -> Iterator[str]:
-    """The set of a scene, or why it cannot be solved."""
-    if scene.set is None:
-        return
-    try:
+    """The set of a scene."""
+    if scene.set is not None:
         yield f"set: {told_set(build_set(scene))}"
-    except ValueError as error:
-        yield f"set that cannot be solved: {error}"
 
 
 def told_supports(curve: StiffnessCurve) -> str:

@@ -2,9 +2,9 @@
 
 import math
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, fields, replace
-from typing import Any, Self, cast
+from typing import Any, Self, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from ..geometry.pair.lines import FACES
 from ..geometry.tooth.flank_form import FlankForm
 from ..geometry.tooth.modified import Flank
 from .checks import is_number, numbers
+from .frozen import Frozen
 from .material import Material
 from .supports.held import REFUSE, supports_of
 from .supports.shaft import Shaft
@@ -26,12 +27,11 @@ SIDES = (("pinion", 1), ("wheel", -1))  # the wheel's tooth of pair k is -k in i
 
 
 @dataclass(frozen=True, slots=True)
-class Case(Mapping[str, Any]):
+class Case:
     """What meshes: a gear pair under a load, with its materials, damage, flanks and supports.
 
-    It says nothing of how it is solved, that does a `Solve`. As a mapping it spells out what was given, so that
-    ``gf.mesh_stiffness(**case)`` is ``gf.mesh_stiffness(case)``, and ``{**case, "force": 500.0}`` the same under another load;
-    `dataclasses.replace` gives a changed case.
+    How it is solved, a `Solve` states. A case copies the lists, arrays and dicts that it is given. It does not change
+    afterwards: `dataclasses.replace` returns a changed case. Cases that state the same are equal and have the same hash.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class Case(Mapping[str, Any]):
 
     pair: GearPair
     force: float | Sequence[float] | NDArray[np.float64] | None = None
-    material: Material | tuple[Material, Material] | None = None
+    material: Material | tuple[Material, Material] | None = field(default=None, compare=False)
     _: KW_ONLY
     torque: float | Sequence[float] | NDArray[np.float64] | None = None
     damage: Mapping[str, Sequence[Damage]] | None = None
@@ -102,7 +102,7 @@ class Case(Mapping[str, Any]):
     face: str | None = None
     groove: float = 0.0
     forces: tuple[float, ...] = field(init=False, repr=False, compare=False)
-    materials: tuple[Material, Material] = field(init=False, repr=False, compare=False)
+    materials: tuple[Material, Material] = field(init=False, repr=False)
     cracks: tuple[tuple[Crack, ...], ...] = field(init=False, repr=False, compare=False)
     pits: tuple[tuple[Any, ...], ...] = field(init=False, repr=False, compare=False)
     forms: tuple[FlankForm, FlankForm] | None = field(init=False, repr=False, compare=False)
@@ -113,7 +113,7 @@ class Case(Mapping[str, Any]):
         pair = self.pair
         if not isinstance(pair, GearPair):
             raise ValueError(f"pair = {pair!r}, but give a GearPair")
-        forces, materials = forces_of(pair, self.force, self.torque), two_materials(self.material)
+        forces, materials = tuple(forces_of(pair, self.force, self.torque)), two_materials(self.material)
         for value in forces:
             check_load(pair, value, materials)
         if not is_number(self.groove):
@@ -124,37 +124,39 @@ class Case(Mapping[str, Any]):
             message = f"face = {self.face!r}, but the gears have no helix angle (beta = 0): their teeth are straight"
             warnings.warn(message, stacklevel=4)
         cracks, pits = by_gear(pair, self.damage)
-        made: dict[str, Any] = {"forces": tuple(forces), "materials": materials, "cracks": cracks, "pits": pits}
-        if self.damage:
-            made |= {"damage": {name: defects for (name, _), defects in zip(SIDES, by_side(self.damage), strict=True) if defects}}
+        given: Any = self.force if self.torque is None else self.torque
+        made: dict[str, Any] = {"forces": forces, "materials": materials, "cracks": cracks, "pits": pits}
+        made |= {"force": forces if np.ndim(given) else forces[0], "torque": None}
+        made |= {"material": self.material if isinstance(self.material, Material) else materials}
         made |= {"forms": flank_forms(pair, self.flanks, self.misalignment)}
-        made |= {"held": supports_of(pair, self.supports, forces, self.face)}
-        if self.torque is not None:
-            made |= {"force": made["forces"] if np.ndim(cast(Any, self.torque)) else forces[0], "torque": None}
+        made |= {"held": supports_of(pair, self.supports, list(forces), self.face)}
+        made |= {"damage": _stated({name: tuple(own) for (name, _), own in zip(SIDES, by_side(self.damage), strict=True)})}
+        made |= {"flanks": _stated(self.flanks), "supports": _stated(self.supports)}
         for name, value in made.items():
             object.__setattr__(self, name, value)
 
+    def as_dict(self) -> dict[str, Any]:
+        """Return what was given, as arguments of `gearfe.mesh_stiffness` by name.
+
+        Pair, force, material, face and groove always are among them, of all else what differs from the default.
+        """
+        given = {item.name: (getattr(self, item.name), item.default) for item in GIVEN}
+        return {name: value for name, (value, default) in given.items() if name in FIRST or value != default}
+
+    def keys(self) -> Any:
+        """Return the names of `as_dict`; deprecated, as all of a case's use as a mapping."""
+        return _as_mapping(self).keys()
+
     def __getitem__(self, name: str) -> Any:
-        """What was given under this name, as an argument of `gearfe.mesh_stiffness`."""
-        if name not in tuple(self):
-            raise KeyError(name)
-        return getattr(self, name)
-
-    def __iter__(self) -> Iterator[str]:
-        """Names of what was given: pair, force, material, face and groove, and of all else what is not the default."""
-        return (item.name for item in GIVEN if item.name in FIRST or getattr(self, item.name) not in (None, item.default, {}))
-
-    def __len__(self) -> int:
-        return sum(1 for _ in self)
+        return _as_mapping(self)[name]
 
     def __or__(self, more: Mapping[str, Any]) -> dict[str, Any]:
-        """What was given, and more of it, as arguments of `gearfe.mesh_stiffness`."""
-        return {**self, **more}
+        return _as_mapping(self) | dict(more)
 
     @property
     def several(self) -> bool:
         """Whether several loads were given."""
-        return bool(np.ndim(cast(Any, self.force)))
+        return isinstance(self.force, tuple)
 
     @property
     def healthy(self) -> Self:
@@ -200,12 +202,35 @@ GIVEN = tuple(own for own in fields(Case) if own.init)
 NAMES = tuple(own.name for own in GIVEN)
 
 
-def case_of(pair: GearPair | Case, force: Any = None, material: Any = None, **given: Any) -> Case:
+class CaseOptions(TypedDict, total=False):
+    """Options of a `Case` beside pair, load and materials, for functions that take both; `Case` describes them."""
+
+    damage: Mapping[str, Sequence[Damage]] | None
+    flanks: Mapping[str, Flank] | None
+    misalignment: Misalignment | None
+    supports: Mapping[str, Support | Shaft] | None
+    face: str | None
+    groove: float
+
+
+def _as_mapping(case):
+    """What `case` was given, by name, with the warning that a case will not be a mapping."""
+    text = "a Case will not be a mapping in the next version: use case.as_dict(), or dataclasses.replace(case, ...)"
+    warnings.warn(text, DeprecationWarning, stacklevel=3)
+    return case.as_dict()
+
+
+def _stated(given):
+    """Read-only copy of what is given by gear, without empty entries; None if nothing is left."""
+    return Frozen({name: value for name, value in given.items() if value}) if given and any(given.values()) else None
+
+
+def case_of(pair: GearPair | Case, force: Any = None, material: Any = None, *, torque: Any = None, **given: Any) -> Case:
     """The `Case` of arguments such as those of `gearfe.mesh_stiffness`, in which a case may stand for the pair."""
     if not isinstance(pair, Case):
-        return Case(pair, force, material, **given)
-    if force is not None or given.get("torque") is not None:
-        given |= {"force": force}
+        return Case(pair, force, material, torque=torque, **given)
+    if force is not None or torque is not None:
+        given |= {"force": force, "torque": torque}
     if material is not None:
         given |= {"material": material}
     return replace(pair, **given) if given else pair

@@ -55,6 +55,8 @@ def numbers(name: str, value: Any, unit: str) -> NDArray:
         array = np.asarray(value)
     except ValueError as error:
         raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}") from error
+    if np.ma.is_masked(value):
+        raise ValueError(f"{name} has masked values: give numbers without holes{unit}")
     plain = array.dtype.kind in "iuf" and not _has_truth(value)
     if not plain and not (array.dtype.kind == "O" and array.size and all(is_number(element) for element in array.ravel())):
         raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}, not {_kind(value)}")

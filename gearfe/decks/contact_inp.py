@@ -1,17 +1,36 @@
 """`write_contact_inp`: a gear pair in nonlinear contact for CalculiX, its section or the whole width."""
 
 import os
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, TypedDict, Unpack
 
 from ..core.case import Case, case_of
 from ..core.files import suffix_of
 from ..core.material import Material
+from ..geometry.damage.kinds import Damage
+from ..geometry.pair.flanks import Misalignment
 from ..geometry.pair.gear_pair import GearPair
+from ..geometry.tooth.modified import Flank
 from .contact_deck import ContactDeck, write_contact_section
 from .contact_solid import write_contact_solid
 from .pressing import Pressing
 
 GIVEN = ("face", "damage", "flanks", "misalignment")  # of a case
+
+
+class DeckOptions(TypedDict, total=False):
+    """Options of `write_contact_inp`."""
+
+    face: str | None
+    damage: Mapping[str, Sequence[Damage]] | None
+    flanks: Mapping[str, Flank] | None
+    misalignment: Misalignment | None
+    pits: str
+    pose: str
+    per_width: float | None
+    layers: int
+    penalty: float
+    refine: float
 
 
 def write_contact_inp(
@@ -21,7 +40,7 @@ def write_contact_inp(
     approach: float,
     line_load: float | None = None,
     materials: tuple[Material, Material] | None = None,
-    **options: Any,
+    **options: Unpack[DeckOptions],
 ) -> ContactDeck:
     """Write a deck that turns the bores of a pair against each other by `approach` along the line of action.
 
@@ -86,8 +105,8 @@ def write_contact_inp(
         If elements of the mesh fold, where CalculiX would stop.
     """
     suffix_of(path, "deck")
-    of_case = {name: options.pop(name) for name in GIVEN if name in options}
-    how = Pressing(**options)
+    of_case: dict[str, Any] = {name: value for name, value in options.items() if name in GIVEN}
+    how = Pressing(**{name: value for name, value in options.items() if name not in GIVEN})  # type: ignore[arg-type]
     if not isinstance(pair, Case):
         force = None if line_load is None else line_load * min(pair.gear_1.b, pair.gear_2.b)
         case = case_of(pair, force, materials, **of_case)

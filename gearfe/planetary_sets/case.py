@@ -9,6 +9,7 @@ import numpy as np
 
 from ..core.case import check_load
 from ..core.checks import is_number, numbers, truth
+from ..core.frozen import Frozen
 from ..core.material import Material
 from ..geometry.damage.crack import Crack, check_through
 from ..geometry.pair.gear_pair import GearPair
@@ -138,7 +139,7 @@ class PlanetaryCase:
     def _by_gear(self, what, given, kind, *, single):
         """By gear, planets one by one: ``{"sun": ..., ("planet", i): ..., "ring": ...}``, those given only."""
         if given is None:
-            return {}
+            return Frozen({})
         if not isinstance(given, Mapping):
             raise ValueError(f"{what} = {given!r}, but give them by gear: {{'sun': ..., 'planet': ..., 'ring': ...}}")
         names = {"sun", "ring", *(("planet", i) for i in range(self.planets))}
@@ -155,7 +156,7 @@ class PlanetaryCase:
                 if not isinstance(entry, kind):
                     raise ValueError(f"{what} of {name!r}: {entry!r} is no {kind.__name__}; the section has no other")
             out |= {("planet", i): value for i in range(self.planets)} if name == "planet" else {name: value}
-        return out
+        return Frozen(out)
 
     def _check_faults(self):
         for name, flank in self.flanks.items():

@@ -6,8 +6,8 @@ from typing import Any
 
 from ..geometry.damage.crack import Crack
 from ..scene.load import Scene, ScenePair
+from ..scene.schema import located
 from ..scene.set_table import SceneSet
-from ..scene.strict import placed
 from .case import PlanetaryCase
 from .rim_supports import RimBed, RimSupports
 
@@ -48,13 +48,15 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
                 "are held by pin_N_per_um, floating and [ring.support]; leave those out"
             )
     file = f"{scene.name}.toml"
-    ring = placed(file, "ring.support", lambda: _support(given.support))
+    with located(file, "ring.support"):
+        ring = _support(given.support)
     flanks, damage = _flanks(scene, outer, inner), _damage(scene, case, given, outer, inner)
     materials = (*outer.materials, inner.materials[1])
-    return placed(file, "set", lambda: PlanetaryCase(
-        given.gears, given.force, materials, angles=given.angles, ring=ring, floating=given.floating, pin=given.pin,
-        errors=given.errors, flanks=flanks, damage=damage,
-    ))  # fmt: skip
+    with located(file, "set"):
+        return PlanetaryCase(
+            given.gears, given.force, materials, angles=given.angles, ring=ring, floating=given.floating, pin=given.pin,
+            errors=given.errors, flanks=flanks, damage=damage,
+        )  # fmt: skip
 
 
 def _support(row: dict[str, Any]) -> "str | RimBed | RimSupports":

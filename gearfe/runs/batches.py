@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from ..core.case import Case
 from ..stiffness.solve import mesh_stiffness
 from .runner import Tally, check_workers, count_of, results
 
@@ -28,7 +29,7 @@ class Batch:
 
 
 def batch(
-    cases: Iterable[Mapping[str, Any]],
+    cases: Iterable[Case | Mapping[str, Any]],
     *,
     work: Callable[..., Any] | None = None,
     workers: int | None = None,
@@ -38,8 +39,8 @@ def batch(
 
     Parameters
     ----------
-    cases : iterable of dict
-        Keyword arguments of `work`.
+    cases : iterable of Case or dict
+        First argument of `work`, or its keyword arguments.
     work : callable, optional
         Default `mesh_stiffness`; for several processes a function that can be imported by name.
     workers : int, optional
@@ -98,7 +99,7 @@ def _timed(work, job):
     for case in job[1]:
         started = time.perf_counter()
         try:
-            result = work(**case)
+            result = work(case) if isinstance(case, Case) else work(**case)
         except (ValueError, RuntimeError) as error:
             result = error
         out.append((result, time.perf_counter() - started))

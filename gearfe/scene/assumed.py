@@ -16,7 +16,7 @@ the source prints are no longer compared.
 
 import re
 
-from .strict import known_path, shown
+from .schema import shown
 
 OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # in what is said to depend on an assumption
 
@@ -44,8 +44,28 @@ def split(file, assumptions, given, tables):
 
 def _away(file, where, values, tables):
     """Values that differ, by key: (the present one, that of `values`)."""
-    present = {key: known_path(file, where, key, tables) for key in values}
+    present = {key: _present(file, where, key, tables) for key in values}
     return {key: (present[key], value) for key, value in values.items() if present[key] != value}
+
+
+def _present(file, where, key, tables):
+    """Value of a dotted key such as ``gear.sun.b_mm`` in nested tables; of a list of tables the values of all, one if alike.
+
+    ValueError if there is no such value, or it is a table; the message names what there is.
+    """
+    value = tables
+    for part in key.split("."):
+        if isinstance(value, list) and all(isinstance(entry, dict) and part in entry for entry in value):
+            values = [entry[part] for entry in value]
+            value = values[0] if all(entry == values[0] for entry in values) else values
+        elif isinstance(value, dict) and part in value:
+            value = value[part]
+        else:
+            there = ", ".join(value) if isinstance(value, dict) else "no table"
+            raise ValueError(f"{file} [{where}]: no value {key!r} in this scene; at {part!r} there is {there}")
+    if isinstance(value, dict) or (isinstance(value, list) and any(isinstance(entry, dict) for entry in value)):
+        raise ValueError(f"{file} [{where}] {key!r} is a table, but give single values: {key}.KEY = VALUE")
+    return value
 
 
 def of_stiffness(assumptions):

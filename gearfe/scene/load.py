@@ -1,6 +1,5 @@
 """Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units stand in the key names."""
 
-import math
 import os
 from dataclasses import dataclass, field
 from importlib import resources
@@ -16,47 +15,11 @@ from ..geometry.pair.flanks import Misalignment
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.modified import Flank
-from . import assumed, damage_tables, strict
-from .damage_tables import DAMAGE
-from .flank_table import FLANK, MISALIGNMENT, flanks_of, misalignment_of
-from .machine_table import checked_machine
+from . import assumed, parts
 from .references import Reference, read_references
-from .set_table import NAMES, SceneSet, checked_set, set_of
-from .strict import NUMBER, REQUIRED, TEXT, TEXTS, VALUES, WHOLE, checked, known, placed, sides
-from .support_table import SUPPORTS, supports_of
+from .schema import Reading, arguments, located, scene_schema
+from .set_table import SceneSet, set_of
 from .toml_file import read_toml
-
-TOP = {"title": (TEXT, REQUIRED), "source": (TEXT, REQUIRED), "later": (TEXTS, [])}
-TABLES = {
-    "material": {"E_MPa": (NUMBER, REQUIRED), "nu": (NUMBER, REQUIRED)},
-    "gear": {
-        "z": (WHOLE, REQUIRED),
-        "m_n_mm": (NUMBER, REQUIRED),
-        "alpha_n_deg": (NUMBER, REQUIRED),
-        "b_mm": (NUMBER, REQUIRED),
-        "material": (TEXT, REQUIRED),
-        "r_bore_mm": (NUMBER, None),
-        "r_rim_mm": (NUMBER, None),
-        "z_cutter": (WHOLE, 20),
-        "beta_deg": (NUMBER, 0.0),
-        "x": (NUMBER, 0.0),
-        "addendum": (NUMBER, 1.0),
-        "dedendum": (NUMBER, 1.25),
-        "tip_radius": (NUMBER, 0.38),
-    },
-    "pair": {
-        "gear_1": (TEXT, REQUIRED),
-        "gear_2": (TEXT, REQUIRED),
-        "force_N": (NUMBER, REQUIRED),
-        "a_mm": (NUMBER, None),
-        "face": (TEXT, None),
-        "groove_mm": (NUMBER, 0.0),
-        **MISALIGNMENT,
-    },
-    "flank": FLANK,
-    **SUPPORTS,
-}
-ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEXT, ""), "holds": (VALUES, {})}
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,96 +115,54 @@ def read_tables(name_or_path: str | os.PathLike[str]) -> tuple[str, dict[str, An
 
 def scene_of(file: str, data: dict[str, Any]) -> Scene:
     """Scene of the tables that a file of that name holds; the messages of its errors begin with the name."""
-    data = dict(data)
-    tables = {name: data.pop(name, {}) for name in TABLES}
-    told, given = data.pop("assumption", []), data.pop("given", {})
-    damage = {kind: data.pop(kind, []) for kind in DAMAGE}
-    run = checked_machine(file, data.pop("machine")) if "machine" in data else {}
-    printed = data.pop("reference", [])
-    whole = checked_set(file, {name: data.pop(name) for name in NAMES if name in data})
-    top = checked(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, *NAMES, "machine", "assumption", "given", "reference"))
-    for kind, named in tables.items():
-        strict.named_tables(file, kind, named)
-        if not named and kind in ("gear", "pair", "material"):
-            raise ValueError(f"{file}: no table [{kind}.NAME]; a scene needs at least one")
-    for kind, listed in {**damage, "assumption": told, "reference": printed}.items():
-        strict.listed_tables(file, kind, listed)
-    if not isinstance(given, dict):
-        raise ValueError(f'{file}: [given] is a table of values by dotted key, such as "gear.sun.z" = 21')
-    rows = {
-        kind: {name: checked(file, f"{kind}.{name}", table, TABLES[kind]) for name, table in tables[kind].items()}
-        for kind in TABLES
-    }
-    materials = {
-        n: placed(file, f"material.{n}", lambda r=r: Material(E=r["E_MPa"], nu=r["nu"])) for n, r in rows["material"].items()
-    }
-    gears = {n: placed(file, f"gear.{n}", lambda r=r: _gear(r)) for n, r in rows["gear"].items()}
-    for name, row in rows["gear"].items():
-        known(file, f"gear.{name}", "material", row["material"], materials, "material")
-    pairs = {name: _pair(file, name, rows, damage, gears, materials) for name in rows["pair"]}
-    notes = [checked(file, f"assumption {i + 1}", note, ASSUMPTION) for i, note in enumerate(told)]
-    cases = {kind: _by_case(checked(file, kind, table, DAMAGE[kind]) for table in listed) for kind, listed in damage.items()}
-    kept, changed, own = assumed.split(file, notes, given, rows | cases | {"machine": run} | whole)
-    title, source = top["title"], top["source"]
+    reading = Reading(file, scene_schema())
+    rows = reading.row("scene", "top level", data)
+    reading.check_references(rows)
+    materials: dict[str, Material] = {}
+    gears: dict[str, Gear] = {}
+    makers: tuple[tuple[str, Any, dict[str, Any]], ...] = (("material", Material, materials), ("gear", Gear, gears))
+    for kind, make, out in makers:
+        for name, row in rows[kind].items():
+            with located(file, f"{kind}.{name}", row):
+                out[name] = make(**arguments(kind, row))
+    pairs = {name: _pair(file, name, rows, gears, materials) for name in rows["pair"]}
+    made = set_of(file, rows, pairs)
+    run = dict(rows["machine"] or {})
+    if run:
+        run["bodies"] = {name: (float(body["mass_kg"]), float(body["inertia_kgm2"])) for name, body in run["bodies"].items()}
+    cases = {kind: _by_case(rows[kind]) for kind in parts.DAMAGE}
+    kept, changed, own = assumed.split(file, rows["assumption"], rows["given"], rows | cases)
+    title, source = rows["title"], rows["source"]
     if own:
         title, source = f"{title}, changed", f"own scene; changed from: {source}"
-    references = () if own else read_references(file, printed, pairs)
-    made = set_of(file, whole, pairs, rows["pair"])
     return Scene(
-        file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(top["later"]), run, references, changed, made
-    )
+        file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(rows["later"]),
+        machine=run, references=() if own else read_references(file, rows["reference"]), changed=changed, set=made,
+    )  # fmt: skip
 
 
-def _pair(file, name, rows, damage, gears, materials):
+def _pair(file, name, rows, gears, materials):
     """`ScenePair` of the checked tables of a scene."""
-    row, where = rows["pair"][name], f"pair.{name}"
-    for key in ("gear_1", "gear_2"):
-        known(file, where, key, row[key], gears, "gear")
-    made = placed(file, where, lambda: GearPair(gears[row["gear_1"]], gears[row["gear_2"]], row["a_mm"]))
-    if not row["force_N"] > 0:
-        raise ValueError(f"{file} [{where}] force_N = {row['force_N']}: a mesh is pressed together; give force_N > 0")
+    row = rows["pair"][name]
+    names = row["gear_1"], row["gear_2"]
+    with located(file, f"pair.{name}", row):
+        made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
     return ScenePair(
         made,
-        materials=tuple(materials[rows["gear"][row[key]]["material"]] for key in ("gear_1", "gear_2")),
+        materials=tuple(materials[rows["gear"][gear]["material"]] for gear in names),
         force=float(row["force_N"]),
         face=row["face"],
         groove=float(row["groove_mm"]),
-        damage=_cases(file, damage, gears, name, rows["pair"], made),
-        flanks=flanks_of(file, rows["flank"], name, rows["pair"], gears),
-        misalignment=misalignment_of(file, where, made, row),
-        supports=supports_of(file, rows, name, rows["pair"], materials),
+        damage=parts.damage_of(file, rows, name, made),
+        flanks=parts.flanks_of(file, rows, name, gears),
+        misalignment=parts.misalignment_of(file, name, made, row),
+        supports=parts.supports_of(file, rows, name, materials),
     )
 
 
-def _by_case(tables):
-    """Damage tables by case."""
+def _by_case(rows):
+    """Rows of damage by case."""
     out = {}
-    for table in tables:
-        out.setdefault(table["case"], []).append(table)
+    for row in rows:
+        out.setdefault(row["case"], []).append(row)
     return out
-
-
-def _cases(file, damage, gears, name, pairs, made):
-    """Damage of the pair `name` by case, from the scene's tables of damage.
-
-    Damage of a gear is in all its pairs, or only in its `pair`: a planet meets the sun with one flank, the ring with the other.
-    """
-    out = {}
-    for kind, tables in damage.items():
-        for i, table in enumerate(tables):
-            where = f"{kind} {i + 1}"
-            row = checked(file, where, table, DAMAGE[kind])
-            for side in sides(file, where, row, name, pairs, gears):
-                which, make = ("pinion", "wheel").index(side), damage_tables.TABLES[kind].made
-                found = placed(file, where, lambda r=row, n=which, make=make: make(r, made, n, pairs[name]))
-                out.setdefault(row["case"], {}).setdefault(side, []).extend(found)
-    return out
-
-
-def _gear(row):
-    if (row["r_bore_mm"] is None) == (row["r_rim_mm"] is None):
-        raise ValueError("give r_bore_mm (an external gear) or r_rim_mm (a ring), one of them, a number in mm")
-    plain = {key: row[key] for key in ("z", "x", "addendum", "dedendum", "tip_radius", "z_cutter")}
-    lengths = {key: row[f"{key}_mm"] for key in ("m_n", "b", "r_bore", "r_rim")}
-    angles = {key: math.radians(row[f"{key}_deg"]) for key in ("alpha_n", "beta")}
-    return Gear(**plain, **lengths, **angles)

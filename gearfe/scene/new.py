@@ -8,64 +8,18 @@ from ..core.files import written
 from ..geometry.damage.crack import Crack, crack_path, path_length
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.tooth.gear import Gear
-from .vocabulary import vocabulary
+from .parts import DAMAGE
+from .schema import arguments, scene_schema
+from .template import template
 
-TEXT = """\
-# A gear pair of your own. Lengths in mm, forces in N, angles in degrees: the unit stands in each name.
+HEAD = """\
+# A gear pair of your own. Lengths in mm, forces in N, angles in degrees: the unit is the end of each name.
 # Try it:  gearfe check {name}        gearfe compare {name}        gearfe compare {name} --case cracked
 # Lines that begin with # and no space are what else it can say: take the # away, and they hold.
 
-title = "{title}"
-source = "own gear pair"  # where its numbers come from
-
-[material.steel]
-E_MPa = 206000.0
-nu = 0.3
-
-[gear.pinion]
-z = {z_1}
-m_n_mm = {m_n}
-alpha_n_deg = 20.0
-beta_deg = {beta}  # helix angle; the mate of an external pair has the opposite hand
-b_mm = {width}
-x = 0.0  # profile shift
-addendum = 1.0  # of the tooth, in modules; with dedendum and tip_radius the basic rack of ISO 53, profile A
-dedendum = 1.25
-tip_radius = 0.38
-r_bore_mm = {bore}  # held here: the bore changes k by tens of percent, so give the true one
-material = "steel"
-
-[gear.wheel]
-z = {z_2}
-m_n_mm = {m_n}
-alpha_n_deg = 20.0
-beta_deg = {mate_beta}
-b_mm = {width}
-x = 0.0
-{wheel_rack}{wheel_support}
-material = "steel"
-
-[pair.stage]
-gear_1 = "pinion"
-gear_2 = "wheel"
-{load}
-{face}{pair_words}
-# What you had to assume; it is printed with every result, until you change the values it holds for.
-[[assumption]]
-what = "{bores}"
-why = "a start: give the true ones"
-holds = {{ "gear.pinion.r_bore_mm" = {bore}, {held} }}
-
-# Damage, by case: a root crack.
-[[crack]]
-case = "cracked"
-gear = "pinion"
-{crack}
-
-{words}"""
-FACE = 'face = "helical"  # or "herringbone" with groove_mm, the relief groove as part of b_mm\n'
-RING_RACK = "addendum = 0.8  # a full one may reach into the pinion's fillet\ndedendum = 1.25\ntip_radius = 0.2\n"
-RACK = "addendum = 1.0\ndedendum = 1.25\ntip_radius = 0.38\n"
+"""
+RING = {"addendum": 0.8, "dedendum": 1.25, "tip_radius": 0.2}  # a full addendum may reach into the pinion's fillet
+RACK = {"addendum": 1.0, "dedendum": 1.25, "tip_radius": 0.38}
 
 
 def new_scene(
@@ -83,7 +37,7 @@ def new_scene(
 ) -> Path:
     """Write a scene file with comments: a gear pair with a case of damage, ready to run and to be changed.
 
-    All else that a scene can say stands in it as commented lines (`gearfe.scene.vocabulary`).
+    All else that a scene can say stands in it as commented lines (`gearfe.scene.template`).
 
     Parameters
     ----------
@@ -122,63 +76,90 @@ def new_scene(
     if path.exists():
         raise ValueError(f"{path} exists and is not overwritten: give another name, or remove it")
     teeth = teeth or ((21, 63) if ring else (21, 31))
-    rack: dict[str, Any] = {"m_n": module, "alpha_n": math.radians(20), "b": width}
-    blank = [Gear(z=z, beta=math.radians(helix_deg), r_bore=0.1 * module, **rack) for z in teeth]
-    bores = [round(0.5 * gear.r_f, 1) for gear in blank]
-    beta = math.radians(helix_deg)
-    pinion = Gear(z=teeth[0], beta=beta, r_bore=bores[0], **rack)
+    rows: list[dict[str, Any]] = [
+        {"z": z, "m_n_mm": float(module), "alpha_n_deg": 20.0, "b_mm": float(width), "x": 0.0} for z in teeth
+    ]
+    rows[0] |= {"beta_deg": float(helix_deg), **RACK}
+    rows[1] |= {"beta_deg": float(helix_deg if ring else -helix_deg) + 0.0, **(RING if ring else RACK)}
+    held = ["gear.pinion.r_bore_mm", "gear.wheel.r_rim_mm" if ring else "gear.wheel.r_bore_mm"]
+    radii = [round(0.5 * _gear(row | {"r_bore_mm": 0.1 * module}).r_f, 1) for row in rows]
     if ring:
-        rim = round(0.5 * module * teeth[1] / math.cos(beta) + 5 * module, 1)
-        wheel = Gear(z=teeth[1], beta=beta, r_rim=rim, addendum=0.8, tip_radius=0.2, **rack)
-        support, held = f"r_rim_mm = {rim}  # outer radius of the rim, held there", f'"gear.wheel.r_rim_mm" = {rim}'
-    else:
-        wheel = Gear(z=teeth[1], beta=-beta, r_bore=bores[1], **rack)
-        support, held = f"r_bore_mm = {bores[1]}", f'"gear.wheel.r_bore_mm" = {bores[1]}'
-    pair = GearPair(pinion, wheel)
-    force, load = _force(pinion, width, torque_Nm)
-    pair_words, words = vocabulary(pair, force, _relief(pair, tip_relief_um, tip_length_mm))
-    text = TEXT.format(
-        name=path.name, title=f"Pair {teeth[0]}/{teeth[1]}, module {module:g} mm", z_1=teeth[0], z_2=teeth[1], m_n=float(module),
-        beta=float(helix_deg), mate_beta=math.degrees(wheel.beta) + 0.0, width=float(width), bore=bores[0],
-        wheel_rack=RING_RACK if ring else RACK, wheel_support=support, load=load,
-        pair_words=pair_words, words=words, crack=_crack(pinion, crack),
-        face=FACE if helix_deg else "", held=held,
-        bores=f"bore {bores[0]} mm (pinion) and {'rim ' + str(rim) if ring else 'bore ' + str(bores[1])} mm (wheel), held",
-    )  # fmt: skip
+        radii[1] = round(0.5 * module * teeth[1] / math.cos(math.radians(helix_deg)) + 5 * module, 1)
+    for row, key, radius in zip(rows, held, radii, strict=True):
+        row |= {key.rpartition(".")[2]: radius, "material": "steel"}
+    pair = GearPair(*map(_gear, rows))
+    force, told_force = _force(pair.gear_1, width, torque_Nm)
+    cracked, told_crack = _crack(pair.gear_1, crack)
+    stage = {"gear_1": "pinion", "gear_2": "wheel", "force_N": force} | ({"face": "helical"} if helix_deg else {})
+    bores = f"bore {radii[0]} mm (pinion) and {'rim' if ring else 'bore'} {radii[1]} mm (wheel), held"
+    stated: dict[str, Any] = {
+        "title": f"Pair {teeth[0]}/{teeth[1]}, module {module:g} mm", "source": "own gear pair",
+        "material": {"steel": {"E_MPa": 206000.0, "nu": 0.3}}, "gear": dict(zip(("pinion", "wheel"), rows, strict=True)),
+        "pair": {"stage": stage}, "crack": [{"case": "cracked", "gear": "pinion"} | cracked],
+        "assumption": [{"what": bores, "why": "a start: give the true ones", "holds": dict(zip(held, radii, strict=True))}],
+    }  # fmt: skip
+    numbers = _numbers(pair, force)
+    relief = _relief(pair, tip_relief_um, tip_length_mm)
+    keys = {"tip_relief_um": round(numbers["amount"], 1), "tip_start_length_mm": round(numbers["length"], 3)} | relief
+    flanks = {side: {"gear": side} | keys for side in ("pinion", "wheel")}
+    stated |= {"flank": flanks} if relief else {}
+    asleep: dict[str, Any] = {kind: [{}] for kind in DAMAGE} | {"support": {"output": {}}, "shaft": {"drive": {}}}
+    asleep |= ({} if relief else {"flank": flanks}) | ({} if ring else {"machine": {}})
+    text = template(stated, asleep, numbers, {"force_N": told_force, "level": told_crack})
     with written(path) as name:
-        Path(name).write_text(text, encoding="utf-8")
+        Path(name).write_text(HEAD.format(name=path.name) + text, encoding="utf-8")
     return path
 
 
+def _gear(row):
+    """Gear of a row of a scene."""
+    return Gear(**arguments("gear", dict.fromkeys(scene_schema()["gear"].keys) | row))
+
+
+def _numbers(pair, force):
+    """Numbers for the examples of the schema that suit a pair under a force [N]."""
+    gear, b = pair.gear_1, min(pair.gear_1.b, pair.gear_2.b)
+    length = 0.25 * (gear.roll_a - gear.roll_f)
+    roll = gear.roll_a - length
+    axis = min(0.25 * gear.m_n, 0.04 * b)
+    pitch = pair.a * gear.z / abs(pair.gear_2.z - gear.z if pair.gear_2.internal else pair.gear_2.z + gear.z)
+    return {
+        "crack": gear.m_n, "half": 0.5 * b, "pitch": pitch, "first": 0.2 * b, "last": 0.8 * b, "axis": axis, "apart": 2 * axis,
+        "depth": 0.1 * gear.m_n, "amount": 10 * gear.m_n, "length": length, "roll": roll,
+        "diameter": 2 * math.hypot(gear.r_b, roll), "angle": math.degrees(roll / gear.r_b), "reach": 2 * b,
+        "whole": 4 * b, "thick": 2 * gear.r_bore, "torque": force * gear.r_b * 1e-3, "a": pair.a, "span": 3 * b,
+    }  # fmt: skip
+
+
 def _force(pinion, width, torque):
-    """Force along the line of action [N], of a torque on the pinion [N m] if given, and the line of the file that says it."""
+    """Force along the line of action [N], of a torque on the pinion [N m] if given, and the torque in words."""
     if torque is not None and not 0 < torque < math.inf:
         raise ValueError(f"torque = {torque} N m: a mesh is pressed together; give a positive torque on the pinion")
     force = round(100.0 * width, 1) if torque is None else round(1e3 * torque / pinion.r_b, 3)
     torque_text = f"{force * pinion.r_b * 1e-3:.4g} N m over the base radius, {pinion.r_b:.5g} mm"
-    return force, f"force_N = {force}  # along the transverse line of action: {torque_text}"
+    return force, torque_text
 
 
 def _crack(pinion, given):
-    """Keys of the crack: its level, or the length [mm] and angle [degrees] that are given; the length is checked on its gear."""
+    """Keys of the crack, and in words its other size: its level, or the length [mm] and angle [degrees] that are given."""
     if given is None:
         length = path_length(pinion, Crack(level=0.3))
-        return f"level = 0.3  # at 0.5 it reaches the centre-line; or as a length: length_mm = {length:.2f}\nangle_deg = 45.0"
+        return {"level": 0.3, "angle_deg": 45.0}, f"or as a length: length_mm = {length:.2f}"
     length, angle = given
     if not 5 <= angle <= 90:
         raise ValueError(f"a crack of {length:g} mm at {angle:g} degrees: the angle to the centre-line is from 5 to 90 degrees")
     crack_path(pinion, Crack(length=length, angle=math.radians(angle)))
-    return f"length_mm = {length}\nangle_deg = {angle}  # to the centre-line"
+    return {"length_mm": length, "angle_deg": angle}, ""
 
 
 def _relief(pair, amount, length):
-    """Amount [um] and length [mm] of a tip relief, None without."""
+    """Keys of a tip relief, its amount [um] and length [mm]; none without."""
     if amount is None and length is None:
-        return None
+        return {}
     if amount is None or length is None or not (0 < amount < math.inf):
         raise ValueError(f"tip relief of {amount} um over {length} mm: give both, the amount positive")
     for gear in (pair.gear_1, pair.gear_2):
         whole = abs(gear.roll_a - gear.roll_f)
         if not 0 < length < whole:
             raise ValueError(f"tip relief over {length:g} mm, but the flank of z = {gear.z} is {whole:.4g} mm of roll long")
-    return amount, length
+    return {"tip_relief_um": amount, "tip_start_length_mm": length}

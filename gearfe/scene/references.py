@@ -2,38 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..core.checks import one_of
 from ..core.units import NEWTON_PER_UM
-from .strict import NUMBER, REQUIRED, TABLES, TEXT, TRUTH, checked, known, listed_tables
-
-KINDS = ("input", "arithmetic", "model")
-REFERENCE = {
-    "id": (TEXT, REQUIRED),
-    "kind": (TEXT, "model"),
-    "quantity": (TEXT, REQUIRED),
-    "unit": (TEXT, REQUIRED),
-    "source": (TEXT, REQUIRED),
-    "relative": (NUMBER, None),
-    "absolute": (NUMBER, None),
-    "tolerance": (TEXT, REQUIRED),
-    "trend": (TRUTH, False),
-    "note": (TEXT, ""),
-    "reason": (TEXT, ""),
-    "correction": (TEXT, ""),
-    "set_by": (TEXT, ""),
-    "rows": (TABLES, REQUIRED),
-}
-ROW = {
-    "case": (TEXT, REQUIRED),
-    "kind": (TEXT, None),
-    "pair": (TEXT, None),
-    "printed": (NUMBER, None),
-    "claim": (TRUTH, None),
-    "corrected": (NUMBER, None),
-    "correction": (TEXT, ""),
-    "reason": (TEXT, ""),
-    "set_by": (TEXT, ""),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +59,9 @@ class Reference:
         return abs(ours - value) <= allowed  # type: ignore[operator]  # one of the two is given
 
 
-def read_references(file, tables, pairs):
-    """References of the [[reference]] tables of a scene file; ValueErrors name file, table and key."""
-    listed_tables(file, "reference", tables)
-    out = tuple(_reference(file, f"reference {i + 1}", table, pairs) for i, table in enumerate(tables))
+def read_references(file, tables):
+    """References of the checked [[reference]] tables of a scene file; ValueErrors name file, table and key."""
+    out = tuple(_reference(file, f"reference {i + 1}, {row['id']}", row) for i, row in enumerate(tables))
     names = [reference.id for reference in out]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
@@ -101,17 +69,10 @@ def read_references(file, tables, pairs):
     return out
 
 
-def _reference(file, where, table, pairs):
-    row = checked(file, where, table, REFERENCE)
-    where = f"{where}, {row['id']}"
-    if (row["relative"] is None) == (row["absolute"] is None):
-        raise ValueError(f"{file} [{where}]: give one tolerance, relative (a part) or absolute (in {row['unit']})")
-    size = row["absolute"] if row["relative"] is None else row["relative"]
-    if size < 0:
-        raise ValueError(f"{file} [{where}]: a tolerance of {size} is negative; give 0 for exact values")
+def _reference(file, where, row):
     if not row["rows"]:
         raise ValueError(f"{file} [{where}]: rows = [], but a reference prints something; give a row for each case")
-    rows = tuple(_row(file, where, printed, row, pairs) for printed in row["rows"])
+    rows = tuple(_row(file, where, printed, row) for printed in row["rows"])
     places = [(printed.case, printed.pair) for printed in rows]
     twice = [place for place in places if places.count(place) > 1]
     if twice:
@@ -120,25 +81,19 @@ def _reference(file, where, table, pairs):
     return Reference(**keep, rows=rows)
 
 
-def _row(file, where, table, reference, pairs):
-    row = checked(file, where, table, ROW)
-    if row["pair"] is not None:
-        known(file, where, "pair", row["pair"], pairs, "pair")
+def _row(file, where, row, reference):
     if row["printed"] is not None and row["claim"] is not None:
         raise ValueError(f"{file} [{where}]: printed and claim in one row; a row is a number or a statement")
     if (reference["unit"] == "statement") != (row["claim"] is not None):
         raise ValueError(f"{file} [{where}]: rows of unit 'statement' have claim = true or false, others printed = a number")
-    if row["corrected"] is not None and not (row["correction"] or reference["correction"]):
+    both = {key: row[key] or reference[key] for key in ("kind", "correction", "reason", "set_by")}
+    if row["corrected"] is not None and not both["correction"]:
         raise ValueError(f"{file} [{where}]: corrected = {row['corrected']}, but no correction that says what was changed")
-    value = float("nan") if row["printed"] is None else float(row["printed"])
-    value = value if row["claim"] is None else float(row["claim"])
-    corrected = None if row["corrected"] is None else float(row["corrected"])
-    reason, correction = row["reason"] or reference["reason"], row["correction"]
-    if corrected is not None:
-        correction = correction or reference["correction"]
-    kind = row["kind"] or reference["kind"]
-    one_of(f"{file} [{where}]: kind", kind, KINDS)
-    return Printed(row["case"], row["pair"], value, corrected, correction, reason, kind, row["set_by"] or reference["set_by"])
+    value, corrected = (None if number is None else float(number) for number in (row["printed"], row["corrected"]))
+    value = float("nan") if value is None else value
+    if corrected is None:
+        both["correction"] = row["correction"]
+    return Printed(row["case"], row["pair"], value if row["claim"] is None else float(row["claim"]), corrected, **both)
 
 
 def printed_stiffness(scene, pair, case=None):

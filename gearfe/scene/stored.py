@@ -2,6 +2,7 @@
 
 import csv
 import hashlib
+from collections.abc import Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from importlib import resources
 
@@ -12,7 +13,7 @@ COLUMNS = ("pair", "case", "print", "phase", "k [N/m]", "own tooth [N/m]", "esti
 
 def fingerprint(case):
     """Eight letters that change with any number of a `Case`; fields left at their default do not count."""
-    run = dict(case)
+    run = case.as_dict()
     text = ";".join(f"{name}={_plain(run[name])}" for name in sorted(run))
     return hashlib.sha256(text.encode()).hexdigest()[:8]
 
@@ -22,7 +23,7 @@ def _plain(value):
         stated = {f.name: getattr(value, f.name) for f in fields(value) if f.init}
         defaults = {f.name: f.default for f in fields(value) if f.default is not MISSING}
         return f"{type(value).__name__}({_plain({n: v for n, v in stated.items() if n not in defaults or v != defaults[n]})})"
-    if isinstance(value, dict):
+    if isinstance(value, Mapping):
         return "{" + ",".join(f"{name}:{_plain(value[name])}" for name in sorted(value)) + "}"
     if isinstance(value, (list, tuple)):
         return "[" + ",".join(_plain(item) for item in value) + "]"

@@ -1,5 +1,6 @@
-"""TOML files as tables, and what may be given instead of one: a dictionary of the same structure."""
+"""TOML files as tables and back, and what may be given instead of one: a dictionary of the same structure."""
 
+import json
 import os
 import tomllib
 from collections.abc import Mapping
@@ -37,3 +38,47 @@ def _plain(value):
     if isinstance(value, (list, tuple, np.ndarray)):
         return [_plain(item) for item in value]
     return value.item() if isinstance(value, np.generic) else value
+
+
+def toml(tables: dict[str, Any]) -> str:
+    """Tables of a scene as a TOML file that `gearfe compare` and all other verbs read.
+
+    >>> print(toml({"title": "t", "pair": {"stage": {"force_N": 2000.0}}, "crack": [{"case": "a"}]}), end="")
+    title = "t"
+    <BLANKLINE>
+    [pair.stage]
+    force_N = 2000.0
+    <BLANKLINE>
+    [[crack]]
+    case = "a"
+    """
+    return "\n\n".join(filter(None, _written(tables, ""))) + "\n"
+
+
+def _written(table, head, mark=""):
+    plain = {key: value for key, value in table.items() if not (_tables(value) or (isinstance(value, dict) and not mark))}
+    lines = [f"{mark or '['}{head}{']]' if mark else ']'}"] if head and (plain or mark) else []
+    yield "\n".join([*lines, *(f"{_key(key)} = {toml_value(value)}" for key, value in plain.items())])
+    for key, value in table.items():
+        if _tables(value):
+            for row in value:
+                yield from _written(row, key, "[[")
+        elif key not in plain:
+            yield from _written(value, f"{head}.{_key(key)}" if head else _key(key))
+
+
+def _tables(value):
+    return isinstance(value, list) and bool(value) and all(isinstance(entry, dict) for entry in value)
+
+
+def toml_value(value: Any) -> str:
+    """A value as TOML writes it."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{_key(key)} = {toml_value(entry)}" for key, entry in value.items()) + " }" if value else "{}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(toml_value, value))}]"
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f") if isinstance(value, (str, bool)) else repr(value)
+
+
+def _key(key):
+    return key if key.isascii() and key.replace("_", "").isalnum() else toml_value(key)

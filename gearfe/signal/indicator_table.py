@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 from ..core.table import Column, Table
 from .series import Signal
@@ -27,13 +27,21 @@ def increment(value, healthy):
     return 100 * (value - healthy) / healthy
 
 
+class IndicatorOptions(TypedDict, total=False):
+    """Options of `Signal.indicators`."""
+
+    window: str | tuple[Any, ...]
+    tolerance: float | None
+    harmonics: int
+
+
 def indicator_table(
     signals: Mapping[str, Signal],
     mesh_frequency: float | None = None,
     fault_frequency: float | None = None,
     *,
     healthy: str = "healthy",
-    **options: Any,
+    **options: Unpack[IndicatorOptions],
 ) -> dict[str, dict[str, tuple[float, float]]]:
     """Indicators of several cases, each with its increment against the healthy one.
 

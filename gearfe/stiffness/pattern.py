@@ -1,20 +1,27 @@
 """`contact_pattern`: where and how hard the flanks of a pair press over the mesh cycle."""
 
-from typing import Any
+from typing import Unpack
 
 from numpy.typing import ArrayLike
 
 from ..contact.wide_contact import Contact3D, pair_stiffness3d
-from ..core.case import Case, case_of
+from ..core.case import Case, CaseOptions, case_of
 from ..core.threads import single
 from ..geometry.pair.gear_pair import GearPair
 from .phases import phase_array
+from .solve import Materials
 from .supported import check_integral
 
 
 @single
 def contact_pattern(
-    pair: GearPair | Case, force: float | None = None, material: Any = None, *, phases: int | ArrayLike = 24, **given: Any
+    pair: GearPair | Case,
+    force: float | None = None,
+    material: Materials = None,
+    *,
+    torque: float | None = None,
+    phases: int | ArrayLike = 24,
+    **given: Unpack[CaseOptions],
 ) -> Contact3D:
     """Contact of a pair over the mesh cycle by ``ritz3d``: every contact line with its loads and pressures.
 
@@ -27,6 +34,8 @@ def contact_pattern(
     force : float
         Along the line of action [N].
     material : Material or (Material, Material)
+    torque : float, optional
+        Instead of `force`: torque on the pinion [N m].
     phases : int or array
         As of `Solve`.
     **given
@@ -52,7 +61,7 @@ def contact_pattern(
     >>> [round(z, 6) for z, _ in contact.cells[0].at_ends(pair)]
     [0.0]
     """
-    case = case_of(pair, force, material, **given)
+    case = case_of(pair, force, material, torque=torque, **given)
     if case.several:
         raise ValueError(f"force = {case.force!r}, but the pattern is that of one force")
     check_integral(case, "ritz3d")

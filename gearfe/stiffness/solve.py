@@ -3,14 +3,15 @@
 import contextlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
-from typing import Any, overload
+from typing import Any, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.case import NAMES, Case, case_of
+from ..core.case import NAMES, Case, CaseOptions, case_of
 from ..core.checks import checked_refine, is_number, one_of, truth
-from ..core.material import check_state
+from ..core.frozen import frozen
+from ..core.material import Material, check_state
 from ..core.threads import one_thread
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..geometry.pair.gear_pair import GearPair
@@ -24,6 +25,7 @@ from .pose import SHIFT, in_pose
 from .turns import over_turns
 
 Loads = list[float] | tuple[float, ...] | NDArray[np.float64]
+Materials = Material | tuple[Material, Material] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,8 +125,10 @@ class Solve:
         order = self.order
         if order is not None and (not is_number(order) or not 2 <= order <= 8 or order != int(order)):
             raise ValueError(f"order = {order!r}, but give a whole number from 2 to 8, or None for that of the method")
-        if self.variants is not None and not isinstance(self.variants, dict):
+        if self.variants is not None and not isinstance(self.variants, Mapping):
             raise ValueError(f"variants = {self.variants!r}, but give a dict: {{'foundation': 'none'}}")
+        for name in ("phases", "variants"):
+            object.__setattr__(self, name, frozen(getattr(self, name)))
 
     def chosen(self, case: Case) -> tuple[Method, str]:
         """The method's row of the table, of ``auto`` that which fits the case, and why it was chosen."""
@@ -213,19 +217,59 @@ def _curves(row, case, how):
     return over_turns(posed, phase, pair, how.span, differs)
 
 
+class PairOptions(CaseOptions, total=False):
+    """Options of a `Case`, and of a `Solve` without phases, span and error, which describe them."""
+
+    method: str | OwnFlexibility
+    extended: bool
+    state: str
+    refine: float
+    order: int | None
+    teeth: int | None
+    variants: Mapping[str, Any] | None
+    cache: bool | SolvedGears
+    tell: Callable[[str], object] | None
+    pose: str
+
+
+class StiffnessOptions(PairOptions, total=False):
+    """Options of `mesh_stiffness`."""
+
+    phases: int | ArrayLike
+    span: str
+    error: bool
+
+
 @overload
 def mesh_stiffness(
-    pair: GearPair | Case, force: float | None = ..., material: Any = ..., *, torque: float | None = ..., **options: Any
+    pair: GearPair | Case,
+    force: float | None = ...,
+    material: Materials = ...,
+    *,
+    torque: float | None = ...,
+    **options: Unpack[StiffnessOptions],
 ) -> StiffnessCurve: ...
 
 
 @overload
 def mesh_stiffness(
-    pair: GearPair | Case, force: Loads | None = ..., material: Any = ..., *, torque: Loads | None = ..., **options: Any
+    pair: GearPair | Case,
+    force: Loads | None = ...,
+    material: Materials = ...,
+    *,
+    torque: Loads | None = ...,
+    **options: Unpack[StiffnessOptions],
 ) -> list[StiffnessCurve]: ...
 
 
-def mesh_stiffness(pair: GearPair | Case, force: Any = None, material: Any = None, **options: Any) -> Any:
+def mesh_stiffness(
+    pair: GearPair | Case,
+    force: Any = None,
+    material: Materials = None,
+    *,
+    torque: Any = None,
+    **options: Unpack[StiffnessOptions],
+) -> Any:
     """Mesh stiffness of a gear pair over one mesh cycle: a `Case` and a `Solve` in one call.
 
     ``k = F / delta``: F the force along the line of action, delta the loaded minus the unloaded transmission error as a
@@ -235,12 +279,14 @@ def mesh_stiffness(pair: GearPair | Case, force: Any = None, material: Any = Non
     ----------
     pair : GearPair or Case
     force : float or sequence of float
-        Force along the line of action over the whole width [N]; or give `torque`, on the pinion [N m]. Several loads share one
-        flexibility and give a list, of the same k as a call for each.
+        Force along the line of action over the whole width [N]. Several loads share one flexibility and give a list, of the same
+        k as a call for each.
     material : Material or (Material, Material)
         Of both gears, or of pinion and wheel.
+    torque : float or sequence of float, optional
+        Instead of `force`: torque on the pinion [N m].
     **options
-        ``torque``, ``damage``, ``flanks``, ``misalignment``, ``supports``, ``face``, ``groove`` of a `Case`, and ``method``,
+        ``damage``, ``flanks``, ``misalignment``, ``supports``, ``face``, ``groove`` of a `Case`, and ``method``,
         ``phases``, ``span``, ``extended``, ``state``, ``refine``, ``order``, ``teeth``, ``variants``, ``error``, ``cache``,
         ``tell``, ``pose`` of a `Solve`: there it says what they are. `flanks` make the curve's `te` the transmission error under
         load and `unloaded` that without; of `supports` the curve's `lte_supports` is their part of the deflection.
@@ -265,14 +311,16 @@ def mesh_stiffness(pair: GearPair | Case, force: Any = None, material: Any = Non
     >>> print(f"{1e-6 * curve.k.mean():.0f} N/um in the mean, from {1e-6 * curve.k.min():.0f} to {1e-6 * curve.k.max():.0f}")
     314 N/um in the mean, from 244 to 351
     """
-    return solve(*asked("mesh_stiffness", pair, force, material, options))
+    return solve(*split_arguments("mesh_stiffness", pair, force, material, torque, options))
 
 
-def asked(function, pair, force, material, options):
-    """`Case` and `Solve` of the arguments of a function that takes both; TypeError if it has no such argument."""
+def split_arguments(
+    function: str, pair: GearPair | Case, force: Any, material: Materials, torque: Any, options: Mapping[str, Any]
+) -> tuple[Case, Solve]:
+    """Return the `Case` and the `Solve` of the arguments of a function that takes both; TypeError for an unknown option."""
     unknown = sorted(set(options) - {*NAMES, *OPTIONS})
     if unknown:
         raise TypeError(f"{function}() has no argument {unknown[0]!r}; it has {', '.join((*NAMES, *OPTIONS))}")
     of_case = {name: value for name, value in options.items() if name in NAMES}
     how = Solve(**{name: value for name, value in options.items() if name in OPTIONS})
-    return case_of(pair, force, material, **of_case), how
+    return case_of(pair, force, material, torque=torque, **of_case), how

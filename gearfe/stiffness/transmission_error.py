@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from ..core.table import Column, Table
 from ..figures.error_plots import plot_transmission_error
 from ..geometry.pair.gear_pair import GearPair
 from .curve import StiffnessCurve
-from .solve import Loads, asked, solve
+from .solve import Loads, Materials, Solve, StiffnessOptions, solve, split_arguments
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,12 @@ class TransmissionError:
 
 
 def transmission_error(
-    pair: GearPair | Case, forces: Loads | None = None, material: Any = None, **options: Any
+    pair: GearPair | Case,
+    forces: Loads | None = None,
+    material: Materials = None,
+    *,
+    torque: Loads | None = None,
+    **options: Unpack[StiffnessOptions],
 ) -> TransmissionError:
     """Transmission error of a gear pair over the mesh cycle under several loads, which share one solve of the gears.
 
@@ -97,6 +102,8 @@ def transmission_error(
     forces : sequence of float
         Forces along the line of action [N]; default those of the case.
     material : Material or (Material, Material)
+    torque : sequence of float, optional
+        Instead of `forces`: torques on the pinion [N m].
     **options
         As of `mesh_stiffness`: ``flanks``, ``method``, ``phases``, ``pose`` and so on.
 
@@ -126,7 +133,11 @@ def transmission_error(
     [1.3, 3.6]
     [2.6, 0.4]
     """
-    case, how = asked("transmission_error", pair, forces, material, options)
+    return errors_under_loads(*split_arguments("transmission_error", pair, forces, material, torque, options))
+
+
+def errors_under_loads(case: Case, how: Solve) -> TransmissionError:
+    """`TransmissionError` of a case under its loads."""
     curves = tuple(solve(replace(case, force=case.forces), how))
     te, phase = np.array([curve.te for curve in curves]), curves[0].phase
     unloaded = np.zeros(phase.size) if curves[0].unloaded is None else curves[0].unloaded

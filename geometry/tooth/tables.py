@@ -13,7 +13,7 @@ def numbers(name: str, values: Any) -> list[float]:
         out = np.asarray(values, dtype=float)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name} = {values!r}, but give a sequence of numbers [mm]") from error
-    if out.ndim != 1 or not np.isfinite(out).all():
+    if out.ndim != 1 or not np.isfinite(out).all() or np.ma.is_masked(values):
         raise ValueError(f"{name} needs one row of finite numbers [mm], without holes")
     return out.tolist()
 

@@ -83,7 +83,6 @@ def test_what_cannot_be_is_refused_before_work_begins(scene, tmp_path, monkeypat
             'kind = "lugs"\ncount = 5\nwidth_mm = 8\ntangential_N_per_um = 50',
             "on 5 lugs, which only push, of 8 mm, tangential 50",
         ),
-        ('kind = "pads"\ncount = 400\nwidth_mm = 8', "set that cannot be solved: my_set.toml [set]: ring: 400 pads of 8 mm"),
     ],
 )
 def test_check_tells_the_set(scene, capsys, support, told):
@@ -92,4 +91,4 @@ def test_check_tells_the_set(scene, capsys, support, told):
     assert main(["check", str(scene)]) == 0
     said = capsys.readouterr().out
     assert told in said
-    assert "cannot be" in said or "set: 3 planets at 0, 120, 240 degrees, pins of 300 N/um, 1 of 3 off their places; 2027" in said
+    assert "set: 3 planets at 0, 120, 240 degrees, pins of 300 N/um, 1 of 3 off their places; 2027" in said

@@ -188,6 +188,6 @@ def test_what_shafts_and_springs_take_is_told(scene, tmp_path, capsys):
         r"take \d+ % of the deflection, and are in k; teeth and bodies alone have (\S+) N/um", capsys.readouterr().out
     )
     chosen = gf.load_scene(scene).pair()
-    rigid = gf.mesh_stiffness(**chosen.case(), phases=8)
+    rigid = gf.mesh_stiffness(chosen.case(), phases=8)
     assert float(alone) == pytest.approx(rigid.k.mean() / 1e6, rel=0.01)
     assert not told_supports(rigid)

@@ -38,7 +38,9 @@ def test_pattern_of_the_command_line(askew, tmp_path, capsys):
 
 def test_a_line_without_load_is_grey_and_zero_is_the_first_colour(askew):
     chosen = gf.load_scene(askew).pair()
-    contact = gf.contact_pattern(**chosen.case() | {"force": 100.0}, phases=[0.0, 0.9])  # so light that z = b stays open
+    contact = gf.contact_pattern(
+        **chosen.case().as_dict() | {"force": 100.0}, phases=[0.0, 0.9]
+    )  # so light that z = b stays open
     figure = gf.plot_contact(chosen.pair, contact, None)
     idle, drawn = figure.axes[0].collections
     assert len(idle.get_segments()) == sum((cells.load == 0).sum() for cells in contact.cells) > 0

@@ -46,7 +46,7 @@ def test_method_told_is_the_one_taken(name):
     if name == "planetary_pitting":
         chosen = scene.pair()
         for case in (None, "mild"):
-            method = gf.mesh_stiffness(**chosen.case(case), phases=1).meta["method"]
+            method = gf.mesh_stiffness(chosen.case(case), phases=1).meta["method"]
             line = next(one for one in told(scene) if ("healthy;" if case is None else f"case {case}:") in one)
             assert f"solved by {method}:" in line
 

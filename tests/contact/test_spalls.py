@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.comparison.losses import kind_of, told_damage
-from gearfe.runs.sweeps.keys import check_key, placed
+from gearfe.scene.dotted_keys import check_key, set_values
 from gearfe.scene.load import load_scene, scene_of
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 12.0}
@@ -120,14 +120,14 @@ def test_scene_words_and_sweep(tmp_path):
         chosen.pair, {"pinion": [SPALL, gf.Crack(level=0.2)], "wheel": [gf.Pit(31.0, 5.0, (0.4, 0.4), 0.1)] * 2}
     ) == ("1.11 mm crack at 45 degrees (level 0.2), 2 pits and 1.5 x 4 mm spall")
     assert kind_of(damage) == "spalled"
-    curve = gf.mesh_stiffness(**chosen.case("spalled"), phases=[0.8], refine=0.5)
+    curve = gf.mesh_stiffness(chosen.case("spalled"), phases=[0.8], refine=0.5)
     assert (curve.meta["method"], curve.meta["why"]) == ("ritz3d", "spalls change along the width")
     assert curve.meta["damage"]["pinion"] == [
         {"radius": 21.0, "z": 5.0, "sides": (1.5, 4.0), "depth": 0.2, "corner": 0.3, "tooth": 0, "side": "loaded"}
     ]
     tables = tomllib.loads(SCENE)
     check_key("spall.spalled.sides_mm.1", tables, {})
-    longer = scene_of("longer", placed(tables, {"spall.spalled.sides_mm.1": 6.0}))
+    longer = scene_of("longer", set_values(tables, {"spall.spalled.sides_mm.1": 6.0}))
     assert longer.pair().damage["spalled"]["pinion"] == [replace(SPALL, sides=(1.5, 6.0))]
 
 

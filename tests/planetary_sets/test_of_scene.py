@@ -88,7 +88,7 @@ def test_what_a_set_does_not_know_is_refused(tmp_path, more, which, message):
 
 
 def test_places_that_cannot_be_name_the_table(tmp_path):
-    with pytest.raises(ValueError, match=r"s.toml \[ring.support\]: rim supports: width = -1 mm"):
+    with pytest.raises(ValueError, match=r"s.toml \[ring.support\] width_mm = -1, but it must be above 0 mm"):
         gf.build_set(loaded(tmp_path, SCENE.replace("width_mm = 5 ", "width_mm = -1 ")))
     angles = SCENE.replace("n_planets = 3 ", "angles_deg = [0, 121, 240] #")
     with pytest.raises(ValueError, match=r"s.toml \[set\]: planets at 0, 121, 240 degrees cannot be assembled"):

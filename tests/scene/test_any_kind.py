@@ -12,10 +12,8 @@ import pytest
 import gearfe as gf
 from gearfe.geometry.pair import gear_pair
 from gearfe.geometry.pair.interference import overlap
-from gearfe.scene.load import ASSUMPTION, DAMAGE, TABLES, TOP, scene_of
-from gearfe.scene.machine_table import BODIES, BODY, IMPACT, MACHINE
-from gearfe.scene.references import REFERENCE, ROW
-from gearfe.scene.strict import shown
+from gearfe.scene.load import scene_of
+from gearfe.scene.schema import scene_schema, shown
 
 RACK = {"m_n_mm": 2.0, "alpha_n_deg": 20.0, "b_mm": 20.0, "material": "steel", "beta_deg": 0.0, "x": 0.0, "z_cutter": 20}
 RACK |= {"addendum": 1.0, "dedendum": 1.25, "tip_radius": 0.2}
@@ -88,7 +86,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
             "damping_Ns_per_mm": 1.0, "depth_mm": 0.1, "friction": [0.2, 0.1], "friction_speeds_mm_per_s": [0.1, 10.0],
             "pulse_Nm": 0.0, "pulse_period_s": 0.5, "pulse_width_s": 0.05,
         },
-        "bodies": {name: {"mass_kg": 1.0, "inertia_kgm2": 1e-3} for name in BODIES},
+        "bodies": {name: {"mass_kg": 1.0, "inertia_kgm2": 1e-3} for name in scene_schema()["machine"].keys["bodies"].names},
     },
     "given": {"gear.sun.z": 21},
     "assumption": [{"what": "width", "why": "none given", "depends": "k", "holds": {"gear.sun.b_mm": 20.0}}],
@@ -130,9 +128,9 @@ def replaced(path, value):
 
 
 def vocabulary():
-    """Every key of every table, and those that exclude another one of the whole scene."""
-    tables = [TOP, *TABLES.values(), *DAMAGE.values(), MACHINE, IMPACT, BODY, ASSUMPTION, REFERENCE, ROW]
-    return {key for table in tables for key in table} | {*TABLES, *DAMAGE, "machine", "impact", "bodies", "given", "assumption"}
+    """Every key of every table but those of a planetary set, and those that exclude another one of the whole scene."""
+    of_sets = ("set", "ring", "ring_support", "pin")
+    return {key for name, table in scene_schema().items() if name not in of_sets for key in table.keys} - {*of_sets}
 
 
 def test_the_whole_scene_has_every_key():
@@ -185,8 +183,11 @@ WORDS = [  # of a scene file, what is said of it
     ("pits = 3", r"pits = 3, but give a list of tables: \[\[pits\]\]"),
     ("[reference]\nid = 'x'", r"write \[\[reference\]\]"),
     ("assumption = 'steel'", r"assumption = 'steel', but give a list of tables"),
-    ("[machine]\nmodel = 'planetary'\nspeed_rpm = 0\ntorque_Nm = 3", r"speed_rpm = 0, but give a number from 0.001 to 1e\+06"),
-    ("[machine]\nmodel = 'x'\nspeed_rpm = 1\ntorque_Nm = 3\nbodies = []", r"\[machine.bodies\]: \[\], but give a table for each"),
+    (
+        "[machine]\nmodel = 'planetary'\nspeed_rpm = 0\ntorque_Nm = 3",
+        r"speed_rpm = 0, but it must lie between 0.001 and 1e\+06 rpm",
+    ),
+    ("[machine]\nmodel = 'planetary'\nspeed_rpm = 1\ntorque_Nm = 3\nbodies = []", r"write \[machine.bodies.NAME\]"),
 ]
 
 

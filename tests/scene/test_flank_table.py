@@ -51,12 +51,12 @@ def loaded(tmp_path, text):
 def test_units_are_those_of_the_keys(tmp_path):
     scene, _ = loaded(tmp_path, RELIEF + "\n[flank.wheel]\ngear = 'wheel'\ncrowning_um = 4\nslope_um = -2\n")
     case = scene.pair().case()
-    assert case["flanks"] == {
+    assert case.flanks == {
         "pinion": gf.Flank(tip_relief=0.010, tip_start_angle=math.radians(24), tip_exponent=2),
         "wheel": gf.Flank(crowning=0.004, slope=-0.002),
     }
-    curve = gf.mesh_stiffness(**case, phases=8)
-    found = gf.transmission_error(case["pair"], [3000.0], case["material"], flanks=case["flanks"], phases=8)
+    curve = gf.mesh_stiffness(case, phases=8)
+    found = gf.transmission_error(case.pair, [3000.0], case.material, flanks=case.flanks, phases=8)
     assert_allclose(curve.te, found.te[0])
 
 
@@ -75,15 +75,15 @@ def test_keys_along_the_width_and_misalignment(tmp_path):
     askew = "F_beta_um = 12\nf_sigma_beta_um = 6\nbearing_span_mm = 90\n"
     scene, _ = loaded(tmp_path, askew + WIDE)
     case = scene.pair().case()
-    assert case["misalignment"] == gf.Misalignment(F_beta=0.012, f_sigma_beta=0.006, length=90)
-    made = case["flanks"]["pinion"]
+    assert case.misalignment == gf.Misalignment(F_beta=0.012, f_sigma_beta=0.006, length=90)
+    made = case.flanks["pinion"]
     assert made == gf.Flank(lead_crowning=0.005, lead_slope=-0.003, twist=0.002, end_relief=(0.004, 0.008), end_length=(2.0, 3.0))
     assert scene.case().why_wide
     assert not loaded(tmp_path, RELIEF)[0].case().why_wide
     for text, message in (
         ("f_sigma_beta_um = 6\n", r"\[pair.main\]: misalignment: .* give length"),
         ("F_beta_um = 12000\n", r"\[pair.main\]: 600 um of misalignment per mm"),
-        (WIDE.replace("[2, 3]", "[2, 30]"), r"\[flank.wide\]: end_length = 30 mm"),
+        (WIDE.replace("[2, 3]", "[2, 30]"), r"\[flank.wide\]: end_length_mm = \[2, 30\], but the gear of z = 24 is 20 mm wide"),
         (WIDE.replace("[4, 8]", "4"), r"expected two numbers in um"),
     ):
         with pytest.raises(ValueError, match=message):
@@ -103,9 +103,12 @@ def test_a_misaligned_pair_is_compared_in_three_dimensions(tmp_path):
     [
         (RELIEF.replace("_um", "_mm"), r"\[flank.short\]: unknown key 'tip_relief_mm'"),
         (RELIEF.replace("= 10", "= 10000"), r"\[flank.short\]: 10 mm removed"),
-        (RELIEF.replace("= 24", "= 50"), r"\[flank.short\]: tip_start_angle = 0.87\d* rad is not inside the flank"),
+        (
+            RELIEF.replace("= 24", "= 50"),
+            r"\[flank.short\]: tip_start_angle_deg = 50 is not inside the flank of z = 24, 5.99\d* to 32.86\d* degrees",
+        ),
         (RELIEF.replace('"pinion"', '"sun"'), "no such gear; there is pinion, wheel"),
-        (RELIEF + RELIEF.replace("short", "again"), "'pinion' has a flank in pair 'main' already"),
+        (RELIEF + RELIEF.replace("short", "again"), "'pinion' has flank in pair 'main'; give each its pair"),
         ("[flank.a]\ngear = 'wheel'\ntable_roll_mm = [1, 2]\n", "give table_roll_mm and table_removed_um together"),
         ("[flank.a]\ngear = 'wheel'\npitch_um = 3\n", "expected a list of numbers in um"),
     ],

@@ -5,10 +5,7 @@ import pytest
 
 import gearfe as gf
 from gearfe.app.cli import main
-from gearfe.scene.flank_table import FLANK, MISALIGNMENT
-from gearfe.scene.load import DAMAGE, TABLES
-from gearfe.scene.machine_table import BODY, IMPACT, MACHINE
-from gearfe.scene.support_table import SUPPORTS
+from gearfe.scene.schema import scene_schema
 
 RELIEF = {"tip_relief_um": 15.0, "tip_length_mm": 1.2}
 LOADED = {"torque_Nm": 60.0, "crack": (1.5, 60.0)}
@@ -24,7 +21,7 @@ def test_written_scene_is_the_pair_asked_for(options, tmp_path):
     assert pair.gear_2.internal is options.get("ring", False)
     assert math.degrees(pair.gear_1.beta) == pytest.approx(options.get("helix_deg", 0.0))
     assert len(scene.assumptions) == 1
-    curve = gf.mesh_stiffness(**scene.pair().case("cracked"), phases=[0.5], refine=0.5)
+    curve = gf.mesh_stiffness(scene.pair().case("cracked"), phases=[0.5], refine=0.5)
     assert (curve.k > 0).all()
 
 
@@ -80,9 +77,10 @@ def test_written_scene_runs_on_the_command_line(tmp_path, capsys):
 def test_all_that_a_scene_can_say_stands_in_it_and_holds(options, tmp_path):
     """Every key of the loader is written; with the # taken away from all of them the scene is read."""
     text = gf.new_scene(tmp_path / "my.toml", **options).read_text()
-    keys = [*FLANK, *MISALIGNMENT, *SUPPORTS["support"], *SUPPORTS["shaft"], *DAMAGE["crack"], *DAMAGE["pits"]]
-    keys += [key for key in TABLES["pair"] if key not in ("face", "groove_mm")]
-    keys += [] if options.get("ring") else [*MACHINE, *IMPACT, *BODY]
+    machine = ("machine", "impact", "body")
+    tables = [table for name, table in scene_schema().items() if name not in ("row", "ring_support") and name not in machine]
+    keys = [key for table in tables for key in table.keys if key not in ("given", "later", "machine")]
+    keys += [] if options.get("ring") else [key for name in machine for key in scene_schema()[name].keys]
     assert not [key for key in keys if not re.search(rf"\b{key}\b", text)]
     (tmp_path / "all.toml").write_text(re.sub(r"^#(?=[\w\[])", "", text, flags=re.M))
     scene = gf.load_scene(tmp_path / "all.toml")
@@ -102,8 +100,8 @@ def test_all_that_a_scene_can_say_stands_in_it_and_holds(options, tmp_path):
 def test_length_of_the_crack_beside_its_level_is_the_same_crack(tmp_path):
     path = gf.new_scene(tmp_path / "my.toml")
     run = {"phases": [0.8], "method": "ritz"}
-    level = gf.mesh_stiffness(**gf.load_scene(path).pair().case("cracked"), **run)
+    level = gf.mesh_stiffness(gf.load_scene(path).pair().case("cracked"), **run)
     path.write_text(re.sub(r"^level = 0.3  #.* or as a length: (length_mm = [\d.]+)", r"\1", path.read_text(), flags=re.M))
     crack = gf.load_scene(path).pair().damage["cracked"]["pinion"][0]
     assert crack.level is None
-    assert gf.mesh_stiffness(**gf.load_scene(path).pair().case("cracked"), **run).k[0] == pytest.approx(level.k[0], rel=2e-3)
+    assert gf.mesh_stiffness(gf.load_scene(path).pair().case("cracked"), **run).k[0] == pytest.approx(level.k[0], rel=2e-3)

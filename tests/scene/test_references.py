@@ -40,9 +40,13 @@ def test_as_printed(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("relative = 0.01", "", "give one tolerance, relative"),
-        ("relative = 0.01", "relative = 0.01\nabsolute = 1.0", "give one tolerance, relative"),
-        ("relative = 0.01", "relative = -0.01", "a tolerance of -0.01 is negative"),
+        ("relative = 0.01", "", r"give relative \(tolerance as a part of the printed value\) or absolute"),
+        (
+            "relative = 0.01",
+            "relative = 0.01\nabsolute = 1.0",
+            r"give relative \(tolerance as a part of the printed value\) or absolute",
+        ),
+        ("relative = 0.01", "relative = -0.01", "relative = -0.01, but it must be at least 0"),
         ('id = "a"', 'name = "a"', "unknown key 'name'"),
         ('source = "S4"', "", "missing key 'source'"),
         ('unit = "Hz"', 'unit = "statement"', "rows of unit 'statement' have claim"),
@@ -52,7 +56,7 @@ def test_as_printed(tmp_path):
         ("printed = 480.0", 'printed = 480.0, pair = "moon"', "no such pair; there is sun_planet, planet_ring"),
         (', correction = "turned over"', "", "no correction that says what was changed"),
         ('case = "two"', 'case = "one"', "two rows of case 'one'"),
-        ("rows = [{", "rows = [1, {", "expected a list of tables"),
+        ("rows = [{", "rows = [1, {", "expected a table of keys and values, got 1"),
     ],
 )
 def test_errors_name_file_table_and_key(tmp_path, old, new, message):

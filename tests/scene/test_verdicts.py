@@ -7,7 +7,8 @@ import pytest
 
 import gearfe as gf
 from gearfe.scene import verdicts
-from gearfe.scene.references import KINDS, Printed, Reference
+from gearfe.scene.references import Printed, Reference
+from gearfe.scene.schema import scene_schema
 
 SCENES = ("planetary_pitting", "compound_planetary", "helical_pitting", "herringbone")
 
@@ -73,7 +74,7 @@ def test_the_headline_counts_results_of_a_model_only():
 
 def test_kinds_are_known(tmp_path):
     scene = gf.load_scene("herringbone")
-    assert {row.kind for one in scene.references for row in one.rows} == set(KINDS)
+    assert {row.kind for one in scene.references for row in one.rows} == set(scene_schema()["reference"].keys["kind"].choices)
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -78,7 +78,7 @@ def pits(name):
     case, scene = PITTED[name], gf.load_scene(name)
     label, one = next(iter(scene.pairs.items()))
     run = {"span": "tooth", "phases": 96, "method": "ritz3d"}
-    whole = gf.mesh_stiffness(**one.case(), **run).k
+    whole = gf.mesh_stiffness(one.case(), **run).k
     rows = []
     for change, edit in (
         ("as assumed", lambda pit: pit),
@@ -88,7 +88,7 @@ def pits(name):
         ("twice as deep", lambda pit: replace(pit, depth=2 * pit.depth)),
     ):
         damage = {"pinion": [edit(pit) for pit in one.damage[case]["pinion"]]}
-        k = gf.mesh_stiffness(**one.case(), **run, damage=damage).k
+        k = gf.mesh_stiffness(one.case(), **run, damage=damage).k
         rows.append((name, label, f"pits {change}: largest loss of k, case {case} [%]", float(100 * (1 - k / whole).max())))
     return rows
 

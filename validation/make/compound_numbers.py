@@ -25,7 +25,7 @@ PAIRS = {
 @cache
 def beams(pair, phases=400, span="cycle"):
     """Stiffness curve of a pair with the article's four components."""
-    return gf.mesh_stiffness(**scene(NAME).pairs[pair].case(), method="textbook", variants=BEAMS, phases=phases, span=span)
+    return gf.mesh_stiffness(scene(NAME).pairs[pair].case(), method="textbook", variants=BEAMS, phases=phases, span=span)
 
 
 def mean_stiffness():
@@ -36,7 +36,7 @@ def mean_stiffness():
 @cache
 def converged(pair):
     """Mean stiffness of a pair by the converged energy model [N/m]."""
-    return float(gf.mesh_stiffness(**scene(NAME).pairs[pair].case(), method="ritz", phases=64).k.mean())
+    return float(gf.mesh_stiffness(scene(NAME).pairs[pair].case(), method="ritz", phases=64).k.mean())
 
 
 def converged_stiffness():
@@ -156,8 +156,8 @@ def crack_levels():
     for level, case in LEVELS.items():
         for method, options in (("ritz", {}), ("textbook", {"variants": BEAMS | {"crack_model": "straight"}})):
             run = {"method": method, "phases": 64, "span": "tooth"} | options
-            whole = gf.mesh_stiffness(**chosen.case(), **run).k
-            out[f"{level}, {method}"] = float((gf.mesh_stiffness(**chosen.case(case), **run).k / whole).min())
+            whole = gf.mesh_stiffness(chosen.case(), **run).k
+            out[f"{level}, {method}"] = float((gf.mesh_stiffness(chosen.case(case), **run).k / whole).min())
     return out
 
 

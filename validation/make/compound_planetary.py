@@ -40,8 +40,8 @@ def _made(case):
     pairs = scene(NAME).pairs
     kinds = {"sun1_p": "sun_planet", "p_ring": "planet_ring_1", "sun2_b": "sun_planet", "b_c": "planet_planet"}
     kinds["c_ring"] = "planet_ring_2"
-    curves = {name: gf.mesh_stiffness(**pairs[name].case(), phases=64) for name in set(kinds.values())}
-    hurt = gf.mesh_stiffness(**pairs["sun_planet"].case("crack80"), phases=64, span="tooth")
+    curves = {name: gf.mesh_stiffness(pairs[name].case(), phases=64) for name in set(kinds.values())}
+    hurt = gf.mesh_stiffness(pairs["sun_planet"].case("crack80"), phases=64, span="tooth")
     geometry = {kind: pairs[name].pair for kind, name in kinds.items()}
     healthy = {kind: curves[name] for kind, name in kinds.items()}
     return compound_planetary(healthy, pairs=geometry, damage={"sun1": (0, {"sun1_p": hurt})})
@@ -206,7 +206,7 @@ def write_more():
     with written(PARTS) as target, open(target, "w", encoding="utf-8", newline="") as file:
         out = csv.writer(file, lineterminator="\n")
         out.writerow(("model", "mean k [N/m]"))
-        with_ground = gf.mesh_stiffness(**chosen, method="textbook", variants={"root": "prism"}, phases=400).k.mean()
+        with_ground = gf.mesh_stiffness(chosen, method="textbook", variants={"root": "prism"}, phases=400).k.mean()
         out.writerow(("the article's beams: Hertz, bending, shear, axial", f"{beams('sun_planet').k.mean():.6g}"))
         out.writerow(("with the foundation after Sainsot", f"{with_ground:.6g}"))
         out.writerow(("converged energy model", f"{converged('sun_planet'):.6g}"))
@@ -268,8 +268,8 @@ def draw(folder):
     from ..shared.plots import plot_waves
 
     chosen, run = scene(NAME).pairs["sun_planet"], {"method": "ritz", "phases": 96, "span": "tooth"}
-    curves = {"healthy": gf.mesh_stiffness(**chosen.case(), **run)}
-    curves |= {level: gf.mesh_stiffness(**chosen.case(case), **run) for level, case in LEVELS.items()}
+    curves = {"healthy": gf.mesh_stiffness(chosen.case(), **run)}
+    curves |= {level: gf.mesh_stiffness(chosen.case(case), **run) for level, case in LEVELS.items()}
     plot_curves(curves, folder / "compound_planetary_k.png", f"{NAME}, sun_planet, cracks of the sun")
     (one, two), (slow, quick) = frequencies()
     lines = {"f_m1": one, "f_m2": two, "f_m1 - f_1": one - slow, "f_m2 + f_2": two + quick, "2 f_m1": 2 * one, "2 f_m2": 2 * two}

@@ -117,7 +117,7 @@ def new_pairs(cracked):
 def solid(scene, name, case, phases):
     """Work: a pair of a scene by `ritz3d`."""
     given = gf.load_scene(scene).pair(name).case(case)
-    return lambda: gf.mesh_stiffness(**given, phases=phases, method="ritz3d", cache=False)
+    return lambda: gf.mesh_stiffness(given, phases=phases, method="ritz3d", cache=False)
 
 
 def measured():

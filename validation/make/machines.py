@@ -10,6 +10,7 @@ import gearfe as gf
 from gearfe.core.table import Table
 from gearfe.scene import verdicts
 from gearfe.scene.references import read_references
+from gearfe.scene.schema import checked
 
 from ..shared import places, table_rows
 from ..shared.openings import OPENINGS
@@ -50,7 +51,8 @@ def references(page):
     """References of its scene that the page computes, and further statements."""
     more = tomllib.loads(FURTHER.read_text(encoding="utf-8"))
     own = [one for one in gf.load_scene(PAGES[page]).references if one.id not in ELSEWHERE]
-    return [*own, *read_references(FURTHER.name, more[page], {})]
+    rows = [checked("gearfe.scene", "reference", FURTHER.name, f"reference {i + 1}", row) for i, row in enumerate(more[page])]
+    return [*own, *read_references(FURTHER.name, rows)]
 
 
 def functions(page, *, quick=False):

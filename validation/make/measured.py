@@ -46,7 +46,7 @@ def stage():
     return (
         stage_of(scene),
         scene.machine["torque_Nm"],
-        {n: gf.mesh_stiffness(**one.case(), **run) for n, one in scene.pairs.items()},
+        {n: gf.mesh_stiffness(one.case(), **run) for n, one in scene.pairs.items()},
     )
 
 
@@ -55,7 +55,7 @@ def faults():
     pairs = {name: one.case() for name, one in gf.load_scene(SOURCES / "planetary_31_31_95.toml").pairs.items()}
     out = {"normal": {"none": None}, "sun": {}, "planet": {}}
     for level, (where, name, side) in product(LEVELS, PLACES):
-        hurt = gf.mesh_stiffness(**pairs[name], damage={side: [gf.Crack(level=level)]}, phases=32, method="ritz", span="tooth")
+        hurt = gf.mesh_stiffness(pairs[name], damage={side: [gf.Crack(level=level)]}, phases=32, method="ritz", span="tooth")
         body = "sun" if where == "sun" else "planet1"
         out[where.partition(",")[0]][f"{where} {level}"] = {body: (0, {name: hurt})}
     return out
@@ -115,7 +115,7 @@ def trends(found):
 def spur(speed):
     """Indicators of the 17/38 pair's pinion, healthy and with a broken tooth, from the acceleration of its bearing."""
     chosen = gf.load_scene(SOURCES / "spur_17_38.toml").pairs["pinion_wheel"]
-    curve = gf.mesh_stiffness(**chosen.case(), phases=64, method="ritz")
+    curve = gf.mesh_stiffness(chosen.case(), phases=64, method="ritz")
     gears = chosen.pair
     phase = np.arange(-16, math.ceil((gears.eps_alpha + 0.25) * 64) + 1) / 64
     share = np.where((phase > gears.eps_alpha - 1) & (phase < 1), 0.05, np.where((phase > 0) & (phase < gears.eps_alpha), 0.6, 1))
@@ -160,7 +160,7 @@ def phm_stiffness():
     pairs = gf.load_scene(SOURCES / "phm_2009.toml").pairs
     for (name, one), module, part in product(pairs.items(), PHM_MODULES, PHM_BORES):
         gears = [replace(g, m_n=module, r_bore=part * g.z * module / 2) for g in (one.pair.gear_1, one.pair.gear_2)]
-        run = one.case() | {"pair": gf.GearPair(*gears)}
+        run = one.case().as_dict() | {"pair": gf.GearPair(*gears)}
         out[name, module, part] = 1e-6 * gf.mesh_stiffness(**run, phases=32, method="ritz").zones()["mean"] / gears[0].b
     return out
 

@@ -25,12 +25,12 @@ def reduction(scene, pair, case):
     chosen = gf.load_scene(scene).pairs[pair]
     phase = chosen.pair.pitch_phase + overlap(chosen.pair, chosen.face, chosen.groove) / 2 + np.array(OFFSETS)
     run = {"method": "ritz3d", "phases": phase}
-    whole, every = gf.mesh_stiffness(**chosen.case(), **run).k, chosen.damage[case]
+    whole, every = gf.mesh_stiffness(chosen.case(), **run).k, chosen.damage[case]
     own = {"both": every}
     for name, kind in (("crack", gf.Crack), ("pits", gf.Pit)):
         own[name] = {side: [one for one in found if isinstance(one, kind)] for side, found in every.items()}
     return {
-        name: float(100 * (1 - gf.mesh_stiffness(**chosen.case() | {"damage": damage}, **run).k / whole).max())
+        name: float(100 * (1 - gf.mesh_stiffness(**chosen.case().as_dict() | {"damage": damage}, **run).k / whole).max())
         for name, damage in own.items()
     }
 

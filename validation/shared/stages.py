@@ -39,7 +39,7 @@ def spur(damaged):
     """The stage of `planetary_pitting` with curves by `ritz`; a dip of 20 % instead of its pits."""
     scene = gf.load_scene("planetary_pitting")
     pairs = [scene.pairs[name] for name in ("sun_planet", "planet_ring")]
-    curves = [gf.mesh_stiffness(**one.case(), phases=64, method="ritz") for one in pairs]
+    curves = [gf.mesh_stiffness(one.case(), phases=64, method="ritz") for one in pairs]
     gears = gf.PlanetarySet(pairs[0].pair.gear_1, pairs[0].pair.gear_2, pairs[1].pair.gear_2, 3, pairs[0].pair.a)
     stiffness = dict(zip(("sun_planet", "planet_ring"), curves, strict=True))
     damage = {"sun": (0, {"sun_planet": tooth(curves[0], 0.2, pairs[0].pair.eps_alpha)})} if damaged else None

@@ -174,6 +174,8 @@ def main(argv=None):
     add("--picture", metavar="FILE", help="draw a pair with its damage to scale: .png, .svg or .pdf")
     add("--pair", metavar="NAME", help="which pair is drawn (default: its first)")
     add("--case", metavar="NAME", help="which case of damage is drawn (default: the first of the pair)")
+    add = verb("schema", tools.schema, "print the JSON schema of scenes, by which an editor completes and checks their keys")
+    add("--page", action="store_true", help="instead a page of all keys of scenes, studies and data sets, as Markdown")
     add = verb("app", tools.app, "a page in the browser: turn a slider, see mesh, stiffness and transmission error at once")
     add("scene", metavar="SCENE", nargs="?", help="opened in it: a built-in scene or a .toml file (default: an example)")
     add("--pair", metavar="NAME", help="pair of the scene (default: its only one)")

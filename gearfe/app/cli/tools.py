@@ -36,6 +36,7 @@ def new(arguments):
 
 def check(arguments):
     """``gearfe check``."""
+    from ...comparison.check_scene import check_scene
     from ...comparison.told_scene import told
     from ...core.files import check_output
     from ...figures.pair_plot import plot_pair
@@ -47,7 +48,8 @@ def check(arguments):
     if drawn:
         check_output(arguments.picture, "picture")
     scene = load_scene(arguments.scene)
-    for line in told(scene):
+    neglected = check_scene(scene)
+    for line in (*told(scene), *neglected):
         print(line)
     if drawn:
         chosen = scene.pair(arguments.pair)
@@ -55,6 +57,14 @@ def check(arguments):
         title = ", ".join((scene.name, arguments.pair or next(iter(scene.pairs)), case or "healthy"))
         plot_pair(chosen.case(case), path=arguments.picture, title=title)
         print(f"written: {arguments.picture}")
+
+
+def schema(arguments):
+    """``gearfe schema``."""
+    from ...scene.describe import json_schema, keys_page
+    from ...scene.schema import scene_schema, schema_of
+
+    print(keys_page(scene_schema(), schema_of("gearfe.runs")) if arguments.page else json_schema(scene_schema()))
 
 
 def app(arguments):

@@ -81,15 +81,17 @@ def _transmission_error(scene, arguments, case, variants):
     from ...comparison.harris import harris
     from ...figures.error_plots import plot_transmission_error
     from ...figures.stiffness_plots import told
+    from ...stiffness.solve import Solve
 
     if arguments.output or arguments.force is not None or (arguments.forces and arguments.torques):
         raise ValueError("--forces, or --torques, is the transmission error of several loads: leave out --output and --force")
     r_b = case.pair.gear_1.r_b
     forces = arguments.forces or [1e3 * torque / r_b for torque in arguments.torques]
     with working(f"transmission error by {arguments.method}"):
-        options = {"extended": not arguments.no_extended, "refine": arguments.refine, "variants": variants}
-        many = replace(case, force=tuple(forces))
-        found, plain = harris(many, method=arguments.method, phases=arguments.phases, **options)
+        how = Solve(
+            arguments.method, arguments.phases, extended=not arguments.no_extended, refine=arguments.refine, variants=variants
+        )
+        found, plain = harris(replace(case, force=forces), how)
     print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle\n")
     print(found.table(plain, r_b))
     if arguments.plot:

@@ -33,7 +33,7 @@ def scene_compound(scene, case, **options):
 
 def scene_pairs(scene):
     """GearPairs of a scene by kind of mesh."""
-    return {kind: scene.pairs[name].pair for kind, name in SCENE_PAIRS.items()}
+    return {kind: scene.pair(name).pair for kind, name in SCENE_PAIRS.items()}
 
 
 def carrier_speed(pairs, speed):

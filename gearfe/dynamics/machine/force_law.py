@@ -7,7 +7,7 @@ pressed beyond their first touch, and for small vibrations about a load it has i
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +17,7 @@ from ...core.case import Case
 from ...core.material import Material
 from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.curve import StiffnessCurve, joined
-from ...stiffness.solve import asked, solve
+from ...stiffness.solve import PairOptions, Solve, solve, split_arguments
 
 ROWS, COLUMNS = 1024, 64  # of a law as a table: rows in a mesh cycle, depths
 TINY = 1e-30  # depth [m]: a mesh just touching
@@ -241,7 +241,7 @@ def force_law(
     force: float | None = None,
     phases: int = 128,
     span: str = "cycle",
-    **options: Any,
+    **options: Unpack[PairOptions],
 ) -> ForceLaw:
     """Law of force of a gear pair, for machines: its contact solved under several loads, closer where pairs come in or leave.
 
@@ -282,11 +282,16 @@ def force_law(
     """
     if span not in ("cycle", "tooth"):
         raise ValueError(f"span = {span!r}, but a law of force is of a 'cycle', or of the engagement of a damaged 'tooth'")
-    case, how = asked("force_law", pair, list(forces), material, options | {"phases": phases, "span": span})
+    own = {**options, "phases": phases, "span": span}
+    return law_of(*split_arguments("force_law", pair, list(forces), material, None, own), force)
+
+
+def law_of(case: Case, how: Solve, force: float | None = None) -> ForceLaw:
+    """`ForceLaw` of a case under its loads, with further phases where the number of pairs in contact changes."""
     curves = solve(case, how)
     law = ForceLaw.of([curve.without_supports() for curve in curves], force)
-    counts = np.concatenate([law.pairs, law.pairs[:1]]) if span == "cycle" else law.pairs
-    ends = np.append(law.phase, law.phase[0] + 1) if span == "cycle" else law.phase
+    counts = np.concatenate([law.pairs, law.pairs[:1]]) if how.span == "cycle" else law.pairs
+    ends = np.append(law.phase, law.phase[0] + 1) if how.span == "cycle" else law.phase
     changing = (np.maximum(counts[:-1], counts[1:]).max(axis=1) != np.minimum(counts[:-1], counts[1:]).min(axis=1)).nonzero()[0]
     if not changing.size:
         return law

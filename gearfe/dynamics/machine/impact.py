@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...geometry.pair.lines import contact_lines, lost_length
-from ...scene.machine_table import IMPACT
+from ...scene.schema import scene_schema
 from .contact_cycle import impact_cycle
 from .contact_law import hertz_coefficient
 from .helical_pair import pitted_helical
@@ -35,7 +35,7 @@ def pits_loss(pair, pits):
 
 def impact_planetary(scene, case):
     """Planetary stage of a scene under the impact law, healthy or with pits on a tooth of the sun."""
-    chosen = {name: scene.pairs[name] for name in ("sun_planet", "planet_ring")}
+    chosen = {name: scene.pair(name) for name in ("sun_planet", "planet_ring")}
     if pits_of(chosen["planet_ring"].damage.get(case, {})):
         raise ValueError("the impact law knows damage of the sun's flanks only: use contact = 'linear'")
     tooth_pits = pits_of(chosen["sun_planet"].damage.get(case, {}))
@@ -95,7 +95,7 @@ def pits_of(damage):
 
 
 def _options(machine):
-    return {key: default for key, (_, default) in IMPACT.items()} | (machine.get("impact") or {})
+    return {key.name: key.default for key in scene_schema()["impact"].keys.values()} | (machine.get("impact") or {})
 
 
 def _law(options, machine, coefficient):

@@ -1,7 +1,7 @@
 """How far a law of force may be off between its loads and phases, as leaving some out tells, and one of as many as it needs."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ...core.case import Case
 from ...core.material import Material
 from ...geometry.pair.gear_pair import GearPair
+from ...stiffness.solve import PairOptions
 from .force_law import ForceLaw, force_law
 
 FIRST = 5, 32  # loads and phases that `law_within` begins with
@@ -79,7 +80,7 @@ def law_within(
     *,
     error: float = 3e-3,
     force: float | None = None,
-    **options: Any,
+    **options: Unpack[PairOptions],
 ) -> ForceLaw:
     """Law of force between two loads, solved under as many loads and at as many phases as its own error estimate asks for.
 

@@ -67,35 +67,43 @@ def build_machine(
     ValueError
         If the scene has no machine, no such case, or an unknown model.
     """
-    if not scene.machine:
-        raise ValueError(f"scene {scene.name} has no [machine] table: add one with model, speed_rpm and torque_Nm")
-    if case is not None and not any(case in pair.damage for pair in scene.pairs.values()):
-        known = sorted({name for pair in scene.pairs.values() for name in pair.damage})
-        raise ValueError(f"scene {scene.name} has no case {case!r}; it has {', '.join(known) or 'none'}")
-    model, contact = scene.machine["model"], scene.machine.get("contact", "linear")
-    if model not in MACHINES:
-        raise ValueError(f"[machine] model = {model!r}, but it must be one of {', '.join(MACHINES)}")
-    if contact not in ("linear", "impact"):
-        raise ValueError(f"[machine] contact = {contact!r}, but it must be 'linear' or 'impact'")
-    if contact not in MACHINES[model]:
-        raise ValueError(f"[machine] contact = 'impact': the model {model!r} has linear contact only")
-    if scene.machine.get("bodies") and model not in STATED:
-        raise ValueError(f"[machine.bodies]: the model {model!r} takes masses and inertias from its gears; leave the table out")
+    build, contact = _builder(scene, case)
     if contact == "impact" and tuple(loads) != (1.0,):
         raise ValueError(
             f"loads = {tuple(loads)}: the impact law has a coefficient and no curves under loads; take contact = 'linear'"
         )
     if contact == "impact":
-        return with_scene_errors(scene, MACHINES[model][contact](scene, case))
+        return with_scene_errors(scene, build(scene, case))
     if not len(loads) or not all(math.isfinite(multiple) and multiple > 0 for multiple in loads):
         raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")
-    build, play = MACHINES[model][contact], scene.machine.get("backlash_um")
+    play = scene.machine.get("backlash_um")
     forces = own_forces(build(scene, case, phases=ROUGH, method=method, loads=None))
     several = {name: ([force * multiple for multiple in loads], force) for name, force in forces.items()}
     out = build(scene, case, phases=phases, method=method, loads=several)
     stated = {name: pair.force for name, pair in scene.pairs.items() if name in forces}
     out = replace(out, notes=out.notes | {"mesh forces at rest [N]": forces, "loads stated for the pairs [N]": stated})
     return with_scene_errors(scene, with_flanks(out.with_meshes(backlash=1e-6 * play) if play else out))
+
+
+def check_machine(scene: Scene, case: str | None = None) -> None:
+    """Raise ValueError if `build_machine` refuses the machine of a scene; nothing is solved."""
+    build, contact = _builder(scene, case)
+    build(scene, case, **({} if contact == "impact" else {"phases": ROUGH, "method": None, "loads": None}))
+
+
+def _builder(scene, case):
+    """Function that builds the machine of a scene, and its contact."""
+    if not scene.machine:
+        raise ValueError(f"scene {scene.name} has no [machine] table: add one with model, speed_rpm and torque_Nm")
+    if case is not None and not any(case in pair.damage for pair in scene.pairs.values()):
+        known = sorted({name for pair in scene.pairs.values() for name in pair.damage})
+        raise ValueError(f"scene {scene.name} has no case {case!r}; it has {', '.join(known) or 'none'}")
+    model, contact = scene.machine["model"], scene.machine.get("contact", "linear")
+    if contact not in MACHINES[model]:
+        raise ValueError(f"[machine] contact = 'impact': the model {model!r} has linear contact only")
+    if scene.machine.get("bodies") and model not in STATED:
+        raise ValueError(f"[machine.bodies]: the model {model!r} takes masses and inertias from its gears; leave the table out")
+    return MACHINES[model][contact], contact
 
 
 def with_flanks(machine):

@@ -3,10 +3,13 @@
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from ...geometry.pair.planetary import PlanetarySet
+from ...stiffness.curve import StiffnessCurve
 from ...stiffness.solve import Solve, solve
 from .contact_law import force
-from .force_law import force_law
+from .force_law import law_of
 
 IDLE = 1e-3  # of the load that a scene states for a pair: below it a mesh at rest counts as unloaded, and that load is taken
 
@@ -18,7 +21,7 @@ def speed_of(scene):
 
 def stage_of(scene):
     """PlanetarySet of a scene with the pairs `sun_planet` and `planet_ring`."""
-    outer, inner = scene.pairs["sun_planet"].pair, scene.pairs["planet_ring"].pair
+    outer, inner = scene.pair("sun_planet").pair, scene.pair("planet_ring").pair
     return PlanetarySet(outer.gear_1, outer.gear_2, inner.gear_2, scene.machine["n_planets"], outer.a)
 
 
@@ -40,9 +43,14 @@ def curves(name, pair, case, options):
     `options` are those of `mesh_stiffness`, and ``loads``: by the pair's name the loads [N] it is solved under and the one it
     works at on average. Several make laws of force, one makes curves; None: curves without damage under the load that the scene
     states.
+    Method None makes flat curves of 1e8 N/m without solving anything, to check a machine.
     Without the part of shafts that hold its gears: a machine has bearings of its own.
     """
     loads = options["loads"]
+    if options["method"] is None:
+        phase = np.arange(options["phases"]) / options["phases"]
+        flat, pairs = np.full(phase.size, 1e8), np.full((phase.size, 1), np.nan)
+        return StiffnessCurve(phase, flat, flat, pair.force / flat, np.zeros(1, dtype=int), pairs, pairs), None
     hurt = pair.case(case if loads is not None and case in pair.damage else None)
     options = {key: value for key, value in options.items() if key != "loads"}
     if options["method"] == "auto":  # one method for both
@@ -54,14 +62,14 @@ def curves(name, pair, case, options):
             curve = solve(solved, Solve(span=span, **options)).without_supports()
             results.append(replace(curve, meta=curve.meta | {"scene_pair": name}))
         else:
-            results.append(force_law(solved, loads[name][0], force=loads[name][1], span=span, **options))
+            results.append(law_of(replace(solved, force=loads[name][0]), Solve(span=span, **options), loads[name][1]))
     return results[0], results[1] if hurt.damaged else None
 
 
 def healthy_and_hurt(scene, case, options, kinds):
     """Healthy curves by kind of mesh, and damage of the sun's tooth 0, from ``kinds[kind]``, a scene pair's name."""
     for kind, name in kinds.items():
-        if case in scene.pairs[name].damage and not kind.startswith("sun"):
+        if case in scene.pair(name).damage and not kind.startswith("sun"):
             raise ValueError(f"case {case!r} damages {name}, but in this machine only the sun has damage: use its cases")
     pair_curves = {name: curves(name, scene.pairs[name], case, options) for name in dict.fromkeys(kinds.values())}
     healthy = {kind: pair_curves[name][0] for kind, name in kinds.items()}

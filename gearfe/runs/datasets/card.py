@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ...core.table import Column, Table
+from ...scene.schema import schema_of
 from .conditions import Condition
 from .faults import FAULTS, HEALTHY
 from .plan import SIDES, Plan
@@ -52,12 +53,13 @@ def card(made: "Dataset", plan: Plan, every: Sequence[Condition]) -> str:
 
 def _what(plan, every):
     window, operation = plan.window, plan.operation
+    severity = {kind: schema_of("gearfe.runs")[f"{kind}_fault"].keys["severity"].text for kind in FAULTS}
     speeds, torques, spread = (operation[key] for key in ("speed_rpm", "torque_Nm", "spread"))
     lines = [
         f"{len(every)} conditions, simulated by gearfe on the machine of the scene `{plan.scene}`, each cut into",
         f"{window['count']} windows of {window['seconds']:g} s, {samples_of(plan)} samples at {window['rate_Hz']:g} Hz.",
         "",
-        *(f"- fault `{f['kind']}` at {_listed(f['severity'])}: {FAULTS[f['kind']].severity}" for f in plan.fault),
+        *(f"- fault `{f['kind']}` at {_listed(f['severity'])}: {severity[f['kind']]}" for f in plan.fault),
         f"- speeds {_listed(speeds)} rpm, torques {_listed(torques)} N m, both by a part of {spread:g} more or less",
         *(
             f"- sensor `{s['name']}`: {s['channel'] or 'housing, ' + s['housing']}; noise {_listed(s['noise'])} rms"

@@ -12,10 +12,10 @@ import numpy as np
 
 from ...core.steps import listening
 from ...core.threads import own_warnings
+from ...scene.dotted_keys import rank, set_values, trimmed
 from ...scene.load import Scene, scene_of
 from ...stiffness.cache import program
 from ..store.shards import Field, encoded, table
-from .keys import placed, rank, trimmed
 from .kinds import KINDS
 from .study import Study, of_case, values
 
@@ -164,7 +164,7 @@ def _computed(study, cases, built):
     pair, damage, options = of_case(study, case)
     if key not in built:
         built.clear()
-        tables = placed(study.tables, {name: value for name, value in case.items() if kind.whole or not _is_force(name)})
+        tables = set_values(study.tables, {name: value for name, value in case.items() if kind.whole or not _is_force(name)})
         built[key] = scene_of("scene", tables if kind.whole else trimmed(tables, pair, damage))
     scene, hurt = built[key], None if damage == "healthy" else damage
     if kind.whole:

@@ -15,33 +15,12 @@ from ...flexibility.solved import SolvedGears
 from ...planetary_sets.of_scene import build_set
 from ...planetary_sets.solve import planetary_stiffness
 from ...scene.load import Scene
-from ...scene.strict import NUMBER, TEXT, TRUTH, WHOLE
 from ...signal.series import Signal
 from ...stiffness.curve import StiffnessCurve
 from ...stiffness.solve import Solve, solve
 from ..store.shards import Field
 
 KEPT = SolvedGears(64 * 2**20)  # gears of the cases before, in this process
-CURVE = {
-    "method": (TEXT, "auto"),
-    "phases": (WHOLE, 64),
-    "span": (TEXT, None),
-    "error": (TRUTH, False),
-    "refine": (NUMBER, 1.0),
-    "order": (WHOLE, None),
-    "extended": (TRUTH, True),
-    "pose": (TEXT, "mean"),
-}
-VIBRATION = {
-    "method": (TEXT, "fast"),
-    "curves": (TEXT, "auto"),
-    "phases": (WHOLE, 64),
-    "duration_s": (NUMBER, 1.0),
-    "rate_Hz": (NUMBER, None),
-    "channel": (TEXT, None),
-    "signal": (TRUTH, False),
-}
-SET = {"positions": (WHOLE, 32), "cycles": (WHOLE, None), "refine": (NUMBER, 1.0)}
 MESHES = dict.fromkeys(("k_sun_planet", "k_planet_ring", "k_sun_planet_alone", "k_planet_ring_alone"), Field("number", "N/m"))
 MESHES |= {"K_gamma": Field("number"), "te_peak_to_peak": Field("number", "m")}
 STIFFNESS = dict.fromkeys(("k_mean", "k_min", "k_max", "k_single", "k_double"), Field("number", "N/m"))
@@ -53,12 +32,12 @@ INDICATORS = ("crest factor", "kurtosis", "shape factor", "impulse factor", "sid
 class Kind(NamedTuple):
     """A kind of study.
 
-    `options` are checked as a TOML table; `fields` are the columns of its results; `work` is called with a `Case` and the
-    options, and gives a row for each of its loads; `block`: cases in a shard, which takes seconds. `whole`: it needs
+    `options` is their table in ``gearfe/runs/keys.toml``; `fields` are the columns of its results; `work` is called with a `Case`
+    and the options, and gives a row for each of its loads; `block`: cases in a shard, which takes seconds. `whole`: it needs
     all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the options.
     """
 
-    options: dict[str, Any]
+    options: str
     fields: dict[str, Field]
     work: Callable[..., list[dict[str, Any]]]
     block: int
@@ -133,10 +112,13 @@ SEEN |= dict.fromkeys(("rms", "peak", "mesh_line"), Field("number", "unit")) | {
 SEEN |= dict.fromkeys(("mesh_Hz", "fault_Hz", "rate"), Field("number", "Hz")) | {"free": Field("number")}
 TE = dict.fromkeys(("te_mean", "te_peak_to_peak", *(f"te_{i + 1}" for i in range(HARMONICS))), Field("number", "m"))
 KINDS = {
-    "stiffness": Kind(CURVE, STIFFNESS | {"phase": Field("list"), "k": Field("list", "N/m")}, stiffness, 32),
+    "stiffness": Kind("stiffness", STIFFNESS | {"phase": Field("list"), "k": Field("list", "N/m")}, stiffness, 32),
     "transmission error": Kind(
-        CURVE, TE | {"k_mean": Field("number", "N/m"), "phase": Field("list"), "te": Field("list", "m")}, transmission_error, 32
+        "stiffness",
+        TE | {"k_mean": Field("number", "N/m"), "phase": Field("list"), "te": Field("list", "m")},
+        transmission_error,
+        32,
     ),
-    "set": Kind(SET, MESHES, planetary_set, 4, whole=True),
-    "vibration": Kind(VIBRATION, SEEN | {"signal": Field("list", "unit")}, vibration, 4, whole=True),
+    "set": Kind("planetary_set", MESHES, planetary_set, 4, whole=True),
+    "vibration": Kind("vibration", SEEN | {"signal": Field("list", "unit")}, vibration, 4, whole=True),
 }

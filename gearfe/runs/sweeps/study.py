@@ -43,27 +43,15 @@ from typing import Any
 
 import numpy as np
 
-from ...scene.load import DAMAGE, scene_of
-from ...scene.strict import REQUIRED, TABLES, TEXT, VALUES, WHOLE, checked
+from ...scene.dotted_keys import check_key, tables_near, trimmed
+from ...scene.load import scene_of
+from ...scene.parts import DAMAGE
+from ...scene.schema import check_listed, check_named, checked
 from ...scene.toml_file import given_tables
 from . import samples
-from .axes import MOST, axes, checked_sample
-from .keys import check_key, tables_near, trimmed
+from .axes import MOST, RUNS, axes, checked_sample
 from .kinds import KINDS
 
-TOP = {
-    "title": (TEXT, "sweep"),
-    "scene": (TEXT, REQUIRED),
-    "kind": (TEXT, "stiffness"),
-    "pair": (TEXT, None),
-    "case": (TEXT, "healthy"),
-    "seed": (WHOLE, 0),
-    "block": (WHOLE, None),
-    "options": (VALUES, {}),
-    "vary": (VALUES, {}),
-    "along": (TABLES, []),
-    "sample": (VALUES, {}),
-}
 ADDED = (*DAMAGE, "flank")
 
 
@@ -102,23 +90,19 @@ def read_study(study: str | os.PathLike[str] | Mapping[str, Any]) -> Study:
 
 
 def _study(file, place, data):
-    added = {name: data.pop(name) for name in ADDED if name in data}
-    top = checked(file, "top level", data, TOP, extra=ADDED)
-    if top["kind"] not in KINDS:
-        raise ValueError(f"{file} kind = {top['kind']!r}, but it must be one of {', '.join(KINDS)}")
+    for kind in DAMAGE:
+        check_listed(file, kind, data.get(kind, []))
+    check_named(file, "flank", data.get("flank", {}))
+    top = checked(RUNS, "study", file, "top level", data)
     kind = KINDS[top["kind"]]
-    name, tables = _scene(file, place, top["scene"], added)
+    name, tables = _scene(file, place, top["scene"], {name: top[name] for name in ADDED if top[name]})
     pair = top["pair"] or next(iter(tables["pair"]))
-    options = checked(file, "options", top["options"], kind.options)
+    options = checked(RUNS, kind.options, file, "options", top["options"])
     grid = tuple(axes(file, top["vary"], top["along"]))
     sample = checked_sample(file, top["sample"])
     cases = math.prod([len(next(iter(axis.values()))) for axis in grid]) * sample.get("count", 1)
     if cases > MOST:
         raise ValueError(f"{file}: {cases} cases, but a study has at most {MOST:.0e}: vary less, or part it")
-    if top["block"] is not None and top["block"] < 1:
-        raise ValueError(f"{file} block = {top['block']}: give the cases of a shard, a whole number >= 1")
-    if top["seed"] < 0:
-        raise ValueError(f"{file} seed = {top['seed']}: give a whole number >= 0")
     keys = tuple(key for axis in grid for key in axis) + tuple(_with_also(sample.get("of", {})))
     for key in keys:
         try:
@@ -139,10 +123,7 @@ def _scene(file, place, scene, added):
     """Name and tables of the scene with those that the study adds, tried as a whole."""
     name, tables = tables_near(place, scene)
     for kind, extra in added.items():
-        present = tables.get(kind, {} if kind == "flank" else [])
-        if not isinstance(extra, type(present)):
-            raise ValueError(f"{file}: [[{kind}]] is written with two brackets, [flank.NAME] with one")
-        tables[kind] = present | extra if isinstance(present, dict) else present + extra
+        tables[kind] = tables.get(kind, {}) | extra if kind == "flank" else tables.get(kind, []) + extra
     scene_of(f"{name} with {file}" if added else name, tables)
     return name, tables
 
@@ -189,7 +170,8 @@ def of_case(study: Study, case: Mapping[str, Any]) -> tuple[str, str, dict[str, 
     """Pair, case of damage and options of a case with its values by key."""
     options = {key.partition(".")[2]: value for key, value in case.items() if key.startswith("options.")}
     if options:
-        options = checked("options", "of this case", study.options | options, KINDS[study.kind].options)
+        given = {name: value for name, value in (study.options | options).items() if value is not None}
+        options = checked(RUNS, KINDS[study.kind].options, "options", "of this case", given)
     return case.get("pair", study.pair), case.get("case", study.case), options or study.options
 
 

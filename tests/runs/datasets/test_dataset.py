@@ -72,7 +72,7 @@ def test_loss_of_stiffness_is_that_of_the_curves(made):
     labels = made.labels({"fault": "crack"})
     row = labels.iloc[0]
     pair = gf.load_scene("planetary_pitting").pair("sun_planet")
-    run = pair.case() | {"force": 2000.0 * row["torque_Nm"] / 100.0, "span": "tooth", "method": "ritz"}
+    run = pair.case().as_dict() | {"force": 2000.0 * row["torque_Nm"] / 100.0, "span": "tooth", "method": "ritz"}
     hurt = gf.mesh_stiffness(**run, damage={"pinion": [gf.Crack(level=0.4)]})
     loss = 1 - hurt.k / gf.mesh_stiffness(**run).k
     assert_allclose(row["loss_max"], loss.max(), atol=2e-3)

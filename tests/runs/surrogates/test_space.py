@@ -15,11 +15,11 @@ pytestmark = pytest.mark.quick
 def test_a_point_is_gears_force_and_crack(pair):
     space = space_of(pair, {"force": (500.0, 4000.0), "z_1": (20, 24), "x_1": (-0.1, 0.3), "bore_1": 0.5, "level": (0.1, 0.6)})
     case = space.case({"force": 800.0, "z_1": 23.0, "x_1": 0.2, "level": 0.25}, gf.Material())
-    made = case["pair"]
-    assert (made.gear_1.z, made.gear_1.x, case["force"]) == (23, 0.2, 800.0)
+    made = case.pair
+    assert (made.gear_1.z, made.gear_1.x, case.force) == (23, 0.2, 800.0)
     assert_allclose(made.gear_1.r_bore, 0.5 * made.gear_1.r_f)
     assert_allclose(made.backlash, 0.0, atol=1e-9)
-    assert case["damage"] == {"pinion": [gf.Crack(level=0.25)]}
+    assert case.damage == {"pinion": (gf.Crack(level=0.25),)}
 
 
 def test_ends_of_the_ranges_are_scaled_to_one(pair):

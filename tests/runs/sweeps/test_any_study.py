@@ -8,7 +8,7 @@ import warnings
 from gearfe.runs.sweeps import study
 from gearfe.runs.sweeps.study import read_study, values
 from gearfe.scene.load import scene_of
-from gearfe.scene.strict import shown
+from gearfe.scene.schema import shown
 
 STEPS = {"from": 1000, "to": 2000, "count": 3, "spacing": "log", "also": ["pair.planet_sun.force_N"]}
 STUDY = {

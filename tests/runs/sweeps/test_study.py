@@ -5,8 +5,8 @@ import pytest
 from scipy import stats
 
 from gearfe.runs.sweeps.blocks import blocks
-from gearfe.runs.sweeps.keys import placed
 from gearfe.runs.sweeps.study import read_study, values
+from gearfe.scene.dotted_keys import set_values
 
 pytestmark = pytest.mark.quick
 
@@ -79,7 +79,7 @@ def test_a_sample_has_its_distributions_and_correlation_and_meets_every_combinat
 def test_keys_set_the_tables_of_a_case():
     tables = read_study(STUDY).tables
     wanted = {"crack.cracked.level": 0.4, "pits.mild.axes_mm.1": 0.7, "machine.impact.friction.0": 0.1, "machine.speed_rpm": 5.0}
-    made = placed(tables, wanted)
+    made = set_values(tables, wanted)
     assert made["crack"][0]["level"] == 0.4
     assert [one["axes_mm"] for one in made["pits"] if one["case"] == "mild"] == [[0.5, 0.7]]
     assert made["machine"]["impact"]["friction"] == [0.1, 0.05]
@@ -118,7 +118,7 @@ REFUSED = {
     "unknown key 'phase'": {"options": {"phase": 3}},
     "give a list of values": {"vary": {"gear.sun.x": 0.1}},
     "stands in the list twice": {"vary": {"gear.sun.x": [0.1, 0.1]}},
-    "count >= 2": {"vary": {"gear.sun.x": {"from": 0, "to": 1, "count": 1}}},
+    r"count = 1, but it must lie between 2 and 1e\+07": {"vary": {"gear.sun.x": {"from": 0, "to": 1, "count": 1}}},
     "from > 0": {"vary": {"gear.sun.x": {"from": 0, "to": 1, "count": 3, "spacing": "log"}}},
     "of one length": {"along": [{"gear.sun.x": [0.1], "gear.planet.x": [0.1, 0.2]}]},
     "varies twice": {"vary": {"gear.sun.x": [0.1]}, "along": [{"gear.sun.x": [0.2]}]},
@@ -137,7 +137,7 @@ REFUSED = {
     "also = 'x': expected": {"vary": {"gear.sun.x": {"from": 0, "to": 1, "count": 3, "also": "x"}}},
     "correlated twice": {"sample": CORRELATED | {"correlated": [AGAIN, AGAIN | {"between": AGAIN["between"][::-1]}]}},
     "two different keys": {"sample": CORRELATED | {"correlated": [AGAIN | {"between": ["gear.sun.x", "gear.sun.x"]}]}},
-    "at most 1e.07": {"sample": {"count": 10**9, "of": {"gear.sun.x": {"uniform": [0, 1]}}}},
+    r"must lie between 1 and 1e\+07": {"sample": {"count": 10**9, "of": {"gear.sun.x": {"uniform": [0, 1]}}}},
     "cases, but a study has at most": {"sample": CORRELATED | {"count": 10**7}, "vary": {"gear.sun.b_mm": [19.0, 20.0]}},
     "is no value of a scene": {"vary": {"gear.sun.x": [0.1, float("nan")]}},
 }

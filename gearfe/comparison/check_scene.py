@@ -1,0 +1,40 @@
+"""The checks of `gearfe check`: every case, set and machine of a scene is built as by other verbs, and nothing is solved."""
+
+from ..dynamics.machine.of_scene import check_machine
+from ..geometry.damage.hollow import check_hollows
+from ..planetary_sets.of_scene import build_set
+from ..scene.load import Scene
+from ..scene.schema import located
+from ..stiffness.solve import Solve
+
+
+def check_scene(scene: Scene) -> list[str]:
+    """Build every case, set and machine of a scene.
+
+    Returns
+    -------
+    list of str
+        Cases of damage that the machine or the set of the scene neglects, with the reason.
+
+    Raises
+    ------
+    ValueError
+        If another verb refuses a case of a pair, or the healthy machine or set.
+    """
+    for name, pair in scene.pairs.items():
+        for case in (None, *pair.damage):
+            with located(f"{scene.name}.toml", f"pair.{name}, {case or 'healthy'}"):
+                built = pair.case(case)
+                Solve().chosen(built)[0].refuses(built, Solve())
+                for gear, hollows in zip((pair.pair.gear_1, pair.pair.gear_2), built.pits, strict=True):
+                    check_hollows(gear, hollows)
+    out = []
+    for noun, there, build in (("machine", scene.machine, check_machine), ("set", scene.set, build_set)):
+        for case in (None, *dict.fromkeys(case for pair in scene.pairs.values() for case in pair.damage)) if there else ():
+            try:
+                build(scene, case)
+            except ValueError as error:
+                if case is None:
+                    raise
+                out.append(f"case {case} is not in the {noun}: {error}")
+    return out

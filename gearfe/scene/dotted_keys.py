@@ -1,0 +1,122 @@
+"""Any value of a scene by its dotted key, ``crack.cracked.level``: which there are, and how one is set in the scene's tables.
+
+A part of a key is the name of a table, the case of a list of damage, or the place of a number in a list.
+"""
+
+import copy
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, cast
+
+from .load import read_tables
+from .parts import DAMAGE
+from .schema import LISTS, Key, scene_schema
+
+OUTSIDE = ("pair", "case")  # keys by themselves: which pair, which case of damage ("healthy": none)
+BEFORE_LOAD = ("gear", "material")  # what the healthy gears depend on; then damage; the rest shares the gears
+PRINTED = ("reference", "assumption", "given", "later")  # statements on the source, which no value depends on
+Tables = dict[str, Any]
+
+
+def tables_near(place: Path, scene: str) -> tuple[str, Tables]:
+    """Name and tables of a scene, a file in the folder `place` or a built-in one, without statements on its source."""
+    near = place / scene
+    name, tables = read_tables(near if near.is_file() else scene)
+    return name, {kind: table for kind, table in tables.items() if kind not in PRINTED}
+
+
+def check_key(dotted: str, tables: Tables, options: Mapping[str, Any]) -> None:
+    """Raise ValueError unless a key names a value that can be set in a scene's `tables`, or an option of the kind of study."""
+    first, _, option = dotted.partition(".")
+    if dotted in OUTSIDE:
+        return
+    if first != "options":
+        find_key(dotted, tables)
+    elif option not in options:
+        raise ValueError(f"{dotted!r}: there is no {option!r}; there is {', '.join(options)}")
+
+
+def find_key(dotted: str, tables: Tables) -> Key:
+    """The `Key` that a dotted key names; ValueError if it names no single value of a scene's `tables`."""
+    schema, parts = scene_schema(), dotted.split(".")
+    table, home, inner = schema["scene"], cast(Any, tables), cast(Any, None)
+    kinds = [name for name, key in table.keys.items() if key.of and name not in PRINTED and (tables.get(name) or "set" in tables)]
+    if parts[0] not in kinds:
+        raise ValueError(f"{dotted!r}: a key begins with {', '.join(kinds)} or options, or is pair or case")
+    for i, part in enumerate(parts):
+        names = table.keys if inner is None else inner
+        if part not in names:
+            raise ValueError(f"{dotted!r}: there is no {part!r}; there is {', '.join(names) or 'nothing'}")
+        if inner is not None:
+            home, inner = inner[part], None
+            continue
+        key = table.keys[part]
+        if not key.of:
+            if parts[i + 1 :] and not (key.type in LISTS and len(parts) == i + 2 and parts[-1].isdigit()):
+                raise ValueError(f"{dotted!r} names no single value; write for instance {'.'.join(parts[: i + 1])}")
+            return key
+        home, table = (home or {}).get(part) or {}, schema[key.of]
+        if key.type != "table":
+            inner = {row["case"]: row for row in home} if key.type == "listed" else home
+    end = "KEY" if inner is None else f"{next(iter(inner), 'NAME')}.KEY"
+    raise ValueError(f"{dotted!r} names no single value; write for instance {dotted}.{end}")
+
+
+def set_values(tables: Tables, values: Mapping[str, Any]) -> Tables:
+    """Copy of a scene's `tables` with `values` by key; keys of other things (`OUTSIDE`, options) are left aside.
+
+    A whole number such as 21.0 of a key of whole numbers becomes an integer.
+    """
+    out = copy.deepcopy(tables)
+    for dotted, value in values.items():
+        if dotted in OUTSIDE or dotted.startswith("options."):
+            continue
+        parts, homes, table = dotted.split("."), [out], scene_schema()["scene"]
+        while (key := table.keys[parts.pop(0)]).of:
+            table = scene_schema()[key.of]
+            if key.type == "listed":
+                case = parts.pop(0)
+                homes = [row for home in homes for row in home[key.name] if row["case"] == case]
+                continue
+            for name in (key.name, parts.pop(0)) if key.type == "named" else (key.name,):
+                homes = [home.setdefault(name, {}) for home in homes]
+        if key.type == "integer" and isinstance(value, float) and value.is_integer():
+            value = int(value)
+        for home in homes:
+            home[key.name] = _with_number(home, key.name, int(parts[0]), value) if parts else value
+    return out
+
+
+def _with_number(home, name, at, value):
+    """List of a table with another number at a place."""
+    numbers = list(home.get(name) or [])
+    if at >= len(numbers):
+        raise ValueError(f"{name} = {numbers!r} in the scene has no number {at}; the first is 0")
+    numbers[at] = value
+    return numbers
+
+
+def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
+    """Tables that one pair in one case of damage needs: the rest would be checked for every case of a sweep, for nothing."""
+    chosen = tables["pair"][pair]
+    gears = {chosen.get(name) for name in ("gear_1", "gear_2")}
+    out: Tables = {name: tables[name] for name in ("title", "source") if name in tables}
+    out |= {"pair": {pair: chosen}, "gear": {name: table for name, table in tables["gear"].items() if name in gears}}
+    for kind, key in scene_schema()["scene"].keys.items():
+        if not key.of or "gear" not in scene_schema()[key.of].keys:
+            continue
+        wanted = lambda row: row.get("gear") in gears and row.get("pair") in (None, pair) and row.get("case", case) == case  # noqa: E731
+        if key.type == "listed":
+            out[kind] = [row for row in tables.get(kind, []) if wanted(row)]
+        else:
+            out[kind] = {name: row for name, row in tables.get(kind, {}).items() if wanted(row)}
+    used = {row.get("material") for kind in ("gear", "shaft") for row in out[kind].values()}
+    return out | {"material": {name: table for name, table in tables["material"].items() if name in used}}
+
+
+def rank(dotted: str) -> int:
+    """Order in which keys are sorted so that cases beside each other share what was solved: 0 gears, 1 damage, 2 the rest."""
+    first = dotted.partition(".")[0]
+    if first in BEFORE_LOAD or dotted in OUTSIDE:
+        return 0
+    return 1 if first in DAMAGE else 2

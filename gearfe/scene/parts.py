@@ -1,0 +1,168 @@
+"""Damage, flanks, misalignment and supports of a gear pair, from the checked rows of a scene."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from ..core.supports.shaft import Shaft
+from ..core.supports.support import Support
+from ..geometry.damage.crack import Crack
+from ..geometry.damage.kinds import Damage
+from ..geometry.damage.pit import pit_row
+from ..geometry.damage.spall import Spall
+from ..geometry.pair.flanks import Misalignment, tilt_of
+from ..geometry.pair.gear_pair import GearPair
+from ..geometry.pair.pit_lines import in_both_halves, pit_line
+from ..geometry.tooth.modified import Flank
+from .schema import arguments, check_known, located
+
+Row = dict[str, Any]
+SIDES = ("pinion", "wheel")
+HELD = ("support", "shaft")
+
+
+def sides(file: str, where: str, row: Row, name: str, pairs: dict[str, Row]) -> list[str]:
+    """Sides of the pair `name` on which the gear of a row stands: it counts in all its pairs, or only in its `pair`.
+
+    A planet meets the sun with one flank, the ring with the other.
+    """
+    keys = ("gear_1", "gear_2")
+    if row["pair"] is not None and row["gear"] not in (pairs[row["pair"]][key] for key in keys):
+        raise ValueError(f"{file} [{where}] pair = {row['pair']!r} has no gear {row['gear']!r}")
+    return [
+        side for side, key in zip(SIDES, keys, strict=True) if pairs[name][key] == row["gear"] and row["pair"] in (None, name)
+    ]
+
+
+def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict[str, list[Damage]]]:
+    """Damage of the pair `name` by case and side."""
+    out: dict[str, dict[str, list[Damage]]] = {}
+    for kind, make in DAMAGE.items():
+        for i, row in enumerate(rows[kind]):
+            where = f"{kind} {i + 1}"
+            for side in sides(file, where, row, name, rows["pair"]):
+                with located(file, where, row):
+                    made = make(row, pair, SIDES.index(side), rows["pair"][name])
+                out.setdefault(row["case"], {}).setdefault(side, []).extend(made)
+    return out
+
+
+def crack_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
+    """The crack of a row."""
+    return [Crack(**arguments("crack", row))]
+
+
+def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
+    """Pits of a row on the pinion (`which` 0) or the wheel (1) of the pair `made` of a row `pair`.
+
+    A row along the axis may be given by the heights of its first and its last pit, and may then lie in both halves of a
+    herringbone gear; every row by the height of its middle, with the pitch from one pit to the next or the span of all.
+    """
+    first, last, middle, pitch, span = (row[f"{key}_mm"] for key in ("first", "last", "middle", "pitch", "span"))
+    numbers = arguments("pits", row, "radius_mm", "axes_mm", "depth_mm", "tooth", "angle_deg")
+    if first is not None:
+        if row["along"] != "axis" or pitch is not None or span is not None:
+            raise ValueError(
+                "first_mm and last_mm are of pits along the axis: for others give middle_mm with pitch_mm or span_mm"
+            )
+        pits = pit_row(row["count"], first, first if last is None else last, **numbers)
+        return [*pits, *_other_half(row, pits, made, which, pair)]
+    if last is not None:
+        raise ValueError("last_mm goes with first_mm: about middle_mm give pitch_mm or span_mm")
+    if row["count"] > 1 and (pitch is None) == (span is None):
+        raise ValueError(
+            f"{row['count']} pits about middle_mm: give pitch_mm, from one to the next, or span_mm, from first to last"
+        )
+    pitch = pitch if span is None else span / max(row["count"] - 1, 1)
+    options = {"face": _face(made, pair), "groove": pair["groove_mm"], "both": row["both_halves"], "mirrored": row["mirrored"]}
+    return pit_line(made, which, row["along"], row["count"], pitch, middle=middle, **options, **numbers)
+
+
+def spall_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
+    """The spall of a row, and its mirror image in the other half of a herringbone gear if asked for."""
+    spall = Spall(**arguments("spall", row, "radius_mm", "z_mm", "sides_mm", "depth_mm", "corner_mm", "tooth"))
+    return [spall, *_other_half(row, [spall], made, which, pair)]
+
+
+def _other_half(row, damage, made, which, pair):
+    return in_both_halves((made.gear_1, made.gear_2)[which], damage, _face(made, pair)) if row["both_halves"] else []
+
+
+def _face(made, pair):
+    return pair["face"] or ("helical" if made.gear_1.beta else "spur")
+
+
+DAMAGE: dict[str, Callable[[Row, GearPair, int, Row], list[Damage]]] = {"crack": crack_of, "pits": pits_of, "spall": spall_of}
+
+
+def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[str, Flank]:
+    """Flanks of the pair `name` by side."""
+    out: dict[str, Flank] = {}
+    for where, row, side in _placed(file, rows, name, ("flank",), out):
+        with located(file, where, row):
+            out[side] = _flank(row, gears[row["gear"]])
+    return out
+
+
+def misalignment_of(file: str, name: str, pair: GearPair, row: Row) -> Misalignment | None:
+    """Misalignment of the pair `name`, from its row; None if it has none."""
+    amounts = ("F_beta_um", "f_sigma_beta_um", "f_sigma_delta_um")
+    if not any(row[amount] for amount in amounts):
+        return None
+    with located(file, f"pair.{name}", row):
+        misalignment = Misalignment(**arguments("pair", row, *amounts, "bearing_span_mm"))
+        tilt_of(pair, misalignment)
+    return misalignment
+
+
+def supports_of(file: str, rows: Row, name: str, materials: dict[str, Any]) -> dict[str, Support | Shaft]:
+    """Supports of the pair `name` by side."""
+    out: dict[str, Support | Shaft] = {}
+    there = dict.fromkeys(row[side] for row in rows["pair"].values() for side in ("gear_1", "gear_2"))
+    for where, row in ((f"{kind}.{key}", row) for kind in HELD for key, row in rows[kind].items()):
+        check_known(file, where, "gear", row["gear"], there, "gear in a pair")
+    for where, row, side in _placed(file, rows, name, HELD, out):
+        with located(file, where, row):
+            out[side] = _shaft(row, materials) if where.startswith("shaft") else Support(**arguments("support", row))
+    return {side: out[side] for side in SIDES if side in out}
+
+
+def _placed(file: str, rows: Row, name: str, kinds: tuple[str, ...], out: dict[str, Any]) -> Iterator[tuple[str, Row, str]]:
+    """Place, row and side of all tables of these kinds in the pair `name`; of one side only one, in `out`."""
+    for where, row in ((f"{kind}.{key}", row) for kind in kinds for key, row in rows[kind].items()):
+        for side in sides(file, where, row, name, rows["pair"]):
+            if side in out:
+                raise ValueError(
+                    f"{file} [{where}]: gear {row['gear']!r} has {' or '.join(kinds)} in pair {name!r}; give each its pair"
+                )
+            yield where, row, side
+
+
+def _shaft(row, materials):
+    columns = [row[key] for key in ("lengths_mm", "diameters_mm", "bores_mm") if row[key] is not None]
+    if len({len(column) for column in columns}) > 1:
+        raise ValueError(
+            f"shaft of {len(columns[0])} lengths: give as many diameters_mm, and bores_mm (0: none) if there are any"
+        )
+    names = ("bearings_at_mm", "gear_at_mm", "torque_at_mm", "integral", "bearings_N_per_um")
+    return Shaft(
+        segments=list(zip(*columns, strict=True)), material=materials[row["material"]], **arguments("shaft", row, *names)
+    )
+
+
+def _flank(row, gear):
+    fields, whole = arguments("flank", row), abs(gear.roll_a - gear.roll_f)
+    for end, roll, sense in (("tip", gear.roll_a, -1), ("root", gear.roll_f, 1)):
+        length = fields.pop(f"{end}_start_length", None)
+        if length is None:
+            continue
+        if row[f"{end}_start_roll_mm"] is not None:
+            raise ValueError(f"{end}_start_length_mm and {end}_start_roll_mm: give one start")
+        if not length < whole:
+            raise ValueError(f"{end}_start_length_mm = {length}, but the flank is {whole:.4g} mm of roll long: give a part of it")
+        fields[f"{end}_start_roll"] = roll + sense * gear.outward * length
+    for name, amounts in (("table", "table_removed"), ("wear", "wear")):
+        if f"{name}_roll" in fields:
+            fields[name] = fields.pop(f"{name}_roll"), fields.pop(amounts)
+    flank = Flank(**fields)
+    flank.on(gear)
+    return flank

@@ -1,0 +1,85 @@
+"""A scene file with comments, from its tables and the schema: what is stated, and commented lines for all else it can say.
+
+Lines that are keys or tables begin with # and no space; take the # away, and they hold. Text begins with # and a space.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from .schema import Key, KeyTable, scene_schema
+from .toml_file import toml_value
+
+Tables = Mapping[str, Any]
+
+
+def template(stated: Tables, asleep: Tables, numbers: Mapping[str, float], notes: Mapping[str, str]) -> str:
+    """Text of a scene file.
+
+    Parameters
+    ----------
+    stated : dict
+        Tables of the scene.
+    asleep : dict
+        Tables that are written as comments, with the values in which they differ from the examples of the schema.
+    numbers : dict
+        Numbers that suit the scene, for the examples of the schema.
+    notes : dict
+        Further comments by key.
+    """
+    lines: list[str] = []
+    for key in scene_schema()["scene"].keys.values():
+        if not key.of:
+            lines += [f"{key.name} = {toml_value(stated[key.name])}  # {key.text}"] if key.name in stated else []
+        elif key.name in stated or key.name in asleep:
+            table = scene_schema()[key.of]
+            lines += ["", *(f"# {line}".rstrip() for line in table.about.splitlines())]
+            rows = [(heading, row, "") for heading, row in _rows(key, stated)] + [(h, row, "#") for h, row in _rows(key, asleep)]
+            full = next((i for i, (*_, mark) in enumerate(rows) if mark), 0)
+            for i, (heading, row, mark) in enumerate(rows):
+                lines += [
+                    f"{mark}{heading}",
+                    *_lines(table, row, mark, notes, numbers if i == full else None),
+                    *([""] if not mark else []),
+                ]
+        elif key.other:
+            lines += ["", f"# {_heading(key)}: {key.text}, with {', '.join(scene_schema()[key.of].keys)}"]
+    return "\n".join(lines).replace("\n\n\n", "\n\n").strip() + "\n"
+
+
+def _rows(key: Key, tables: Tables) -> Iterator[tuple[str, Tables]]:
+    """Heading and values of each table of a kind."""
+    found = tables.get(key.name)
+    if found is None:
+        return
+    if key.type == "named":
+        yield from ((f"[{key.name}.{name}]", row) for name, row in found.items())
+    else:
+        yield from ((_heading(key), row) for row in (found if key.type == "listed" else [found]))
+
+
+def _heading(key: Key, place: str = "") -> str:
+    name = f"{place}{key.name}"
+    return f"[[{name}]]" if key.type == "listed" else f"[{name}.NAME]" if key.type == "named" else f"[{name}]"
+
+
+def _lines(
+    table: KeyTable, row: Tables, mark: str, notes: Mapping[str, str], numbers: Mapping[str, float] | None
+) -> Iterator[str]:
+    """Lines of a table: keys of its `row`, and with `numbers` all others as comments with their examples."""
+    for key in table.keys.values():
+        if key.name in row:
+            note = f"; {notes[key.name]}" if key.name in notes and not mark else ""
+            yield f"{mark}{key.name} = {toml_value(row[key.name])}" + (f"  # {key.text}{note}" if numbers or note else "")
+        elif numbers and not key.of:
+            value = (
+                key.example.format(**numbers) if key.example else "..." if key.default in (None, []) else toml_value(key.default)
+            )
+            without = f"; left out: {key.optional}" if key.optional else ""
+            yield f"#{' ' if key.other else ''}{key.name} = {value}  # {key.text}{without}"
+        elif numbers:
+            inner = scene_schema()[key.of]
+            if key.other:
+                yield f"# {_heading(key, f'{table.name}.')}: {key.text}, with {', '.join(inner.keys)}"
+            else:
+                yield f"#[{table.name}.{key.name}]  # {key.text}"
+                yield from _lines(inner, {}, "#", {}, numbers)
