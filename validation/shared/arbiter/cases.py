@@ -85,8 +85,8 @@ def loaded():
 
     Chosen before any of them was pressed: the first pairs from seed 270000 on, spur and below 96 teeth in sum, that filled a
     number of each kind; up to five phases with an off-path tooth pair within 3 um, the others spread over the cycle. Kinds, form:
-    an undercut flank's corner within 3 um; fillet: contact on a fillet; trimmed: a ring's tip; rounded: rounded or chamfered tips;
-    ring, modified, plain: none of these.
+    an undercut flank's corner within 3 um; fillet: contact on a fillet; trimmed: a ring's tip; rounded: rounded or chamfered
+    tips; ring, modified, plain: none of these.
     """
     rows = []
     for row in rows_of(SOURCES / "outlines.csv"):
