@@ -276,7 +276,9 @@ FORMATS = {
     ".txt": Format((), ("signal",), None, read_text),
     ".npz": Format(("curve", "response", "surrogate"), ("signal", "surrogate"), write_npz, read_npz),
     ".mat": Format(("curve", "response"), ("signal",), write_mat, read_mat),
-    **{suffix: Format((), ("signal",)) for suffix in (".h5", ".hdf5", ".wav", ".uff", ".unv", ".uf", ".tdms", ".parquet")},
+    **{
+        suffix: Format((), ("signal",)) for suffix in (".h5", ".hdf5", ".wav", ".uff", ".unv", ".uf", ".tdms", ".parquet", ".lvm")
+    },
     ".json": Format(("curve",), (), write_json, None),
     ".png": Format(("picture", "stress")),
     **{suffix: Format(("picture",)) for suffix in (".svg", ".pdf", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".eps")},

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.mesh.periodic_sector import periodic_sector
-from .cracked_sector import cracked_sector
 from .whole_gear import PLACES, WholeGear, in_chain, sector_stiffness
 
 
@@ -56,7 +55,7 @@ def cracks_of(whole: WholeGear, found: Any, refine: float) -> Cracks:
     softer, loads = [], []
     for tooth in teeth:
         hurt = [crack for crack in found if crack.tooth % whole.gear.z == tooth]
-        matrix, push, _ = sector_stiffness(cracked_sector(whole.gear, hurt, refine=refine), whole.material)
+        matrix, push, _ = sector_stiffness(periodic_sector(whole.gear, hurt, refine=refine), whole.material)
         softer.append((matrix - plain)[np.ix_(order, order)])
         loads.append(push[order])
     return Cracks(whole, teeth, np.array(softer), np.array(loads), side)

@@ -19,6 +19,7 @@ class Found:
     units: dict[str, str] = field(default_factory=dict)  # as stated; missing or empty where nothing is stated
     stated: dict[str, Any] = field(default_factory=dict)  # what is said under the names of `KEYS`, by full name
     rates: dict[str, float] = field(default_factory=dict)  # [Hz] of single channels, in formats that state them there
+    starts: dict[str, float] = field(default_factory=dict)  # [s] of single channels, on one clock
     nested: str = ""  # what parts a group from the names in it: "." in MATLAB structs, "/" in HDF5 and TDMS; empty: no groups
     other: list[str] = field(default_factory=list)  # what else the file holds, named in messages
     hint: str = ""  # what to do about a file whose columns have no names

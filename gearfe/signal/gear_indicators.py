@@ -5,6 +5,7 @@ sideband each), the *difference* signal what is left; the *residual* signal keep
 """
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -27,6 +28,7 @@ GEAR_SOURCES = {
     "energy ratio": "rms of the difference signal over rms of the regular signal; Vecer 2005",
     "sideband level factor": "sum of the first sidebands' amplitudes f_m +- f_shaft over the rms of the average; Vecer 2005",
 }
+CLEAR = 3.0  # times the median of the orders around it: white noise has such a line in 0.2 % of the cases
 EMPTY = 1e-9  # part of the average below which a remainder is rounding
 
 
@@ -64,7 +66,12 @@ def gear_indicators(
     Raises
     ------
     ValueError
-        If the average is too short for its teeth, constant, or has no mesh line.
+        If the average is too short for its teeth, constant, or has no mesh line at all.
+
+    Warns
+    -----
+    UserWarning
+        If no mesh line stands out, so that the average is hardly that of this gear.
 
     References
     ----------
@@ -82,6 +89,12 @@ def gear_indicators(
     mesh = amplitude[teeth::teeth].sum()
     if not mesh > EMPTY * np.abs(x).max():
         raise ValueError(f"the average has no mesh line of {teeth} teeth: is it over a turn of that gear?")
+    if not _has_mesh_line(amplitude, teeth):
+        warnings.warn(
+            f"the average has no line at {teeth} orders or their harmonics (FM0 {np.ptp(x) / mesh:.3g}), so its indicators do "
+            "not describe that gear: check the teeth, and the ratio of its shaft to the tachometer's",
+            stacklevel=2,
+        )
     if not isinstance(before, (list, tuple)):
         raise ValueError(f"before is {type(before).__name__}, but give a list of earlier averages")
     history = [x, *map(_turn, before)]
@@ -100,15 +113,24 @@ def gear_indicators(
     }
 
 
+def _has_mesh_line(amplitude, teeth):
+    """Whether one of the first three mesh orders stands out of the orders half a mesh order to either side."""
+    for order in range(teeth, min(4 * teeth, amplitude.size), teeth):
+        around = amplitude[max(order - teeth // 2, 1) : order + teeth // 2 + 1]
+        if amplitude[order] > CLEAR * np.median(around):
+            return True
+    return False
+
+
 def gear_indicator_table(
-    signals: Mapping[str, Signal], teeth: int, *, samples_per_turn: int | None = None
+    signals: Mapping[str, Signal] | Sequence[Signal], teeth: int, *, samples_per_turn: int | None = None
 ) -> dict[str, dict[str, float]]:
     """`gear_indicators` of several records, in the order in which they were taken.
 
     Parameters
     ----------
-    signals : dict of str to Signal
-        By name, the earliest first, each with the `angle` or `shaft_frequency` of the gear's shaft.
+    signals : dict of str to Signal, or list of Signal
+        By name (default: their own), the earliest first, each with the `angle` or `shaft_frequency` of the gear's shaft.
     teeth : int
     samples_per_turn : int, optional
         See `gearfe.synchronous_average`; all records get the largest number any of them needs by itself.
@@ -118,6 +140,8 @@ def gear_indicator_table(
     dict of str to dict of str to float
         ``table[record][indicator]``; NA4 and NB4 over this and all earlier records.
     """
+    if not isinstance(signals, Mapping):
+        signals = {record.name: record for record in signals}
     averages = {name: synchronous_average(record, samples_per_turn)[0] for name, record in signals.items()}
     if len({record.size for record in averages.values()}) > 1:
         most = max(record.size for record in averages.values())

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, TypedDict, Unpack
 
 from ..core.table import Column, Table
@@ -48,7 +49,8 @@ def indicator_table(
     Parameters
     ----------
     signals : dict of str to Signal
-        Signals by case, all of the same unit, rate and length: the sideband indicators depend on them.
+        Signals by case, of the same unit and rate. Longer ones are cut to the shortest, since the sideband indicators depend on
+        the length.
     mesh_frequency, fault_frequency, **options
         See `Signal.indicators`.
     healthy : str
@@ -62,7 +64,7 @@ def indicator_table(
     Raises
     ------
     ValueError
-        If there is no case called `healthy`; if a signal differs from it in unit, rate or length; if a signal is constant. With
+        If there is no case called `healthy`; if a signal differs from it in unit or rate; if a signal is constant. With
         frequencies also: if only one is given, or one is no positive number of Hz; if the fault frequency is not below the mesh
         frequency, or less than 4 bins of the spectrum; if a line or a sideband lies above half of the rate, or has no bin within
         `tolerance`; if the spectrum is zero around the mesh frequency; if scipy does not know `window`.
@@ -71,16 +73,26 @@ def indicator_table(
         raise ValueError(f"no case {healthy!r} to compare with; there are {', '.join(signals) or 'none'}: give one as healthy=")
     first = signals[healthy]
     for case, signal in signals.items():
-        if (signal.unit, signal.rate, signal.values.size) != (first.unit, first.rate, first.values.size):
+        if (signal.unit, signal.rate) != (first.unit, first.rate):
             raise ValueError(
-                f"{case}: {signal.values.size} samples at {signal.rate:g} Hz in {signal.unit}, but {healthy} has "
-                f"{first.values.size} at {first.rate:g} Hz in {first.unit}: compare like with like"
+                f"{case}: {signal.rate:g} Hz in {signal.unit}, but {healthy} has {first.rate:g} Hz in {first.unit}: "
+                "compare records of the same rate and unit"
             )
-    indicators = {case: signal.indicators(mesh_frequency, fault_frequency, **options) for case, signal in signals.items()}
+    alike = _of_one_length(signals)
+    indicators = {case: signal.indicators(mesh_frequency, fault_frequency, **options) for case, signal in alike.items()}
     reference = indicators[healthy]
     return {
         case: {name: (value, increment(value, reference[name]) if reference[name] else math.nan) for name, value in row.items()}
         for case, row in indicators.items()
+    }
+
+
+def _of_one_length(signals):
+    """The beginning of each record, as long as the shortest."""
+    count = min(signal.values.size for signal in signals.values())
+    return {
+        case: replace(signal, values=signal.values[:count], angle=None if signal.angle is None else signal.angle[:count])
+        for case, signal in signals.items()
     }
 
 

@@ -10,12 +10,14 @@ from typing import Any
 import numpy as np
 
 from ..core.extras import needing
+from ..core.files import read_text
 from ..core.threads import Shared, own_warnings
 from .found import TIMES, Found, numeric, plain
 from .text_table import named
 
 TIME_RESPONSE = 1  # function type of a data set 58 that holds a quantity over time
 DIRECTIONS = {1: "+x", -1: "-x", 2: "+y", -2: "-y", 3: "+z", -3: "-z"}
+EPOCH = np.datetime64("1970-01-01T00:00:00")
 TDMS_UNITS = ("unit_string", "NI_UnitDescription", "unit")
 SAID_NOTHING = ("", "none", "unknown")
 # what scipy and npTDMS, which trust their files, raise when these are damaged (NameError: a chunk is missing)
@@ -86,6 +88,7 @@ def _uff_set(found: Found, one: dict[str, Any]) -> None:
     found.vectors[name], found.units[name] = np.asarray(data), "" if unit.lower() in SAID_NOTHING else unit
     if one.get("abscissa_spacing") == 1 and one.get("abscissa_inc", 0) > 0:
         found.rates[name] = 1 / float(one["abscissa_inc"])
+        found.starts[name] = float(one.get("abscissa_min", 0.0))
 
 
 def _free(found, name):
@@ -144,6 +147,41 @@ def _tdms_channel(found: Found, name: str, data: Any, properties: Any) -> None:
     step = properties.get("wf_increment", 0)
     if isinstance(step, (int, float)) and step > 0:
         found.rates[name] = 1 / float(step)
+        begun = properties.get("wf_start_time", EPOCH)
+        seconds = (begun - EPOCH) / np.timedelta64(1, "us") * 1e-6 if isinstance(begun, np.datetime64) else 0.0
+        found.starts[name] = float(seconds) + float(properties.get("wf_start_offset", 0.0))
+
+
+def labview_file(path: str | os.PathLike[str], lines: list[str] | None = None) -> Found:
+    """Channels of a LabVIEW measurement file (``.lvm``) with one segment, whose header states names, units and step."""
+    with needing("lvm_read"):
+        import lvm_read
+    try:  # `lvm_read.read` would unpickle a file of the same name
+        parts = lvm_read.read_str("\n".join(read_text(path) if lines is None else lines) + "\n")
+        segment = parts[0]
+        columns, names = np.atleast_2d(segment["data"]).T, segment["Channel names"]
+    except DAMAGE as error:
+        raise _damaged(path, "LabVIEW measurement", error) from error
+    if parts["Segments"] != 1:
+        raise ValueError(f"{path} has {parts['Segments']} segments: save each of them as a file")
+    stated = next(iter(segment.get("Samples", [])), columns.shape[1])
+    if stated != columns.shape[1]:
+        raise ValueError(f"{path} is not a whole LabVIEW measurement file: {columns.shape[1]} of {stated} samples are there")
+    several = parts.get("X_Columns") == "Multi"
+    first = 0 if parts.get("X_Columns") == "No" else 1
+    recording, units = Found({}), segment.get("Y_Unit_Label", [])
+    for place in range(first, len(columns), 2 if several else 1):
+        if names[place] == "Comment":
+            break
+        column = place - first  # of the header, which has no entry for a single time column
+        name = _free(recording, names[place].strip() or "channel")
+        recording.vectors[name] = columns[place]
+        recording.units[name] = units[column].strip() if column < len(units) else ""
+        steps, starts = (segment.get(key, []) for key in ("Delta_X", "X0"))
+        if column < len(steps) and steps[column] > 0:
+            recording.rates[name] = 1 / steps[column]
+            recording.starts[name] = float(starts[column]) if column < len(starts) else 0.0
+    return recording
 
 
 def parquet_file(path: str | os.PathLike[str]) -> Found:

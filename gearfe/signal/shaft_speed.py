@@ -6,13 +6,15 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.ndimage import maximum_filter1d, median_filter
-from scipy.signal import stft
+from scipy.signal import fftconvolve, get_window, stft
 
 from ..core.checks import whole
 from .given import hertz
-from .own_speed import FINE, ROUNDS, WIDTH, _between, _lag, _straight_ends
 from .series import Signal
 
+WIDTH = 4  # bins of a line with Hann's window, and how far it may move between windows that overlap by half
+FINE = 4  # speeds tried for each bin of the highest harmonic
+ROUNDS = 3  # of phase demodulation
 BROAD = 32  # widths of a line over which the median is what resonances and noise hold
 PARTS = 4  # of a record, each of which must show its speed
 # times what chance finds: white noise had 1.09 at most in 160 records, lines that were found 1.4 and more; on records drawn later
@@ -132,3 +134,28 @@ def _check_followed(signal, order, time, score, step, path):
                 f"{signal.name}: from {time[part[0]]:.3g} to {time[part[-1]]:.3g} s no line of order {order:g} stands out at any "
                 f"speed of the range: {LOOK}"
             )
+
+
+def _between(score, tried, path):
+    """Speeds of a path, each moved to the top of a parabola through its neighbours' scores."""
+    inner = np.clip(path, 1, len(tried) - 2)
+    rows = np.arange(len(path))
+    left, here, right = (score[rows, inner + i] for i in (-1, 0, 1))
+    bend = left - 2 * here + right
+    off = np.where(bend < 0, (left - right) / 2 / np.where(bend < 0, bend, -1.0), 0.0)
+    return tried[path] + np.where(path == inner, np.clip(off, -1, 1), 0.0) * (tried[1] - tried[0])
+
+
+def _straight_ends(angle, time, speed, t):
+    """An angle at times `t`; before the first and after the last window at the speed there."""
+    inside = np.clip(t, time[0], time[-1])
+    return angle(inside) + 2 * np.pi * ((t - inside) * np.where(t < time[0], speed[0], speed[-1]))
+
+
+def _lag(signal, order, turned, size):
+    """How far a line lags behind an angle [rad of the shaft], smooth over a window."""
+    window = get_window("hann", size + 1, fftbins=False)
+    wave = (signal.values - signal.values.mean()) * np.exp(-1j * order * turned)
+    slow = fftconvolve(wave, window, mode="same") / fftconvolve(np.ones(wave.size), window, mode="same")
+    phase = np.unwrap(np.angle(slow))
+    return -(phase - phase[phase.size // 2]) / order

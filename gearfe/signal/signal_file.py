@@ -5,6 +5,7 @@ import os
 import re
 import warnings
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from ..core.files import read, suffix_of
 from .array_file import array_file, hdf_file
 from .found import ANGLES, RATES, SHAFTS, TIMES, Found
-from .recorder_file import parquet_file, tdms_file, uff_file, wav_file
+from .recorder_file import labview_file, parquet_file, tdms_file, uff_file, wav_file
 from .series import Signal
 from .tachometer import SPEEDS, with_speed_record, with_tachometer
 from .text_table import text_table
@@ -25,10 +26,18 @@ TURN = {"rad": 1.0, "deg": math.pi / 180}
 HERTZ = {"": 1.0, "hz": 1.0, "khz": 1e3}
 LONGEST = 60  # characters of a unit
 AGREE = 1e-3  # largest relative difference between a stated rate and the time column
-SAME = {"m/s²": "m/s^2", "m/s2": "m/s^2", "m/s**2": "m/s^2", "m/s/s": "m/s^2", "µm": "um", "μm": "um"}  # spellings of a unit
+SAME = {
+    "m/s²": "m/s^2",
+    "m/s2": "m/s^2",
+    "m/s**2": "m/s^2",
+    "m/s/s": "m/s^2",
+    "µm": "um",
+    "μm": "um",
+    "Newtons": "N",
+}  # spellings of a unit
 READERS = {
     ".npz": array_file, ".mat": array_file, ".h5": hdf_file, ".hdf5": hdf_file, ".wav": wav_file, ".uff": uff_file,
-    ".unv": uff_file, ".uf": uff_file, ".tdms": tdms_file, ".parquet": parquet_file,
+    ".unv": uff_file, ".uf": uff_file, ".tdms": tdms_file, ".parquet": parquet_file, ".lvm": labview_file,
 }  # fmt: skip
 
 
@@ -57,11 +66,11 @@ def read_signal(
       of structs (``run.acc``) and cells (``run{2}``); ``time`` [s], ``angle`` [rad]; scalars ``rate``, ``shaft_frequency`` [Hz];
       text or attribute ``unit``. A response that gearfe wrote: columns by channel.
     - ``.wav``: ``channel 1``...; whole numbers as parts of full scale, to be given `unit` and `scale`.
-    - ``.uff``, ``.unv`` (data sets 58, functions over time), ``.tdms``, ``.parquet``: channels with the units and steps stated;
-      dates of a clock in Parquet are the time.
+    - ``.uff``, ``.unv`` (data sets 58, functions over time), ``.tdms``, ``.parquet``, ``.lvm`` (or text that begins with
+      ``LabVIEW Measurement``): channels with the units and steps stated; dates of a clock in Parquet are the time.
 
     Nothing is unpickled, no other file is opened, and an archive, MATLAB or HDF5 file that announces more numbers than it can
-    hold is refused. HDF5, version 7.3, UFF, TDMS and Parquet need ``pip install 'gearfe[signals]'``.
+    hold is refused. HDF5, version 7.3, UFF, TDMS, Parquet and LVM need ``pip install 'gearfe[signals]'``.
 
     Parameters
     ----------
@@ -101,10 +110,14 @@ def read_signals(
     units: str | Mapping[str, str] | None = None,
     tachometer: str | None = None,
     pulses: int = 1,
+    ratio: float = 1.0,
     level: float | None = None,
     **stated: Any,
 ) -> dict[str, Signal]:
     """Read channels of a file, by name; see `read_signal` for the formats.
+
+    Channels that begin or end at different times, as TDMS and universal files may state, are cut to the time that they share,
+    to the nearest sample.
 
     Parameters
     ----------
@@ -115,13 +128,16 @@ def read_signals(
         Of all channels, or by channel; where the file states none.
     tachometer : str, optional
         Channel of pulses of the shaft, from which all others get their `angle`: see `gearfe.with_tachometer`. If its unit is
-        ``rpm`` or ``1/min`` it is taken for the speed of the shaft, with a warning, and its integral for the angle.
+        ``rpm`` or ``1/min`` it is taken for the speed of the shaft, with a warning, and its integral for the angle. A channel
+        that is shorter than the others, with values that rise, contains the times of the pulses [s].
     pulses : int
-        Of the tachometer, in a turn.
+        Pulses per revolution of the tachometer's shaft.
+    ratio : float or fractions.Fraction
+        Speed of the gear's shaft over that of the tachometer's shaft; 1 if the tachometer is on the gear's shaft.
     level : float, optional
         At which a pulse counts, in the tachometer's unit; default: half its height.
     **stated
-        ``rate``, ``header``, ``scale`` of `read_signal`.
+        ``rate``, ``header``, ``scale`` of `read_signal`; ``unit`` is another name of `units`.
 
     Returns
     -------
@@ -137,6 +153,7 @@ def read_signals(
     RuntimeError
         If the library that reads the format is missing.
     """
+    units = stated.pop("unit", units)
     recording = channels(path, stated.pop("header", None))
     pulse = None if tachometer is None else _choose(path, recording, tachometer)
     names = [channel for channel in recording.channels() if channel != pulse]
@@ -144,19 +161,48 @@ def read_signals(
         names = [_choose(path, recording, column) for column in columns]
     if not names:
         _choose(path, recording, None)
-    channel_units = units if isinstance(units, Mapping) else dict.fromkeys(names, units)
+    if isinstance(units, Mapping):
+        channel_units = units
+    else:  # one text is for the channels without a unit; of a single channel, `_signal` compares it with that of the file
+        channel_units = {name: None if recording.units.get(name) and len(names) > 1 else units for name in names}
     unknown = [name for name in channel_units if name not in recording.vectors and channel_units[name] is not None]
     if unknown:
         raise ValueError(f"{path}: units for {', '.join(map(repr, unknown))}, but it has {recording.told()}")
     out = {name: _signal(path, recording, name, unit=channel_units.get(name), **stated) for name in names}
     if pulse is None:
-        return out
+        return _aligned(path, recording, out)
+    times = recording.vectors[pulse]
+    if times.size < min(channel.values.size for channel in out.values()) and (np.diff(times) > 0).all():
+        return {
+            name: with_tachometer(channel, times - recording.starts.get(name, 0.0), pulses, ratio=ratio)
+            for name, channel in out.items()
+        }
     clock = _signal(path, recording, pulse, unit=None if recording.units.get(pulse) else "1", rate=stated.get("rate"))
+    out = _aligned(path, recording, {**out, pulse: clock})
+    clock = out.pop(pulse)
     if clock.unit in SPEEDS:
         meaning = "taken for the shaft's speed, its integral for the angle"
         warnings.warn(f"{path}: {pulse!r} is in {clock.unit}: {meaning}", stacklevel=3)
-        return {name: with_speed_record(channel, clock) for name, channel in out.items()}
-    return {name: with_tachometer(channel, clock, pulses, level=level) for name, channel in out.items()}
+        return {name: with_speed_record(channel, clock, ratio=ratio) for name, channel in out.items()}
+    return {name: with_tachometer(channel, clock, pulses, ratio=ratio, level=level) for name, channel in out.items()}
+
+
+def _aligned(path, found, signals):
+    """Signals cut to the time that all of them share, where the file states different starts."""
+    starts = {name: found.starts.get(name, 0.0) for name in signals}
+    if len(set(starts.values())) == 1:
+        return signals
+    first = max(starts.values())
+    last = min(start + signals[name].duration for name, start in starts.items())
+    out = {}
+    for name, signal in signals.items():
+        skip, count = round((first - starts[name]) * signal.rate), round((last - first) * signal.rate)
+        if count < 2:
+            told = ", ".join(f"{name!r} at {start:g} s" for name, start in starts.items())
+            raise ValueError(f"{path}: the channels share no time, they begin with {told}: name those that do as columns=")
+        part = slice(skip, skip + count)
+        out[name] = replace(signal, values=signal.values[part], angle=None if signal.angle is None else signal.angle[part])
+    return out
 
 
 def channels(path: str | os.PathLike[str], header: str | None = None) -> Found:
@@ -168,7 +214,12 @@ def channels(path: str | os.PathLike[str], header: str | None = None) -> Found:
     if header is not None and suffix in READERS:
         raise ValueError(f"{path}: header = {header!r}, but only text tables can lack names; leave it out")
     try:
-        recording = READERS[suffix](path) if suffix in READERS else text_table(path, read(path, "signal"), header)
+        if suffix in READERS:
+            recording = READERS[suffix](path)
+        else:
+            lines = read(path, "signal")
+            labview = bool(lines) and lines[0].startswith("LabVIEW Measurement")
+            recording = labview_file(path, lines) if labview else text_table(path, lines, header)
     except OSError as error:
         raise ValueError(f"cannot read {path}: {error.strerror or error}") from error
     if not recording.vectors:

@@ -1,12 +1,15 @@
 """The angle of a shaft from the pulses of a tachometer or an encoder, or from its speed."""
 
+import math
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from ..core.checks import whole
+from .given import samples
 from .series import Signal
 
 SPEEDS = {"rpm": 1 / 60, "1/min": 1 / 60, "min^-1": 1 / 60, "U/min": 1 / 60, "tr/min": 1 / 60}  # turns per second, by unit
@@ -39,39 +42,46 @@ def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool
 
 
 def tachometer_angle(
-    tachometer: Signal, pulses: int = 1, *, level: float | None = None, falling: bool = False
+    times: NDArray[np.float64], signal: Signal, pulses: int = 1, *, ratio: float = 1.0, name: str = "tachometer"
 ) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Angle of the shaft [rad] ``(m,)`` at the samples between the first and last pulse, 0 at the first; and their numbers.
+    """Angle of a shaft [rad] ``(m,)`` at the samples of a signal between the first and last pulse, and their numbers.
 
-    Each pulse is ``2 pi / pulses`` further; through their times a cubic spline is laid, exact for a speed that changes evenly. A
-    pulse that lies between two samples is placed by a straight line between them, to a small part of a sample. `pulses`, `level`
-    and `falling` are as of `with_tachometer`. ValueError if there are too few pulses, or one was lost: an interval of about two
-    or more beside ordinary ones.
+    The angle is 0 at the first pulse, and ``2 pi ratio / pulses`` larger at each further one. A cubic spline through the times of
+    the pulses ``(n,)`` [s] is exact for a speed that changes evenly. `pulses` and `ratio` are those of `with_tachometer`.
+    ValueError if a pulse was lost: one interval is about twice as long as the intervals next to it, or longer.
 
     References
     ----------
     K. R. Fyfe, E. D. S. Munck, Mech. Syst. Signal Process. 11(2) (1997) 187-205.
     """
     whole("pulses", pulses, 1)
-    times = pulse_times(tachometer, level=level, falling=falling)
     gaps = np.diff(times)
     lost = np.flatnonzero(gaps[1:-1] > MISSED * np.maximum(gaps[:-2], gaps[2:]))
     if lost.size:
         at = times[lost[0] + 1]
         raise ValueError(
-            f"{tachometer.name}: no pulse for {gaps[lost[0] + 1]:.4g} s after {at:.6g} s, between intervals of "
+            f"{name}: no pulse for {gaps[lost[0] + 1]:.4g} s after {at:.6g} s, between intervals of "
             f"{gaps[lost[0]]:.4g} s: one was lost, or the shaft has a mark missing; give another height as level=, or cut there"
         )
-    samples = np.flatnonzero((tachometer.time >= times[0]) & (tachometer.time <= times[-1]))
-    angle = CubicSpline(times, 2 * np.pi / pulses * np.arange(times.size))(samples / tachometer.rate)
-    return angle, samples
+    within = np.flatnonzero((signal.time >= times[0]) & (signal.time <= times[-1]))
+    turn = 2 * np.pi * shaft_ratio(ratio) / pulses
+    return CubicSpline(times, turn * np.arange(times.size))(signal.time[within]), within
 
 
-def with_speed_record(signal: Signal, speed: Signal) -> Signal:
+def shaft_ratio(ratio: object) -> float:
+    """Ratio of two shafts' speeds as a float; ValueError if it is not positive and finite."""
+    value = float(ratio) if isinstance(ratio, (int, float, Fraction, np.number)) and not isinstance(ratio, bool) else math.nan
+    if not 0 < value < math.inf:
+        raise ValueError(f"ratio = {ratio!r}, but give the speed of the gear's shaft over that of the tachometer's, above 0")
+    return value
+
+
+def with_speed_record(signal: Signal, speed: Signal, *, ratio: float = 1.0) -> Signal:
     """A signal with the `angle` of a shaft whose speed was recorded with it: the integral of the speed, from 0.
 
     Errors of the speed add up, so that the angle drifts against the shaft; pulses (`with_tachometer`) do not. The speed is in one
-    of the units of `SPEEDS`. ValueError if the two differ in rate or length, or the shaft stands still or turns back.
+    of the units of `SPEEDS`; `ratio` is as of `with_tachometer`. ValueError if the two differ in rate or length, or the shaft
+    stands still or turns back.
     """
     _check_together(signal, speed)
     low = int(np.argmin(speed.values))
@@ -80,11 +90,17 @@ def with_speed_record(signal: Signal, speed: Signal) -> Signal:
             f"{speed.name}: {speed.values[low]:g} {speed.unit} at sample {low}, but orders need a shaft that turns on"
         )
     turns = np.cumsum((speed.values[1:] + speed.values[:-1]) / 2) * SPEEDS[speed.unit] / speed.rate
-    return replace(signal, angle=2 * np.pi * np.append(0.0, turns), shaft_frequency=None)
+    return replace(signal, angle=2 * np.pi * shaft_ratio(ratio) * np.append(0.0, turns), shaft_frequency=None)
 
 
 def with_tachometer(
-    signal: Signal, tachometer: Signal, pulses: int = 1, *, level: float | None = None, falling: bool = False
+    signal: Signal,
+    tachometer: Signal | ArrayLike,
+    pulses: int = 1,
+    *,
+    ratio: float = 1.0,
+    level: float | None = None,
+    falling: bool = False,
 ) -> Signal:
     """The part of a signal between the first and the last pulse of a tachometer, with the `angle` of the shaft.
 
@@ -92,10 +108,13 @@ def with_tachometer(
 
     Parameters
     ----------
-    signal, tachometer : Signal
-        Of one rate and length.
+    signal : Signal
+    tachometer : Signal, or array_like of shape (n,)
+        A record of the same rate and length, or the times of the pulses [s], 0 at the first sample of `signal`.
     pulses : int
-        In a turn of the shaft.
+        Pulses per revolution of the tachometer's shaft.
+    ratio : float or fractions.Fraction
+        Speed of the gear's shaft over that of the tachometer's shaft. Behind a stage of 29 and 95 teeth it is 29/95.
     level : float, optional
         At which a pulse counts, in the tachometer's unit; default: half its height.
     falling : bool
@@ -104,11 +123,24 @@ def with_tachometer(
     Raises
     ------
     ValueError
-        If the two differ in rate or length; if pulses are missing.
+        If the two differ in rate or length; if pulses are missing; if times do not rise or `ratio` is not positive.
     """
-    _check_together(signal, tachometer)
-    angle, samples = tachometer_angle(tachometer, pulses, level=level, falling=falling)
-    return replace(signal, values=signal.values[samples], angle=angle, shaft_frequency=None)
+    if isinstance(tachometer, Signal):
+        _check_together(signal, tachometer)
+        times, name = pulse_times(tachometer, level=level, falling=falling), tachometer.name
+    else:
+        times, name = _times(tachometer), "tachometer"
+    angle, within = tachometer_angle(times, signal, pulses, ratio=ratio, name=name)
+    if within.size < 2:
+        raise ValueError(f"{name}: pulses from {times[0]:g} to {times[-1]:g} s, but {signal.name} lasts {signal.duration:g} s")
+    return replace(signal, values=signal.values[within], angle=angle, shaft_frequency=None)
+
+
+def _times(given):
+    times = samples("tachometer", given)
+    if times.size < FEWEST or not (np.diff(times) > 0).all():
+        raise ValueError(f"{times.size} times of pulses, but an angle needs {FEWEST} or more times [s] that rise")
+    return times
 
 
 def _check_together(signal, other):

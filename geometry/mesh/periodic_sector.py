@@ -6,14 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import MeshTri2
 
+from ..damage.crack import meshed_path, start_arc
 from ..tooth.gear import Gear
 from ..tooth.profile import cartesian
-from .outline import doubled, half, spaced, stations
-from .section_mesh import fill
+from .outline import along, doubled, half, spaced, stations
+from .section_mesh import CRACK_EDGE, fill
 
 # longest edges in modules: flanks, fillets, root and tip, sides; on the held circle of a ring as many to a pitch as `RIM`
 FLANK, FILLET, COARSE, SIDE = 0.2, 0.12, 0.4, 0.4
 RIM = 24
+SIDES = ("loaded", "unloaded")  # right and left flank
 GROWTH = 0.5  # of the edge length per length, away from the rim of a ring
 
 
@@ -35,12 +37,40 @@ class PeriodicSector:
     roll: np.ndarray
 
 
-def periodic_sector(gear, *, refine=1.0):
-    """Mesh one pitch sector of a gear; `refine` divides the edge lengths."""
-    unit, pitch = gear.m_n / refine, math.pi / gear.z
+def periodic_sector(gear, cracks=(), *, refine=1.0):
+    """Mesh one pitch sector of a gear; `refine` divides the edge lengths.
+
+    `cracks` ``(Crack, ...)`` are those of its tooth, whatever tooth they name; one to a side at most. The sides and the held edge
+    of the sector are the same with and without them.
+
+    ValueError if a crack is too short, leaves the sector, or shares its side with another.
+    """
+    unit = gear.m_n / refine
+    lines, marks = {}, {}
+    for crack in cracks:
+        if crack.side in lines:
+            raise ValueError(f"two cracks on the {crack.side} side of tooth {crack.tooth}: give one to each side of a tooth")
+        corners = meshed_path(gear, crack)
+        length = np.hypot(*np.diff(corners, axis=1)).sum()
+        tip = min(CRACK_EDGE * FILLET * unit, length / 5)
+        marks[crack.side] = start_arc(gear, crack), min(FILLET * unit, length / 4)
+        lines[crack.side] = along(corners, marks[crack.side][1], tip, FILLET * unit)[:, 1:]
     roll = stations(gear, FLANK * unit)
-    half_tooth = half(gear, roll, FILLET * unit, COARSE * unit)
-    radius, angle = np.append(half_tooth.radius, gear.r_f), np.append(half_tooth.angle, pitch)
+    right, left = (half(gear, roll, FILLET * unit, COARSE * unit, mark=marks.get(side)) for side in SIDES)
+    parts = _parts(gear, right, left, refine)
+    r, a = (np.concatenate([part[k][:-1] for part in parts]) for k in (0, 1))
+    first = np.cumsum([0, *(part[0].size - 1 for part in parts)]) // 2
+    starts = {"loaded": (first[2], right, 1), "unloaded": (first[2], left, -1)}
+    chains = [(int(top + sense * one.mark), lines[side]) for side, (top, one, sense) in starts.items() if side in lines]
+    mesh, _ = fill(cartesian(r, a), np.zeros((2, 0)), chains)
+    below, _, _, beyond, held = ((np.arange(first[k], first[k + 1] + 1)) % first[-1] for k in range(5))
+    flanks = (first[2] + right.flank)[::-1], (first[2] - left.flank)[::-1]
+    return PeriodicSector(gear, mesh, below, beyond[::-1], held[::-1], flanks, roll)
+
+
+def _parts(gear, right, left, refine):
+    """The outline clockwise from the lower left corner: radii and angles, each part without its last point."""
+    unit, pitch = gear.m_n / refine, math.pi / gear.z
     thick = abs(gear.r_f - gear.held)
     cells = math.ceil((RIM if gear.internal else 2) * refine)
     fine = 2 * pitch * gear.held / cells
@@ -48,18 +78,11 @@ def periodic_sector(gear, *, refine=1.0):
     side = doubled(gear.held - away if gear.internal else gear.held + away)
     side[-1] = gear.r_f
     held = np.linspace(pitch, -pitch, 2 * cells + 1)
-    parts = [  # clockwise from the lower left corner, each without its last point
+    (r_1, a_1), (r_2, a_2) = ((np.append(one.radius, gear.r_f), np.append(one.angle, pitch)) for one in (right, left))
+    return [
         (side, np.full(side.size, -pitch)),
-        (radius[::-1], -angle[::-1]),
-        (radius, angle),
+        (r_2[::-1], -a_2[::-1]),
+        (r_1, a_1),
         (side[::-1], np.full(side.size, pitch)),
         (np.full(held.size, gear.held), held),
     ]
-    r, a = (np.concatenate([part[k][:-1] for part in parts]) for k in (0, 1))
-    first = np.cumsum([0, *(part[0].size - 1 for part in parts)]) // 2
-    mesh, _ = fill(cartesian(r, a), np.zeros((2, 0)))
-    count = first[-1]
-    left, _, _, right, below = ((np.arange(first[k], first[k + 1] + 1)) % count for k in range(5))
-    up = half_tooth.flank  # from the tip to the form point, from the middle of the tip
-    flanks = (first[2] + up)[::-1], (first[2] - up)[::-1]
-    return PeriodicSector(gear, mesh, left, right[::-1], below[::-1], flanks, roll)

@@ -73,3 +73,18 @@ def test_a_scheduler_of_no_name_from_python(tmp_path):
     for wrong in ("", 5, b"tcp://x"):
         with pytest.raises(ValueError, match="but give the address of a Dask scheduler"):
             gf.sweep(study, tmp_path / "out", scheduler=wrong)
+
+
+WHOLE = """title = "teeth"\nscene = "planetary_pitting"\nkind = "stiffness"\npair = "sun_planet"\n
+[options]\nphases = 8\nmethod = "textbook"\n\n[vary]\ngear.sun.z = {{ from = {}, to = {}, count = 2 }}\n"""
+
+
+def test_steps_of_teeth_are_whole_and_a_sweep_without_a_result_fails(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "whole.toml").write_text(WHOLE.format(20, 21), encoding="utf-8")
+    assert main(["sweep", "whole.toml", "-o", "whole", "--workers", "1"]) == 0
+    assert "2 cases, 2 done" in capsys.readouterr().out
+    (tmp_path / "half.toml").write_text(WHOLE.format(20.5, 21.5), encoding="utf-8")
+    for options in (["--dry-run"], ["--workers", "1"]):
+        assert main(["sweep", "half.toml", "-o", "half", *options]) == 1
+        assert "[gear.sun] z = 20.5" in capsys.readouterr().err

@@ -14,10 +14,10 @@ from gearfe.flexibility.finite_elements.solver import factor
 from gearfe.geometry.mesh import section_mesh
 from gearfe.geometry.mesh.both_flanks import _marked
 from gearfe.geometry.mesh.outline import stations
+from gearfe.geometry.mesh.periodic_sector import periodic_sector
 from gearfe.geometry.mesh.section_mesh import section
 from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal
 from gearfe.planetary_sets.cracked import cracked, cracks_of
-from gearfe.planetary_sets.cracked_sector import cracked_sector
 from gearfe.planetary_sets.rim import rim_angles, rim_moved, ring_on
 from gearfe.planetary_sets.rim_supports import RimBed, RimSupports
 from gearfe.planetary_sets.solve import bodies_of, planetary_stiffness
@@ -103,7 +103,7 @@ def test_a_sector_without_cracks_is_the_periodic_one():
     for gear in (SUN, RING):
         whole = whole_gear(gear, STEEL)
         found = cracks_of(whole, (gf.Crack(level=0.4),), 1.0)
-        plain = sector_stiffness(cracked_sector(gear, ()), STEEL)[0]
+        plain = sector_stiffness(periodic_sector(gear, ()), STEEL)[0]
         nothing = found._replace(softer=np.zeros_like(found.softer), loads=np.zeros_like(found.loads))
         assert plain.shape[0] == found.softer.shape[1]
         table = cracked(nothing, whole.held_inverse()).table[1:, :PLACES, 1:, :PLACES]

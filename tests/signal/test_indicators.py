@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import centroid
 import numpy as np
@@ -246,14 +247,19 @@ def test_increment():
 @pytest.mark.parametrize(
     "other",
     [
-        gf.Signal(np.ones(N - 1), RATE, "N"),
         gf.Signal(np.ones(N), 2 * RATE, "N"),
         gf.Signal(np.ones(N), RATE, "m/s^2"),
     ],
 )
 def test_table_compares_like_with_like(other):
-    with pytest.raises(ValueError, match=r"bad: .* but healthy has 51200 at 5120 Hz in N: compare like with like"):
+    with pytest.raises(ValueError, match=r"bad: .* but healthy has 5120 Hz in N: compare records of the same rate and unit"):
         gf.indicator_table({"healthy": family(), "bad": other}, F_M, F_FAULT)
+
+
+def test_longer_records_are_cut_to_the_shortest():
+    whole, part = family(), replace(family(), values=family().values[: N - 700])
+    found = gf.indicator_table({"healthy": part, "again": whole}, F_M, F_FAULT)
+    assert all(growth == 0 or math.isnan(growth) for _, growth in found["again"].values())
 
 
 def test_table_needs_the_healthy_case():

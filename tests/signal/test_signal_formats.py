@@ -68,9 +68,19 @@ def write_parquet(path):
     pd.DataFrame({"time [s]": TIME, "acc [m/s^2]": X, "force [m/s^2]": Y}).to_parquet(path)
 
 
+def write_lvm(path):
+    """Layout of LabVIEW's measurement files with one time column."""
+    head = ["LabVIEW Measurement\t", "Separator\tTab", "Decimal_Separator\t.", "X_Columns\tOne", "***End_of_Header***\t", "\t"]
+    step = f"{1 / RATE:.9E}"
+    head += ["Channels\t2\t", f"Samples\t{X.size}\t{X.size}\t", "Y_Unit_Label\tm/s^2\tm/s^2\t", "X0\t0.0\t0.0\t"]
+    head += [f"Delta_X\t{step}\t{step}\t", "***End_of_Header***\t\t\t", "X_Value\tacc\tforce\tComment"]
+    rows = [f"{t:.8f}\t{x:.9g}\t{y:.9g}" for t, x, y in zip(TIME, X, Y, strict=True)]
+    path.write_text("\n".join(head + rows) + "\n", encoding="utf-8")
+
+
 WRITERS = {
     ".npz": write_npz, ".mat": write_mat, ".h5": write_hdf, ".hdf5": write_hdf, ".wav": write_wav, ".uff": write_uff,
-    ".unv": write_uff, ".uf": write_uff, ".tdms": write_tdms, ".parquet": write_parquet,
+    ".unv": write_uff, ".uf": write_uff, ".tdms": write_tdms, ".parquet": write_parquet, ".lvm": write_lvm,
 }  # fmt: skip
 
 
@@ -87,7 +97,7 @@ def test_what_its_own_library_wrote_is_read_channel_by_channel(tmp_path, suffix)
     for (name, one), values in zip(found.items(), (X, Y), strict=True):
         assert_allclose(one.values, values, rtol=1e-6, atol=1e-7)
         assert_allclose(
-            one.rate, RATE, rtol=1e-5 if suffix.startswith(".u") else 1e-9, err_msg="UFF prints six digits of the step"
+            one.rate, RATE, rtol=1e-5 if suffix.startswith(".u") else 1e-8, err_msg="UFF prints six digits of the step"
         )
         assert one.unit == "m/s^2"
         assert one.name == f"run {name}"

@@ -32,7 +32,8 @@ def test_pulses_lie_between_samples():
 @pytest.mark.parametrize(("start", "rise"), [(12.37, 0.0), (5.0, 6.0), (40.0, -8.0)])
 def test_the_angle_of_a_chirp(start, rise):
     turns = chirp(start, rise)
-    angle, samples = tachometer_angle(shaft(turns))
+    tacho = shaft(turns)
+    angle, samples = tachometer_angle(pulse_times(tacho), tacho)
     off = angle - 2 * np.pi * turns[samples]
     assert np.ptp(off) < 2 * np.pi * 1e-6
     assert (np.diff(angle) > 0).all()
@@ -51,7 +52,7 @@ def test_order_spectrum_of_a_run_up_with_a_tachometer():
 def test_an_encoder_with_many_pulses_and_falling_edges():
     turns = chirp(10.0, 2.0)
     encoder = gf.Signal(np.sign(np.sin(2 * np.pi * 60 * turns)), RATE, "V")
-    angle, samples = tachometer_angle(encoder, 60, falling=True)
+    angle, samples = tachometer_angle(pulse_times(encoder, falling=True), encoder, 60)
     assert np.ptp(angle - 2 * np.pi * turns[samples]) < 2 * np.pi * 1.5 * turns[-1] / (TIME[-1] * RATE), "a sample and a half"
 
 
@@ -65,13 +66,13 @@ def test_noise_makes_no_pulses():
 def test_refusals():
     tacho = shaft(chirp(10.0, 0.0))
     with pytest.raises(ValueError, match="pulses = 0, but it is a whole number"):
-        tachometer_angle(tacho, 0)
+        gf.with_tachometer(tacho, tacho, 0)
     with pytest.raises(ValueError, match="0 pulses through 9 V, but an angle needs 4 or more"):
-        tachometer_angle(tacho, level=9.0)
+        gf.with_tachometer(tacho, tacho, level=9.0)
     lost = tacho.values.copy()
     lost[(TIME > 1.0) & (TIME < 1.17)] = 0
     with pytest.raises(ValueError, match=r"no pulse for 0\.2 s after .* one was lost"):
-        tachometer_angle(gf.Signal(lost, RATE, "V"))
+        gf.with_tachometer(tacho, gf.Signal(lost, RATE, "V"))
     with pytest.raises(ValueError, match=r"give records that were taken together"):
         gf.with_tachometer(gf.Signal(TIME, 2 * RATE, "N"), tacho)
 

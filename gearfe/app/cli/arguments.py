@@ -8,7 +8,17 @@ from ...stiffness.methods import NAMES, described, having
 from . import filling, sets, shell, signals, tools
 from . import verbs as run
 
-SIGNALS = (".csv", ".txt", ".mat", ".npz", ".h5", ".wav", ".uff", ".tdms", ".parquet")  # as of gearfe.core.files
+SIGNALS = (".csv", ".txt", ".mat", ".npz", ".h5", ".wav", ".uff", ".tdms", ".parquet", ".lvm")  # as of gearfe.core.files
+
+
+def _ratio(text):
+    """Ratio of speeds, ``0.305`` or ``29/95``."""
+    from fractions import Fraction
+
+    try:
+        return Fraction(text)
+    except (ValueError, ZeroDivisionError):
+        raise argparse.ArgumentTypeError(f"{text!r} is no ratio of speeds: give 29/95 or 0.305") from None
 
 
 def main(argv=None):
@@ -129,7 +139,8 @@ def main(argv=None):
     add("--teeth", type=int, metavar="Z", help="of a gear: FM0, FM4, NA4 and others from the mean of its turns")
     add("--shaft", type=float, metavar="HZ", help="turns of that gear in a second")
     add("--tacho", metavar="NAME", help="column with pulses of its shaft, or its speed in rpm, in place of --shaft")
-    add("--pulses", type=int, default=1, metavar="N", help="pulses of the tachometer in a turn (default: 1)")
+    add("--pulses", type=int, default=1, metavar="N", help="pulses per revolution of the tachometer's shaft (default: 1)")
+    add("--tacho-ratio", type=_ratio, default=1, metavar="R", help="speed of the gear's shaft over the tachometer's (29/95)")
     add("--level", type=float, metavar="X", help="height at which a pulse counts (default: half the highest)")
     _analysis_arguments(add)
     add("--cepstrum", metavar="FILE", help="draw the cepstrum of the last case: .png, .svg or .pdf")

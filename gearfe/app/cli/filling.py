@@ -12,6 +12,8 @@ def sweep(arguments):
         with working("trying one block"):
             plan = plan_sweep(arguments.study, arguments.output, workers=arguments.workers)
         print(plan.text())
+        if plan.tried and plan.failed == plan.tried:
+            raise ValueError(f"all {plan.tried} cases that were tried failed: {plan.error}")
         return
     options = {"workers": arguments.workers, "scheduler": arguments.scheduler, "mixed": arguments.mixed}
     with working("sweep"):
@@ -25,6 +27,8 @@ def sweep(arguments):
     print(f"written: {arguments.output}")
     print(f"  in Python: gearfe.open_runs({str(arguments.output)!r}).table()")
     print(f"  gearfe report {arguments.output} -o runs.html")
+    if not (table["status"] == "done").any():
+        raise ValueError(f"all {len(table)} cases failed: {table['error'].iloc[0]}")
 
 
 def dataset(arguments):

@@ -84,6 +84,7 @@ def _read(arguments):
         channels = read_signals(
             file, None if arguments.column is None else [arguments.column], units=arguments.unit, rate=arguments.rate,
             header=arguments.header, scale=arguments.scale, tachometer=arguments.tacho, pulses=arguments.pulses,
+            ratio=arguments.tacho_ratio,
             level=arguments.level,
         )  # fmt: skip
         if len(channels) > 1:

@@ -24,6 +24,7 @@ from ....geometry.tooth.gear import Gear
 from ....geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 from .axial import axial
 from .bent import bent_triangles
+from .crack_faces import face_forces
 from .depth import degrees
 from .dissection import dissect
 from .elimination import Section, all_nodes, body_of, front, places
@@ -32,7 +33,6 @@ from .parity import front_by_parity
 from .short_edges import ORDER, bind, quadratic_edges
 
 CLOSE = 0.5  # how near a crack [m_n] nodes have the functions that its ends along the width need
-NEAR_TIP = 0.1  # faces closer to a crack's tip than this part of its length cannot be seen to touch
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
         bent = bent_triangles(sector, *bend, along, partial(_moved_section, model, sector))
     section = section_of(model, sector, knots, bent=bent, cubic=bent is not None)
     every, sides, chain = section.numbers, section.sides, section.chain
-    apart, owner = _apart(sector, chain, section.load.shape[0])
+    apart, owner = face_forces(sector, chain, section.load.shape[0], model.order, model.order)
     seams = [chain(face)[:-1] for i, pair in enumerate(sector.faces) if parts[i] for face in pair]
     seams = list(zip(seams[::2], seams[1::2], strict=True))
     load = np.concatenate([section.load, apart], axis=2)
@@ -160,26 +160,6 @@ def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
             out[next(right)] = 1 + 4 * i
     out[sides] = whole[sides]
     return out
-
-
-def _apart(sector, chain, count):
-    """Forces ``(count, 3, k)`` that push facing nodes of the cracks apart, and the crack of each; those next to tips left out."""
-    columns, owner = [], []
-    for i, (left, right) in enumerate(sector.faces):
-        line = sector.points[:, left]
-        ahead = np.diff(line, axis=1)
-        lengths = np.hypot(*ahead)
-        normal = np.array([-ahead[1], ahead[0]]) / lengths
-        pairs = np.array([chain(left), chain(right)])[:, :-1]
-        per_edge = pairs.shape[1] // lengths.size
-        to_tip = np.cumsum(lengths[::-1])[::-1]
-        for k in range(pairs.shape[1]):
-            if to_tip[k // per_edge] > NEAR_TIP * lengths.sum():
-                force = np.zeros((count, 3))
-                force[pairs[0, k], :2], force[pairs[1, k], :2] = normal[:, k // per_edge], -normal[:, k // per_edge]
-                columns.append(force)
-                owner.append(i)
-    return (np.stack(columns, axis=2) if columns else np.zeros((count, 3, 0))), owner
 
 
 def _near(gear, sector, numbers, face, bands, bend):

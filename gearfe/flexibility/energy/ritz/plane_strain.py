@@ -4,37 +4,93 @@ The section's triangles of `panel3d` are coarser than those of `ritz`, which tak
 strain both are cheap, and their difference is what `solid` adds.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
 from ...halfspace import hat_points
 from ...hertz import half_plane, hat_logarithm
-from ...solid import hats
+from ...solid import PLACES, hats
 from ...solved import solved_gears
+from .crack_faces import face_forces
 from .join import join
 from .panel import Panel, SectionModel
 from .panel3d import polar, section_of
 from .plane import PLACES as LOADS
 from .plane import carry, loaded_sector
 
+FURTHER, HIGHEST = 3, 8  # orders more of the polynomials compared with at cracks, and the highest order
 
-def missing(model, cracks, sections, *, cubic=False, cache=True):
-    """What the section's polynomials miss between the hats ``(PLACES, PLACES)`` [mm per N/mm].
 
-    `cracks` are on tooth 0, `sections` the `Sector` with them and that without; `cubic` as of `panel3d.section_of`.
+def missing(model, section, *, cubic=False, cache=True):
+    """What the polynomials of a healthy `section` miss between the hats ``(PLACES, PLACES)`` [mm per N/mm].
+
+    `cubic` is as of `panel3d.section_of`.
     """
     gear, material = model.gear, model.material
-    healthy = plane_panel(model, sections[1], cubic)
-    coarse = join(gear, {0: plane_panel(model, sections[0], cubic) if cracks else healthy, 1: healthy}, healthy)[0][0, 0]
+    healthy = plane_panel(model, section, cubic)
+    coarse = join(gear, {0: healthy, 1: healthy}, healthy)[0][0, 0]
     local = half_plane(material) * hat_logarithm(hats(gear), hats(gear))
-    return plane_hats(gear, material, cracks, cache=cache) + local - coarse
+    return plane_hats(gear, material, cache=cache) + local - coarse
 
 
-def plane_panel(model, sector, cubic=False):
-    """`Panel` of a sector in plane strain on the triangles of `panel3d`, loaded by the hats; faces of cracks are free."""
-    gear = model.gear
-    every, stiffness, load, sides, held, _ = section_of(model, sector, hats(gear), plane=True, cubic=cubic)
+def missing_at_cracks(model, sections, *, points=None, cubic=False):
+    """What the polynomials of a section with cracks miss more than those of the healthy one [mm per N/mm].
+
+    Parameters
+    ----------
+    model : SolidModel
+    sections : (Sector, Sector)
+        With the cracks, and healthy.
+    points : ndarray, optional
+        Vertices of the section with the cracks, if they are elsewhere; its faces keep their directions.
+    cubic : bool
+        Of `panel3d.section_of`.
+
+    Returns
+    -------
+    ndarray, shape (PLACES + k, PLACES)
+        Displacement of the hats, then opening of k points of the faces, under unit loads on the hats. It is the difference from
+        polynomials of an order `FURTHER` higher on the same triangles.
+    """
+    out = []
+    for order in (min(model.order + FURTHER, HIGHEST), model.order):
+        healthy, cracked = (
+            plane_panel(replace(model, order=order), section, cubic, points=moved, at=model.order)
+            for section, moved in zip(sections[::-1], (None, points), strict=True)
+        )
+        influence, opening = join(model.gear, {0: cracked, 1: healthy}, healthy)
+        sound = join(model.gear, {0: healthy, 1: healthy}, healthy)[0]
+        out.append(np.concatenate([influence[0, 0] - sound[0, 0], opening[0]]))
+    return out[0] - out[1]
+
+
+def completed(missed, cracks):
+    """Opening ``(k, k)`` of the points of the faces under unit forces on them that belongs to `missing_at_cracks`.
+
+    The hats reach what is missed at a crack's tip by bending the tooth: by one field for each of the `cracks`. The least opening
+    that goes with these fields is added. Faces that are pressed shut then lose what was added to the hats. The logarithm of a
+    force on a point, which depends on the order of the polynomials, is left out.
+    """
+    size, field = np.linalg.eigh((missed[:PLACES] + missed[:PLACES].T) / 2)
+    size, field = size[-cracks:], field[:, -cracks:]
+    kept = size > 0
+    apart = missed[PLACES:] @ field[:, kept] / np.sqrt(size[kept])
+    return apart @ apart.T
+
+
+def plane_panel(model, sector, cubic=False, *, points=None, at=None):
+    """`Panel` of a sector in plane strain on the triangles of `panel3d`, loaded by the hats.
+
+    `points` are its vertices, if not its own. Facing points of cracks are the nodes of polynomials of order `at`, by default of
+    the `model`.
+    """
+    gear, moved = model.gear, sector if points is None else replace(sector, points=points)
+    every, stiffness, load, sides, held, chain = section_of(model, moved, hats(gear), plane=True, cubic=cubic)
+    apart, _ = face_forces(sector, chain, load.shape[0], model.order, at or model.order)
+    load = np.concatenate([load, apart], axis=2)
     nodes, local = int(every.max()) + 1, np.arange(3 * every.shape[0]).reshape(-1, 3)[:, :2].ravel()  # the third is zero
     at = (2 * every.T[:, :, None] + np.arange(2)).reshape(every.shape[1], -1)
     block = stiffness[0][:, local[:, None], local]
@@ -47,29 +103,30 @@ def plane_panel(model, sector, cubic=False):
     coupled = np.hstack([matrix[inside][:, border].toarray(), force[inside]])
     factor = splu(matrix[inside][:, inside].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
     between = coupled.T @ factor.solve(coupled)
-    m, n, sizes = border.size, force.shape[1], np.ones(sides.size, dtype=int)
+    m, n, sizes = border.size, hats(gear).shape[1], np.ones(sides.size, dtype=int)
     edge = matrix[border][:, border].toarray() - between[:m, :m]
     edge = polar(gear, sizes, polar(gear, sizes, edge, 2).T, 2)
+    push, own = polar(gear, sizes, force[border] - between[:m, m:], 2), between[m:, m:]
     return Panel(
         stiffness=(edge + edge.T) / 2,
-        push=polar(gear, sizes, force[border] - between[:m, m:], 2),
-        own=between[m:, m:],
-        open_push=np.zeros((m, 0)),
-        open_own=np.zeros((0, n)),
-        open_open=np.zeros((0, 0)),
+        push=push[:, :n],
+        own=own[:n, :n],
+        open_push=push[:, n:],
+        open_own=own[n:, :n],
+        open_open=own[n:, n:],
         unknowns=inside.size,
     )
 
 
-def plane_hats(gear, material, cracks=(), *, cache=True):
+def plane_hats(gear, material, *, cache=True):
     """Plane strain's flexibility between the hats ``(PLACES, PLACES)`` [mm per N/mm], the half-plane's logarithm left out."""
     kept = solved_gears(cache)
 
     def solve():
-        panels = {k: loaded_sector(SectionModel(gear, material), on_tooth, kept) for k, on_tooth in enumerate((cracks, ()))}
-        influence = join(gear, panels, panels[1])[0][0, 0][:LOADS, :LOADS]
+        panel = loaded_sector(SectionModel(gear, material), (), kept)
+        influence = join(gear, {0: panel, 1: panel}, panel)[0][0, 0][:LOADS, :LOADS]
         points, weight = hat_points(hats(gear), 12)
         mean = np.einsum("hg,hgk->hk", weight, carry(gear, points.ravel()).reshape(*points.shape, -1))
         return mean @ (influence + influence.T) @ mean.T / 2
 
-    return kept.get(("plane hats", gear, material, cracks), solve)
+    return kept.get(("plane hats", gear, material), solve)

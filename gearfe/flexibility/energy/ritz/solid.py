@@ -12,7 +12,7 @@ from numbers import Integral
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
-from ....geometry.damage.front import crack_in_band, shallower, whole
+from ....geometry.damage.front import crack_in_band, whole
 from ....geometry.mesh.sector import sector
 from ...solid import PLACES, Faces, hats, parted, solved_teeth
 from ...solved import solved_gears
@@ -21,7 +21,7 @@ from .dissection import dissect
 from .join import join
 from .panel import check_order
 from .panel3d import SolidModel, panel3d
-from .plane_strain import missing
+from .plane_strain import completed, missing, missing_at_cracks
 
 LOST = 2  # axial modes too poor to be kept
 # Depths at which a sloping crack's section is compared with plane strain; Gauss points along each open part.
@@ -108,26 +108,37 @@ def _solved(model, cracks, neighbours, cache):
     influence, opening = join(gear, panels, healthy_panel)
     kept = (np.arange(PLACES)[:, None] * (model.axial + 1) + np.arange(degree + 1)).ravel()
     influence = {key: value[np.ix_(kept, kept)] for key, value in influence.items()}
-    for tooth in panels:
-        _complete(model, by_tooth.get(tooth, ()), influence[tooth, tooth], cache)
+    opening, between = {tooth: opening[tooth][:, kept] for tooth in panels}, opening["influence"]
+    ends = np.cumsum([0, *(panels[tooth].open_own.shape[0] for tooth in sorted(panels))]).tolist()
+    for tooth, first, stop in zip(sorted(panels), ends[:-1], ends[1:], strict=True):
+        own = slice(first, stop)
+        _complete(model, by_tooth.get(tooth, ()), influence[tooth, tooth], opening[tooth][own], between[own, own], cache)
     unknowns = sum(p.unknowns for p in panels.values())
     made = parted(gear, model.material, degree, influence, unknowns, healthy, cache=cache)
     if not cracks:
         return made
-    faces = Faces({tooth: opening[tooth][:, kept] for tooth in panels}, opening["influence"])
-    return replace(made, seam=faces)
+    return replace(made, seam=Faces(opening, between))
 
 
-def _complete(model, cracks, influence, cache):
-    """Add to the influence between the hats of a tooth with `cracks`, in place, what the section's polynomials miss."""
+def _complete(model, cracks, influence, opening, between, cache):
+    """Add what the section's polynomials miss of a tooth with `cracks`, in place.
+
+    To the `influence` between its hats, to the `opening` of the points of its cracks by these, and `between` these points. What
+    is missed at a crack belongs to its opening: it has to vanish where the faces are pressed shut.
+    """
     slopes, degree = not all(crack.even for crack in cracks), len(influence) // PLACES - 1
-    healthy = _missing(model, (), cache)
-    influence += np.kron(_missing(model, (), cache, cubic=True) if slopes else healthy, np.eye(degree + 1))
-    even = np.ix_(*[np.arange(PLACES) * (degree + 1)] * 2)
-    if cracks and all(crack.even and crack.width is None for crack in cracks):
-        influence[even] += _missing(model, tuple(whole(crack) for crack in cracks), cache) - healthy
-    elif len(cracks) == 1 and slopes:
-        influence[even] += _missing_along(model, cracks[0], cache)
+    influence += np.kron(_missing(model, cache, slopes), np.eye(degree + 1))
+    if slopes and len(cracks) == 1:
+        missed = _missing_along(model, cracks[0], cache)
+    elif cracks and all(crack.even and crack.width is None for crack in cracks):
+        missed = _missing_at_cracks(model, tuple(whole(crack) for crack in cracks), cache)
+    else:
+        return
+    even, root = np.arange(PLACES) * (degree + 1), math.sqrt(model.gear.b)  # the even mode is 1 / root
+    influence[np.ix_(even, even)] += missed[:PLACES]
+    heights = len(opening) // (len(missed) - PLACES)
+    opening[:, even] += np.repeat(missed[PLACES:], heights, axis=0) / root
+    between += np.kron(completed(missed, len(cracks)), np.full((heights,) * 2, 1 / model.gear.b))
 
 
 def _seams(cracks):
@@ -188,15 +199,14 @@ def _sector(gear, cracks, refine, cache):
 
 
 def _missing_along(model, crack, cache):
-    """What a crack of changing depth adds to `_missing`: the mean over the width of what straight ones of those depths add.
+    """Mean over the width of `missing_at_cracks` of the section as it follows the front of a crack of changing depth.
 
-    Of the section as it follows the front; known at `DEPTHS` depths, by a polynomial between them.
+    It is known at `DEPTHS` depths, by a polynomial between them.
     """
 
     def solve():
-        shape = whole(crack)
-        section, sound = (_sector(model.gear, own, model.refine, cache)[0] for own in ((shape,), ()))
-        shift, front = bent(model.gear, section, 0, crack)
+        sections = tuple(_sector(model.gear, own, model.refine, cache)[0] for own in ((whole(crack),), ()))
+        shift, front = bent(model.gear, sections[0], 0, crack)
         x, weight = legendre.leggauss(ALONG)
         parts = np.array(front.open())
         half = np.diff(parts, axis=1) / 2
@@ -204,23 +214,31 @@ def _missing_along(model, crack, cache):
         low, high, nodes = depth.min(), depth.max(), chebyshev.chebpts1(DEPTHS)
         at = np.clip((2 * depth - low - high) / max(high - low, 1e-9), -1, 1)
         carry = chebyshev.chebvander(at, DEPTHS - 1) @ np.linalg.inv(chebyshev.chebvander(nodes, DEPTHS - 1))
-        out = -weight.sum() * _missing(model, (), cache, cubic=True)
+        out = 0.0
         for own, share in zip(((low + high + (high - low) * nodes) / 2).tolist(), weight @ carry, strict=True):
-            sections = replace(section, points=section.points + (own - 1) * shift), sound
-            out = out + share * missing(model, (shallower(shape, own),), sections, cubic=True, cache=cache)
+            points = sections[0].points + (own - 1) * shift
+            out = out + share * missing_at_cracks(model, sections, points=points, cubic=True)
         return out
 
     return cache.get(("ritz3d missing along", model, crack), solve)
 
 
-def _missing(model, cracks, cache, cubic=False):
-    """`plane_strain.missing` with the sections solved for: of all modes along the width, or what a crack adds, of the even one.
+def _missing(model, cache, cubic):
+    """`plane_strain.missing` with the section solved for: of all modes along the width.
 
     Near the tip corner the difference in plane strain is that of all modes along the width, to a thousandth.
     """
 
     def solve():
-        sections = tuple(_sector(model.gear, tooth_cracks, model.refine, cache)[0] for tooth_cracks in (cracks, ()))
-        return missing(model, cracks, sections, cubic=cubic, cache=cache)
+        return missing(model, _sector(model.gear, (), model.refine, cache)[0], cubic=cubic, cache=cache)
 
-    return cache.get(("ritz3d missing", model, cracks, cubic), solve)
+    return cache.get(("ritz3d missing", model, cubic), solve)
+
+
+def _missing_at_cracks(model, cracks, cache):
+    """`plane_strain.missing_at_cracks` with the sections solved for: of the even mode along the width."""
+
+    def solve():
+        return missing_at_cracks(model, tuple(_sector(model.gear, own, model.refine, cache)[0] for own in (cracks, ())))
+
+    return cache.get(("ritz3d missing at cracks", model, cracks), solve)
