@@ -1,8 +1,6 @@
 """The page `herringbone`: article S4's ten rows by every method, and under every reading of what it does not print."""
 
 import csv
-import math
-from dataclasses import replace
 from pathlib import Path
 
 import gearfe as gf
@@ -17,51 +15,10 @@ from ..shared import (
     herringbone_statements,
     page,
 )
-from ..shared.herringbone_page import SCENE, SUMS, TABLES
+from ..shared.herringbone_page import SCENE, TABLES
 from ..shared.kept_rows import begin
 
 REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}  # of the finite elements: 0.2 to 0.55 million unknowns a gear
-EVERY = 4  # of the cycle's phases, for the sensitivities
-VARIATIONS = {
-    "as in the scene": {},
-    "bores 0.35 of the root radius": {"bore": 0.35},
-    "bores 0.7 of the root radius": {"bore": 0.7},
-    "a quarter of the load": {"load": 0.25},
-    "four times the load": {"load": 4.0},
-    "pits of 2 mm diameter": {"pit": {"axes": (1.0, 1.0)}},
-    "pits 0.5 mm deep": {"pit": {"depth": 0.5}},
-    "pits 0.6 mm nearer the tip": {"shift": 0.6},
-    "pits 0.6 mm nearer the root": {"shift": -0.6},
-    "crack from the root circle": {"crack": {"start": "root"}},
-    "crack at 35 degrees": {"crack": {"angle": math.radians(35)}},
-}
-
-
-def varied(chosen, *, bore=None, load=1.0, pit=None, shift=0.0, crack=None):
-    """A scene's pair with other bores (part of the root radius; rings stay), load (factor), pits and cracks."""
-    pair = chosen.pair
-    if bore is not None:
-        gears = [g if g.internal else replace(g, r_bore=bore * g.r_f) for g in (pair.gear_1, pair.gear_2)]
-        pair = gf.GearPair(*gears, pair.a)
-
-    def other(one):
-        if isinstance(one, gf.Pit):
-            return replace(one, radius=one.radius + shift, **(pit or {}))
-        return replace(one, **(crack or {}))
-
-    damage = {case: {side: [other(one) for one in found] for side, found in own.items()} for case, own in chosen.damage.items()}
-    return replace(chosen, pair=pair, force=load * chosen.force, damage=damage)
-
-
-def sensitivity(variation, pair):
-    """Rows (variation, pair, case, mean k by `ritz3d` and by the closed forms [N/m]); work of one process."""
-    chosen = varied(gf.load_scene(SCENE).pair(pair), **VARIATIONS[variation])
-    phase = damage_cycle(chosen)[EVERY // 2 :: EVERY]
-    return [
-        [variation, pair, case or "healthy", *(case_curve(chosen.case(case), m, phase).mean for m in ("ritz3d", *SUMS))]
-        for name, case in printed_cases(gf.load_scene(SCENE))
-        if name == pair
-    ]
 
 
 def save(name, header, rows):
@@ -115,17 +72,6 @@ def every_case():
     save(SCENE, header, rows)
 
 
-def sensitivities():
-    """Compute the table of other assumptions and write it."""
-    jobs = [{"variation": name, "pair": pair} for pair in gf.load_scene(SCENE).pairs for name in VARIATIONS]
-    done = gf.batch(jobs, work=sensitivity, progress=lambda n, of: print(f"  sensitivity {n}/{of}", flush=True))
-    for found in done.results:
-        if isinstance(found, Exception):
-            raise found
-    header = ["variation", "pair", "case", "ritz3d [N/m]", *(f"{name} [N/m]" for name in SUMS)]
-    save(f"{SCENE}_sensitivity", header, [row for found in done.results for row in found])
-
-
 def text():
     """Arguments of `page.text`, from the tables."""
     answer = herringbone_reading.answer(_claim(), herringbone_page.beyond())
@@ -147,7 +93,6 @@ def run(again=True):
     if again:
         herringbone_statements.rows(again)
         every_case()
-        sensitivities()
         section = herringbone_section.rows(gf.load_scene(SCENE), REFINE)
         save(f"{SCENE}_section", ["pair", "resolution", "mean", "least", "most"], section)
         begin(herringbone_contact_line.path("ritz3d"))
