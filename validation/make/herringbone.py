@@ -1,6 +1,5 @@
 """The page `herringbone`: article S4's ten rows by every method, and under every reading of what it does not print."""
 
-import csv
 from pathlib import Path
 
 import gearfe as gf
@@ -17,17 +16,9 @@ from ..shared import (
 )
 from ..shared.herringbone_page import SCENE, TABLES
 from ..shared.kept_rows import begin
+from ..shared.table_rows import write_table
 
 REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}  # of the finite elements: 0.2 to 0.55 million unknowns a gear
-
-
-def save(name, header, rows):
-    """Write a table of numbers and names."""
-    TABLES.mkdir(exist_ok=True)
-    with (TABLES / f"{name}.csv").open("w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(header)
-        out.writerows([[f"{v:.6g}" if isinstance(v, float) else v for v in row] for row in rows])
 
 
 def reference():
@@ -69,7 +60,7 @@ def every_case():
             )
     header = ["pair", "case", "method", "mean [N/m]", "max [N/m]", "error of mean", "error of max", "largest error at a phase"]
     header += ["largest drop", "drop of mean", "drop of the damaged tooth", "estimate", "seconds"]
-    save(SCENE, header, rows)
+    write_table(TABLES / f"{SCENE}.csv", header, rows)
 
 
 def text():
@@ -94,7 +85,7 @@ def run(again=True):
         herringbone_statements.rows(again)
         every_case()
         section = herringbone_section.rows(gf.load_scene(SCENE), REFINE)
-        save(f"{SCENE}_section", ["pair", "resolution", "mean", "least", "most"], section)
+        write_table(TABLES / f"{SCENE}_section.csv", ["pair", "resolution", "mean", "least", "most"], section)
         begin(herringbone_contact_line.path("ritz3d"))
         herringbone_contact_line.compute()
     page.write("herringbone", *text())

@@ -1,6 +1,5 @@
 """Parts of the page of article S4's error table, from its tables alone."""
 
-import csv
 import math
 from dataclasses import replace
 
@@ -12,6 +11,7 @@ from gearfe.scene.verdicts import judge, text
 from .herringbone_section import said
 from .kept_rows import stored
 from .places import TABLES
+from .table_rows import rows_of
 
 SCENE = "herringbone"
 SUMS = ("published", "textbook")
@@ -60,8 +60,7 @@ PRINTED = """
 
 def load(name):
     """Rows of a table as dicts of text."""
-    with (TABLES / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    return rows_of(TABLES / f"{name}.csv")
 
 
 def found():
