@@ -2,17 +2,18 @@
 
 import math
 import tomllib
-from collections.abc import Iterator
 from typing import Any
 
 from ..scene.dotted_keys import set_values, trimmed
 from ..scene.load import Scene, scene_of
 from ..scene.parts import DAMAGE
-from ..scene.schema import NAMES, REQUIRED, Reading, scene_schema, shown
+from ..scene.schema import REQUIRED, Reading, scene_schema, shown
 from .fields import FIELDS, SIDES, START, checked_state, key_at
 
 CASE, PAIR = "damaged", "stage"
 RUN = {"model", "speed_rpm", "torque_Nm"}  # keys of a machine that the page has
+SPRUNG = ("flank", "support")  # tables of a gear
+LEFT = (("gear", "gear_1", "gear_2", "pair", "case", "material"), ("pair", "case"))  # keys that name tables; those of damage
 CLOSE = 1e-9  # numbers are the same within it: a torque is computed from a force
 
 
@@ -42,7 +43,7 @@ def tables_of(state: dict[str, Any]) -> dict[str, Any]:
     wheel["beta_deg"] = (state["beta"] if ring else -state["beta"]) + 0.0
     if ring:
         wheel["r_rim_mm"] = wheel.pop("r_bore_mm")
-    for kind in ("flank", "support"):
+    for kind in SPRUNG:
         if kind in tables:
             tables[kind] = {side: {"gear": side} | row for side, row in tables[kind].items()}
     if run := tables.pop("machine", {}):
@@ -75,19 +76,24 @@ def read(name: str, text: str, pair: str | None = None, case: str | None = None)
     pair = pair or next(iter(scene.pairs))
     case = next(iter(chosen.damage), "") if case is None else case
     chosen.case(case or None)
-    rest = _rest(scene, tables, pair, case)
-    own, notes = _renamed(name, tables, pair, case), []
-    state = _fields(name, own, chosen.force * chosen.pair.gear_1.r_b * 1e-3)
-    stated, page = _values(name, own), _values(name, tables_of(state))
+    rest, notes = _rest(scene, tables, pair, case), []
+    stated, starts = _values(name, tables, pair, case)
+    state = _fields(tables, stated, chosen.force * chosen.pair.gear_1.r_b * 1e-3)
+    for entry in tables.get("assumption", []):
+        held = {new + key.removeprefix(old): value for key, value in entry.get("holds", {}).items()
+                for old, new in starts if key.startswith(old)}  # fmt: skip
+        if held or not entry.get("holds"):
+            state["assumption"] = [*state["assumption"], entry | ({"holds": held} if held else {})]
+    page, _ = _values(name, tables_of(checked_state(state)), PAIR, CASE)
     for place in sorted({**stated, **page}, key=lambda place: stated.get(place) is None):
         given, ours = (one.get(place, key_at(place).default) for one in (stated, page))
         if place == "gear.wheel.beta_deg" and given and _same(given, -ours):
             notes.append(f"the hand of the wheel's helix, given as {given:g}°, is written as {ours:g}°")
-        elif not _same(given, ours) and not (REQUIRED in (given, ours) and key_at(place).type in NAMES):
+        elif not _same(given, ours):
             here = "nothing" if ours is REQUIRED else shown(ours)
             raise ValueError(f"{name}: {place.replace(f'.{CASE}', '')} = {shown(given)}, but the page has {here} there: no "
                              "field of it holds this; nothing is dropped, so compute this scene by gearfe compare")  # fmt: skip
-    return checked_state(state), [*(f"not taken from {name}: {one}" for one in rest), *notes]
+    return state, [*(f"not taken from {name}: {one}" for one in rest), *notes]
 
 
 def _rest(scene: Scene, tables: dict[str, Any], pair: str | None, case: str | None) -> list[str]:
@@ -109,65 +115,33 @@ def _runs(tables):
     return tables.get("machine", {}).get("model") == "helical_pair" and set(tables["machine"]) <= RUN
 
 
-def _renamed(name, tables, pair, case):
-    """The scene of one pair in one case with the names that the page gives."""
-    row = tables["pair"][pair]
-    sides = {row["gear_1"]: "pinion", row["gear_2"]: "wheel"}
-    names = {"gear": sides, "pair": {pair: PAIR}, "material": {}}
-    given, out = trimmed(tables, pair, case), {"title": tables["title"], "source": tables["source"]}
-    if given["shaft"]:
-        raise ValueError(f"{name}: [shaft.{next(iter(given['shaft']))}] holds a gear of this pair; the page has springs only")
-    for kind in ("gear", "pair", "flank", "support", *DAMAGE):
-        rows = given[kind] if kind in DAMAGE else given[kind].values()
-        renamed = [_with_names(scene_schema()[kind], one, names) for one in rows]
-        if kind in DAMAGE:
-            if len(renamed) > 1:
-                raise ValueError(f"{name}: {len(renamed)} tables [[{kind}]] in one case; the page has fields for one")
-            out[kind] = [one | {"case": CASE} for one in renamed]
-        else:
-            own = [names[kind][key] for key in given[kind]] if kind in names else [one["gear"] for one in renamed]
-            out[kind] = dict(zip(own, renamed, strict=True))
-    of_gear = {side: tables["gear"][gear]["material"] for gear, side in sides.items()}
-    out["material"] = {side: given["material"][material] for side, material in of_gear.items()}
-    for side in out["gear"]:
-        out["gear"][side]["material"] = side
-    if _runs(tables):
-        out["machine"] = tables["machine"]
-    starts = {f"{kind}.{old}.": f"{kind}.{new}." for kind, new_names in names.items() for old, new in new_names.items()}
-    starts |= {f"material.{material}.": f"material.{side}." for side, material in of_gear.items()}
-    for entry in tables.get("assumption", []):
-        held = {new + key.removeprefix(old): value for key, value in entry.get("holds", {}).items()
-                for old, new in starts.items() if key.startswith(old)}  # fmt: skip
-        if held or not entry.get("holds"):
-            out.setdefault("assumption", []).append(entry | ({"holds": held} if held else {}))
-    return out
-
-
-def _with_names(table, row, names):
-    """Row of a table with the names that the page gives; a `pair` that the row is restricted to is left out."""
-    keys = {key: table.keys[key].type for key in row if key in table.keys}
-    return {
-        key: names[keys[key]].get(value, value) if keys[key] in names else value for key, value in row.items() if key != "pair"
-    }
-
-
-def _values(name: str, tables: dict[str, Any]) -> dict[str, Any]:
-    """Values of the scene by dotted key, with defaults of all tables that are there."""
-    rows = Reading(name, scene_schema()).row("scene", "top level", tables)
-    rows |= {kind: {row["case"]: row for row in rows[kind]} for kind in DAMAGE}
-    for row in rows["pits"].values():
+def _values(name: str, tables: dict[str, Any], pair: str, case: str | None) -> tuple[dict[str, Any], list[tuple[str, str]]]:
+    """Values of one pair in one case of a scene by the dotted keys that the page has, and (old, new) beginnings of keys."""
+    given = trimmed(tables, pair, case) | ({"machine": tables["machine"]} if _runs(tables) else {})
+    rows = Reading(name, scene_schema()).row("scene", "top level", given)
+    sides = {rows["pair"][pair][key]: side for key, side in zip(("gear_1", "gear_2"), SIDES, strict=True)}
+    if rows["shaft"]:
+        raise ValueError(f"{name}: [shaft.{next(iter(rows['shaft']))}] holds a gear of this pair; the page has springs only")
+    heads = [(f"pair.{pair}.", f"pair.{PAIR}.", rows["pair"][pair])]
+    for gear, side in sides.items():
+        material = rows["gear"][gear]["material"]
+        heads.append((f"gear.{gear}.", f"gear.{side}.", rows["gear"][gear]))
+        heads.append((f"material.{material}.", f"material.{side}.", rows["material"][material]))
+    heads += [(f"{kind}.{key}.", f"{kind}.{sides[row['gear']]}.", row) for kind in SPRUNG for key, row in rows[kind].items()]
+    for row in rows["pits"]:
         row["last_mm"] = row["first_mm"] if row["last_mm"] is None else row["last_mm"]
-    rows["machine"] = {key: value for key, value in (rows["machine"] or {}).items() if key not in ("impact", "bodies")}
-    return dict(_flat({kind: rows[kind] for kind in ("material", "gear", "pair", "flank", "support", "machine", *DAMAGE)}))
-
-
-def _flat(table: dict[str, Any], head: str = "") -> Iterator[tuple[str, Any]]:
-    for key, value in table.items():
-        place = f"{head}.{key}" if head else key
-        if isinstance(value, dict):
-            yield from _flat(value, place)
-        else:
-            yield place, value
+    for kind in DAMAGE:
+        if len(rows[kind]) > 1:
+            raise ValueError(f"{name}: {len(rows[kind])} tables [[{kind}]] in one case; the page has fields for one")
+        heads += [(f"{kind}.{case}.", f"{kind}.{CASE}.", row | {"gear": sides[row["gear"]]}) for row in rows[kind]]
+    heads += [("machine.", "machine.", {key: rows["machine"][key] for key in tables["machine"]})] if rows["machine"] else []
+    kept = {
+        new + key: value
+        for _, new, row in heads
+        for key, value in row.items()
+        if key not in LEFT[new.partition(".")[0] in DAMAGE]
+    }
+    return kept, [(old, new) for old, new, _ in heads]
 
 
 def _same(one, other):
@@ -177,22 +151,18 @@ def _same(one, other):
     return math.isclose(one, other, rel_tol=CLOSE) if numbers else one == other
 
 
-def _fields(name, tables, torque):
-    """Values of the fields from renamed tables; what no field holds is left out, and found when `read` compares."""
-    out, values = dict(START), _values(name, tables)
-    if values.get("gear.wheel.r_bore_mm") is None:
-        values["gear.wheel.r_bore_mm"] = values["gear.wheel.r_rim_mm"]
+def _fields(tables, values, torque):
+    """Values of the fields from values by dotted key; what no field holds is left out, and found when `read` compares."""
+    out = START | {"source": tables["source"]}
+    bore = {"gear.wheel.r_bore_mm": values["gear.wheel.r_bore_mm"] or values["gear.wheel.r_rim_mm"]}
     for field in FIELDS:
         if field.by:
-            out[field.name] = next(
-                (choice for choice, place in field.by.items() if values.get(place) is not None), field.choices[0]
-            )
+            given = (choice for choice, place in field.by.items() if values.get(place) is not None)
+            out[field.name] = next(given, field.choices[0])
         elif field.places:
             place, _, at = field.places[0].partition("_mm.")
-            value = values.get(f"{place}_mm" if at else place)
+            value = (values | bore).get(f"{place}_mm" if at else place)
             out[field.name] = field.from_typed(value[int(at)] if at and value else value)
     out["drive"] = 0.0 if not out["speed"] or _same(out["drive"], torque) else out["drive"]
-    out |= {"source": tables["source"], "title": "", "assumption": tables.get("assumption", [])}
-    checked_state(out)
-    out["title"] = "" if tables["title"] == title_of(out) else tables["title"]
+    out["title"] = "" if tables["title"] == title_of(checked_state(out)) else tables["title"]
     return out

@@ -1,17 +1,14 @@
 """From a scene to its planetary set: the case that the tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]`` state."""
 
-import math
 from dataclasses import replace
 from typing import Any
 
 from ..geometry.damage.crack import Crack
 from ..scene.load import Scene, ScenePair
-from ..scene.schema import located
+from ..scene.schema import arguments, located
 from ..scene.set_table import SceneSet
 from .case import PlanetaryCase
 from .rim_supports import RimBed, RimSupports
-
-PER_UM = 1e3  # N/um to N/mm
 
 
 def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
@@ -63,15 +60,11 @@ def _support(row: dict[str, Any]) -> "str | RimBed | RimSupports":
     """What holds the ring, from a checked table ``[ring.support]``."""
     if row["kind"] == "held":
         return "held"
+    given = arguments("ring_support", row | {"kind": None})
     if row["kind"] == "bed":
-        return RimBed(row["radial_MPa_per_mm"], row["tangential_MPa_per_mm"])
-    keys = "radial_N_per_um", "tangential_N_per_um"
-    radial, tangential = (math.inf if row[key] is None else row[key] * PER_UM for key in keys)
+        return RimBed(**given)
     pushes = row["kind"] == "lugs"
-    return RimSupports(
-        row["count"], row["width_mm"], first=math.radians(row["first_deg"] or 0.0), radial=0.0 if pushes else radial,
-        tangential=tangential, pushes=pushes,
-    )  # fmt: skip
+    return RimSupports(**given | {"radial": 0.0} if pushes else given, pushes=pushes)
 
 
 def _flanks(scene: Scene, outer: ScenePair, inner: ScenePair) -> dict[str, Any]:

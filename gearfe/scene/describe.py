@@ -38,18 +38,13 @@ def _places(schema: Mapping[str, KeyTable]) -> dict[str, str]:
     """Where the nested tables of a schema stand in a file, by their name."""
     out: dict[str, str] = {}
     for name, table in schema.items():
-        head = out.get(name, "").strip("[]")
-        for key in table.keys.values():
-            if key.of:
-                place = f"{head}.{key.name}" if head else key.name
-                out[key.of] = (
-                    f"[[{place}]]" if key.type == "listed" else f"[{place}.NAME]" if key.type == "named" else f"[{place}]"
-                )
+        out |= {key.of: key.heading(out.get(name, "").strip("[]")) for key in table.keys.values() if key.of}
     return out
 
 
 def _kind(key: Key) -> str:
-    return "table" if key.of else f"{key.expected}{f'; must {key.permitted}' if key.permitted else ''}"
+    kinds = f"; of kind {', '.join(key.kinds)}" if key.kinds else ""
+    return "table" if key.of else f"{key.expected}{f'; must {key.permitted}' if key.permitted else ''}{kinds}"
 
 
 def _default(key: Key) -> str:
@@ -71,6 +66,9 @@ def _json_table(table: KeyTable) -> dict[str, Any]:
     out["required"] = [key.name for key in table.keys.values() if key.default is REQUIRED]
     if table.one_of:
         out["oneOf"] = [{"required": [name]} for name in table.one_of]
+    never = [pair for pair in table.exclude if all(table.keys[name].default is None for name in pair)]
+    if never:
+        out["not"] = {"anyOf": [{"required": pair} for pair in never]}
     if table.together:
         out["dependencies"] = {one: [two] for pair in table.together for one, two in (pair, pair[::-1])}
     return out

@@ -5,11 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from ..core.files import written
-from ..geometry.damage.crack import Crack, crack_path, path_length
-from ..geometry.pair.gear_pair import GearPair
-from ..geometry.tooth.gear import Gear
+from ..geometry.damage.crack import Crack, path_length
+from .load import scene_of
 from .parts import DAMAGE
-from .schema import arguments, scene_schema
 from .template import template
 
 HEAD = """\
@@ -76,44 +74,40 @@ def new_scene(
     if path.exists():
         raise ValueError(f"{path} exists and is not overwritten: give another name, or remove it")
     teeth = teeth or ((21, 63) if ring else (21, 31))
-    rows: list[dict[str, Any]] = [
-        {"z": z, "m_n_mm": float(module), "alpha_n_deg": 20.0, "b_mm": float(width), "x": 0.0} for z in teeth
-    ]
-    rows[0] |= {"beta_deg": float(helix_deg), **RACK}
-    rows[1] |= {"beta_deg": float(helix_deg if ring else -helix_deg) + 0.0, **(RING if ring else RACK)}
-    held = ["gear.pinion.r_bore_mm", "gear.wheel.r_rim_mm" if ring else "gear.wheel.r_bore_mm"]
-    radii = [round(0.5 * _gear(row | {"r_bore_mm": 0.1 * module}).r_f, 1) for row in rows]
-    if ring:
-        radii[1] = round(0.5 * module * teeth[1] / math.cos(math.radians(helix_deg)) + 5 * module, 1)
-    for row, key, radius in zip(rows, held, radii, strict=True):
-        row |= {key.rpartition(".")[2]: radius, "material": "steel"}
-    pair = GearPair(*map(_gear, rows))
-    force, told_force = _force(pair.gear_1, width, torque_Nm)
-    cracked, told_crack = _crack(pair.gear_1, crack)
-    stage = {"gear_1": "pinion", "gear_2": "wheel", "force_N": force} | ({"face": "helical"} if helix_deg else {})
-    bores = f"bore {radii[0]} mm (pinion) and {'rim' if ring else 'bore'} {radii[1]} mm (wheel), held"
+    spur: dict[str, Any] = {"m_n_mm": float(module), "alpha_n_deg": 20.0, "b_mm": float(width), "x": 0.0}
+    pinion = {"z": teeth[0], **spur, "beta_deg": float(helix_deg), **RACK}
+    wheel = {"z": teeth[1], **spur, "beta_deg": (helix_deg if ring else -helix_deg) + 0.0, **(RING if ring else RACK)}
+    transverse = module / math.cos(math.radians(helix_deg))  # the root circle of an external gear lies 1.25 modules inside
+    pinion["r_bore_mm"], bore = (round(0.5 * (0.5 * transverse * z - 1.25 * module), 1) for z in teeth)
+    held = {"r_rim_mm": round(0.5 * transverse * teeth[1] + 5 * module, 1)} if ring else {"r_bore_mm": bore}
     stated: dict[str, Any] = {
         "title": f"Pair {teeth[0]}/{teeth[1]}, module {module:g} mm", "source": "own gear pair",
-        "material": {"steel": {"E_MPa": 206000.0, "nu": 0.3}}, "gear": dict(zip(("pinion", "wheel"), rows, strict=True)),
-        "pair": {"stage": stage}, "crack": [{"case": "cracked", "gear": "pinion"} | cracked],
-        "assumption": [{"what": bores, "why": "a start: give the true ones", "holds": dict(zip(held, radii, strict=True))}],
+        "material": {"steel": {"E_MPa": 206000.0, "nu": 0.3}},
+        "gear": {"pinion": pinion | {"material": "steel"}, "wheel": wheel | held | {"material": "steel"}},
+        "pair": {"stage": {"gear_1": "pinion", "gear_2": "wheel", "force_N": 1.0} | ({"face": "helical"} if helix_deg else {})},
     }  # fmt: skip
+    pair = scene_of(path.name, stated).pair().pair
+    force, told_force = _force(pair.gear_1, width, torque_Nm)
+    stated["pair"]["stage"]["force_N"] = force
+    radii = f"bore {pinion['r_bore_mm']} mm (pinion) and {'rim' if ring else 'bore'} {next(iter(held.values()))} mm (wheel), held"
+    values = {"gear.pinion.r_bore_mm": pinion["r_bore_mm"]} | {f"gear.wheel.{key}": value for key, value in held.items()}
+    stated["assumption"] = [{"what": radii, "why": "a start: give the true ones", "holds": values}]
+    size = {"length_mm": crack[0], "angle_deg": crack[1]} if crack else {"level": 0.3, "angle_deg": 45.0}
+    stated["crack"] = [{"case": "cracked", "gear": "pinion", **size}]
     numbers = _numbers(pair, force)
-    relief = _relief(pair, tip_relief_um, tip_length_mm)
-    keys = {"tip_relief_um": round(numbers["amount"], 1), "tip_start_length_mm": round(numbers["length"], 3)} | relief
-    flanks = {side: {"gear": side} | keys for side in ("pinion", "wheel")}
-    stated |= {"flank": flanks} if relief else {}
+    if (tip_relief_um is None) != (tip_length_mm is None) or (tip_relief_um or 1.0) < 0:
+        raise ValueError(f"tip relief of {tip_relief_um} um over {tip_length_mm} mm: give both, the amount positive")
+    amount, length = tip_relief_um or round(numbers["amount"], 1), tip_length_mm or round(numbers["length"], 3)
+    flanks = {side: {"gear": side, "tip_relief_um": amount, "tip_start_length_mm": length} for side in ("pinion", "wheel")}
+    stated |= {} if tip_relief_um is None else {"flank": flanks}
+    scene_of(path.name, stated).case(case="cracked")
     asleep: dict[str, Any] = {kind: [{}] for kind in DAMAGE} | {"support": {"output": {}}, "shaft": {"drive": {}}}
-    asleep |= ({} if relief else {"flank": flanks}) | ({} if ring else {"machine": {}})
-    text = template(stated, asleep, numbers, {"force_N": told_force, "level": told_crack})
+    asleep |= ({} if "flank" in stated else {"flank": flanks}) | ({} if ring else {"machine": {}})
+    as_length = f"or as a length: length_mm = {path_length(pair.gear_1, Crack(level=0.3)):.2f}"
+    text = template(stated, asleep, numbers, {"force_N": told_force, "level": as_length})
     with written(path) as name:
         Path(name).write_text(HEAD.format(name=path.name) + text, encoding="utf-8")
     return path
-
-
-def _gear(row):
-    """Gear of a row of a scene."""
-    return Gear(**arguments("gear", dict.fromkeys(scene_schema()["gear"].keys) | row))
 
 
 def _numbers(pair, force):
@@ -138,28 +132,3 @@ def _force(pinion, width, torque):
     force = round(100.0 * width, 1) if torque is None else round(1e3 * torque / pinion.r_b, 3)
     torque_text = f"{force * pinion.r_b * 1e-3:.4g} N m over the base radius, {pinion.r_b:.5g} mm"
     return force, torque_text
-
-
-def _crack(pinion, given):
-    """Keys of the crack, and in words its other size: its level, or the length [mm] and angle [degrees] that are given."""
-    if given is None:
-        length = path_length(pinion, Crack(level=0.3))
-        return {"level": 0.3, "angle_deg": 45.0}, f"or as a length: length_mm = {length:.2f}"
-    length, angle = given
-    if not 5 <= angle <= 90:
-        raise ValueError(f"a crack of {length:g} mm at {angle:g} degrees: the angle to the centre-line is from 5 to 90 degrees")
-    crack_path(pinion, Crack(length=length, angle=math.radians(angle)))
-    return {"length_mm": length, "angle_deg": angle}, ""
-
-
-def _relief(pair, amount, length):
-    """Keys of a tip relief, its amount [um] and length [mm]; none without."""
-    if amount is None and length is None:
-        return {}
-    if amount is None or length is None or not (0 < amount < math.inf):
-        raise ValueError(f"tip relief of {amount} um over {length} mm: give both, the amount positive")
-    for gear in (pair.gear_1, pair.gear_2):
-        whole = abs(gear.roll_a - gear.roll_f)
-        if not 0 < length < whole:
-            raise ValueError(f"tip relief over {length:g} mm, but the flank of z = {gear.z} is {whole:.4g} mm of roll long")
-    return {"tip_relief_um": amount, "tip_start_length_mm": length}

@@ -60,15 +60,11 @@ def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     first, last, middle, pitch, span = (row[f"{key}_mm"] for key in ("first", "last", "middle", "pitch", "span"))
     numbers = arguments("pits", row, "radius_mm", "axes_mm", "depth_mm", "tooth", "angle_deg")
     if first is not None:
-        if row["along"] != "axis" or pitch is not None or span is not None:
-            raise ValueError(
-                "first_mm and last_mm are of pits along the axis: for others give middle_mm with pitch_mm or span_mm"
-            )
+        if row["along"] != "axis":
+            raise ValueError("first_mm and last_mm are of pits along the axis: for others give middle_mm")
         pits = pit_row(row["count"], first, first if last is None else last, **numbers)
         return [*pits, *_other_half(row, pits, made, which, pair)]
-    if last is not None:
-        raise ValueError("last_mm goes with first_mm: about middle_mm give pitch_mm or span_mm")
-    if row["count"] > 1 and (pitch is None) == (span is None):
+    if row["count"] > 1 and pitch is None and span is None:
         raise ValueError(
             f"{row['count']} pits about middle_mm: give pitch_mm, from one to the next, or span_mm, from first to last"
         )
@@ -155,8 +151,6 @@ def _flank(row, gear):
         length = fields.pop(f"{end}_start_length", None)
         if length is None:
             continue
-        if row[f"{end}_start_roll_mm"] is not None:
-            raise ValueError(f"{end}_start_length_mm and {end}_start_roll_mm: give one start")
         if not length < whole:
             raise ValueError(f"{end}_start_length_mm = {length}, but the flank is {whole:.4g} mm of roll long: give a part of it")
         fields[f"{end}_start_roll"] = roll + sense * gear.outward * length

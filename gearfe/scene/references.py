@@ -82,8 +82,6 @@ def _reference(file, where, row):
 
 
 def _row(file, where, row, reference):
-    if row["printed"] is not None and row["claim"] is not None:
-        raise ValueError(f"{file} [{where}]: printed and claim in one row; a row is a number or a statement")
     if (reference["unit"] == "statement") != (row["claim"] is not None):
         raise ValueError(f"{file} [{where}]: rows of unit 'statement' have claim = true or false, others printed = a number")
     both = {key: row[key] or reference[key] for key in ("kind", "correction", "reason", "set_by")}

@@ -18,7 +18,7 @@ from typing import Any
 REQUIRED = object()
 LARGEST, MOST = 1e30, 2**63  # no length, force or stiffness is larger, in any unit; whole numbers that arrays can hold
 SHOWN = 60  # characters of a value in a message
-PLAIN = {"string": str, "boolean": bool, "values": dict, "gear": str, "pair": str, "material": str}
+PLAIN = {"boolean": bool, "values": dict}
 LISTS = {"numbers": "number", "strings": "string", "tables": "values"}  # type of list: type of its entries
 NAMES = ("gear", "pair", "material")  # types of keys that name a table
 TYPES = {
@@ -60,6 +60,8 @@ class Key:
     argument: str = ""
     of: str = ""
     names: tuple[str, ...] = ()
+    kinds: tuple[str, ...] = ()
+    needed: bool = False
 
     @property
     def unit(self) -> str:
@@ -71,6 +73,11 @@ class Key:
     def python_name(self) -> str:
         """Name of the argument that it is in Python."""
         return self.argument or UNIT.sub("", self.name)
+
+    def heading(self, place: str = "") -> str:
+        """Heading of the tables it holds, in the table at a `place`: ``[gear.NAME]``, ``[[crack]]``, ``[machine.impact]``."""
+        name = f"{place}.{self.name}" if place else self.name
+        return {"listed": f"[[{name}]]", "named": f"[{name}.NAME]"}.get(self.type, f"[{name}]")
 
     @property
     def expected(self) -> str:
@@ -112,7 +119,7 @@ class KeyTable:
     about: str
     keys: dict[str, Key]
     one_of: tuple[str, ...] = ()
-    at_most_one: tuple[str, ...] = ()
+    exclude: tuple[tuple[str, str], ...] = ()
     together: tuple[tuple[str, str], ...] = ()
 
     def as_typed(self, row: Mapping[str, Any], text: str) -> str:
@@ -127,15 +134,18 @@ class KeyTable:
 
     def _rules(self, row):
         """What a row breaks of the rules on which keys go together."""
-        if self.one_of and len([name for name in self.one_of if row[name] is not None]) != 1:
+        given = {name for name, value in row.items() if value is not None and value != self.keys[name].default}
+        if self.one_of and len(given.intersection(self.one_of)) != 1:
             stated = (f"{name} ({re.split('[;,]', self.keys[name].text)[0]})" for name in self.one_of)
             yield f"give {' or '.join(stated)}, one of them"
-        given = [name for name in self.at_most_one if row[name]]
-        if len(given) > 1:
-            yield f"{' and '.join(given)} exclude each other: give one"
-        for one, two in self.together:
-            if (row[one] is None) != (row[two] is None):
-                yield f"give {one} and {two} together"
+        yield from (f"{one} and {two} exclude each other: give one" for one, two in self.exclude if {one, two} <= given)
+        kind, of_kinds = row.get("kind"), [key for key in self.keys.values() if key.kinds]
+        has = ", ".join(key.name for key in of_kinds if kind in key.kinds) or "no other key"
+        missing = (key.name for key in of_kinds if key.needed and kind in key.kinds and key.name not in given)
+        yield from (f"kind = {kind!r} needs {name}" for name in missing)
+        wrong = (key.name for key in of_kinds if kind not in key.kinds and key.name in given)
+        yield from (f"kind = {kind!r} has no {name}; expected {has}" for name in wrong)
+        yield from (f"give {one} and {two} together" for one, two in self.together if (one in given) != (two in given))
 
 
 @dataclass(slots=True)
@@ -179,16 +189,15 @@ class Reading:
         return row
 
     def _value(self, key, where, given):
-        place = key.name if where == "top level" else f"{where}.{key.name}"
         if key.of:
-            return self._nested(key, place, given.get(key.name, key.default))
+            return self._nested(key, "" if where == "top level" else where, given.get(key.name, key.default))
         if key.name not in given:
             if key.default is REQUIRED:
                 raise ValueError(f"{self.file} [{where}]: missing key {key.name!r}; expected {key.expected}")
             return key.default
         value = given[key.name]
         stated = f"{self.file} [{where}] {key.name} = {shown(value)}"
-        if not fits(value, key):
+        if not fits(value, key.type, key.count):
             raise ValueError(f"{stated}: expected {key.expected}{_limit(value)}")
         if key.distinct and not 0 < len(set(value)) == len(value):
             raise ValueError(f"{stated}: give different numbers, one or more")
@@ -198,12 +207,12 @@ class Reading:
             self.references.append((where, key, value))
         return value
 
-    def _nested(self, key, place, value):
+    def _nested(self, key, where, value):
         if value is None:
             return None
+        place, heading = f"{where}.{key.name}" if where else key.name, key.heading(where)
         if value is REQUIRED or (key.default is REQUIRED and value in ({}, [])):
-            mark = f"[[{place}]]" if key.type == "listed" else f"[{place}.NAME]" if key.type == "named" else f"[{place}]"
-            raise ValueError(f"{self.file}: no table {mark}; give one at least: {key.text}")
+            raise ValueError(f"{self.file}: no table {heading}; give one at least: {key.text}")
         if key.type == "table":
             return self.row(key.of, place, value)
         if key.type == "listed":
@@ -259,21 +268,14 @@ def _frozen(value):
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-def fits(value: Any, key: Key) -> bool:
-    """Whether a value is of the type of a key."""
-    if key.type in LISTS:
-        kind = LISTS[key.type]
-        return isinstance(value, list) and key.count in (None, len(value)) and all(_fits(one, kind) for one in value)
-    return _fits(value, key.type)
-
-
-def _fits(value, kind):
-    if kind in PLAIN:
-        return isinstance(value, PLAIN[kind])
-    if isinstance(value, bool):
-        return False
+def fits(value: Any, kind: str, count: int | None = None) -> bool:
+    """Whether a value is of a type of keys, a list of so many."""
+    if kind in LISTS:
+        return isinstance(value, list) and count in (None, len(value)) and all(fits(one, LISTS[kind]) for one in value)
+    if kind not in ("number", "integer"):
+        return isinstance(value, PLAIN.get(kind, str))
     if isinstance(value, int):
-        return abs(value) < MOST
+        return not isinstance(value, bool) and abs(value) < MOST
     return kind == "number" and isinstance(value, float) and abs(value) < LARGEST
 
 

@@ -5,14 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..geometry.pair.planetary import PlanetarySet
-from .schema import Reading, arguments, check_known, located, scene_schema
-
-KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {  # of supports: keys that must be given, keys that may be
-    "held": ((), ()),
-    "bed": (("radial_MPa_per_mm", "tangential_MPa_per_mm"), ()),
-    "pads": (("count", "width_mm"), ("first_deg", "radial_N_per_um", "tangential_N_per_um")),
-    "lugs": (("count", "width_mm"), ("first_deg", "tangential_N_per_um")),
-}
+from .schema import arguments, check_known, checked, located
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,9 +39,7 @@ def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet |
             if rows[name]:
                 raise ValueError(f"{file}: [{name}] belongs to a planetary set: add a table [set] with n_planets or angles_deg")
         return None
-    ring = rows["ring"] or Reading(file, scene_schema()).row("ring", "ring", {})
-    support = ring["support"]
-    check_support(file, support)
+    ring = rows["ring"] or checked("gearfe.scene", "ring", file, "ring", {})
     names = _pairs(file, row, pairs, rows["pair"])
     outer, inner = (pairs[name].pair for name in names)
     angles, n = row["angles_deg"], row["n_planets"]
@@ -64,22 +55,9 @@ def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet |
         floating=row["floating"],
         errors=_errors(file, rows["pin"], count),
         damaged_planet=_planet(file, "set", "damaged_planet", row["damaged_planet"], count),
-        support=support,
+        support=ring["support"],
         **{"angles": None, "pin": math.inf} | arguments("set", row, "angles_deg", "pin_N_per_um"),
     )
-
-
-def check_support(file: str, row: dict[str, Any]) -> None:
-    """Raise ValueError unless a row ``[ring.support]`` has the keys of its kind."""
-    must, may = KINDS[row["kind"]]
-    for key in must:
-        if row[key] is None:
-            why = ", the stiffness depends on it" if key == "width_mm" else ""
-            raise ValueError(f"{file} [ring.support]: kind = {row['kind']!r} needs {key}{why}")
-    for key, value in row.items():
-        if value is not None and key not in ("kind", *must, *may):
-            expected = ", ".join((*must, *may)) or "no other key"
-            raise ValueError(f"{file} [ring.support]: kind = {row['kind']!r} has no {key}; expected {expected}")
 
 
 def _pairs(file, row, pairs, rows):
@@ -121,7 +99,7 @@ def _errors(file, pins, count):
         if planet in said:
             raise ValueError(f"{file} [pin.{name}]: the pin of planet {planet} is [pin.{said[planet]}] already; give one of both")
         said[planet] = name
-        out[planet] = row["radial_um"] * 1e-3, row["tangential_um"] * 1e-3
+        out[planet] = tuple(arguments("pin", row, "radial_um", "tangential_um").values())
     return tuple(out)
 
 

@@ -42,7 +42,7 @@ def template(stated: Tables, asleep: Tables, numbers: Mapping[str, float], notes
                     *([""] if not mark else []),
                 ]
         elif key.other:
-            lines += ["", f"# {_heading(key)}: {key.text}, with {', '.join(scene_schema()[key.of].keys)}"]
+            lines += ["", f"# {key.heading()}: {key.text}, with {', '.join(scene_schema()[key.of].keys)}"]
     return "\n".join(lines).replace("\n\n\n", "\n\n").strip() + "\n"
 
 
@@ -54,12 +54,7 @@ def _rows(key: Key, tables: Tables) -> Iterator[tuple[str, Tables]]:
     if key.type == "named":
         yield from ((f"[{key.name}.{name}]", row) for name, row in found.items())
     else:
-        yield from ((_heading(key), row) for row in (found if key.type == "listed" else [found]))
-
-
-def _heading(key: Key, place: str = "") -> str:
-    name = f"{place}{key.name}"
-    return f"[[{name}]]" if key.type == "listed" else f"[{name}.NAME]" if key.type == "named" else f"[{name}]"
+        yield from ((key.heading(), row) for row in (found if key.type == "listed" else [found]))
 
 
 def _lines(
@@ -79,7 +74,7 @@ def _lines(
         elif numbers:
             inner = scene_schema()[key.of]
             if key.other:
-                yield f"# {_heading(key, f'{table.name}.')}: {key.text}, with {', '.join(inner.keys)}"
+                yield f"# {key.heading(table.name)}: {key.text}, with {', '.join(inner.keys)}"
             else:
-                yield f"#[{table.name}.{key.name}]  # {key.text}"
+                yield f"#{key.heading(table.name)}  # {key.text}"
                 yield from _lines(inner, {}, "#", {}, numbers)

@@ -180,8 +180,8 @@ def test_reference_that_cannot_be_is_refused(scene):
 
 def test_what_shafts_and_springs_take_is_told(scene, tmp_path, capsys):
     text = scene.read_text()
-    for line in ("[support.output]", 'gear = "wheel"\n#pair = "stage"\n#radial_N_per_um = 200.0'):
-        text = text.replace(f"#{line}", line.replace("\n#", "\n"))
+    springs = re.search(r"^#\[support\.output\]\n(#.*\n)+?#radial_N_per_um.*\n", text, re.M)[0]
+    text = text.replace(springs, springs.replace("\n#", "\n")[1:])
     (tmp_path / "soft.toml").write_text(text)
     assert main(["stiffness", str(tmp_path / "soft.toml"), "--phases", "8"]) == 0
     (alone,) = re.findall(

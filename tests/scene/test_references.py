@@ -51,7 +51,7 @@ def test_as_printed(tmp_path):
         ('source = "S4"', "", "missing key 'source'"),
         ('unit = "Hz"', 'unit = "statement"', "rows of unit 'statement' have claim"),
         ("printed = 480.0", "claim = true", "rows of unit 'statement' have claim"),
-        ("printed = 480.0", "printed = 480.0, claim = true", "printed and claim in one row"),
+        ("printed = 480.0", "printed = 480.0, claim = true", "printed and claim exclude each other"),
         ("printed = 480.0", 'printed = "480"', "printed = '480': expected a number"),
         ("printed = 480.0", 'printed = 480.0, pair = "moon"', "no such pair; there is sun_planet, planet_ring"),
         (', correction = "turned over"', "", "no correction that says what was changed"),

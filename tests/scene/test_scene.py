@@ -175,8 +175,8 @@ LINE = 'along = "contact_line"\nmiddle_mm = 15.0\n'
         (ROW + "middle_mm = 15.0\n", r"give first_mm \(.*\) or middle_mm \(.*\), one of them"),
         (ROW + 'along = "profile"\n', "first_mm and last_mm are of pits along the axis"),
         (LINE, "3 pits about middle_mm: give pitch_mm"),
-        (LINE + "pitch_mm = 1.0\nspan_mm = 2.0\n", "3 pits about middle_mm: give pitch_mm"),
-        (LINE + "pitch_mm = 1.0\nlast_mm = 2.0\n", "last_mm goes with first_mm"),
+        (LINE + "pitch_mm = 1.0\nspan_mm = 2.0\n", "pitch_mm and span_mm exclude each other"),
+        (LINE + "pitch_mm = 1.0\nlast_mm = 2.0\n", "last_mm and middle_mm exclude each other"),
         (LINE + "pitch_mm = 20.0\n", r"\[pits 1\]: a row of 3 pits over 40 mm along the contact line leaves"),
     ],
 )

@@ -24,7 +24,6 @@ from gearfe.scene.describe import json_schema, keys_page
 from gearfe.scene.dotted_keys import set_values
 from gearfe.scene.load import load_scene, scene_names, scene_of
 from gearfe.scene.schema import scene_schema, schema_of
-from gearfe.scene.set_table import KINDS as SUPPORTS
 from gearfe.scene.toml_file import toml
 
 OPTIONS = st.fixed_dictionaries(
@@ -151,7 +150,6 @@ def test_choices_are_those_of_the_code():
     assert set(scene["machine"].keys["model"].choices) == set(MACHINES)
     assert set(scene["crack"].keys["start"].choices) == set(STARTS)
     assert set(scene["pair"].keys["face"].choices) == set(FACES)
-    assert set(scene["ring_support"].keys["kind"].choices) == set(SUPPORTS)
     assert set(runs["study"].keys["kind"].choices) == set(KINDS)
     assert {kind.options for kind in KINDS.values()} <= set(runs)
     assert set(runs["sample"].keys["method"].choices) == set(METHODS)

@@ -130,3 +130,10 @@ wear_um = [0, 5, 0]
     assert loaded(tmp_path, "[flank.a]\ngear = 'wheel'\ntip_chamfer_mm = 0.3\n").pair().flanks["wheel"].tip_chamfer == 0.3
     with pytest.raises(ValueError, match="give wear_roll_mm and wear_um together"):
         loaded(tmp_path, "[flank.a]\ngear = 'wheel'\nwear_um = [1, 2]\n")
+
+
+def test_the_softest_springs_that_a_scene_can_state_are_a_support():
+    """The product of their stiffnesses is smaller than any number: it is not divided by."""
+    assert not gf.Support(radial=2.2e-13, tilt=5e-324).tilts
+    with pytest.raises(ValueError, match="such springs would give energy away"):
+        gf.Support(radial=2e5, tilt=2e7, coupling=1e-3)

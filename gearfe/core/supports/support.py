@@ -64,10 +64,11 @@ class Support:
                     f"support: {name} = {getattr(self, name):g} {unit}, but a spring holds the gear: give a stiffness > 0, or "
                     "leave it out (rigid)"
                 )
-        if not self.coupling**2 <= (1 + 1e-9) / (self.radial * self.tilt):
+        largest = 1 / (math.sqrt(self.radial) * math.sqrt(self.tilt))
+        if not abs(self.coupling) <= (1 + 5e-10) * largest:
             raise ValueError(
                 f"support: coupling = {self.coupling:g} rad/N is more than 1 / sqrt(radial tilt) = "
-                f"{1 / math.sqrt(self.radial * self.tilt):g}: such springs would give energy away; take all three from a Shaft"
+                f"{largest:g}: such springs would give energy away; take all three from a Shaft"
             )
 
     @property

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...core.checks import one_of
 from ...scene.load import Scene
 from ...stiffness.curve import StiffnessCurve
 from .compound_planetary import scene_compound
@@ -99,6 +100,8 @@ def _builder(scene, case):
         known = sorted({name for pair in scene.pairs.values() for name in pair.damage})
         raise ValueError(f"scene {scene.name} has no case {case!r}; it has {', '.join(known) or 'none'}")
     model, contact = scene.machine["model"], scene.machine.get("contact", "linear")
+    one_of("[machine] model", model, MACHINES)
+    one_of("[machine] contact", contact, ("linear", "impact"))
     if contact not in MACHINES[model]:
         raise ValueError(f"[machine] contact = 'impact': the model {model!r} has linear contact only")
     if scene.machine.get("bodies") and model not in STATED:
