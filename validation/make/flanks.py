@@ -130,7 +130,8 @@ def text():
     )
     how = [
         "`python -m validation flanks` makes this page from `tables/flanks_*` and new solves of gearfe; `... flanks --reference`",
-        "computes the rows of CalculiX and of finite elements. Shared with CalculiX: the shapes of the flanks",
+        "computes the rows of CalculiX, in three dimensions on the finer mesh, and of finite elements. Shared with CalculiX: the",
+        "shapes of the flanks",
         "and where they stand.",
     ]
     return answer, how, lines, flanks_wide.text(), flanks_three.text()

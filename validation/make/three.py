@@ -6,7 +6,8 @@ from . import outsider_three
 
 HOW = """
 `python -m validation three` makes this page from `tables/outsider_three*` and computes gearfe's `ritz3d`;
-`... three --reference` computes the runs of CalculiX (`ccx`).
+`... three --reference` has CalculiX (`ccx`) compute the finest mesh of each case; coarser ones, which show how far k still
+moves, are those on file.
 """
 PAIRS = "Hexahedra of pairs over their engagement: [pairs_three.md](pairs_three.md)."
 

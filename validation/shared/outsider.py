@@ -8,6 +8,7 @@ import math
 import tempfile
 import warnings
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -221,12 +222,13 @@ def refresh(again=False):
 
 
 def reference():
-    """Compute all runs; without CalculiX say so and compute nothing."""
+    """Compute the finest mesh of each case, coarser ones only if they are not on file; without CalculiX say so."""
     if not installed():
         return
     for name, mesh in wanted():
-        work = line_row if name in lines() else contact_row
-        kept_rows.kept(TABLE, key_of(name, mesh), lambda work=work, name=name, mesh=mesh: work(name, mesh), again=True)
+        work, meshes = (line_row, LINE_MESHES) if name in lines() else (contact_row, cases()[name].meshes)
+        made = partial(work, name, mesh)
+        kept_rows.kept(TABLE, key_of(name, mesh), made, again=mesh == meshes[-1])
 
 
 def apart(row):
