@@ -36,7 +36,7 @@ def test_five_rows_are_those_of_the_page():
 
 
 def test_is_read_in_two_minutes():
-    assert TEXT.count("\n") <= 130
+    assert TEXT.count("\n") <= 105
 
 
 def test_files_it_names_exist():

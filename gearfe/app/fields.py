@@ -106,7 +106,7 @@ def _field(name, group, *, start, at=(), label="", choices=(), absent=None, **mo
     if not places:
         return Field(name, group, label, "", start, choices=tuple(choices), **more)
     key = key_at(places[0])
-    label = label or key.text.split(";")[0]
+    label = label or key.label
     label += f" (0: {key.optional})" if absent == 0 and key.optional else ""
     unit = {"um": "µm", "deg": "°"}.get(key.unit, SPELLED.get(key.unit, key.unit.replace("Nm/", "N m/").replace("um", "µm")))
     if key.type in ("string", "gear", "boolean"):

@@ -7,7 +7,8 @@ from typing import Any
 from ..scene.dotted_keys import set_values, trimmed
 from ..scene.load import Scene, scene_of
 from ..scene.parts import DAMAGE
-from ..scene.schema import REQUIRED, Reading, scene_schema, shown
+from ..scene.reading import Reading
+from ..scene.schema import REQUIRED, scene_schema, shown
 from .fields import FIELDS, SIDES, START, checked_state, key_at
 
 CASE, PAIR = "damaged", "stage"

@@ -4,7 +4,7 @@ from ..dynamics.machine.of_scene import check_machine
 from ..geometry.damage.hollow import check_hollows
 from ..planetary_sets.of_scene import build_set
 from ..scene.load import Scene
-from ..scene.schema import located
+from ..scene.reading import located
 from ..stiffness.solve import Solve
 
 

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import fields
 
 from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
@@ -11,18 +10,16 @@ from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.modified import Flank
 from ..planetary_sets.of_scene import build_set
 from ..scene.load import Scene, ScenePair
+from ..scene.schema import in_words, scene_schema
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.solve import Solve
 from .losses import told_damage
 from .told_set import told_set
 
 SIDES = ("pinion", "wheel")
-WORDS = {  # for amounts of a flank, in um, whose names do not say enough
-    "crowning": "profile crowning", "slope": "profile slope", "lead_crowning": "crowning along the width",
-    "lead_slope": "slope along the width",
-}  # fmt: skip
-AMOUNTS = [own.name for own in fields(Flank) if own.default == 0.0 and not own.name.startswith(("tip_", "root_", "end_"))]
-AMOUNTS.remove("eccentric_tooth")
+AMOUNTS = [
+    key.name for key in scene_schema()["flank"].keys.values() if key.unit and key.default == 0.0 and "relief" not in key.name
+]
 OTHERS = {"table": "a measured profile", "topography": "a measured flank", "pitch": "pitch deviations", "wear": "wear",
           "tooth_scale": "teeth that differ"}  # fmt: skip
 
@@ -89,8 +86,7 @@ def told_details(chosen: ScenePair) -> Iterator[str]:
         shared = (pair.eps_alpha - 1) * pair.p_bt
         yield f"two pairs of teeth share the load over the first and the last {shared:.3g} mm of roll, one carries in between"
     if chosen.misalignment:
-        amounts = {axis: 1e3 * getattr(chosen.misalignment, axis) for axis in ("F_beta", "f_sigma_beta", "f_sigma_delta")}
-        yield "misaligned: " + ", ".join(f"{axis} {value:g} um" for axis, value in amounts.items() if value)
+        yield f"axes: {in_words('pair', chosen.misalignment)}"
     for side, held in chosen.supports.items():
         yield f"{side} held by {_held(held)}"
 
@@ -105,11 +101,9 @@ def told_flank(flank: Flank, gear: Gear) -> str:
             shape = {1.0: "linear", 2.0: "parabolic"}.get(exponent := getattr(flank, f"{end}_exponent"), f"power {exponent:g}")
             at = f"from a diameter of {2 * math.hypot(gear.r_b, start):.5g} mm on, over {abs(roll - start):.3g} mm of roll"
             parts.append(f"{end} relief {relief:.4g} um, {shape}, {at}")
-    amounts = {name: 1e3 * getattr(flank, name) for name in AMOUNTS}
-    parts += [f"{WORDS.get(name, name)} {value:.4g} um" for name, value in amounts.items() if value]
+    parts += [amounts] if (amounts := in_words("flank", flank, *AMOUNTS)) else []
     if any(flank.end_relief if isinstance(flank.end_relief, tuple) else (flank.end_relief,)):
         parts.append("end relief")
-    parts += [f"tip {edge} {value:g} mm" for edge in ("rounding", "chamfer") if (value := getattr(flank, f"tip_{edge}"))]
     parts += [word for name, word in OTHERS.items() if (value := getattr(flank, name)) is not None and len(value)]
     return "; ".join(parts) or "involute"
 
@@ -131,10 +125,8 @@ def _held(held: Support | Shaft) -> str:
         )
         whole = ", one piece" if held.integral else ""
         return f"a shaft of {parts}, bearings at {places} mm ({stiff}), gear at {held.gear:g} mm{whole}"
-    units = {"radial": ("N/um", 1e3), "axial": ("N/um", 1e3), "tilt": ("Nm/mrad", 1e6), "torsion": ("Nm/mrad", 1e6)}
-    values = {name: getattr(held, name) for name in units}
-    soft = [f"{name} {value / units[name][1]:g} {units[name][0]}" for name, value in values.items() if math.isfinite(value)]
-    return f"springs: {', '.join(soft)}; else rigid" if soft else "rigid springs"
+    springs = in_words("support", held)
+    return f"springs: {springs}; else rigid" if springs else "rigid springs"
 
 
 def _where(chosen: ScenePair, damage: dict) -> Iterator[str]:

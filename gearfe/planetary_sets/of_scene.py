@@ -5,7 +5,8 @@ from typing import Any
 
 from ..geometry.damage.crack import Crack
 from ..scene.load import Scene, ScenePair
-from ..scene.schema import arguments, located
+from ..scene.reading import located
+from ..scene.schema import arguments
 from ..scene.set_table import SceneSet
 from .case import PlanetaryCase
 from .rim_supports import RimBed, RimSupports

@@ -16,8 +16,9 @@ from ..geometry.pair.gear_pair import GearPair
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.modified import Flank
 from . import assumed, parts
+from .reading import Reading, located
 from .references import Reference, read_references
-from .schema import Reading, arguments, located, scene_schema
+from .schema import arguments, scene_schema
 from .set_table import SceneSet, set_of
 from .toml_file import read_toml
 

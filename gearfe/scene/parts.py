@@ -13,7 +13,8 @@ from ..geometry.pair.flanks import Misalignment, tilt_of
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.pit_lines import in_both_halves, pit_line
 from ..geometry.tooth.modified import Flank
-from .schema import arguments, check_known, located
+from .reading import check_known, located
+from .schema import arguments
 
 Row = dict[str, Any]
 SIDES = ("pinion", "wheel")

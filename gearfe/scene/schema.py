@@ -1,4 +1,4 @@
-"""Schema of TOML files: what each key is (type, unit, range, default, description), and the check of tables against it.
+"""Schema of TOML files: what each key is (type, unit, range, default, description).
 
 The keys of a scene are defined in ``keys.toml``, those of sweeps and data sets in files of the same form. A value that the schema
 does not permit is a ValueError that names file, table, key and value as typed, and what is permitted.
@@ -8,17 +8,14 @@ import math
 import operator
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from typing import Any
 
 REQUIRED = object()
-LARGEST, MOST = 1e30, 2**63  # no length, force or stiffness is larger, in any unit; whole numbers that arrays can hold
 SHOWN = 60  # characters of a value in a message
-PLAIN = {"boolean": bool, "values": dict}
 LISTS = {"numbers": "number", "strings": "string", "tables": "values"}  # type of list: type of its entries
 NAMES = ("gear", "pair", "material")  # types of keys that name a table
 TYPES = {
@@ -70,6 +67,11 @@ class Key:
         return found[1].replace("_per_", "/") if found and not self.of else ""
 
     @property
+    def label(self) -> str:
+        """Name of the quantity: the beginning of its description."""
+        return self.text.split(";")[0]
+
+    @property
     def python_name(self) -> str:
         """Name of the argument that it is in Python."""
         return self.argument or UNIT.sub("", self.name)
@@ -102,6 +104,8 @@ class Key:
         if self.choices:
             return value in self.choices
         numbers = value if isinstance(value, (list, tuple)) else [value]
+        if (self.min, self.above, self.max, self.below) == (None, None, None, None):
+            return True
         rules = ((self.min, operator.ge), (self.above, operator.gt), (self.max, operator.le), (self.below, operator.lt))
         return all(compare(one, bound) for bound, compare in rules if bound is not None for one in numbers)
 
@@ -136,7 +140,7 @@ class KeyTable:
         """What a row breaks of the rules on which keys go together."""
         given = {name for name, value in row.items() if value is not None and value != self.keys[name].default}
         if self.one_of and len(given.intersection(self.one_of)) != 1:
-            stated = (f"{name} ({re.split('[;,]', self.keys[name].text)[0]})" for name in self.one_of)
+            stated = (f"{name} ({self.keys[name].label})" for name in self.one_of)
             yield f"give {' or '.join(stated)}, one of them"
         yield from (f"{one} and {two} exclude each other: give one" for one, two in self.exclude if {one, two} <= given)
         kind, of_kinds = row.get("kind"), [key for key in self.keys.values() if key.kinds]
@@ -146,93 +150,6 @@ class KeyTable:
         wrong = (key.name for key in of_kinds if kind not in key.kinds and key.name in given)
         yield from (f"kind = {kind!r} has no {name}; expected {has}" for name in wrong)
         yield from (f"give {one} and {two} together" for one, two in self.together if (one in given) != (two in given))
-
-
-@dataclass(slots=True)
-class Reading:
-    """The reading of one file by the `tables` of a schema; `references` are (place, key, name) of keys that name a table."""
-
-    file: str
-    tables: Mapping[str, KeyTable]
-    references: list[tuple[str, Key, str]] = field(default_factory=list)
-
-    def row(self, name: str, where: str, given: Any) -> dict[str, Any]:
-        """Values of the table ``[where]``, that is `given`, with defaults filled in; nested tables too.
-
-        Parameters
-        ----------
-        name : str
-            Of the table in the schema.
-        where : str
-            Its place in the file, for messages; ``"top level"`` is not part of the places below it.
-        given : dict
-
-        Returns
-        -------
-        dict
-            Values by key as typed; None where an optional key is left out.
-
-        Raises
-        ------
-        ValueError
-            If a key is unknown, missing, of another type or out of range, or keys contradict each other.
-        """
-        table = self.tables[name]
-        if not isinstance(given, Mapping):
-            raise ValueError(f"{self.file} [{where}]: expected a table of keys and values, got {shown(given)}")
-        for key in given:
-            if key not in table.keys:
-                raise ValueError(f"{self.file} [{where}]: {unknown(key, table.keys)}")
-        row = {key.name: self._value(key, where, given) for key in table.keys.values()}
-        for broken in table._rules(row):
-            raise ValueError(f"{self.file} [{where}]: {broken}")
-        return row
-
-    def _value(self, key, where, given):
-        if key.of:
-            return self._nested(key, "" if where == "top level" else where, given.get(key.name, key.default))
-        if key.name not in given:
-            if key.default is REQUIRED:
-                raise ValueError(f"{self.file} [{where}]: missing key {key.name!r}; expected {key.expected}")
-            return key.default
-        value = given[key.name]
-        stated = f"{self.file} [{where}] {key.name} = {shown(value)}"
-        if not fits(value, key.type, key.count):
-            raise ValueError(f"{stated}: expected {key.expected}{_limit(value)}")
-        if key.distinct and not 0 < len(set(value)) == len(value):
-            raise ValueError(f"{stated}: give different numbers, one or more")
-        if not key.permits(value):
-            raise ValueError(f"{stated}, but {'each number' if key.type in LISTS else 'it'} must {key.permitted}")
-        if key.type in NAMES:
-            self.references.append((where, key, value))
-        return value
-
-    def _nested(self, key, where, value):
-        if value is None:
-            return None
-        place, heading = f"{where}.{key.name}" if where else key.name, key.heading(where)
-        if value is REQUIRED or (key.default is REQUIRED and value in ({}, [])):
-            raise ValueError(f"{self.file}: no table {heading}; give one at least: {key.text}")
-        if key.type == "table":
-            return self.row(key.of, place, value)
-        if key.type == "listed":
-            check_listed(self.file, place, value)
-            return [self.row(key.of, f"{place} {i + 1}", one) for i, one in enumerate(value)]
-        check_named(self.file, place, value)
-        if key.names and value and set(value) != set(key.names):
-            there = ", ".join(value)
-            raise ValueError(f"{self.file} [{place}]: {there}, but give a table for each of {', '.join(key.names)}, or none")
-        return {name: self.row(key.of, f"{place}.{name}", one) for name, one in value.items()}
-
-    def check_references(self, rows: Mapping[str, Any]) -> None:
-        """Raise ValueError if a key names a table of a scene that is not among its `rows`."""
-        for where, key, name in self.references:
-            check_known(self.file, where, key.name, name, rows[key.type], key.type)
-
-
-def checked(package: str, name: str, file: str, where: str, given: Any) -> dict[str, Any]:
-    """Row of one table of the schema of a package, as `Reading.row` gives it."""
-    return Reading(file, schema_of(package)).row(name, where, given)
 
 
 @cache
@@ -268,22 +185,6 @@ def _frozen(value):
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-def fits(value: Any, kind: str, count: int | None = None) -> bool:
-    """Whether a value is of a type of keys, a list of so many."""
-    if kind in LISTS:
-        return isinstance(value, list) and count in (None, len(value)) and all(fits(one, LISTS[kind]) for one in value)
-    if kind not in ("number", "integer"):
-        return isinstance(value, PLAIN.get(kind, str))
-    if isinstance(value, int):
-        return not isinstance(value, bool) and abs(value) < MOST
-    return kind == "number" and isinstance(value, float) and abs(value) < LARGEST
-
-
-def _limit(value):
-    """Part of the message on a value: the largest number allowed, if it is a number that is too large."""
-    return f", below {LARGEST:g}" if isinstance(value, (int, float)) and abs(value) >= MOST else ""
-
-
 def shown(value: Any) -> str:
     """A value for a message: no longer than a line, whatever was given."""
     try:
@@ -293,44 +194,17 @@ def shown(value: Any) -> str:
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 
 
-def unknown(name: Any, names: Iterable[str]) -> str:
-    """Message on an unknown key, with the nearest of the known `names`."""
-    from difflib import get_close_matches
+def in_words(kind: str, thing: Any, *names: str) -> str:
+    """Finite numbers other than zero of an object of the library, by the keys of a scene's table, of these `names` or all.
 
-    near = get_close_matches(str(name), names := list(names), 1)
-    return f"unknown key {shown(name)}{f' (nearest: {near[0]!r})' if near else ''}; expected {', '.join(names)}"
-
-
-def check_known(file: str, where: str, key: str, name: Any, names: Iterable[str], kind: str) -> None:
-    """Raise ValueError for a `name` that is not among `names`."""
-    if name not in names:
-        raise ValueError(f"{file} [{where}] {key} = {shown(name)}: no such {kind}; there is {', '.join(names)}")
-
-
-def check_named(file: str, kind: str, tables: Any) -> None:
-    """Raise ValueError for anything but a table of named tables, as ``[flank.NAME]`` writes them."""
-    if isinstance(tables, list) and all(isinstance(table, dict) for table in tables):
-        raise ValueError(f"{file}: [[{kind}]] is a list of tables, but they have names: write [{kind}.NAME]")
-    if not isinstance(tables, Mapping):
-        raise ValueError(f"{file}: {kind} = {shown(tables)}, but give tables with names: [{kind}.NAME]")
-
-
-def check_listed(file: str, kind: str, tables: Any) -> None:
-    """Raise ValueError for anything but a list of tables, as ``[[crack]]`` writes them."""
-    if isinstance(tables, dict):
-        raise ValueError(f"{file}: [{kind}] is one table, but there may be several: write [[{kind}]]")
-    if not isinstance(tables, list):
-        raise ValueError(f"{file}: {kind} = {shown(tables)}, but give a list of tables: [[{kind}]]")
-
-
-@contextmanager
-def located(file: str, where: str, row: Mapping[str, Any] | None = None) -> Iterator[None]:
-    """Context in which ValueErrors begin with file and table of a scene, and have the keys of a `row` as typed."""
-    try:
-        yield
-    except ValueError as error:
-        text = scene_schema()[re.split("[. ]", where)[0]].as_typed(row, str(error)) if row else str(error)
-        raise ValueError(f"{file} [{where}]: {text}") from error
+    >>> from gearfe import Support
+    >>> in_words("support", Support(radial=2e5, torsion=4e8))
+    'radial stiffness 200 N/um, torsional stiffness 400 Nm/mrad'
+    """
+    keys = scene_schema()[kind].keys
+    values = {keys[name]: getattr(thing, keys[name].python_name, None) for name in names or keys}
+    given = {key: value for key, value in values.items() if isinstance(value, float) and value and math.isfinite(value)}
+    return ", ".join(f"{key.label} {value / key.in_python(1.0):.4g} {key.unit}" for key, value in given.items())
 
 
 def arguments(kind: str, row: Mapping[str, Any], *names: str) -> dict[str, Any]:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..geometry.pair.planetary import PlanetarySet
-from .schema import arguments, check_known, checked, located
+from .reading import check_known, checked, located
+from .schema import arguments
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,9 +11,9 @@ import numpy as np
 
 from ..contact.wide_contact import Contact3D, pair_stiffness3d
 from ..core.steps import part
-from ..flexibility.finite_elements.hexahedron import assemble
+from ..flexibility.finite_elements.solid_assembly import assemble
 from ..flexibility.finite_elements.solver import factor, plan
-from ..flexibility.finite_elements.tetrahedron import EDGES, nodal_stress, nodes_of, second_order, tet_stiffness
+from ..flexibility.finite_elements.tetrahedron import EDGES, nodal_stress, nodes_of, second_order
 from ..geometry.mesh.holes import Holed, holed_sector, skin
 from ..geometry.pair.pit_lines import in_both_halves
 from ..geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
@@ -206,7 +206,7 @@ def _moved(nodes, cells, material, held, loads):
     free = np.setdiff1d(used, held)
     cost = plan(3 * free.size)
     rows = (3 * free[:, None] + np.arange(3)).ravel()
-    solve = factor(assemble(nodes, cells, material, free, tet_stiffness), cost)
+    solve = factor(assemble(nodes, cells, material, free), cost)
     moved = np.full(loads.shape, np.nan)
     moved[(3 * used[:, None] + np.arange(3)).ravel()] = 0.0
     moved[rows] = solve(loads[rows])

@@ -13,7 +13,8 @@ import gearfe as gf
 from gearfe.flexibility.finite_elements.elasticity import Body
 from gearfe.flexibility.finite_elements.fe import flank_load
 from gearfe.flexibility.finite_elements.fe3d import Patches, influence, mesh_patches, patch_loads
-from gearfe.flexibility.finite_elements.hexahedron import assemble, face_shapes, gauss, shapes, slopes_at
+from gearfe.flexibility.finite_elements.hexahedron import face_shapes, gauss, shapes, slopes_at
+from gearfe.flexibility.finite_elements.solid_assembly import assemble
 from gearfe.flexibility.finite_elements.solver import factor
 from gearfe.geometry.mesh.outline import stations
 from gearfe.geometry.mesh.section_mesh import section

@@ -11,8 +11,8 @@ from skfem import BilinearForm, ElementTetP2, ElementVector, MeshTet, asm
 from skfem.helpers import ddot, eye, sym_grad, trace
 
 import gearfe as gf
-from gearfe.flexibility.finite_elements.hexahedron import assemble
-from gearfe.flexibility.finite_elements.tetrahedron import nodal_stress, second_order, tet_stiffness
+from gearfe.flexibility.finite_elements.solid_assembly import assemble
+from gearfe.flexibility.finite_elements.tetrahedron import nodal_stress, second_order
 from gearfe.geometry.damage.pit import pit_row
 from gearfe.geometry.mesh.holes import holed_sector
 from gearfe.geometry.tooth.profile import cartesian, fillet_length, flank, root_curve
@@ -38,7 +38,7 @@ def test_tets_are_those_of_scikit_fem(steel):
     left = np.linalg.det(sides.transpose(2, 0, 1)) < 0  # ours are right-handed
     nodes, cells, _ = second_order(mesh.p, np.where(left, mesh.t[[1, 0, 2, 3]], mesh.t))
     free = np.arange(nodes.shape[1])
-    lower = assemble(nodes, cells, steel, free, tet_stiffness)
+    lower = assemble(nodes, cells, steel, free)
     lam, mu = steel.lame("plane strain")
 
     @BilinearForm

@@ -8,7 +8,8 @@ from numpy.testing import assert_allclose
 from scipy.special import ellipe
 
 import gearfe as gf
-from gearfe.flexibility.finite_elements.hexahedron import assemble, face_shapes
+from gearfe.flexibility.finite_elements.hexahedron import face_shapes
+from gearfe.flexibility.finite_elements.solid_assembly import assemble
 from gearfe.flexibility.finite_elements.solver import factor, plan
 from gearfe.geometry.mesh.solid import HEX
 from gearfe.strength.crack_front import SHALLOW, TUBE
@@ -17,6 +18,7 @@ from gearfe.strength.front_integral import front_intensity
 STEEL = gf.Material(E=207e3, nu=0.3)
 WIDEST = TUBE[1] * SHALLOW  # tube around a front that runs out, as in gears: in the largest depth, which is 1
 CORNERS = ((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1))  # of a quad in (across the front, along it)
+HOLE = 1e-3  # its radius, in crack lengths
 BLEND = 1.6  # from that many crack lengths on, lines run over into the block's outline
 
 
@@ -38,13 +40,13 @@ class Quarter:
     def __init__(self, a, c, deep, wide, tall, *, pieces, tip=0.02):
         self.a, self.c, self.tall = a, c, tall
         self.phi = np.linspace(0, math.pi / 2, pieces + 1)
-        far = max(deep / a, wide / c) - BLEND
+        far = max(deep / a, wide / c) - BLEND  # the lines end on a thin hole along the axis, which leaves the tension as it is
         inner, outer = 1 - graded(tip, 1.5, 0.35, 1.0)[::-1], 1 + graded(tip, 1.5, 0.35, BLEND - 1)[1:]
+        inner[0] = HOLE
         across = np.concatenate([inner, outer, BLEND + graded(0.35, 1.5, 3.0, far)[1:] / far])
         lines = across, self.phi, graded(tip * a, 1.5, 3.0 * a, tall)
         r, p, z = (np.interp(np.arange(2 * len(v) - 1) / 2, np.arange(len(v)), v) for v in lines)
         number = np.arange(r.size * p.size * z.size).reshape(r.size, p.size, z.size)
-        number[0] = number[0, :1]  # all lines meet on the axis
         i, j, k = (v.ravel() for v in np.meshgrid(*(np.arange(0, v.size - 2, 2) for v in (r, p, z)), indexing="ij"))
         cells = np.array([number[i + CORNERS[q][0], j + CORNERS[q][1], k + level] for q, level in HEX])
         r, p, z = np.meshgrid(r, p, z, indexing="ij")

@@ -9,8 +9,8 @@ from functools import cache
 import gearfe as gf
 from gearfe.core.table import Table
 from gearfe.scene import verdicts
+from gearfe.scene.reading import checked
 from gearfe.scene.references import read_references
-from gearfe.scene.schema import checked
 
 from ..shared import places, table_rows
 from ..shared.openings import OPENINGS

@@ -98,7 +98,7 @@ class Body:
 
         It takes half of a solution: the product of ``L^-1 load`` with itself, where ``K = L L'``.
         """
-        return self._factor.gram(load.tocsr()[self.free].toarray())
+        return self._factor.gram(load.tocsr()[self.free])
 
     def solve(self, load: NDArray[np.float64] | spmatrix) -> NDArray[np.float64]:
         """Displacements for the columns of `load` (dense or sparse, ``(2 nodes, n)``) [N/mm]."""

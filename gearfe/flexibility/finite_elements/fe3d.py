@@ -14,11 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import legendre
-from scipy.sparse import coo_matrix
+from scipy.sparse import coo_matrix, csc_array, hstack
 
 from ...geometry.mesh.solid import solid
 from ...geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
-from .hexahedron import assemble, face_shapes
+from .hexahedron import face_shapes
+from .solid_assembly import assemble
 from .solver import factor, plan
 
 ROLL_POINTS, HEIGHT_POINTS = 4, 6  # Gauss points between breakpoints along the profile and along the width
@@ -166,8 +167,12 @@ def planned(mesh, patches, more=0):
 
 
 def loads_and_rows(mesh, patches, zones):
-    """Nodal forces of all patches, then of zones ``(3 nodes, n)``, the nodes that can move, and their unknowns."""
-    load = np.hstack([*(patch_loads(mesh, patches, tooth) for tooth in patches.teeth), *([] if zones is None else [zones])])
+    """Nodal forces of all patches, then of zones ``(3 nodes, n)``, the nodes that can move, and their unknowns.
+
+    The forces are sparse: few nodes are on loaded flanks, and dense columns would take as much memory as the factor.
+    """
+    parts = [csc_array(patch_loads(mesh, patches, tooth)) for tooth in patches.teeth]
+    load = hstack([*parts, *([] if zones is None else [csc_array(zones)])], format="csr")
     free = np.setdiff1d(np.arange(mesh.points.shape[1]), mesh.held)
     return load, free, (3 * free[:, None] + np.arange(3)).ravel()
 

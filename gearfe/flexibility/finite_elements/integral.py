@@ -14,10 +14,11 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from scipy.sparse import hstack
 
 from ...core.supports.stubs import MOTIONS, face_radii, stub_stiffness
 from .fe3d import Influence, loads_and_rows, planned
-from .hexahedron import assemble
+from .solid_assembly import assemble
 from .solver import factor
 
 
@@ -37,7 +38,7 @@ def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None)
         tell(cost)
     whole = assemble(mesh.points, mesh.cells, material, np.arange(mesh.points.shape[1]))
     moved = whole @ discs + whole.T @ discs - whole.diagonal()[:, None] * discs  # of which the lower triangle is kept
-    gram = factor(whole[rows][:, rows].tocsc(), cost).gram(np.hstack([load[rows], -moved[rows]]))
+    gram = factor(whole[rows][:, rows].tocsc(), cost).gram(hstack([load[rows], -moved[rows]]))
     direct, cross, back = gram[:columns, :columns], gram[:columns, columns:], gram[columns:, columns:]
     used = np.flatnonzero(np.abs(discs).max(axis=0))
     stiff = discs.T @ moved - back + stub_stiffness(shaft, mesh.gear.b)

@@ -8,8 +8,9 @@ from ...core.checks import check_length
 from ...geometry.mesh.solid import Solid
 from ...geometry.tooth.profile import arc_at, roll_at_arc
 from .fe3d import helicoid_normal, points_between
-from .hexahedron import assemble, face_shapes
+from .hexahedron import face_shapes
 from .one_tooth import load_at
+from .solid_assembly import assemble
 from .solver import factor, plan
 
 SPREAD = 0.15  # half width of the hat over which a load is spread [m_n]

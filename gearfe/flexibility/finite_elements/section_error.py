@@ -18,7 +18,7 @@ from ..solid import hats
 from ..solved import solved_gears
 from .fe3d import Patches, mesh_patches, patch_loads
 from .fe_gear3d import PER_HAT, SIZES
-from .hexahedron import assemble
+from .solid_assembly import assemble
 
 FINER = 4.0  # resolution of the section that is taken for exact, against that of the gear
 THIN = 1e-2  # height of the layer [m_n]: so thin that a helix does not turn it

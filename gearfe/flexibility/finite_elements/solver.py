@@ -8,7 +8,7 @@ import importlib.util
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array, tril
+from scipy.sparse import coo_array, csc_array, issparse, tril
 
 from ...core.memory import free_memory
 from ...core.steps import reached
@@ -101,8 +101,9 @@ def factor(matrix, plan_=None, *, node=3):
     Returns
     -------
     callable
-        From right-hand sides ``(n,)`` or ``(n, k)`` to solutions of the same shape. Its attribute ``gram`` maps right-hand sides
-        F ``(n, k)`` to ``F' K^-1 F`` by half a solution: with ``K = L L'`` it is the product of ``L^-1 F`` with itself.
+        From right-hand sides ``(n,)`` or ``(n, k)``, which may be sparse, to solutions of the same shape. Its attribute ``gram``
+        maps right-hand sides F ``(n, k)`` to ``F' K^-1 F`` by half a solution: with ``K = L L'`` it is the product of ``L^-1 F``
+        with itself.
 
     Raises
     ------
@@ -128,16 +129,17 @@ def factor(matrix, plan_=None, *, node=3):
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
     def solve(rhs, part=A):
-        sides = np.reshape(rhs, (matrix.shape[0], -1))
+        sides = csc_array(rhs) if issparse(rhs) else np.reshape(rhs, (matrix.shape[0], -1))
         out, width = np.empty(sides.shape, order="F"), max(1, BLOCK // (8 * matrix.shape[0]))
         for start in range(0, sides.shape[1], width):
             span = slice(start, start + width)
-            block = dense(np.asfortranarray(sides[:, span], dtype=float))
+            columns = sides[:, span].toarray() if issparse(rhs) else sides[:, span]
+            block = dense(np.asfortranarray(columns, dtype=float))
             if part == L:
                 cholmod.solve(factored, block, sys=P)
             # as sparse columns CHOLMOD takes several at once, so that the factor is read less often: half the time
             out[:, span] = np.asarray(dense(cholmod.spsolve(factored, sparse(block), sys=part)))
-        return out.reshape(np.shape(rhs))
+        return out.reshape(rhs.shape if issparse(rhs) else np.shape(rhs))
 
     def gram(rhs):
         moved = solve(rhs, L)

@@ -1,14 +1,13 @@
-"""The straight-sided second-order tet: nodes in the middle of edges, stiffness of many at once, stress at the nodes."""
+"""The straight-sided second-order tet: nodes in the middle of edges, stress at the nodes."""
 
 import math
 
 import numpy as np
 
 from ...core.material import Material
-from .hexahedron import stiffness_of
 
-EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # of a tet with a node in the middle, in VTK's order
 INNER, OUTER = (5 + 3 * math.sqrt(5)) / 20, (5 - math.sqrt(5)) / 20  # Gauss points of a tet, exact for squares
+EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # of a tet with a node in the middle, in VTK's order
 
 
 def second_order(points, cells):
@@ -48,13 +47,6 @@ def tet_slopes(nodes, corner):
     a, b = np.array(EDGES).T
     middle = 4 * (slope[:, a, :, None] * corner[b][None, :, None] + slope[:, b, :, None] * corner[a][None, :, None])
     return np.concatenate([ends, middle], axis=1), np.linalg.det(sides) / 6
-
-
-def tet_stiffness(nodes, lam, mu):
-    """Stiffness matrices ``(m, 10, 3, 10, 3)`` [N/mm] of straight second-order tets ``(3, 10, m)``."""
-    corner = np.full((4, 4), OUTER) + (INNER - OUTER) * np.eye(4)
-    slopes, size = tet_slopes(nodes, corner)
-    return stiffness_of(slopes, np.repeat(size[:, None] / 4, 4, axis=1), lam, mu)
 
 
 def nodal_stress(nodes, cells, moved, material: Material):

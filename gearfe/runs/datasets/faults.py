@@ -1,45 +1,42 @@
-"""Kinds of fault a data set can hold: a row says how severity is measured and how it enters a scene."""
+"""Kinds of fault a data set can hold: a row says which key of a scene its severity is."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any, NamedTuple
+
+from ...scene.schema import LISTS, scene_schema
 
 HEALTHY = "healthy"
 CASE = "fault"  # the case of damage that a fault is in its scene
 
 
 class Fault(NamedTuple):
-    """A kind of fault.
+    """A kind of fault: the key of a scene that its severity is, and the unit of that.
 
-    Its table has the keys of ``KIND_fault`` in ``gearfe/runs/keys.toml``; `unit` is that of its severity. `enter` puts it into
-    the tables of a scene. `damage`: it is damage of a tooth, a case of the scene, else an error of the machine.
+    Its table has the keys of ``KIND_fault`` in ``gearfe/runs/keys.toml``.
     """
 
+    key: str
     unit: str
-    enter: Callable[[dict[str, Any], float, Mapping[str, Any]], None]
-    damage: bool = True
 
+    @property
+    def damage(self) -> bool:
+        """Whether it is damage of a tooth, a case of the scene; else it is an error of the machine."""
+        return not self.key.startswith("machine.")
 
-def _crack(tables, severity, keys):
-    row = {"case": CASE, "gear": keys["gear"], "level": severity, "angle_deg": keys["angle_deg"], "start": keys["start"]}
-    tables.setdefault("crack", []).append(row)
-
-
-def _pits(tables, severity, keys):
-    names = ("gear", "count", "radius_mm", "first_mm", "last_mm", "depth_mm")
-    row = {"case": CASE, "axes_mm": [severity, severity]} | {name: keys[name] for name in names if keys[name] is not None}
-    tables.setdefault("pits", []).append(row)
-
-
-def _error(key):
-    def enter(tables, severity, keys):
-        tables["machine"][key] = severity
-
-    return enter
+    def enter(self, tables: dict[str, Any], severity: float, row: Mapping[str, Any]) -> None:
+        """Put a fault of a checked `row` into the tables of a scene."""
+        kind, name = self.key.split(".")
+        if not self.damage:
+            tables[kind][name] = severity
+            return
+        value = [severity] * 2 if scene_schema()[kind].keys[name].type in LISTS else severity
+        given = {key: entry for key, entry in row.items() if entry is not None and key not in ("kind", "severity")}
+        tables.setdefault(kind, []).append({"case": CASE, name: value} | given)
 
 
 FAULTS = {
-    "crack": Fault("-", _crack),
-    "pits": Fault("mm", _pits),
-    "runout": Fault("um", _error("runout_um"), damage=False),
-    "misplaced": Fault("um", _error("misplaced_um"), damage=False),
+    "crack": Fault("crack.level", "-"),
+    "pits": Fault("pits.axes_mm", "mm"),
+    "runout": Fault("machine.runout_um", "um"),
+    "misplaced": Fault("machine.misplaced_um", "um"),
 }

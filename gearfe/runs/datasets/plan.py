@@ -50,7 +50,7 @@ from typing import Any
 from ...scene.dotted_keys import check_key, set_values, tables_near
 from ...scene.load import Scene, scene_of
 from ...scene.parts import DAMAGE
-from ...scene.schema import checked
+from ...scene.reading import checked
 from ...scene.toml_file import given_tables
 from ..sweeps.axes import RUNS
 from ..sweeps.samples import check_shape
@@ -155,7 +155,7 @@ def _check_split(split):
 
 def _check_scatter(plan):
     ours = {"machine.speed_rpm", "machine.torque_Nm"}
-    ours |= {f"machine.{fault['kind']}_um" for fault in plan.fault if not FAULTS[fault["kind"]].damage}
+    ours |= {FAULTS[fault["kind"]].key for fault in plan.fault if not FAULTS[fault["kind"]].damage}
     for key, spec in plan.scatter.items():
         check_key(key, plan.tables, {})
         if key in ours or (key.startswith("pair.") and key.endswith(".force_N")):

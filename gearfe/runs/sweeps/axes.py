@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from ...scene.schema import LARGEST, checked, schema_of, shown
+from ...scene.reading import LARGEST, checked
+from ...scene.schema import schema_of, shown
 from . import samples
 
 RUNS = "gearfe.runs"

@@ -46,7 +46,7 @@ import numpy as np
 from ...scene.dotted_keys import check_key, tables_near, trimmed
 from ...scene.load import scene_of
 from ...scene.parts import DAMAGE
-from ...scene.schema import check_listed, check_named, checked
+from ...scene.reading import check_listed, check_named, checked
 from ...scene.toml_file import given_tables
 from . import samples
 from .axes import MOST, RUNS, axes, checked_sample

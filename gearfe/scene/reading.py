@@ -1,0 +1,159 @@
+"""The check of the tables of a file against a schema, with messages that name file, table, key and value as typed."""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+from .schema import LISTS, NAMES, REQUIRED, Key, KeyTable, scene_schema, schema_of, shown
+
+LARGEST, MOST = 1e30, 2**63  # no length, force or stiffness is larger, in any unit; whole numbers that arrays can hold
+PLAIN = {"boolean": bool, "values": dict}  # types of keys that are neither numbers nor texts
+
+
+@dataclass(slots=True)
+class Reading:
+    """The reading of one file by the `tables` of a schema; `references` are (place, key, name) of keys that name a table."""
+
+    file: str
+    tables: Mapping[str, KeyTable]
+    references: list[tuple[str, Key, str]] = field(default_factory=list)
+
+    def row(self, name: str, where: str, given: Any) -> dict[str, Any]:
+        """Values of the table ``[where]``, that is `given`, with defaults filled in; nested tables too.
+
+        Parameters
+        ----------
+        name : str
+            Of the table in the schema.
+        where : str
+            Its place in the file, for messages; ``"top level"`` is not part of the places below it.
+        given : dict
+
+        Returns
+        -------
+        dict
+            Values by key as typed; None where an optional key is left out.
+
+        Raises
+        ------
+        ValueError
+            If a key is unknown, missing, of another type or out of range, or keys contradict each other.
+        """
+        table = self.tables[name]
+        if not isinstance(given, Mapping):
+            raise ValueError(f"{self.file} [{where}]: expected a table of keys and values, got {shown(given)}")
+        for key in given:
+            if key not in table.keys:
+                raise ValueError(f"{self.file} [{where}]: {unknown(key, table.keys)}")
+        row = {key.name: self._value(key, where, given) for key in table.keys.values()}
+        for broken in table._rules(row):
+            raise ValueError(f"{self.file} [{where}]: {broken}")
+        return row
+
+    def _value(self, key, where, given):
+        if key.of:
+            return self._nested(key, "" if where == "top level" else where, given.get(key.name, key.default))
+        if key.name not in given:
+            if key.default is REQUIRED:
+                raise ValueError(f"{self.file} [{where}]: missing key {key.name!r}; expected {key.expected}")
+            return key.default
+        value = given[key.name]
+        if wrong := _wrong(key, value):
+            raise ValueError(f"{self.file} [{where}] {key.name} = {shown(value)}{wrong}")
+        if key.type in NAMES:
+            self.references.append((where, key, value))
+        return value
+
+    def _nested(self, key, where, value):
+        if value is None:
+            return None
+        place, heading = f"{where}.{key.name}" if where else key.name, key.heading(where)
+        if value is REQUIRED or (key.default is REQUIRED and value in ({}, [])):
+            raise ValueError(f"{self.file}: no table {heading}; give one at least: {key.text}")
+        if key.type == "table":
+            return self.row(key.of, place, value)
+        if key.type == "listed":
+            check_listed(self.file, place, value)
+            return [self.row(key.of, f"{place} {i + 1}", one) for i, one in enumerate(value)]
+        check_named(self.file, place, value)
+        if key.names and value and set(value) != set(key.names):
+            there = ", ".join(value)
+            raise ValueError(f"{self.file} [{place}]: {there}, but give a table for each of {', '.join(key.names)}, or none")
+        return {name: self.row(key.of, f"{place}.{name}", one) for name, one in value.items()}
+
+    def check_references(self, rows: Mapping[str, Any]) -> None:
+        """Raise ValueError if a key names a table of a scene that is not among its `rows`."""
+        for where, key, name in self.references:
+            check_known(self.file, where, key.name, name, rows[key.type], key.type)
+
+
+def checked(package: str, name: str, file: str, where: str, given: Any) -> dict[str, Any]:
+    """Row of one table of the schema of a package, as `Reading.row` gives it."""
+    return Reading(file, schema_of(package)).row(name, where, given)
+
+
+def fits(value: Any, kind: str, count: int | None = None) -> bool:
+    """Whether a value is of a type of keys, a list of so many."""
+    if kind in LISTS:
+        return isinstance(value, list) and count in (None, len(value)) and all(fits(one, LISTS[kind]) for one in value)
+    if kind not in ("number", "integer"):
+        return isinstance(value, PLAIN.get(kind, str))
+    if isinstance(value, int):
+        return not isinstance(value, bool) and abs(value) < MOST
+    return kind == "number" and isinstance(value, float) and abs(value) < LARGEST
+
+
+def _wrong(key, value):
+    """What the schema says against a value; empty if it is permitted."""
+    if not fits(value, key.type, key.count):
+        return f": expected {key.expected}{_limit(value)}"
+    if key.distinct and not 0 < len(set(value)) == len(value):
+        return ": give different numbers, one or more"
+    return "" if key.permits(value) else f", but {'each number' if key.type in LISTS else 'it'} must {key.permitted}"
+
+
+def _limit(value):
+    """Part of the message on a value: the largest number allowed, if it is a number that is too large."""
+    return f", below {LARGEST:g}" if isinstance(value, (int, float)) and abs(value) >= MOST else ""
+
+
+def unknown(name: Any, names: Iterable[str]) -> str:
+    """Message on an unknown key, with the nearest of the known `names`."""
+    from difflib import get_close_matches
+
+    near = get_close_matches(str(name), names := list(names), 1)
+    return f"unknown key {shown(name)}{f' (nearest: {near[0]!r})' if near else ''}; expected {', '.join(names)}"
+
+
+def check_known(file: str, where: str, key: str, name: Any, names: Iterable[str], kind: str) -> None:
+    """Raise ValueError for a `name` that is not among `names`."""
+    if name not in names:
+        raise ValueError(f"{file} [{where}] {key} = {shown(name)}: no such {kind}; there is {', '.join(names)}")
+
+
+def check_named(file: str, kind: str, tables: Any) -> None:
+    """Raise ValueError for anything but a table of named tables, as ``[flank.NAME]`` writes them."""
+    if isinstance(tables, list) and all(isinstance(table, dict) for table in tables):
+        raise ValueError(f"{file}: [[{kind}]] is a list of tables, but they have names: write [{kind}.NAME]")
+    if not isinstance(tables, Mapping):
+        raise ValueError(f"{file}: {kind} = {shown(tables)}, but give tables with names: [{kind}.NAME]")
+
+
+def check_listed(file: str, kind: str, tables: Any) -> None:
+    """Raise ValueError for anything but a list of tables, as ``[[crack]]`` writes them."""
+    if isinstance(tables, dict):
+        raise ValueError(f"{file}: [{kind}] is one table, but there may be several: write [[{kind}]]")
+    if not isinstance(tables, list):
+        raise ValueError(f"{file}: {kind} = {shown(tables)}, but give a list of tables: [[{kind}]]")
+
+
+@contextmanager
+def located(file: str, where: str, row: Mapping[str, Any] | None = None) -> Iterator[None]:
+    """Context in which ValueErrors begin with file and table of a scene, and have the keys of a `row` as typed."""
+    try:
+        yield
+    except ValueError as error:
+        text = scene_schema()[re.split("[. ]", where)[0]].as_typed(row, str(error)) if row else str(error)
+        raise ValueError(f"{file} [{where}]: {text}") from error
