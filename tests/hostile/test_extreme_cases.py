@@ -152,7 +152,7 @@ def test_solids_without_an_answer_say_why():
 
 def sun_and_planet():
     chosen = gf.load_scene("planetary_pitting").pairs["sun_planet"]
-    return chosen.pair, gf.mesh_stiffness(**chosen.case(), phases=64, method="ritz")
+    return chosen.pair, gf.mesh_stiffness(chosen.case(), phases=64, method="ritz")
 
 
 def machine(*, stiffness=None, zeta=0.02, torque=TORQUE, **mesh):
