@@ -118,7 +118,7 @@ def test_two_processes_share_one_cache(tmp_path, monkeypatch):
     said = [one.communicate()[0] for one in both]
     assert said[0] == said[1] != ""
     files = sorted(tmp_path.iterdir())
-    assert [file.suffix for file in files] == [".npz", ".npz"]
+    assert [file.suffix for file in files] == [".gear", ".gear"]
     for file in files:  # clocks that jump: times of files say nothing
         os.utime(file, (0, 4_000_000_000))
     monkeypatch.setenv("GEARFE_CACHE", str(tmp_path))
@@ -139,12 +139,12 @@ def test_a_file_limit_costs_only_the_reuse(tmp_path, monkeypatch):
     resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
     try:
         with pytest.raises(ValueError, match="cannot write"):
-            write_flexibility(tmp_path / "x.npz", "key", {"a": np.zeros(10_000)})
+            write_flexibility(tmp_path / "x.gear", "key", {"a": np.zeros(10_000)})
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
         signal.signal(signal.SIGXFSZ, handler)
     assert list(tmp_path.iterdir()) == []
-    assert read_flexibility(tmp_path / "x.npz", "key", dict) is None
+    assert read_flexibility(tmp_path / "x.gear", "key", None) is None
     assert cache.folder() == tmp_path
 
 

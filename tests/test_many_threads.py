@@ -169,7 +169,7 @@ def test_arrays_that_are_kept_cannot_be_written_to():
 
 def test_results_that_are_kept_are_never_changed():
     """What is handed to all threads has the same bytes after more curves of the same gears."""
-    from gearfe.flexibility.arrays import plane_arrays
+    from gearfe.flexibility.arrays import described
 
     runs = [(m, load, damage) for m in ("ritz", "fe") for load in (800.0, 900.0) for damage in (None, CRACK)]
 
@@ -178,7 +178,9 @@ def test_results_that_are_kept_are_never_changed():
 
     def kept():
         found = {key: value for key, (value, _) in PROCESS._kept.items() if key[0] in ("ritz", "section")}
-        return {key: {name: np.array(part).tobytes() for name, part in plane_arrays(one).items()} for key, one in found.items()}
+        arrays = {key: [] for key in found}
+        about = {key: described(one, arrays[key]) for key, one in found.items()}
+        return {key: (about[key], [part.tobytes() for part in arrays[key]]) for key in found}
 
     for run in runs[:1] + runs[4:5]:
         k(*run)

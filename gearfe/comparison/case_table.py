@@ -2,7 +2,7 @@
 
 import time
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -160,11 +160,11 @@ def is_wide(chosen):
     return any(chosen.case(case).why_wide for case in (None, *chosen.damage))
 
 
-def case_curve(case, method, phase, **options):
-    """`CaseCurve` of a `Case` by a method, as far as that knows it; `options` as of `Solve`."""
-    known, variants, _ = fitted(method, case)
+def case_curve(case, how):
+    """`CaseCurve` of a `Case` as a `Solve` states, as far as its method models it."""
+    known, variants, _ = fitted(how.method, case)
     started = time.perf_counter()
-    curve = solve(known, Solve(**{"method": method, "phases": phase, "variants": variants} | options))
+    curve = solve(known, replace(how, variants=variants))
     seconds = time.perf_counter() - started
     columns = np.flatnonzero(curve.order == (known.first_tooth or 0))
     tooth = curve.force[:, columns].sum(axis=1) / curve.lte
@@ -207,7 +207,7 @@ def case_table(scene, cases=None, *, phases=64, compute=False, progress=None):
             progress(f"{name} {case or 'healthy'}: {method}")
         try:
             given = scene.case(name, case)
-            curves[name, case, method] = case_curve(given, method, cycles[name] - (given.first_tooth or 0))
+            curves[name, case, method] = case_curve(given, Solve(method, cycles[name] - (given.first_tooth or 0)))
         except ValueError as error:
             if METHODS[method].converged:
                 raise

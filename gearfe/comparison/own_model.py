@@ -12,11 +12,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.case import Case
 from ..core.material import Material
 from ..geometry.pair.contacts import contacts
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.own_flexibility import OwnFlexibility
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.solve import Solve, solve
 from .model_file import ModelFile, read_model
 
 SHARED_META = ("force_N", "width_mm", "gear_1", "gear_2", "a_mm", "eps_alpha", "materials", "versions")
@@ -114,12 +115,12 @@ def own_curve(name, model, pair, reference):
     """`StiffnessCurve` of an own model, as `own_models` gives it, at the phases and the load of a reference curve.
 
     ``k_tangent = k`` and ``lte = F / k``; pressures are nan, and so are the forces of the pairs if the model gives only their
-    total. An `OwnFlexibility` gives all of it, by `mesh_stiffness`. ValueError if the model fails, or k has the wrong shape or is
+    total. An `OwnFlexibility` gives all of it, by `solve`. ValueError if the model fails, or k has the wrong shape or is
     not finite and positive; if a file does not cover what is asked.
     """
     if isinstance(model, OwnFlexibility):
         materials = tuple(Material(**constants) for constants in reference.meta["materials"])
-        curve = mesh_stiffness(pair, reference.meta["force_N"], materials, method=model, phases=reference.phase)
+        curve = solve(Case(pair, reference.meta["force_N"], materials), Solve(model, reference.phase))
         _hint(name, model, curve.k, reference)
         return replace(curve, meta=curve.meta | {"method": name})
     touch = contacts(pair, reference.phase, extended=False)

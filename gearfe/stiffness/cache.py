@@ -1,6 +1,6 @@
 """Gears solved before by finite elements or in three dimensions: kept in this process, and on disk between processes.
 
-A stored flexibility is used only if its whole key, spelled out and stored beside it, equals the one asked for: the gear, its
+A stored flexibility is used only if the digest of its key and content is that of the key asked for: the gear, its
 material and damage, the options, the source code of both packages and the versions of the libraries that made it. A file that is
 anything else, or damaged, is as good as none: the gear is solved and the file replaced. The folder is ``$GEARFE_CACHE``, by
 default ``~/.cache/gearfe``; an empty ``GEARFE_CACHE`` switches the disk off.
@@ -13,7 +13,6 @@ from functools import lru_cache, partial
 from importlib.metadata import version
 from pathlib import Path
 
-from ..flexibility.arrays import plane_arrays, plane_from, solid_arrays, solid_from
 from ..flexibility.energy.ritz.solid import flexibility3d
 from ..flexibility.finite_elements import fe
 from ..flexibility.finite_elements.fe_gear3d import WholeGear, solid_flexibility
@@ -22,7 +21,6 @@ from ..geometry.damage.crack import meshed_path
 from .flexibility_file import read_flexibility, write_flexibility
 
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
-FORMATS = {"section": (plane_arrays, plane_from), **dict.fromkeys(("solid", "energy"), (solid_arrays, solid_from))}
 
 
 def folder():
@@ -107,7 +105,7 @@ def _file(key):
     if place is None:
         return None, ""
     text = repr((*key, made_by()))
-    return place / f"{hashlib.sha256(text.encode()).hexdigest()}.npz", text
+    return place / f"{hashlib.sha256(text.encode()).hexdigest()}.gear", text
 
 
 def _kept(kind, gear, case, solve, kept):
@@ -119,14 +117,13 @@ def _stored(kind, gear, case, solve):
     file, key = _file((kind, gear, *case))
     if file is None:
         return solve()
-    arrays_of, made_from = FORMATS[kind]
-    stored = read_flexibility(file, key, partial(made_from, gear))
+    stored = read_flexibility(file, key, gear)
     if stored is not None:
         return stored
     solved = solve()
     with contextlib.suppress(OSError, ValueError):  # a full or read-only disk costs only the reuse
         file.parent.mkdir(parents=True, exist_ok=True)
-        write_flexibility(file, key, arrays_of(solved))
+        write_flexibility(file, key, solved)
     return solved
 
 

@@ -1,71 +1,45 @@
-"""One flexibility in one file: arrays of numbers beside the whole key they were made for, and nothing that could be executed.
+"""One flexibility in one file: a digest of its whole key and all that follows, and arrays as `numpy.savez` writes them.
 
-The file is what `numpy.savez` writes: an archive, not compressed, of arrays of floats, whole numbers and bytes (the key).
+A file is read only if the digest is that of the key asked for and of its content. Nothing in it is executed.
 """
 
-import os
-import struct
-import zipfile
-from collections.abc import Callable
+import hashlib
+import io
+import json
 from pathlib import Path
-from tokenize import TokenError
 from typing import Any
 
 import numpy as np
-from numpy.lib import format as npy
-from numpy.typing import NDArray
 
 from ..core.files import written
+from ..flexibility.arrays import described, restored
+from ..geometry.tooth.gear import Gear
 
-KEY = "key"
-LARGEST = 2**30  # [bytes]; gears of 3-D finite elements take some megabytes
-DTYPES = ("float64", "int64", "uint8")
-# what a file that is no such archive can raise: not there, no archive, of a kind not known, other names, other arrays
-UNREADABLE = (
-    *(OSError, EOFError, zipfile.BadZipFile, struct.error, RuntimeError, MemoryError),
-    *(KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError),
-)
+SIZE = hashlib.sha256().digest_size
 
 
-def write_flexibility(path: Path, key: str, arrays: dict[str, NDArray]) -> None:
-    """Write arrays and the key they belong to; the file is in place when it is complete, or not at all (ValueError)."""
+def _digest(key, content):
+    return hashlib.sha256(key.encode() + content).digest()
+
+
+def write_flexibility(path: Path, key: str, found: Any) -> None:
+    """Write a flexibility with the key it belongs to; the file is in place when it is complete, or not at all (ValueError)."""
+    arrays: list[Any] = []
+    about = json.dumps(described(found, arrays)).encode()
+    out = io.BytesIO()
+    np.savez(out, np.frombuffer(about, dtype=np.uint8), *arrays)
     with written(path) as name:
-        np.savez(name, **dict[str, Any](arrays | {KEY: np.frombuffer(key.encode(), dtype=np.uint8)}))
+        Path(name).write_bytes(_digest(key, out.getvalue()) + out.getvalue())
 
 
-def read_flexibility(path: Path, key: str, made_from: Callable[[dict[str, NDArray]], object]) -> object | None:
-    """What `made_from` makes of the arrays of a file, None if it is not there, damaged, or made for another key.
-
-    Whatever the file holds, nothing in it is executed, and no more memory is asked for than the file is long.
-    """
+def read_flexibility(path: Path, key: str, gear: Gear) -> Any:
+    """Flexibility of `gear` in a file; None if the file is not there, damaged, or made for another key."""
     try:
-        if not path.is_file() or path.stat().st_size > LARGEST:
-            return None
-        with zipfile.ZipFile(path) as archive:
-            members = _members(archive, os.path.getsize(path))
-            if _array(archive, members.pop(KEY)).tobytes() != key.encode():
-                return None
-            return made_from({name: _array(archive, member) for name, member in members.items()})
-    except UNREADABLE:
+        content = path.read_bytes() if path.is_file() else b""
+    except OSError:
         return None
-
-
-def _members(archive, size):
-    """Members of an archive by array; ValueError if one is compressed, encrypted, there twice, or longer than the file."""
-    members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()}
-    plain = all(m.compress_type == zipfile.ZIP_STORED and not m.flag_bits & 1 for m in members.values())
-    if not plain or len(members) < len(archive.infolist()) or sum(m.file_size for m in members.values()) > size:
-        raise ValueError("not an archive of plain arrays")
-    return members
-
-
-def _array(archive, member):
-    """One array of numbers; reading all of it lets the archive compare its checksum."""
-    with archive.open(member) as file:
-        if npy.read_magic(file) != (1, 0):
-            raise ValueError(f"{member.filename} has another version")
-        shape, by_columns, dtype = npy.read_array_header_1_0(file)
-        if dtype not in DTYPES:
-            raise ValueError(f"{member.filename} holds {dtype}")
-        values = np.frombuffer(file.read(), dtype=dtype).copy()
-    return values.reshape(shape[::-1]).T if by_columns else values.reshape(shape)
+    if content[:SIZE] != _digest(key, content[SIZE:]):
+        return None
+    with np.load(io.BytesIO(content[SIZE:]), allow_pickle=False) as archive:
+        about, *arrays = (archive[name] for name in archive.files)
+    return restored(json.loads(about.tobytes()), iter(arrays), gear)

@@ -51,7 +51,7 @@ def test_cycle_has_the_tooth_in_its_middle(cracked):
     phase = damage_cycle(chosen)
     assert_allclose(phase.mean(), chosen.pair.eps_alpha / 2)
     assert_allclose(np.ptp(phase) + phase[1] - phase[0], 1.0)
-    assert (case_curve(chosen.case("crack30"), "textbook", phase).tooth > 0).all()
+    assert (case_curve(chosen.case("crack30"), gf.Solve("textbook", phase)).tooth > 0).all()
 
 
 def test_errors_and_drops_of_known_curves():

@@ -34,7 +34,8 @@ def reference():
             pair = scene.pairs[name]
             phase = damage_cycle(pair)
             # of the ring pair a coarser mesh cannot carry the patches, and a finer one does not fit into 24 GB
-            one = case_curve(pair.case(case), "fe3d", phase, error=name != "planet_ring", refine=REFINE[name], tell=_tell)
+            how = gf.Solve("fe3d", phase, error=name != "planet_ring", refine=REFINE[name], tell=_tell)
+            one = case_curve(pair.case(case), how)
             kept[name, case] = phase, one.k, one.tooth, one.estimate, one.seconds
             write_curves(scene, kept, Path(stored_file(scene)))
             print(f"  {one.seconds:.0f} s, mean {one.mean:.4e} N/m, estimate {100 * one.estimate:.2f} %", flush=True)

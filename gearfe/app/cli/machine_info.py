@@ -75,7 +75,7 @@ def cache(place):
     """Where solved gears are kept, and how much they take."""
     if place is None:
         return "cache of solved gears: switched off (GEARFE_CACHE is empty)"
-    sizes = [file.stat().st_size for file in place.glob("*.npz")] if place.is_dir() else []
+    sizes = [file.stat().st_size for file in place.glob("*.gear")] if place.is_dir() else []
     return f"cache of solved gears: {place}, {len(sizes)} files, {sum(sizes) / 1e6:.1f} MB (GEARFE_CACHE sets the place)"
 
 

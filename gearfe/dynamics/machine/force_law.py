@@ -280,14 +280,14 @@ def force_law(
     >>> [round(float(law(depth, 0.25))) for depth in (-1e-6, 0.0, 5e-6)]
     [0, 0, 1748]
     """
-    if span not in ("cycle", "tooth"):
-        raise ValueError(f"span = {span!r}, but a law of force is of a 'cycle', or of the engagement of a damaged 'tooth'")
     own = {**options, "phases": phases, "span": span}
     return law_of(*split_arguments("force_law", pair, list(forces), material, None, own), force)
 
 
 def law_of(case: Case, how: Solve, force: float | None = None) -> ForceLaw:
     """`ForceLaw` of a case under its loads, with further phases where the number of pairs in contact changes."""
+    if how.span not in ("cycle", "tooth"):
+        raise ValueError(f"span = {how.span!r}, but a law of force is of a 'cycle', or of the engagement of a damaged 'tooth'")
     curves = solve(case, how)
     law = ForceLaw.of([curve.without_supports() for curve in curves], force)
     counts = np.concatenate([law.pairs, law.pairs[:1]]) if how.span == "cycle" else law.pairs

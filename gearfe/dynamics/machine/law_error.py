@@ -1,6 +1,6 @@
 """How far a law of force may be off between its loads and phases, as leaving some out tells, and one of as many as it needs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Unpack
 
 import numpy as np
@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from ...core.case import Case
 from ...core.material import Material
 from ...geometry.pair.gear_pair import GearPair
-from ...stiffness.solve import PairOptions
-from .force_law import ForceLaw, force_law
+from ...stiffness.solve import PairOptions, split_arguments
+from .force_law import ForceLaw, law_of
 
 FIRST = 5, 32  # loads and phases that `law_within` begins with
 ROUNDS = 6  # times it takes more of them, at most
@@ -117,8 +117,9 @@ def law_within(
             f"loads from {smallest} to {largest} N within {error}: give 0 < smallest < largest, error > 0, no phases"
         )
     loads, phases = FIRST
+    case, how = split_arguments("law_within", pair, [smallest, largest], material, None, options)
     for _ in range(ROUNDS + 1):
-        law = force_law(pair, np.geomspace(smallest, largest, loads), material, force=force, phases=phases, **options)
+        law = law_of(replace(case, force=np.geomspace(smallest, largest, loads)), replace(how, phases=phases), force)
         found = law_error(law)
         if max(found.loads_rms, found.phases_rms) <= error:
             return law
