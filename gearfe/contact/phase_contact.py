@@ -18,7 +18,9 @@ from .corner import CornerLaw, in_fillet, plain_radius
 from .hubs import given_way
 from .joined_lines import System
 from .kink_law import KinkLaw
+from .pair_contact import OVERLAP
 from .pieces import beyond, gaps, pieces_of
+from .sliding import MOST, slid
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: the load on a shorter one would not be a line any more
 ALIKE = 1e-9  # largest difference of the cells of two halves that are solved once, in base pitches
@@ -33,7 +35,8 @@ class Carried(NamedTuple):
     """One phase under one force: `Cells` with loads, and in the transverse section approach [mm] and tangent stiffness [N/mm].
 
     `closed` says whether faces of a crack touched. What the supports of the hubs give way is in the approach: `given` the mean
-    over the loads, so that it adds up to the approach with the rest, `least` at the cell where it is least [mm].
+    over the loads, so that it adds up to the approach with the rest, `least` at the cell where it is least [mm]. `unsure` is the
+    part of the approach by which contacts at corners may slide.
     """
 
     cells: Cells
@@ -42,13 +45,15 @@ class Carried(NamedTuple):
     closed: bool
     given: float
     least: float
+    unsure: float
 
 
 class Batch(NamedTuple):
     """Cells of some phases made ready for the force.
 
     `cells` of each phase; `solved` the part of them that is solved for (of halves that are alike one), `alike` whether that is a
-    half; `lines` their contact problems; `all` their cells joined; `yields` what hubs give way, `hubs.given_way`, or None.
+    half; `lines` their contact problems; `all` their cells joined; `yields` what hubs give way, `hubs.given_way`, or None;
+    `bodies` of `bodies.bodies_of`.
     """
 
     cells: list
@@ -57,6 +62,7 @@ class Batch(NamedTuple):
     lines: SharedLines
     all: Cells
     yields: list
+    bodies: list
 
 
 class PhaseContact:
@@ -248,14 +254,14 @@ class PhaseContact:
         lines = SharedLines(systems, sum(body.kernel for body, _ in halves[0]), self.modulus)
         names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")
         whole = Cells(*(np.concatenate([getattr(group, name) for group in solved]) for name in names))
-        return Batch(cells, solved, alike, lines, whole, yields)
+        return Batch(cells, solved, alike, lines, whole, yields, halves)
 
     def _shared(self, batch):
         """`Carried` of the phases of a batch."""
         load = self.force / math.cos(self.beta_b) / np.where(batch.alike, 2, 1)
         shared = batch.lines.solve(load, self._local(batch.all))
         cases = zip(batch.cells, batch.solved, shared, batch.alike.tolist(), batch.yields, strict=True)
-        return [self._told(*case) for case in cases]
+        return [self._told(*case, batch.bodies) for case in cases]
 
     def _local(self, cells):
         """Local law of the cells, as `SharedLines.solve` takes it; None if it is Hertz's everywhere."""
@@ -271,10 +277,10 @@ class PhaseContact:
 
         return local if corner or bent else None
 
-    def _told(self, cells, solved, shared, alike, yields):
+    def _told(self, cells, solved, shared, alike, yields, bodies):
         """`Carried` of one phase."""
         n, cos = solved.z.size, math.cos(self.beta_b)
-        load, closed = shared.force[:n], bool(shared.force[n:].any())
+        load, closed = shared.force[:n], bool(shared.force[n:].sum() > OVERLAP * shared.force[:n].sum())
         radius = self._radius(solved)
         pressure = peak_pressure(load * cos / solved.width, radius, self.modulus)
         pressure[(solved.corner > 0) & (load > 0)] = np.nan
@@ -282,7 +288,23 @@ class PhaseContact:
         loaded = replace(cells, load=np.tile(load, times), pressure=np.tile(pressure, times))
         way = np.zeros(n) if yields is None else yields @ load / cos
         given = float(load @ way / load.sum()), float(way.min())
-        return Carried(loaded, shared.approach / cos, times * shared.tangent * cos**2, closed, *given)
+        slide, unsure = self._slid(solved, bodies, load, shared.approach, closed)
+        tangent = 1 / (1 / shared.tangent - 2 * slide / load.sum())
+        return Carried(loaded, (shared.approach - slide) / cos, times * tangent * cos**2, closed, *given, unsure)
+
+    def _slid(self, cells, bodies, load, approach, closed):
+        """Part of the approach at right angles to the flanks [mm] saved by sliding, and what is unsure of the rest, relative.
+
+        What sliding saves at corners is in their law, but for cracks. With `closed` faces it is left out.
+        """
+        slide, share = slid(cells, bodies, load, self._radius(cells)), load / load.sum()
+        alike = (cells.half[:, None] == cells.half) & (cells.order[:, None] == cells.order)
+        open_, healthy = share * np.minimum(slide, MOST * approach)
+        saved = np.minimum(open_, share * MOST * approach * (alike @ share))
+        ends = np.full(load.size, -1) if self.law is None else self.law.ends(self.pair, cells)
+        smooth = (cells.corner == 0) & (ends < 0)
+        unsure = np.where(smooth, healthy if closed else open_ - saved, np.abs(open_ - healthy))
+        return 0.0 if closed else float(saved[smooth].sum()), float(unsure.sum() / approach)
 
     def _radius(self, cells):
         """Relative radii of curvature of cells at right angles to the flanks [mm]."""

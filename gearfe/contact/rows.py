@@ -250,5 +250,6 @@ def _placed(contact, one, host):
     steps = middle + one.width / WITHIN * np.arange(-2 * WITHIN, 2 * WITHIN + 1)
     tops = _tops(np.unique([*places, middle]), ends, offsets)
     tops = np.append(tops[np.abs(tops - middle) > steps[-1] - middle], steps)
-    tops = np.sort(tops[(tops >= places[0] if ends[0] else True) & (tops <= places[-1] if ends[1] else True)])
+    least, most = places[0] if ends[0] else -np.inf, places[-1] if ends[1] else np.inf
+    tops = np.sort(tops[(tops >= least) & (tops <= most)])
     return _knots(_apart(tops, offsets[1], ends[1]), ends)

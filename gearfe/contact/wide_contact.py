@@ -36,7 +36,7 @@ class Contact3D:
     from passing through each other; `fillet` those at which a tip presses into its mate's fillet; `error` (phases,) differences
     of k from those of longer cells and of coarser bodies [N/m], or None; `k_tangent` (phases,) ``d force / d approach`` of what
     pushes at this force [N/m]; `supports` (phases,) the part of the approach that the supports
-    of the hubs give way [mm], the mean over the loads.
+    of the hubs give way [mm], the mean over the loads. `error` contains what is unsure of `Carried`.
     """
 
     phase: NDArray[np.float64]
@@ -137,7 +137,9 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
             if bodies.coarser:
                 others.append(solve(contacts, bodies_by(bodies.coarser)))
         away = [sum(np.abs(less.k - one.k) for less in rest) for one, *rest in zip(solved, *others, strict=True)]
-        solved = [replace(one, error=doubt) for one, doubt in zip(solved, away, strict=True)]
+        solved = [replace(one, error=one.error + doubt) for one, doubt in zip(solved, away, strict=True)]
+    else:
+        solved = [replace(one, error=None) for one in solved]
     return solved if case.several else solved[0]
 
 
@@ -158,5 +160,7 @@ def _solved(contact, phase, bodies):
     unloaded = contact.unloaded(cells)
     k = 1e3 * contact.force / (approach - unloaded)
     supports = None if contact.hubs is None else np.array([loaded.given for loaded in carried])
+    unsure = k * np.array([loaded.unsure for loaded in carried])
     details = {"closed": closed, "fillet": fillet, "unloaded": unloaded, "k_tangent": tangent, "supports": supports}
+    details["error"] = unsure
     return Contact3D(phase, k, approach, orders, load, cells, dofs, **details)

@@ -12,7 +12,7 @@ from ..core.steps import part, steps
 from ..flexibility.finite_elements.section_error import FINER, finer_section
 from .cache import solved_energy, solved_solid, unsolved
 from .curve import StiffnessCurve
-from .estimate import MEAN, fixed_phases
+from .estimate import MEAN, MODEL, fixed_phases
 from .provenance import provenance
 
 # resolutions of the layers for the error estimate of finite elements, against the curve's; the first that carries the patches
@@ -36,7 +36,8 @@ def solid_curves(row, case, how, phase):
     coarser in proportion: gmsh fills an outline, and the error stands still or jumps.) From a difference d between edges h and r
     h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the coarser, with p of `ORDER`; times `SAFETY`.
     The estimate at a phase is that of k there, or, because that can vanish by chance, the mean of those at the fixed phases of
-    one base pitch about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not enter.
+    one base pitch about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not enter. What the laws
+    of contact leave out is added: `estimate.MODEL`, and sliding along cracked teeth at corners (`PhaseContact`).
 
     `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
     """
@@ -112,7 +113,8 @@ def _doubt(case, phase, found, options, brute):
     at_fixed = away[np.abs(fixed[:, None] - phases).argmin(axis=1)]
     apart = np.abs(phase[:, None] - fixed)
     within = (np.abs((apart + 0.5) % 1 - 0.5) if healthy else apart) <= MEAN + 1e-9
-    return np.maximum(away[: phase.size], (within * at_fixed).sum(axis=1) / within.sum(axis=1)), ratio
+    doubt = np.maximum(away[: phase.size], (within * at_fixed).sum(axis=1) / within.sum(axis=1))
+    return doubt + MODEL * found.k, ratio
 
 
 def _bodies(how):

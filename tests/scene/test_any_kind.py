@@ -60,7 +60,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
     "crack": [
         {
             "case": "cracked", "gear": "sun", "level": 0.3, "angle_deg": 45.0, "start": "30deg", "turning": False, "tooth": 0,
-            "pair": "stage", "width_mm": [0.0, 10.0], "ends": [1.0, 1.0], "rounded": False,
+            "body": "sun", "pair": "stage", "width_mm": [0.0, 10.0], "ends": [1.0, 1.0], "rounded": False,
         }
     ],
     "pits": [

@@ -206,7 +206,7 @@ def test_a_wrong_hit_is_impossible(counted, tmp_path):
     stiffness(PAIR, 127.0, gf.Material(E=207e3, nu=0.3000001), **run)
     assert counted == ["flexibility"] * 5
     # a file whose name matches but whose contents belong to another gear, or are damaged, is not used
-    files = sorted(tmp_path.glob("*.npz"))
+    files = sorted(tmp_path.glob("*.gear"))
     first, second = (f.read_bytes() for f in files[:2])
     files[0].write_bytes(second)
     files[1].write_bytes(first[:100])
