@@ -91,7 +91,7 @@ def doubts_together(gear, hollows):
     arcs = arc_at(gear, np.linspace(gear.roll_f, gear.roll_a, PLACES))
     if len(hollows) < 2 or any(takes_all(gear, hollow) for hollow in hollows):
         return ""
-    if (lost_width(gear, hollows, arcs) < gear.b * (1 - 1e-9)).any():
+    if (union_length(*intervals(gear, hollows, arcs)) < gear.b * (1 - 1e-9)).any():
         return ""
     return (
         f"{len(hollows)} hollows together take the whole flank of tooth {hollows[0].tooth} of z = {gear.z}: nothing of it is "
