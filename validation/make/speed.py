@@ -11,7 +11,7 @@ import gearfe as gf
 
 from ..shared import machine, page, speed_page
 from ..shared.places import TABLES
-from . import cost_three, dynamics, limits, speed_three
+from . import cost_three, dynamics, speed_three
 
 TABLE = TABLES / "speed.json"
 REFINES = (0.5, 1.0, 2.0, 3.0)
@@ -40,7 +40,6 @@ def measure():
             "cost": cost_three.seconds(),
             "dynamics": {"rows": dynamics.integrators()},
             "steps": dynamics.speeds(),
-            "limits": limits.measured(),
         }
     page.replace(TABLE, json.dumps(found, indent=1) + "\n")
     speed_page.plot(found)
@@ -105,7 +104,7 @@ def text():
             "",
             *speed_page.steps(found["steps"]),
         ],
-        limits.text(found["limits"]),
+        ["Where the time goes, stage by stage: [speed_stages.md](speed_stages.md)."],
     )
 
 

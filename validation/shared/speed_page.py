@@ -52,18 +52,6 @@ def steps(found):
     return lines + [f"| {r['name']} | {r['step']:.2g} | {r['estimate']:.1e} | {r['seconds']:.3g} |" for r in found]
 
 
-def stages(name, rows, most):
-    """Lines: a problem's stages ``[label, seconds, operations]`` with shares of its time and of `most` billions a second."""
-    whole, work = sum(row[1] for row in rows), sum(row[2] for row in rows)
-    lines = [f"### {name}: {whole:.3g} s, limit {work / most / 1e9:.2g} s", ""]
-    lines += ["| stage | seconds | share | billion operations a second |", "|---|---|---|---|"]
-    for label, seconds, operations in sorted(rows, key=lambda row: -row[1]):
-        rate = operations / max(seconds, 1e-9) / 1e9
-        told = f"{rate:.0f}, {100 * rate / most:.0f} %" if operations else ""
-        lines.append(f"| {label} | {seconds:.2g} | {100 * seconds / whole:.0f} % | {told} |")
-    return lines
-
-
 def plot(found):
     """Draw seconds against errors of `PARTS`."""
     figure = Figure(figsize=(5.2 * len(PARTS), 3.8), layout="constrained")
