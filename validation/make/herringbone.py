@@ -16,7 +16,6 @@ from ..shared import (
     herringbone_contact_line,
     herringbone_page,
     herringbone_reading,
-    herringbone_section,
     herringbone_statements,
     page,
 )
@@ -98,8 +97,6 @@ def run(again=True):
     if again:
         herringbone_statements.rows(again)
         every_case()
-        section = herringbone_section.rows(gf.load_scene(SCENE), REFINE)
-        write_table(TABLES / f"{SCENE}_section.csv", ["pair", "resolution", "mean", "least", "most"], section)
         begin(herringbone_contact_line.path("ritz3d"))
         herringbone_contact_line.compute()
     page.write("herringbone", *text())

@@ -1,6 +1,5 @@
 """Sections and picture of the page of speed against error, of what one run measured."""
 
-import math
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -33,17 +32,6 @@ def table(rows, more=""):
 
 def _percent(value):
     return "" if value is None else "reference" if value == 0 else f"{100 * value:.2g} %"
-
-
-def exponents(found, over):
-    """Lines: CPU seconds over each of the varied numbers, and the exponent of the last step."""
-    lines = ["| varied | values | CPU seconds | exponent |", "|---|---|---|---|"]
-    for name, values in over.items():
-        seconds = found[name]
-        rise = math.log(seconds[-1] / seconds[-2]) / math.log(values[-1] / values[-2])
-        cells = ", ".join(map(str, values)), ", ".join(f"{one:.3g}" for one in seconds)
-        lines.append(f"| {name} | {' | '.join(cells)} | {rise:.1f} |")
-    return lines
 
 
 def steps(found):
