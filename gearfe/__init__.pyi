@@ -1,6 +1,6 @@
 # The public names as a type checker reads them; at run time gearfe/__init__.py loads each on first use.
 
-from .comparison.by_zone import compare as compare
+from .comparison.compare import compare as compare
 from .comparison.model_file import read_model as read_model
 from .comparison.own_model import PairModel as PairModel
 from .comparison.pattern import face_load as face_load
@@ -47,6 +47,7 @@ from .dynamics.machine.planetary import stage_phases as stage_phases
 from .dynamics.machine.run_up import with_speed as with_speed
 from .dynamics.machine.single_mesh import single_mesh as single_mesh
 from .dynamics.machine.speed import Speed as Speed
+from .dynamics.machine.tables import Fault as Fault
 from .dynamics.machine.tables import Load as Load
 from .dynamics.machine.tables import Machine as Machine
 from .dynamics.machine.tables import Spring as Spring
@@ -134,6 +135,8 @@ from .signal.tachometer import with_tachometer as with_tachometer
 from .signal.time_frequency import cepstrum as cepstrum
 from .signal.time_frequency import spectrogram as spectrogram
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
+from .stiffness.mesh_cycle import MeshCycle as MeshCycle
+from .stiffness.mesh_cycle import mesh_cycle as mesh_cycle
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.pattern import contact_pattern as contact_pattern
 from .stiffness.solve import Solve as Solve

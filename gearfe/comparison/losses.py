@@ -7,20 +7,17 @@ tooth is in contact all the time, and a healthy pair has the same mean over it a
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.case import Case
 from ..core.checks import COARSEST
-from ..core.markdown import aligned, table_row
-from ..core.units import in_newton_per_um
 from ..geometry.damage.kinds import Damage, called, told
 from ..geometry.pair.gear_pair import GearPair
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.estimate import coarser
-from ..stiffness.methods import METHODS, RING_FOUNDATIONS, Method
+from ..stiffness.methods import METHODS
 from ..stiffness.phases import phase_array
 from ..stiffness.solve import Solve, solve
 
@@ -47,8 +44,38 @@ def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
 
 
 def engaged_phases(case: Case, phases: int) -> NDArray:
-    """Phases ``(n,)`` of the damaged tooth's engagement and a quarter of a cycle at its ends, in steps of ``1 / phases``."""
-    return phase_array(phases, "tooth", case.pair, case.overlap()) - (case.first_tooth or 0)
+    """Phases ``(n,)`` of the damaged teeth's engagements and a quarter of a cycle at their ends, in steps of ``1 / phases``."""
+    one = phase_array(phases, "tooth", case.pair, case.overlap())
+    numbers = np.unique([np.round((one - pair) * phases) for pair in damaged_pairs(case) or (0,)])
+    return np.asarray(numbers / phases, dtype=np.float64)
+
+
+def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
+    """Damage by number of the tooth pair that it is in, and by side; tooth k of both gears is in pair k."""
+    out: dict[int, dict[str, list[Damage]]] = {}
+    for side, found in (case.damage or {}).items():
+        for hurt in found:
+            out.setdefault(hurt.tooth, {}).setdefault(side, []).append(hurt)
+    return out
+
+
+def told_teeth(case: Case) -> dict[int, str]:
+    """Damage in words by number of the tooth pair; teeth are named unless the only one is tooth 0 of the pinion.
+
+    Examples
+    --------
+    >>> import gearfe as gf
+    >>> rack = dict(m_n=2.0, alpha_n=0.349, b=20.0)
+    >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
+    >>> cracks = [gf.Crack(length=2.0, angle=1.05), gf.Crack(length=1.5, angle=1.05, tooth=5)]
+    >>> list(told_teeth(gf.Case(pair, 1000.0, gf.Material(), damage={"wheel": cracks})).values())
+    ['tooth 0 of the wheel: 2 mm crack at 60.2 degrees', 'tooth 5 of the wheel: 1.5 mm crack at 60.2 degrees']
+    """
+    found = damaged_pairs(case)
+    if [list(sides) for sides in found.values()] == [["pinion"]] and 0 in found:
+        return {0: told_damage(case.pair, found[0])}
+    named = {pair: " and ".join(f"tooth {pair} of the {side}" for side in sides) for pair, sides in found.items()}
+    return {pair: f"{name}: {told_damage(case.pair, found[pair])}" for pair, name in named.items()}
 
 
 def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
@@ -61,38 +88,11 @@ def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
     return replace(curve, **{name: value[rows] for name, value in arrays.items()})
 
 
-def told_cycle(phases: NDArray, kind: str = "") -> str:
-    """What zones and means are over, in words; `kind` as of `kind_of`, of a damaged pair."""
+def told_cycle(phases: NDArray | None, kind: str = "") -> str:
+    """What zones and means are over, in words; `kind` as of `kind_of`, of a damaged pair; phases None: of several pairs."""
     over = f"the mesh cycle that has the {kind} tooth in the middle of its engagement" if kind else "the mesh cycle"
-    return f"zones, mean and max are over {over}, phases {phases.min():.3g} to {phases.max():.3g}"
-
-
-def zone_table(curve: StiffnessCurve) -> str:
-    """A curve by zone [N/um], with its estimated errors if it has them, as aligned text."""
-    doubt = curve.zone_errors()
-    lines = [table_row(["zone", "k [N/um]", *(["error at most about"] if doubt else [])]), "|---" * (3 if doubt else 2) + "|"]
-    for zone, value in curve.zones().items():
-        lines.append(table_row([zone, in_newton_per_um(value, 5), *([f"{100 * doubt[zone]:.2f} %"] if doubt else [])]))
-    return aligned("\n".join(lines))
-
-
-def beside_health(curve: StiffnessCurve, case: Case, how: Solve) -> str:
-    """A damaged pair's curve beside that of the same pair without damage, by the same method, in words and a table by zone.
-
-    The curve is over the whole engagement of the damaged tooth (`engaged_phases`), solved as `how` says, whose phases are a
-    number per mesh cycle.
-    """
-    cycle = damage_phases(case, cast(int, how.phases))
-    healthy = solve(case.healthy, replace(how, phases=cycle, span="cycle", error=False))
-    hurt, kind = within(curve, cycle), kind_of(case.damage)
-    losses, doubt, before, after = loss(healthy, hurt), hurt.zone_errors(), healthy.zones(), hurt.zones()
-    head = ["zone", "healthy [N/um]", f"{kind} [N/um]", *(["error at most about"] if doubt else []), "loss"]
-    lines = [table_row(head), "|---" * len(head) + "|"]
-    for zone, lost in losses.items():
-        cells = [in_newton_per_um(by_zone[zone]) if zone in by_zone else "" for by_zone in (before, after)]
-        about = [f"{100 * doubt[zone]:.2f} %" if zone in doubt else ""] if doubt else []
-        lines.append(table_row([zone, *cells, *about, f"{100 * lost:.1f} %"]))
-    return f"{told_damage(case.pair, case.damage)}; {told_cycle(cycle, kind)}\n" + aligned("\n".join(lines))
+    span = "" if phases is None else f", phases {phases.min():.3g} to {phases.max():.3g}"
+    return f"zones, mean and max are over {over}{span}"
 
 
 def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:
@@ -158,20 +158,14 @@ def percent_with_doubt(value: float, doubt: float) -> str:
     """A part in percent with its doubt, which is rounded up: ``15.8 ± 0.3 %``; without a doubt the number alone."""
     if not math.isfinite(doubt):
         return f"{100 * value:.1f} %"
-    return f"{100 * value:.1f} ± {max(math.ceil(1000 * doubt), 1) / 10:.1f} %"
+    return f"{100 * value:.1f} ± {rounded_up(100 * doubt):.1f} %"
 
 
-def why_not(row: Method, case: Case, solid: str) -> str:
-    """Why a comparison has no column of a method; `solid` says why the case needs three dimensions, if it does."""
-    pair = case.pair
-    if pair.gear_2.internal and row.rings != "yes" and row.rings not in RING_FOUNDATIONS:
-        return "not for rings"
-    if pair.gear_2.internal and row.rings != "yes":
-        return f"not for rings: it {RING_FOUNDATIONS[row.rings]}"
-    if row.name == "fe3d" and solid:
-        return "takes minutes for each gear; ask for it: --reference fe3d (reference='fe3d')"
-    if row.kind == "solid":
-        return "nothing changes along the width; of narrow teeth ask for it: --reference ritz3d (reference='ritz3d')"
-    if solid and row.kind == "section":
-        return f"a transverse section, but {solid}"
-    return "for healthy gears only" if case.damaged and not row.cracks else "left out"
+def rounded_up(percent: float) -> float:
+    """A doubt in percent with one decimal, rounded up."""
+    return max(math.ceil(10 * percent), 1) / 10
+
+
+def tooth_stiffness(curve: StiffnessCurve, tooth: int) -> NDArray:
+    """Stiffness ``(n,)`` of one tooth pair, its force over the common approach [N/m]."""
+    return curve.force[:, curve.order == tooth].sum(axis=1) / curve.lte

@@ -17,6 +17,8 @@ import numpy as np
 
 from ..tooth.profile import arc_at, cartesian, flank, roll_at_arc
 
+PLACES = 65  # along a flank at which hollows are looked for
+
 
 def centre_arc(gear, hollow):
     """Arc of the hollow's centre [mm], as `gearfe.geometry.tooth.profile.arc_at` counts it."""
@@ -81,6 +83,19 @@ def doubts(gear, hollow, size):
     return (
         f"{hollow.nouns[0]} with {size} mm takes the whole flank of z = {gear.z}: nothing of it is left to carry, but the "
         f"{hollow.nouns[0]}'s floor, {hollow.depth:g} mm lower; lengths are in mm"
+    )
+
+
+def doubts_together(gear, hollows):
+    """What to warn of if several hollows of one flank together take all of it; empty if they do not, or one does alone."""
+    arcs = arc_at(gear, np.linspace(gear.roll_f, gear.roll_a, PLACES))
+    if len(hollows) < 2 or any(takes_all(gear, hollow) for hollow in hollows):
+        return ""
+    if (union_length(*intervals(gear, hollows, arcs)) < gear.b * (1 - 1e-9)).any():
+        return ""
+    return (
+        f"{len(hollows)} hollows together take the whole flank of tooth {hollows[0].tooth} of z = {gear.z}: nothing of it is "
+        "left to carry, but their floors"
     )
 
 
