@@ -34,7 +34,7 @@ def _title(scene, arguments, *more):
 
 def stiffness(arguments):
     """``gearfe stiffness``."""
-    from ...comparison.losses import beside_health, damaged_pairs, engaged_phases, zone_table
+    from ...comparison.losses import beside_health, zone_table
     from ...comparison.told_scene import told_supports
     from ...scene.load import load_scene
     from ...stiffness.methods import fitted
@@ -58,8 +58,7 @@ def stiffness(arguments):
             arguments.method, arguments.phases, "tooth" if arguments.case else "cycle", not arguments.no_extended,
             refine=arguments.refine, variants=variants, error=arguments.error, tell=tell, pose=arguments.pose,
         )  # fmt: skip
-        apart = arguments.case and list(damaged_pairs(case)) != [0]
-        curve = solve(case, replace(how, phases=engaged_phases(case, arguments.phases), span="cycle") if apart else how)
+        curve = solve(case, how)
         meta = curve.meta
         answer = beside_health(curve, case, replace(how, method=meta["method"])) if arguments.case else zone_table(curve)
     print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:")
@@ -80,6 +79,7 @@ def stiffness(arguments):
 def _transmission_error(scene, arguments, case, variants):
     """``gearfe stiffness --forces`` and ``--torques``."""
     from ...comparison.harris import harris
+    from ...comparison.losses import cycle_of_tooth
     from ...figures.error_plots import plot_transmission_error
     from ...figures.stiffness_plots import told
     from ...stiffness.solve import Solve
@@ -89,9 +89,8 @@ def _transmission_error(scene, arguments, case, variants):
     r_b = case.pair.gear_1.r_b
     forces = arguments.forces or [1e3 * torque / r_b for torque in arguments.torques]
     with working(f"transmission error by {arguments.method}"):
-        how = Solve(
-            arguments.method, arguments.phases, extended=not arguments.no_extended, refine=arguments.refine, variants=variants
-        )
+        phases = cycle_of_tooth(case, arguments.phases) if case.first_tooth else arguments.phases
+        how = Solve(arguments.method, phases, extended=not arguments.no_extended, refine=arguments.refine, variants=variants)
         found, plain = harris(replace(case, force=forces), how)
     print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle\n")
     print(found.table(plain, r_b))
