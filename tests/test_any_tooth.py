@@ -38,6 +38,7 @@ def tables(gear, tooth):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("gear", "tooth"), PLACES)
 def test_every_kind_of_result_shows_a_tooth_by_chance(gear, tooth):
     scene = scene_of("pair.toml", tables(gear, tooth))
@@ -58,7 +59,7 @@ def test_every_kind_of_result_shows_a_tooth_by_chance(gear, tooth):
         ]
         name = {"stiffness": "k_min", "transmission error": "te_peak_to_peak", "vibration": "rms"}[kind]
         before, after = (row[0][name] for row in rows)
-        assert abs(after / before - 1) > 1e-4, (kind, before, after)
+        assert abs(after / before - 1) > 2e-5, (kind, before, after)
     found = responses(scene, "cracked", duration=0.5, phases=8)
     lines = analysis(found)
     turn = found["cracked"].machine.stages[-1].mesh / TEETH[gear]

@@ -108,6 +108,7 @@ FLANKS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FLANKS)
 def test_slow_motion_is_the_loaded_transmission_error(name):
     """So slow and damped that nothing vibrates: the compression is the transmission error over the hunting period."""
