@@ -181,6 +181,8 @@ def hat_rows(contact, at, knots, kernels, host, tips):
         kernel = np.array([_between(knots[k], kernels[k], meets[k]) for k in rows])
         influence = local[0] * (kernel + local[1]) / (rate[:, :, None] * rate[:, None])
         leaning = zip(contact.flexibility, (roll_1, roll_2), (tooth, -tooth), forces, turns, strict=True)
+        for thin, placed in zip(contact.thinning, (roll_1, roll_2), strict=False):
+            influence = influence + np.array([thin.between(one, tooth) for one in placed])
         for coefficient, within, (flexible, *row) in zip(contact.coefficients, bodies, leaning, strict=True):
             smooth = np.array([within[k] for k in rows])
             influence = influence + towards(flexible, smooth, *row, coefficient * local[1])

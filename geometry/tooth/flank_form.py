@@ -14,7 +14,7 @@ from .relief import relief_start
 from .tables import covering, each_tooth
 from .tip_edge import TipEdge
 
-LARGEST = 0.1  # most that may be removed [m_n]: the tooth's flexibility is that of the unmodified tooth
+LARGEST = 0.1  # most that may be removed [m_n]: the flexibility is that of the unmodified tooth and a beam's difference
 STEP = 1e-6  # roll length over which a slope is taken [m_n]
 
 
@@ -136,6 +136,11 @@ class FlankForm:
         if self.edge is not None and n == 0:
             out = out + self.edge.removed(at)
         return out
+
+    def thinned(self, roll: ArrayLike, tooth: int) -> NDArray[np.float64]:
+        """Material removed from a tooth at roll lengths [mm], which leaves it thinner; its edge, place and pitch left out."""
+        at = self.before_edge(self._on_flank(roll))
+        return self.of(np.array([tooth]))._formed(at[None, :], 0)[0]
 
     def slope(self, roll: ArrayLike) -> NDArray[np.float64]:
         """How far the flank leans towards its gear's tip, the tip's edge included: what is removed by arc length [mm/mm].

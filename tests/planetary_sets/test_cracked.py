@@ -141,7 +141,9 @@ def test_faces_of_rings_on_any_support_resist_and_a_stiff_bed_holds():
 @pytest.mark.parametrize("ring", [RimSupports(6, 4.8), RimSupports(6, 4.8, radial=0, tangential=1e5, pushes=True)])
 def test_sets_with_a_cracked_ring(ring):
     """The mesh that loads the cracked tooth gives way more, all is in balance, and the other planets take what it leaves."""
-    plain, hurt = (planetary_stiffness(case(ring=ring, damage=one), [0.3]) for one in (None, {"ring": [gf.Crack(level=0.5)]}))
+    plain, hurt = (
+        planetary_stiffness(case(ring=ring, damage=one), [0.3]) for one in (None, {"ring": [gf.Crack(level=0.5, start="root")]})
+    )
     assert_allclose(hurt.force[0].sum(), 3 * 2000.0, rtol=1e-10)
     more = 2000.0 / hurt.k[1, 0, 0] - 2000.0 / plain.k[1, 0, 0]  # of the crack, whatever the ring stands on
     assert more > 0.05 * 2000.0 / plain.k_alone[1, 0, 0]

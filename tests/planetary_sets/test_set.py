@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 from sets import FORCE, STEEL, case, gears, unequal
 
 import gearfe as gf
+from gearfe.planetary_sets.balance import Problem, _settled
 from gearfe.planetary_sets.case import PlanetaryCase
 from gearfe.planetary_sets.rim_supports import RimBed, RimSupports
 from gearfe.planetary_sets.solve import bodies_of, planetary_stiffness
@@ -304,3 +305,14 @@ def test_planets_out_of_mesh_carry_nothing_and_the_others_all():
 def test_lugs_do_not_hold_a_ring_that_one_planet_pushes_away():
     with pytest.raises(RuntimeError, match="no forces that only push"):
         planetary_stiffness(unequal(0, ring=RimSupports(6, 4.8, radial=0, pushes=True)), [0.2])
+
+
+def test_a_contact_that_carries_exactly_nothing_settles():
+    """Such as pressed faces of a crack in a tooth out of mesh: its force is 0, and no rounding moves it."""
+    zeros, ones = np.zeros(2), np.ones(2)
+    problem = Problem(
+        1e-6 * np.eye(2), zeros, np.array([1e-7, 0.0]), ones, 1e5 * ones, zeros, np.array([[1.0], [0.0]]), np.ones(1)
+    )
+    for at_once in (True, False):
+        force, _ = _settled(problem, np.array([True, True]), 1.0, 40, at_once)
+        assert_allclose(force, [1.0, 0.0], atol=1e-9)
