@@ -43,11 +43,14 @@ def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
     return (math.ceil((middle - 0.5) * phases - 1e-9) + np.arange(phases)) / phases
 
 
+def cycle_of_tooth(case: Case, phases: int) -> NDArray:
+    """Phases ``(phases,)`` of the mesh cycle that begins when the first damaged tooth enters."""
+    return phase_array(phases, "cycle", case.pair) - (case.first_tooth or 0)
+
+
 def engaged_phases(case: Case, phases: int) -> NDArray:
     """Phases ``(n,)`` of the damaged teeth's engagements and a quarter of a cycle at their ends, in steps of ``1 / phases``."""
-    one = phase_array(phases, "tooth", case.pair, case.overlap())
-    numbers = np.unique([np.round((one - pair) * phases) for pair in damaged_pairs(case) or (0,)])
-    return np.asarray(numbers / phases, dtype=np.float64)
+    return phase_array(phases, "tooth", case.pair, case.overlap(), case.damaged_pairs or (0,))
 
 
 def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:

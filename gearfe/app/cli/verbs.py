@@ -80,6 +80,7 @@ def stiffness(arguments):
 def _transmission_error(scene, arguments, case, variants):
     """``gearfe stiffness --forces`` and ``--torques``."""
     from ...comparison.harris import harris
+    from ...comparison.losses import cycle_of_tooth
     from ...figures.error_plots import plot_transmission_error
     from ...figures.stiffness_plots import told
     from ...stiffness.solve import Solve
@@ -89,9 +90,8 @@ def _transmission_error(scene, arguments, case, variants):
     r_b = case.pair.gear_1.r_b
     forces = arguments.forces or [1e3 * torque / r_b for torque in arguments.torques]
     with working(f"transmission error by {arguments.method}"):
-        how = Solve(
-            arguments.method, arguments.phases, extended=not arguments.no_extended, refine=arguments.refine, variants=variants
-        )
+        phases = cycle_of_tooth(case, arguments.phases) if case.first_tooth else arguments.phases
+        how = Solve(arguments.method, phases, extended=not arguments.no_extended, refine=arguments.refine, variants=variants)
         found, plain = harris(replace(case, force=forces), how)
     print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle\n")
     print(found.table(plain, r_b))
