@@ -98,7 +98,8 @@ def convergence(
     >>> import math, gearfe as gf
     >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), b=20.0)
     >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
-    >>> found = gf.convergence(gf.Case(pair, force=2000.0, material=gf.Material()), gf.Solve(phases=4), refines=(0.7, 1.0), orders=(3, 4))
+    >>> case = gf.Case(pair, force=2000.0, material=gf.Material())
+    >>> found = gf.convergence(case, gf.Solve(phases=4), refines=(0.7, 1.0), orders=(3, 4))
     >>> bool((found.difference <= found.error).all())
     True
     """
