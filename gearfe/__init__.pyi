@@ -47,6 +47,7 @@ from .dynamics.machine.planetary import stage_phases as stage_phases
 from .dynamics.machine.run_up import with_speed as with_speed
 from .dynamics.machine.single_mesh import single_mesh as single_mesh
 from .dynamics.machine.speed import Speed as Speed
+from .dynamics.machine.tables import Fault as Fault
 from .dynamics.machine.tables import Load as Load
 from .dynamics.machine.tables import Machine as Machine
 from .dynamics.machine.tables import Spring as Spring
@@ -136,6 +137,8 @@ from .signal.time_frequency import spectrogram as spectrogram
 from .stiffness.convergence import Convergence as Convergence
 from .stiffness.convergence import convergence as convergence
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
+from .stiffness.mesh_cycle import MeshCycle as MeshCycle
+from .stiffness.mesh_cycle import mesh_cycle as mesh_cycle
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.pattern import contact_pattern as contact_pattern
 from .stiffness.solve import Solve as Solve

@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from gearfe.flexibility.halfspace import pair_kernel
+from gearfe.geometry.damage.hollow import intervals, union_length
 from gearfe.geometry.tooth.profile import fillet, flank, form_point
 
 
@@ -53,3 +54,8 @@ def together(count, work):
 
     with ThreadPoolExecutor(count) as pool:
         return list(pool.map(one, range(count)))
+
+
+def lost_width(gear, hollows, arc):
+    """Width [mm] that the hollows of one flank take away at profile arcs `arc` [mm]."""
+    return union_length(*intervals(gear, hollows, arc))

@@ -3,7 +3,7 @@
 from numpy.testing import assert_allclose
 
 from gearfe.dynamics.motion.simulate import simulate
-from validation.make import dynamics, hard_dynamics
+from validation.make import dynamics
 from validation.shared.kept_rows import stored
 from validation.shared.places import PAGES
 from validation.shared.stages import machines, stage
@@ -12,11 +12,9 @@ TEXT = (PAGES / "dynamics.md").read_text(encoding="utf-8")
 
 
 def test_the_page_says_what_its_tables_say():
-    lines = [line for line in (*dynamics.accuracy(), *dynamics.chatter()) if line.startswith("|")]
+    lines = [line for line in dynamics.accuracy() if line.startswith("|")]
     assert [line for line in lines if line not in TEXT] == []
     assert len(stored("dynamics_steps")) == len(list(machines()))
-    hard = (PAGES / "hard.md").read_text(encoding="utf-8")
-    assert [line for line in hard_dynamics.section() if line.startswith("|") and line not in hard] == []
 
 
 def test_estimates_cover_the_errors_in_95_of_100_runs():

@@ -1,4 +1,4 @@
-"""Article S4's table under layouts of pits: what is counted, what the page says of it, and rows computed again."""
+"""Article S4's table of stiffness: what is counted, what the page says of it, and rows computed again."""
 
 import re
 
@@ -8,9 +8,8 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from validation.shared import herringbone_contact_line as line
-from validation.shared import herringbone_layouts as layouts
-from validation.shared import herringbone_layouts_page as page
 from validation.shared import herringbone_page, table_rows
+from validation.shared import herringbone_reading as page
 from validation.shared import herringbone_statements as statements
 from validation.shared import page as pages
 from validation.shared.places import PAGES, TABLES
@@ -18,51 +17,18 @@ from validation.shared.places import PAGES, TABLES
 
 def test_the_reductions_of_the_finite_element_column_are_its_own():
     """1 - 1.17 / 1.23 and so on, by hand, after the swapped rows are put right; the printed list is another."""
-    assert_allclose(layouts.reductions(layouts.printed()), [4.88, 14.63, 21.14, 30.89, 3.52, 11.97, 16.90, 26.06], atol=0.005)
+    assert_allclose(line.reductions(line.printed()), [4.88, 14.63, 21.14, 30.89, 3.52, 11.97, 16.90, 26.06], atol=0.005)
     scene = gf.load_scene(line.SCENE)
     own = next(one for one in scene.references if one.id == "stiffness_reduction_fe")
-    assert_allclose(layouts.reductions(layouts.printed()), [row.value for row in own.rows], atol=0.005)
-
-
-@pytest.mark.parametrize("layout", layouts.LAYOUTS)
-def test_layouts_have_as_many_pits_as_s4_says(layout):
-    pair = gf.load_scene("herringbone").pair().pair
-    halves = 2 if "both" in layout else 1
-    for count in (3, 7, 14):
-        found = layouts.pits(pair, layout, count, 0.5)
-        assert len(found) == halves * count
-        assert sum(pit.z < 30 for pit in found) == count
-        radii = {round(pit.radius, 9) for pit in found}
-        assert len(radii) == (
-            (2 if count == 14 and ("spread" in layout or "two" in layout) else 1) if "axis" in layout else len(radii)
-        )
-
-
-def test_errors_are_those_of_the_worst_row():
-    row = dict(zip((f"{pair} {case or 'healthy'}" for pair, case in layouts.ROWS), layouts.printed(), strict=True))
-    assert_allclose([one[0] for one in layouts.errors([row])][:2], 0.0, atol=1e-9)
-    row["sun_planet case4"] *= 0.96
-    worst, own, _ = (float(one[0]) for one in layouts.errors([row]))
-    assert worst == pytest.approx(4.0)
-    assert own == pytest.approx(100 * 0.04 * 850 / 1230)
-
-
-def test_the_sample_is_that_of_the_seed():
-    """The table holds the readings that the seed and the ranges give, in order, every layout of each."""
-    rows = page.of("sample")
-    assert len(rows) == layouts.SIZE * len(layouts.LAYOUTS)
-    table = np.array([[float(row[name]) for name in layouts.RANGES] for row in rows[:: len(layouts.LAYOUTS)]])
-    assert_allclose(table, layouts.readings(), rtol=1e-4)
-    assert len(page.of("fit")) == len(layouts.LAYOUTS)
-    assert len(page.of("formulas")) == np.prod([len(one) for one in layouts.FORMULAS.values()])
+    assert_allclose(line.reductions(line.printed()), [row.value for row in own.rows], atol=0.005)
 
 
 @pytest.mark.parametrize("method", ["ritz3d", "fe3d"])
 def test_what_the_scene_of_the_contact_line_shows(method):
     """S4's finite element column within 3 % and its own reductions within 2 points in all ten rows."""
     error, own, _ = page.worst(method)
-    assert error < layouts.CLAIM
-    assert own < layouts.POINTS
+    assert error < line.CLAIM
+    assert own < line.POINTS
 
 
 @pytest.mark.parametrize("method", ["published", "published, summed", "textbook"])
@@ -82,14 +48,6 @@ def test_solid_rows_of_the_scene_are_what_is_computed_now(tmp_path, monkeypatch)
     line.compute(["ritz3d"])
     for key, (k, *_) in line.stored().items():
         assert_allclose(k, known[key][0], rtol=1e-3, err_msg=f"{key}: run python -m validation herringbone")
-
-
-@pytest.mark.slow
-def test_rows_of_the_scan_are_what_is_computed_now():
-    rows = [page.of("sample")[5], layouts.best_fit()]
-    for row in rows:
-        k, _ = layouts.Model([float(row[name]) for name in layouts.RANGES]).row(row["layout"])
-        assert_allclose(k, page.stiffness([row])[0], rtol=2e-3)
 
 
 def test_conclusions_are_judged_by_what_each_fault_takes():
@@ -155,20 +113,6 @@ def test_no_stiffness_of_a_model_is_called_reproduced():
 def test_notes_of_the_fit_name_the_method_that_is_judged():
     for method in ("fe3d", "ritz3d"):
         assert f"Ours: `{method}` at the phase" in line.verdicts(method)
-
-
-def test_what_speaks_against_the_fit_is_on_the_page():
-    """Pits of S4's test gears, two rows of pits in case 4, twice its number of pits: as the tables have it."""
-    text = " ".join(pages.read("herringbone")[0].split())
-    small = [row for row in page.of("sample", "contact line, both halves") if float(row["pit"]) <= 0.5]
-    most = max(100 * (1 - float(row["sun_planet case4"]) / float(row["sun_planet healthy"])) for row in small)
-    assert f"of the {len(small)} readings of the sample with pits so small" in text
-    assert f"case 4 of sun and planet takes {most:.1f} % at most" in text
-    worst, own = page.fitted()["contact line, two in case 4, both halves"]
-    assert f"in two rows of seven the fit comes within {worst:.1f} % and {own:.1f} points" in text
-    assert min(worst, own) > layouts.POINTS
-    assert "so that case 4 has 28" in text
-    assert len(gf.load_scene(line.SCENE).pair().damage["case4"]["pinion"]) == 28 + 1, "and a crack"
 
 
 def test_the_list_of_reductions_is_that_of_the_formulas_but_for_three():

@@ -1,8 +1,9 @@
 """The page of measured gearboxes: its cheap rows computed again, and what it says of them."""
 
+import measured
+import pytest
 from numpy.testing import assert_allclose
 
-from validation.make import measured
 from validation.shared import page as pages
 
 TEXT = pages.read("measured")[0]
@@ -18,3 +19,9 @@ def test_the_lines_of_the_phm_train_and_the_error_of_its_tachometer():
 def test_a_perfect_planetary_set_has_its_line_at_a_multiple_of_three():
     assert max(measured.perfect()) < 1e-3
     assert "has the right line, left and mesh line are below a thousandth of it" in " ".join(TEXT.split())
+
+
+@pytest.mark.slow
+def test_the_page_is_what_is_computed_now():
+    text = TEXT.splitlines()
+    assert [line for line in measured.lines() if line not in text] == []

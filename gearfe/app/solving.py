@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..comparison.by_zone import Comparison
-from ..comparison.losses import damage_phases, engaged_phases, kind_of, loss_errors, told_damage, within
+from ..comparison.losses import damage_phases, engaged_phases, kind_of, loss_errors, told_teeth, within
 from ..core.markdown import table_cells
 from ..core.threads import own_warnings
 from ..core.units import NEWTON_PER_UM
@@ -59,7 +59,7 @@ def compared(scene: Scene, method: str, phases: int, *, error: bool) -> tuple[Co
     whole, hurt = solve(case.healthy, how), solve(case, how)
     coarse = replace(how, phases=cycle, error=False)
     doubt = loss_errors(within(whole, cycle), within(hurt, cycle), case, coarse) if error else {}
-    damage_and_kind = told_damage(case.pair, case.damage), kind_of(case.damage)
+    damage_and_kind = next(iter(told_teeth(case).values())), kind_of(case.damage)
     return Comparison("stage", {method: hurt}, {method: 0.0}, {method: whole}, doubt, *damage_and_kind, {}, cycle), left_out
 
 

@@ -32,7 +32,7 @@ from .losses import (
     loss_errors,
     percent_with_doubt,
     told_cycle,
-    told_damage,
+    told_teeth,
     why_not,
     within,
 )
@@ -65,6 +65,8 @@ class Comparison:
         The damage in words, and what its tooth is called: "cracked", "pitted" or "damaged".
     left_out : dict of str to str
         Methods without a curve, and why.
+    teeth : dict of str to (ndarray, dict)
+        Of several damaged teeth: by tooth and damage in words the phases of its mesh cycle, and the doubt as above.
     cycle : ndarray, optional
         The phases that zones, mean and max are over, default all: of a damaged pair the mesh cycle in which the damaged tooth is
         in the middle of its engagement, so that it is in contact all the time.
@@ -79,6 +81,7 @@ class Comparison:
     kind: str = ""
     left_out: dict[str, str] = field(default_factory=dict)
     cycle: NDArray | None = None
+    teeth: dict[str, tuple[NDArray, dict[str, float]]] = field(default_factory=dict)
 
     @property
     def reference(self) -> StiffnessCurve:
@@ -94,17 +97,23 @@ class Comparison:
             beside = {name: (z[zone], z[zone] / truth[zone] - 1) for name, z in others.items()}
             yield zone, truth[zone], doubt.get(zone, math.nan), beside
 
-    def losses(self) -> dict[str, dict[str, float]]:
-        """What damage takes of the stiffness [-] by method and zone, and at the phase where it takes most; empty if healthy."""
+    def losses(self, cycle: NDArray | None = None) -> dict[str, dict[str, float]]:
+        """What damage takes of the stiffness [-] by method and zone, and at the phase where it takes most; empty if healthy.
+
+        Over the phases of a `cycle`, by default those of the comparison.
+        """
+        over = self.cycle if cycle is None else cycle
         compared = {name: (healthy, self.curves[name]) for name, healthy in self.healthy.items()}
-        return {name: loss(*(within(curve, self.cycle) for curve in curves)) for name, curves in compared.items()}
+        return {name: loss(*(within(curve, over) for curve in curves)) for name, curves in compared.items()}
 
     @property
     def headline(self) -> str:
         """The answer in one sentence: what damage takes; of a healthy pair its mean stiffness and who is how far off it."""
         name = next(iter(self.curves))
         if self.healthy:
-            return headline(self.damage, self.kind, self.losses()[name], self.doubt)
+            teeth = self.teeth or {self.damage: (self.cycle, self.doubt)}
+            told = (headline(said, self.kind, self.losses(cycle)[name], doubt) for said, (cycle, doubt) in teeth.items())
+            return "; ".join(told)
         mean = next(row for row in self.rows() if row[0] == "mean")
         doubt = f" ± {in_newton_per_um(mean[1] * mean[2], 2)}" if math.isfinite(mean[2]) else ""
         others = ", ".join(f"{other} {100 * error:+.1f} %" for other, (_, error) in mean[3].items())
@@ -217,10 +226,11 @@ def compare(
     chosen, pair_name = _chosen(scene, pair, case, given)
     methods, left_out = _methods(chosen, reference)
     named = own_models(models, taken=(REFERENCE, *FORMULATIONS))
-    cycle = None
+    cycle, cycles = None, {}
     if chosen.damaged and np.ndim(phases) == 0:
         count = check_count(phases)
-        phases, cycle = engaged_phases(chosen, count), damage_phases(chosen, count)
+        cycles = {said: damage_phases(chosen, count, number) for number, said in told_teeth(chosen).items()}
+        phases, cycle = engaged_phases(chosen, count), next(iter(cycles.values()))
     for method in methods:  # what they and gmsh load is no part of their seconds
         METHODS[method].load()
     with gmsh_session():
@@ -251,8 +261,12 @@ def compare(
         started = time.perf_counter()
         curves[name] = own_curve(name, model, chosen.pair, curves[methods[0]])
         seconds[name] = time.perf_counter() - started
-    damage_and_kind = (told_damage(chosen.pair, chosen.damage), kind_of(chosen.damage)) if chosen.damaged else ("", "")
-    return Comparison(pair_name, curves, seconds, healthy, doubt, *damage_and_kind, left_out, cycle)
+    teeth = {}
+    if len(cycles) > 1:
+        how = Solve(methods[0], phases, refine=refine)
+        teeth = {said: (at, _doubt_of(chosen, healthy, curves, how, at)) for said, at in cycles.items()}
+    damage_and_kind = (next(iter(told_teeth(chosen).values())), kind_of(chosen.damage)) if chosen.damaged else ("", "")
+    return Comparison(pair_name, curves, seconds, healthy, doubt, *damage_and_kind, left_out, cycle, teeth)
 
 
 def _healthy(chosen, curves, reference, cycle):
@@ -263,8 +277,13 @@ def _healthy(chosen, curves, reference, cycle):
         how = replace(reference, method=method, variants=variants)
         how = replace(how, error=method == "fe3d") if method == reference.method else replace(how, refine=1.0)
         out[method] = solve(known, how)
-    beside = (within(by_method[reference.method], cycle) for by_method in (out, curves))
-    return out, loss_errors(*beside, chosen, reference if cycle is None else replace(reference, phases=cycle))
+    return out, _doubt_of(chosen, out, curves, reference, cycle)
+
+
+def _doubt_of(chosen, healthy, curves, reference, cycle):
+    """Estimated error of what damage takes by the reference, over the phases of a cycle."""
+    beside = (within(by_method[reference.method], cycle) for by_method in (healthy, curves))
+    return loss_errors(*beside, chosen, reference if cycle is None else replace(reference, phases=cycle))
 
 
 def _chosen(scene, pair, case, given):

@@ -1,6 +1,6 @@
 """The checks of `gearfe check`: every case, set and machine of a scene is built as by other verbs, and nothing is solved."""
 
-from ..dynamics.machine.of_scene import check_machine
+from ..dynamics.machine.of_scene import flat_machine
 from ..geometry.damage.hollow import check_hollows
 from ..planetary_sets.of_scene import build_set
 from ..scene.load import Scene
@@ -29,7 +29,7 @@ def check_scene(scene: Scene) -> list[str]:
                 for gear, hollows in zip((pair.pair.gear_1, pair.pair.gear_2), built.pits, strict=True):
                     check_hollows(gear, hollows)
     out = []
-    for noun, there, build in (("machine", scene.machine, check_machine), ("set", scene.set, build_set)):
+    for noun, there, build in (("machine", scene.machine, flat_machine), ("set", scene.set, build_set)):
         for case in (None, *dict.fromkeys(case for pair in scene.pairs.values() for case in pair.damage)) if there else ():
             try:
                 build(scene, case)

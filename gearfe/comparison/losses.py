@@ -47,8 +47,38 @@ def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
 
 
 def engaged_phases(case: Case, phases: int) -> NDArray:
-    """Phases ``(n,)`` of the damaged tooth's engagement and a quarter of a cycle at its ends, in steps of ``1 / phases``."""
-    return phase_array(phases, "tooth", case.pair, case.overlap()) - (case.first_tooth or 0)
+    """Phases ``(n,)`` of the damaged teeth's engagements and a quarter of a cycle at their ends, in steps of ``1 / phases``."""
+    one = phase_array(phases, "tooth", case.pair, case.overlap())
+    numbers = np.unique([np.round((one - pair) * phases) for pair in damaged_pairs(case) or (0,)])
+    return np.asarray(numbers / phases, dtype=np.float64)
+
+
+def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
+    """Damage by number of the tooth pair that it is in, and by side; tooth k of both gears is in pair k."""
+    out: dict[int, dict[str, list[Damage]]] = {}
+    for side, found in (case.damage or {}).items():
+        for hurt in found:
+            out.setdefault(hurt.tooth, {}).setdefault(side, []).append(hurt)
+    return out
+
+
+def told_teeth(case: Case) -> dict[int, str]:
+    """Damage in words by number of the tooth pair; teeth are named unless the only one is tooth 0 of the pinion.
+
+    Examples
+    --------
+    >>> import gearfe as gf
+    >>> rack = dict(m_n=2.0, alpha_n=0.349, b=20.0)
+    >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
+    >>> cracks = [gf.Crack(length=2.0, angle=1.05), gf.Crack(length=1.5, angle=1.05, tooth=5)]
+    >>> list(told_teeth(gf.Case(pair, 1000.0, gf.Material(), damage={"wheel": cracks})).values())
+    ['tooth 0 of the wheel: 2 mm crack at 60.2 degrees', 'tooth 5 of the wheel: 1.5 mm crack at 60.2 degrees']
+    """
+    found = damaged_pairs(case)
+    if [list(sides) for sides in found.values()] == [["pinion"]] and 0 in found:
+        return {0: told_damage(case.pair, found[0])}
+    named = {pair: " and ".join(f"tooth {pair} of the {side}" for side in sides) for pair, sides in found.items()}
+    return {pair: f"{name}: {told_damage(case.pair, found[pair])}" for pair, name in named.items()}
 
 
 def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
@@ -79,12 +109,16 @@ def zone_table(curve: StiffnessCurve) -> str:
 def beside_health(curve: StiffnessCurve, case: Case, how: Solve) -> str:
     """A damaged pair's curve beside that of the same pair without damage, by the same method, in words and a table by zone.
 
-    The curve is over the whole engagement of the damaged tooth (`engaged_phases`), solved as `how` says, whose phases are a
-    number per mesh cycle.
+    The curve is over the whole engagements of the damaged teeth (`engaged_phases`), solved as `how` says, whose phases are a
+    number per mesh cycle. There is a table for each tooth.
     """
-    cycle = damage_phases(case, cast(int, how.phases))
+    return "\n\n".join(_beside_health(curve, case, how, pair, said) for pair, said in told_teeth(case).items())
+
+
+def _beside_health(curve, case, how, pair, said):
+    cycle = damage_phases(case, cast(int, how.phases), pair)
     healthy = solve(case.healthy, replace(how, phases=cycle, span="cycle", error=False))
-    hurt, kind = within(curve, cycle), kind_of(case.damage)
+    hurt, kind = within(curve, cycle), kind_of(damaged_pairs(case)[pair])
     losses, doubt, before, after = loss(healthy, hurt), hurt.zone_errors(), healthy.zones(), hurt.zones()
     head = ["zone", "healthy [N/um]", f"{kind} [N/um]", *(["error at most about"] if doubt else []), "loss"]
     lines = [table_row(head), "|---" * len(head) + "|"]
@@ -92,7 +126,7 @@ def beside_health(curve: StiffnessCurve, case: Case, how: Solve) -> str:
         cells = [in_newton_per_um(by_zone[zone]) if zone in by_zone else "" for by_zone in (before, after)]
         about = [f"{100 * doubt[zone]:.2f} %" if zone in doubt else ""] if doubt else []
         lines.append(table_row([zone, *cells, *about, f"{100 * lost:.1f} %"]))
-    return f"{told_damage(case.pair, case.damage)}; {told_cycle(cycle, kind)}\n" + aligned("\n".join(lines))
+    return f"{said}; {told_cycle(cycle, kind)}\n" + aligned("\n".join(lines))
 
 
 def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:

@@ -17,6 +17,7 @@ COLUMNS = (
     "mesh",
     Column("planet", form="{}"),
     *(stiffness_column(name) for name in ("k mean", "least", "largest", "alone")),
+    Column("error of k in the set", "%", "{:.1f}"),
     Column("difference", "%", "{:+.1f}"),
     *(Column(f"load, {name}", "N") for name in ("least", "largest")),
 )
@@ -62,17 +63,20 @@ def set_headline(curves: SetCurves, healthy: SetCurves | None = None) -> str:
             f"k of {kind.replace('-', ' and ')} {in_newton_per_um(inside)} N/um, alone {in_newton_per_um(alone)} ({change})"
         )
     text = f"In the set {', '.join(said)}; K_gamma {found['K_gamma']:.3f}, transmission error {_um(curves)} um peak to peak"
+    if "error" in curves.meta:
+        text += f", its estimated error {100 * curves.meta['error']['te']:.1f} % of the mean"
     return text if healthy is None else f"{text}; {_taken(curves, healthy)}"
 
 
 def set_table(curves: SetCurves) -> Table:
-    """`Table` of every mesh: its stiffness in the set and alone over the positions, and its load."""
-    rows = []
+    """`Table` of every mesh: its stiffness in the set, the estimated error of that, alone, and its load over the positions."""
+    rows, error = [], curves.meta.get("error", {"k": np.full((2, curves.force.shape[2]), np.nan)})["k"]
     for k, kind in enumerate(MESHES):
         for planet in range(curves.force.shape[2]):
             inside, alone, load = (one[k, :, planet] for one in (curves.k, curves.k_alone, curves.force))
             numbers = [value / NEWTON_PER_UM for value in (_mean(inside), inside.min(), inside.max(), alone.mean())]
-            rows.append([kind, planet, *numbers, 100 * (numbers[0] / numbers[3] - 1), load.min(), load.max()])
+            change = 100 * error[k, planet], 100 * (numbers[0] / numbers[3] - 1)
+            rows.append([kind, planet, *numbers, *change, load.min(), load.max()])
     return Table(COLUMNS, rows)
 
 

@@ -142,7 +142,9 @@ def in_words(line):
     >>> in_words("2 f_m - f_fault")
     '2 x mesh frequency - fault frequency'
     """
-    return re.sub(r"\bf_\w+", lambda match: WORDS.get(match[0], match[0]), re.sub(r"(\d+) (?=f_)", r"\1 x ", line))
+    return re.sub(
+        r"\bf_\w+", lambda match: WORDS.get(match[0], f"faults of the {match[0][2:]}"), re.sub(r"(\d+) (?=f_)", r"\1 x ", line)
+    )
 
 
 def _floor(found, frequency):
@@ -237,28 +239,37 @@ def slowest_decay(machine):
 def analysis(found, channel=None):
     """`Analysis` of a channel of `responses`, by default the force of the first mesh of the driven stage.
 
-    Of ``"healthy"`` alone no lines of a fault are looked for: there is none.
+    The lines looked for are those of the gears that have teeth that differ, and the stage is that of the first of them. Of
+    ``"healthy"`` alone, with teeth all alike, there are none.
     """
-    first = next(iter(found.values()))
+    first, faults = next(iter(found.values())), list(found.values())[-1].machine.faults
     if not first.machine.stages:
         raise ValueError("the machine names no stages, so that no lines are known: give it stages=(Stage(...),)")
-    stage = first.machine.stages[-1]
+    gears = {one.gear: one for one in reversed(faults)}
+    main = faults[0] if faults else None
+    stage = first.machine.stages[-1] if main is None else first.machine.stage_of(main.gear)
     driven = next(one for one in first.machine.meshes if abs(one.frequency - stage.mesh) < 1e-6 * stage.mesh)
     channel = channel or f"force {driven.name}"
     rate = 1 / (first.time[1] - first.time[0])
     signals = {
         case: Signal(np.asarray(one[channel], dtype=float), rate, one.unit(channel), name=case) for case, one in found.items()
     }
+    options = {"carrier": stage.carrier, "channel": channel}
+    if main is not None:
+        several = main.frequency if main.frequency > main.turning * (1 + 1e-9) else None
+        others = {name: one.frequency for name, one in gears.items() if abs(one.frequency / main.frequency - 1) > 1e-9}
+        return analyse(signals, stage.mesh, several, turning=main.turning, others=others, **options)
     if set(found) == {"healthy"}:
-        return analyse(signals, stage.mesh, carrier=stage.carrier, channel=channel)
-    return analyse(signals, stage.mesh, stage.fault, turning=stage.turning, carrier=stage.carrier, channel=channel)
+        return analyse(signals, stage.mesh, **options)
+    return analyse(signals, stage.mesh, stage.fault, turning=stage.turning, **options)
 
 
-def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="signal"):
+def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="signal", others=None):
     """`Analysis` of signals by case, computed or measured, the first the healthy one.
 
     Frequencies [Hz] are those of the mesh, of the faulty tooth, of the gear that has it against the carrier (lines ``f_r``; one
-    of both is enough), and of the carrier. Lines of the carrier that the spectrum cannot part from others are left out.
+    of both is enough), and of the carrier; `others` are those of faulty teeth of further gears by name. Lines of the carrier that
+    the spectrum cannot part from others are left out.
     """
     for name, value in {"mesh": mesh, "fault": fault, "turning": turning, "carrier": carrier}.items():
         if value is not None and not (isinstance(value, Real) and 0 < value < math.inf):
@@ -270,6 +281,9 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
     if mesh is not None and mesh >= first.frequency[-1]:
         raise ValueError(f"mesh = {mesh:g} Hz, but {channel} shows what lies below {first.frequency[-1]:g} Hz, half of its rate")
     lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
+    for name, value in (others or {}).items():
+        beside = expected_lines(mesh, value, count=1, harmonics=2)
+        lines |= {line.replace("f_fault", f"f_{name}"): at for line, at in beside.items() if "f_fault" in line}
     lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
     placed = {case: find_lines(of_case, lines, between=True) for case, of_case in spectra.items()}
     amplitudes = {case: {name: line[1] for name, line in of_case.items()} for case, of_case in placed.items()}

@@ -24,7 +24,7 @@ from ..geometry.pair.contacts import TIP, end_corners, touching
 from ..geometry.tooth.profile import arc_at
 from ..geometry.tooth.side import on_fillet
 from .pair_contact import BEYOND, CORNER, PairContact
-from .pieces import AT_END, cut
+from .pieces import cut
 from .rows import LEAST, RESOLVED, Wanted, finest_hat
 from .sharing import approaches, stacked
 
@@ -64,10 +64,10 @@ class CornerLaw:
 
     def ends(self, pair, cells):
         """End of the path (0 start, 1 end) whose corner each cell touches or nearly touches, -1 away from both."""
-        out = np.full(cells.z.size, -1)
+        out, middle = np.full(cells.z.size, -1), sum(self.path) / 2
         for k, sign in ((0, -1), (1, 1)):
             near = sign * (self.path[k] - cells.nominal) < self.inside[k]
-            out[np.isin(cells.corner, AT_END[k]) | ((cells.corner == 0) & near)] = k
+            out[np.where(cells.corner > 0, sign * (cells.nominal - middle) > 0, near)] = k
         return out
 
     def __call__(self, ends, nominal, line_load):

@@ -20,6 +20,7 @@ from .kinks import kink_rows, near_kink
 from .rows import LEAST, RESOLVED, SHARP, Row, Wanted, corner_rows, finest_hat
 from .sharing import LineContacts, line_contact, line_contacts, stacked
 from .sliding import bounded, left_out, sliding
+from .thinned import thinned_teeth
 
 CORNER = 1.0  # a contact whose middle is closer to a corner than this many half widths of the whole load is resolved hat by hat
 BEYOND = 1.5  # such a row reaches at least this many half widths on from its middle
@@ -71,6 +72,8 @@ class PairContact:
         if flanks is not None:
             matrices, self.coefficient, self.turns = leaning(self, matrices)
         self.matrix = matrices[0] + matrices[1]
+        self.thinning, self.thinner = thinned_teeth(flanks, materials, state, points)
+        self.matrix[:, range(points.order.size), range(points.order.size)] += self.thinner
         self.alone = np.diagonal(self.matrix, axis1=1, axis2=2)  # cracks glued shut
         self.radius = self.flat_radius = points.radius
         if any(form.edge for form in flanks or ()):  # on a rounded tip: of the flank beside it, which shares the contact

@@ -14,7 +14,6 @@ from ..geometry.pair.contacts import FORM, end_corners, near_pitches, touching
 from ..geometry.pair.lines import covered
 
 SAMPLES = 400  # of the gap beyond the path, over a base pitch
-AT_END = (2, 3), (1, 4)  # numbers of the corners that touch at the start and at the end of the path
 PARTS = 4  # straight parts of a line beyond the path, where pits are looked for
 
 
@@ -63,7 +62,7 @@ def cut(pair):
     nominal = np.linspace(start, end, max(2, math.ceil(pair.eps_alpha * SAMPLES)))
     met, step = touching(pair, nominal), nominal[1] - nominal[0]
     away = nominal - start, end - nominal
-    return tuple(max((away[k][(met.gap < 0) & np.isin(met.corner, AT_END[k])] + step).tolist(), default=0.0) for k in (0, 1))
+    return tuple(max((own[(met.gap < 0) & (own < (end - start) / 2)] + step).tolist(), default=0.0) for own in away)
 
 
 def beyond(pair, reach):

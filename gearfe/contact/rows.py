@@ -181,6 +181,8 @@ def hat_rows(contact, at, knots, kernels, host, tips):
         kernel = np.array([_between(knots[k], kernels[k], meets[k]) for k in rows])
         influence = local[0] * (kernel + local[1]) / (rate[:, :, None] * rate[:, None])
         leaning = zip(contact.flexibility, (roll_1, roll_2), (tooth, -tooth), forces, turns, strict=True)
+        for thin, placed in zip(contact.thinning, (roll_1, roll_2), strict=False):
+            influence = influence + np.array([thin.between(one, tooth) for one in placed])
         for coefficient, within, (flexible, *row) in zip(contact.coefficients, bodies, leaning, strict=True):
             smooth = np.array([within[k] for k in rows])
             influence = influence + towards(flexible, smooth, *row, coefficient * local[1])
@@ -250,5 +252,6 @@ def _placed(contact, one, host):
     steps = middle + one.width / WITHIN * np.arange(-2 * WITHIN, 2 * WITHIN + 1)
     tops = _tops(np.unique([*places, middle]), ends, offsets)
     tops = np.append(tops[np.abs(tops - middle) > steps[-1] - middle], steps)
-    tops = np.sort(tops[(tops >= places[0] if ends[0] else True) & (tops <= places[-1] if ends[1] else True)])
+    least, most = places[0] if ends[0] else -np.inf, places[-1] if ends[1] else np.inf
+    tops = np.sort(tops[(tops >= least) & (tops <= most)])
     return _knots(_apart(tops, offsets[1], ends[1]), ends)

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..flexibility.hertz import half_width
 from ..geometry.tooth.profile import arc_at, roll_at_arc
+from .thinned import UNSURE
 
 MOST = 0.05  # largest approach by sliding, as a part of what the pair yields: more would not be small strains
 STEP = 0.01  # along the flank, over which the change of a flexibility is taken [m_n]
@@ -88,7 +89,7 @@ def left_out(contact, line, closing, beyond):
     """
     points, (start, end) = contact.found, contact.pair.path
     off = (line > 0) & ((points.nominal < start) | (points.nominal > end))
-    softer = _cut_away(contact, line)
+    softer = _cut_away(contact, line) + UNSURE * np.abs(contact.thinner) * line
     if not (off.any() or softer.any()):
         return np.zeros(closing.size)
     closed = closing[:, None] - beyond

@@ -19,6 +19,7 @@ from .bodies import bodies_of, energy_bodies
 from .cells import Cells
 from .corner import in_fillet
 from .phase_contact import PhaseContact
+from .thinned import unmodelled
 
 STEP = 0.2  # longest cell along the width [m_n]
 LONGER = 2  # cells that become one in the coarser solution that the error estimate compares with
@@ -137,7 +138,7 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
             if bodies.coarser:
                 others.append(solve(contacts, bodies_by(bodies.coarser)))
         away = [sum(np.abs(less.k - one.k) for less in rest) for one, *rest in zip(solved, *others, strict=True)]
-        solved = [replace(one, error=one.error + doubt) for one, doubt in zip(solved, away, strict=True)]
+        solved = [replace(one, error=one.error + doubt + unmodelled(case, one)) for one, doubt in zip(solved, away, strict=True)]
     else:
         solved = [replace(one, error=None) for one in solved]
     return solved if case.several else solved[0]

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.damage.crack import Crack, check_apart
+from ..geometry.damage.hollow import doubts_together
 from ..geometry.damage.kinds import Damage, by_side, split, why_wide
 from ..geometry.pair.flanks import Misalignment, flank_forms
 from ..geometry.pair.gear_pair import GearPair
@@ -290,10 +291,17 @@ def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Crack, ...], ...],
     """What weakens pinion and wheel (cracks) and takes their contact away (pits, spalls), numbered in each gear's own frame."""
     cracks, pits = [], []
     for (_, sense), gear, defects in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
-        for text in filter(None, (defect.doubts(gear) for defect in defects)):
+        hollows = [[one for one in split(defects)[1] if (one.tooth, one.side) == place] for place in _flanks(defects)]
+        together = (doubts_together(gear, found) for found in hollows)
+        for text in filter(None, (*(defect.doubts(gear) for defect in defects), *together)):
             warnings.warn(text, stacklevel=5)
         weakens, removes = split(replace(defect, tooth=sense * defect.tooth) for defect in defects)
         check_apart(gear, split(defects)[0])
         cracks.append(weakens)
         pits.append(removes)
     return tuple(cracks), tuple(pits)
+
+
+def _flanks(defects):
+    """Tooth and side of the flanks with hollows."""
+    return dict.fromkeys((one.tooth, one.side) for one in split(defects)[1])

@@ -37,7 +37,7 @@ def _logarithmic(arc, places, least):
     return np.minimum(arc - middle, 0.0) + np.log((tip - middle + least) / left)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class SeamFaces:
     """The faces of all cracks of a gear, pair of facing nodes by pair.
 
@@ -71,7 +71,7 @@ class SeamFaces:
         return out
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Flexibility:
     """Flexibility of one gear between simultaneous contacts, local contact excluded.
 

@@ -26,7 +26,7 @@ NEAREST = 0.01
 OFFSET = 0.2  # added to the distance to the tip corner before its logarithm is taken [m_n]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Flexibility3D:
     """Flexibility of one gear between loads anywhere on its loaded flanks, the half-space's part on the same flank left out.
 
@@ -98,7 +98,7 @@ class Flexibility3D:
         return out
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Faces:
     """Points at which the faces of cracks may touch, k of them.
 

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from ..flexibility.hertz import contact_modulus
 from .balance import Problem, balance
 from .case import PlanetaryCase
+from .crack_contacts import crack_contacts
+from .cracked import Faces
 from .meshes import Met
 from .rim import Rim
 from .standing import Standing, directions
@@ -18,15 +20,15 @@ class Bodies(NamedTuple):
     """How gears yield between meshes [mm per N/mm]: tables of `gearfe.planetary_sets.whole_gear`.
 
     `sun` and `ring` ``(z, PLACES, z, PLACES)`` between right flanks, `planet` ``(z, PLACES, PLACES)`` of a right flank by loads
-    on a left one so many teeth before it, `rim` what the ring's support adds. `planets` ``(z, PLACES, z, PLACES)`` of a right
-    flank by left ones, of planets with cracks, by their number.
+    on a left one so many teeth before it, `rim` what the ring's support adds. All of them are those of gears without cracks;
+    `faces` are the cracks, by the gear's name as of `PlanetaryCase`.
     """
 
     sun: NDArray[np.float64]
     planet: NDArray[np.float64]
     ring: NDArray[np.float64]
     rim: Rim
-    planets: dict[int, NDArray[np.float64]]
+    faces: dict[Any, Faces]
 
 
 class Position(NamedTuple):
@@ -36,7 +38,8 @@ class Position(NamedTuple):
     mesh beyond the first touch, the part that the ring's support gives way, and how far from each other flanks and pins off
     their places leave the mesh without load. `turn` of the sun, its motion `orbit` (x, y) [mm].
     `pairs` are (inner, planet, number of the pair beyond the newest, pinion's tooth, line load). `on_ring` ``(z, PLACES)`` are
-    the loads on the ring, `lugs` those of its lugs, `whole` ``(3,)`` the motion of a ring on lugs.
+    the loads on the ring, `lugs` those of its lugs, `whole` ``(3,)`` the motion of a ring on lugs, `opened` ``(e,)`` the openings
+    of its cracks. `shut`: whether faces of a crack touch.
     """
 
     loads: NDArray[np.float64]
@@ -49,6 +52,8 @@ class Position(NamedTuple):
     on_ring: NDArray[np.float64]
     lugs: NDArray[np.float64]
     whole: NDArray[np.float64]
+    opened: NDArray[np.float64]
+    shut: bool
 
 
 class _Block(NamedTuple):
@@ -81,12 +86,20 @@ class Set:
         """`Position` i from what its meshes are."""
         blocks = self._blocks(met)
         problem = self._problem(blocks)
+        cracks = crack_contacts(self.bodies.faces, blocks, problem.gap.size, self._lugs, apart=not self.coupled)
+        if cracks is None:
+            return self._read(blocks, *balance(problem), problem)
+        problem = problem._replace(flexibility=problem.flexibility + cracks.more)
         force, motion = balance(problem)
-        shut = [block for block in blocks if block.met.contacts.closed(force[block.at])]
-        if shut:
-            force, motion = balance(_with_faces(problem, shut))
-            force = force[: problem.gap.size]
-        return self._read(blocks, force, motion, problem)
+        opened, shut = cracks.by_loads @ force, False
+        if cracks.overlap(opened):
+            shut, faces = True, cracks.by_loads[cracks.touch]
+            total = np.block([[problem.flexibility, faces.T], [faces, cracks.ease[np.ix_(cracks.touch, cracks.touch)]]])
+            still = np.zeros((faces.shape[0], problem.closing.shape[1]))
+            force, motion = balance(problem.with_more(total, np.vstack([problem.closing, still])))
+            force, pressed = force[: problem.gap.size], force[problem.gap.size :]
+            opened = cracks.by_loads @ force + cracks.ease[:, cracks.touch] @ pressed
+        return self._read(blocks, force, motion, problem, opened[cracks.ring], shut)
 
     def _blocks(self, met):
         out, stop = [], 0
@@ -131,10 +144,7 @@ class Set:
             own = bodies.sun[np.ix_(rows, range(PLACES), columns, range(PLACES))]
         elif a.planet == b.planet:
             side, z = (1, 0), gears.planet.z
-            if a.planet in bodies.planets:
-                own = bodies.planets[a.planet][np.ix_(a.teeth[1] % z, range(PLACES), b.teeth[0] % z, range(PLACES))]
-            else:
-                own = bodies.planet[(a.teeth[1][:, None] - b.teeth[0]) % z].transpose(0, 2, 1, 3)
+            own = bodies.planet[(a.teeth[1][:, None] - b.teeth[0]) % z].transpose(0, 2, 1, 3)
         else:
             return None
         rows, columns = a.spread[side[0]], b.spread[side[1]]
@@ -170,7 +180,7 @@ class Set:
 
     @property
     def _lugs(self):
-        return self.bodies.rim.lug.shape[0] if self.coupled else 0
+        return self.bodies.rim.lug.shape[0]
 
     @property
     def _motions(self):
@@ -202,7 +212,7 @@ class Set:
         closing[:, -3:] = -np.concatenate([moves, rim.turns], axis=1).T
         return problem.with_more(np.block([[problem.flexibility, across.T], [across, rim.lug]]), closing)
 
-    def _read(self, blocks, force, motion, problem):
+    def _read(self, blocks, force, motion, problem, opened=(), shut=False):
         """`Position` from forces and motions."""
         case, z = self.case, self.case.gears.ring.z
         loads, closing, rim, gap = np.zeros((4, 2, case.planets))
@@ -214,7 +224,9 @@ class Set:
                 np.add.at(on_ring, one.teeth[1] % z, (force[one.at] @ one.spread[1]).reshape(-1, PLACES))
         moved = np.einsum("kpd,kp->pd", self.push, loads) * give
         back = np.einsum("kpd,pd->kp", self.push, moved) + self.behind
-        released = np.einsum("tapb,pb->ta", self.bodies.rim.more, on_ring) if self.coupled else np.zeros_like(on_ring)
+        released = np.einsum("tapb,pb->ta", self.bodies.rim.more, on_ring)
+        if len(opened):
+            released += np.einsum("e,eta->ta", opened, self.bodies.faces["ring"].released)
         for one in blocks:
             own = force[one.at]
             way = self._closing(one) @ motion - back[one.inner, one.planet]
@@ -231,25 +243,10 @@ class Set:
                 pairs.append((one.inner, one.planet, order + one.met.newest, tooth, float(own[orders == order].sum())))
         orbit = motion[1:3] if case.floating else np.zeros(2)
         lugs, whole = (force[-self._lugs :], motion[-3:]) if self._lugs else (np.zeros(0), np.zeros(3))
-        return Position(loads, closing, rim, gap, float(motion[0]), orbit, pairs, on_ring, lugs, whole)
+        return Position(loads, closing, rim, gap, float(motion[0]), orbit, pairs, on_ring, lugs, whole, np.array(opened), shut)
 
     def _by_lugs(self, one, force):
         """What lugs move the ring at the contacts of a mesh."""
         rim, lugs = self.bodies.rim, self._lugs
         teeth = one.teeth[1] % self.case.gears.ring.z
         return one.spread[1] @ (rim.across[:, teeth].reshape(lugs, -1).T @ force[-lugs:])
-
-
-def _with_faces(problem, shut):
-    """The problem with the faces of cracks that would overlap as contacts among themselves."""
-    n, m = problem.gap.size, sum(one.met.contacts.faces.shape[0] for one in shut)
-    total = np.zeros((n + m, n + m))
-    total[:n, :n], stop = problem.flexibility, n
-    tilt = problem.tilt.copy()
-    for one in shut:
-        at = slice(stop, stop := stop + one.met.contacts.faces.shape[0])
-        total[at, at] = one.met.contacts.faces
-        tilt[one.at] = 0.0  # it is that of open cracks
-        total[one.at, at], total[at, one.at] = one.met.contacts.opening, one.met.contacts.opening.T
-    closing = np.vstack([problem.closing, np.zeros((m, problem.closing.shape[1]))])
-    return problem._replace(tilt=tilt).with_more(total, closing)

@@ -77,11 +77,12 @@ def _settled(problem, active, unit, most, at_once):
         free = problem.flexibility @ np.maximum(new, 0.0) + problem.gap - problem.closing @ motion
         pulls, overlaps = active & (new < 0), ~active & (free < -ROUNDING * np.abs(free).max())
         flips = pulls | overlaps
-        if not flips.any() and np.abs(new - force).max() < SETTLED * unit:
+        carried = np.where(active, np.maximum(new, floor), 0.0)  # a face without any load has a force of exactly 0
+        if not flips.any() and np.abs(carried - force).max() < SETTLED * unit:
             return new, motion
         if not at_once:  # first what pulls, then what overlaps
             flips &= np.arange(new.size) == np.argmin(np.where(pulls, new, 0.0) if pulls.any() else np.where(overlaps, free, 0.0))
-        force = np.where(active & ~flips & (new > 0), new, floor)
+        force = np.where(flips, floor, carried)
         active = active ^ flips
         force = np.where(active, force, 0.0)
     return None

@@ -54,8 +54,8 @@ class PlanetaryCase:
         tooth 0 of the sun meets tooth 0 of planet 0, see `gearfe.planetary_sets.standing`.
     damage : dict, optional
         Lists of cracks through the whole width ``{"sun": [Crack(...)], ...}``, by the same names. The loaded side of a planet's
-        tooth is the one that the sun loads. One crack to a side of a tooth. In what a gear feels of its other meshes, and in how
-        a ring bends, faces of cracks are free; in the mesh that loads their tooth they do not pass through each other.
+        tooth is the one that the sun loads. One crack to a side of a tooth. Faces of cracks do not pass through each other under
+        all loads of the set together. They slide without friction.
 
     Raises
     ------

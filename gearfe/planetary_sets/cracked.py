@@ -1,150 +1,116 @@
-"""A gear with cracks as its healthy self with some sectors exchanged: how its teeth and its rim move each other.
+"""Cracks of a gear as openings of their faces: what they do to all its teeth, and how the faces push each other apart.
 
-A cracked sector differs from a healthy one by D in the stiffness of its sides and held edge, and by what its loads q put there.
-With v the unknowns of all sectors, E those that the cracked sectors touch, and K the healthy block-circulant stiffness::
+A gear with all faces held together is the healthy gear. Openings d of the faces act on it as forces on the sides of the cracked
+sectors. With v the unknowns of all sectors, K the healthy block-circulant stiffness, E those of the cracked sectors, loads f of
+the teeth, and forces r that push the faces apart::
 
-    (K + E D E') v = f    =>    w = E' v = (I + G D)^-1 E' K^-1 f,    v = K^-1 (f - E D w),    G = E' K^-1 E
+    K v = B f - E K_vd d,    r = S d - Q f,    S = K_dd - K_vd' E' K^-1 E K_vd,    u = C f + Q' d
 
-so that a healthy gear, solved once, and a small matrix give any cracked one exactly. Of a ring that nothing holds, K^-1 is
-without the motion of the whole, which D does not resist. The faces of the cracks are taken as free.
+so that the healthy gear, solved once, and one solve for each opening give any cracked one exactly. C is the healthy flexibility.
+Open faces have r = 0; faces in touch push each other along their normal and slide without friction.
 """
 
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from ..geometry.mesh.periodic_sector import periodic_sector
 from .whole_gear import PLACES, WholeGear, in_chain, sector_stiffness
 
 
-class Cracks(NamedTuple):
-    """Cracked teeth of a gear: D ``(c, N, N)`` and q ``(c, N, 2 PLACES)`` of each, N unknowns: a sector's, the next one's side.
+class CrackedTooth(NamedTuple):
+    """Openings (e of them) of the facing nodes in a tooth: along their normals, then along the faces.
 
-    `side` are the places of a side among the unknowns of a sector.
+    `sides` ``(N, e)`` are the forces on the N unknowns of the sector and of the next one's side by unit openings, `faces`
+    ``(e, e)`` those on the faces; `loads` ``(e, 2 PLACES)`` the openings' part in the work of the tooth's loads. `touch` are the
+    openings that cannot be negative, `side` the places of a side among the unknowns of a sector.
     """
 
-    whole: WholeGear
-    teeth: tuple[int, ...]
-    softer: NDArray[np.float64]
-    loads: NDArray[np.float64]
+    tooth: int
     side: NDArray[np.int64]
+    sides: NDArray[np.float64]
+    faces: NDArray[np.float64]
+    loads: NDArray[np.float64]
+    touch: NDArray[np.bool_]
 
 
-class Cracked(NamedTuple):
-    """A cracked gear under unit loads on its teeth ``(z, 2 PLACES)``: n unknowns of all c cracked sectors together.
+class Faces(NamedTuple):
+    """All e openings of a gear's cracks, as what holds its edge lets them: S, Q of the module.
 
-    `table` ``(z, 2 PLACES, z, 2 PLACES)`` displacements of the loads as of `WholeGear.held`; `reached` ``(n, z, 2 PLACES)`` of
-    the cracked sectors; `solve` ``(n, n)`` is ``(I + G D)^-1``.
+    `stiffness` S ``(e, e)``; `by_teeth` Q ``(e, z, 2 PLACES)``; `touch` ``(e,)`` which of them cannot be negative; `edge`
+    ``(z, r, e)`` displacements of the held edge by unit openings. Of a ring on p pads `pads` ``(p, e)`` are theirs, and
+    `released` ``(e, z, PLACES)`` is what its support adds to Q.
     """
 
-    cracks: Cracks
-    green: NDArray[np.float64]
-    table: NDArray[np.float64]
-    reached: NDArray[np.float64]
-    solve: NDArray[np.float64]
-
-
-def cracks_of(whole: WholeGear, found: Any, refine: float) -> Cracks:
-    """`Cracks` of a gear from a sequence of `Crack`, their teeth counted clockwise."""
-    healthy = periodic_sector(whole.gear, refine=refine)
-    own, next_, side = in_chain(healthy)
-    order = np.concatenate([own, next_])
-    plain = sector_stiffness(healthy, whole.material)[0]
-    teeth = tuple(sorted({crack.tooth % whole.gear.z for crack in found}))
-    softer, loads = [], []
-    for tooth in teeth:
-        hurt = [crack for crack in found if crack.tooth % whole.gear.z == tooth]
-        matrix, push, _ = sector_stiffness(periodic_sector(whole.gear, hurt, refine=refine), whole.material)
-        softer.append((matrix - plain)[np.ix_(order, order)])
-        loads.append(push[order])
-    return Cracks(whole, teeth, np.array(softer), np.array(loads), side)
-
-
-def cracked(cracks: Cracks, inverse: NDArray[np.complex128]) -> Cracked:
-    """`Cracked` from the inverses ``(h, n, n)`` of the healthy gear's harmonics, as what holds its edge makes them."""
-    whole, z = cracks.whole, cracks.whole.gear.z
-    green = np.fft.irfft(inverse, n=z, axis=0)
-    pushed = np.fft.irfft(inverse @ whole.push, n=z, axis=0)
-    own = np.fft.irfft(np.conj(whole.push.transpose(0, 2, 1)) @ inverse @ whole.push, n=z, axis=0)
-    among = np.block([[_between(green, cracks.side, (a - b) % z) for b in cracks.teeth] for a in cracks.teeth])
-    softer, q = _blocks(cracks)
-    solve = np.linalg.inv(np.eye(among.shape[0]) + among @ softer)
-    reach = _reached(cracks, pushed, np.arange(z))
-    reach[:, list(cracks.teeth)] = np.einsum("ij,jtp->itp", among, q)
-    after = np.einsum("ij,jtp->itp", solve, reach)
-    apart = (np.arange(z)[:, None] - np.arange(z)) % z
-    table = own[apart].transpose(0, 2, 1, 3) - np.einsum("itp,ij,juq->tpuq", reach, softer, after, optimize=True)
-    rows = np.einsum("itp,iuq->tpuq", q, after, optimize=True)
-    table[list(cracks.teeth)] = rows
-    table[:, :, list(cracks.teeth)] = rows.transpose(2, 3, 0, 1)
-    return Cracked(cracks, green, table, after, solve)
-
-
-def _between(green, side, d):
-    """Displacement ``(N, N)`` of a sector's and its next one's side by forces on those of a sector d before it."""
-    z = green.shape[0]
-    back, ahead = green[(d - 1) % z][:, side], green[(d + 1) % z][side]
-    return np.block([[green[d], back], [ahead, green[d][np.ix_(side, side)]]])
-
-
-def _reached(cracks, moved, sources):
-    """Unknowns of the cracked sectors ``(n, sources, loads)`` in displacements ``(z, n, loads)`` by loads on sector 0."""
-    z = cracks.whole.gear.z
-    parts = []
-    for tooth in cracks.teeth:
-        parts += [moved[(tooth - sources) % z], moved[(tooth + 1 - sources) % z][:, cracks.side]]
-    return np.concatenate(parts, axis=1).transpose(1, 0, 2)
-
-
-class OnPads(NamedTuple):
-    """What cracks of a ring change of its pads, p of them: added to how they move each other ``(p, p)``, and to `by_teeth`."""
-
-    among: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
     by_teeth: NDArray[np.float64]
-    moved: "Moved"
-
-
-class Moved(NamedTuple):
-    """Forces on the n unknowns of cracked sectors of the healthy ring that stand for the cracks, and how its edge moves.
-
-    `teeth` are those whose loads these forces replace; `by_loads` ``(n, z, PLACES)``, `by_pads` ``(n, p)``, and `edge` ``(z, r,
-    n)`` the displacement of the edge.
-    """
-
-    teeth: tuple[int, ...]
-    by_loads: NDArray[np.float64]
-    by_pads: NDArray[np.float64]
+    touch: NDArray[np.bool_]
     edge: NDArray[np.float64]
+    pads: NDArray[np.float64]
+    released: NDArray[np.float64]
 
 
-def on_pads(of: Cracked, inverse: NDArray[np.complex128], load: NDArray[np.float64], before: NDArray[np.float64]) -> OnPads:
-    """`OnPads` of nodal forces `load` ``(z, r, p)`` of the pads, which teeth moved by `before` ``(p, z, PLACES)``."""
-    whole, cracks, z = of.cracks.whole, of.cracks, of.cracks.whole.gear.z
-    r, size = whole.edge, of.solve.shape[0]
-    softer, q = _blocks(cracks)
-    waves = inverse[:, :, :r] @ np.fft.rfft(load, axis=0)
-    field = np.fft.irfft(waves, n=z, axis=0)
-    reach = np.concatenate([part for tooth in cracks.teeth for part in (field[tooth], field[(tooth + 1) % z][cracks.side])])
-    after = of.solve @ reach
-    among = -reach.T @ softer @ after
-    teeth = before - np.einsum("ip,ij,jta->pta", reach, softer, of.reached[:, :, :PLACES], optimize=True)
-    teeth[:, list(cracks.teeth)] = np.einsum("ica,ip->pca", q[:, :, :PLACES], after)
-    by_loads = -np.einsum("ij,jta->ita", softer, of.reached[:, :, :PLACES])
-    by_loads[:, list(cracks.teeth)] += q[:, :, :PLACES]
-    edge = np.zeros((z, r, size))
-    for k, tooth in enumerate(cracks.teeth):
-        at, step = k * cracks.loads.shape[1], whole.stiffness.shape[1]
-        edge[:, :, at : at + step] = of.green[(np.arange(z) - tooth) % z, :r]
-        edge[:, :, at + step : at + cracks.loads.shape[1]] = of.green[(np.arange(z) - tooth - 1) % z, :r][:, :, cracks.side]
-    return OnPads((among + among.T) / 2, teeth, Moved(cracks.teeth, by_loads, -softer @ after, edge))
+def cracked_teeth(whole: WholeGear, cracks: Any, refine: float) -> tuple[CrackedTooth, ...]:
+    """`CrackedTooth` by tooth, from a sequence of `Crack`, their teeth counted clockwise."""
+    own, next_, side = in_chain(periodic_sector(whole.gear, refine=refine))
+    order = np.concatenate([own, next_])
+    out = []
+    for tooth in sorted({crack.tooth % whole.gear.z for crack in cracks}):
+        sector = periodic_sector(whole.gear, [one for one in cracks if one.tooth % whole.gear.z == tooth], refine=refine)
+        pairs, normal, touch = _pairs(sector.mesh, sector.seams)
+        matrix, load, _ = sector_stiffness(sector, whole.material, pairs)
+        out.append(CrackedTooth(tooth, side, *_opened(matrix, load, normal, order), touch))
+    return tuple(out)
 
 
-def _blocks(cracks):
-    """D ``(n, n)`` and q ``(n, c, 2 PLACES)`` of all cracked sectors together."""
-    count, size = cracks.loads.shape[:2]
-    softer, q = np.zeros((count * size,) * 2), np.zeros((count * size, count, cracks.loads.shape[2]))
-    for k in range(count):
-        at = slice(k * size, (k + 1) * size)
-        softer[at, at], q[at, k] = cracks.softer[k], cracks.loads[k]
-    return softer, q
+def _pairs(mesh, seams):
+    """Facing nodes ``(2, m)`` of all cracks without their tips, normals ``(2, m)``, and which openings ``(2 m,)`` may touch.
+
+    The pair beside a tip lies at a quarter of its edge and is left out, as in `gearfe.elements.fe`.
+    """
+    pairs = np.hstack([faces[:, :-1] for faces in seams])
+    ahead = np.hstack([np.gradient(mesh.doflocs[:, faces[0]], axis=1)[:, :-1] for faces in seams])
+    touch = np.concatenate([np.arange(faces.shape[1] - 1) < faces.shape[1] - 2 for faces in seams])
+    return pairs, np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead), np.append(touch, np.zeros(touch.size, dtype=bool))
+
+
+def _opened(matrix, load, normal, order):
+    """`sides`, `faces` and `loads` of `CrackedTooth` from what `sector_stiffness` gives with facing nodes.
+
+    One face moves by u, the other by u less the openings; u is eliminated.
+    """
+    m, n = normal.shape[1], order.size
+    x, y, k = 2 * np.arange(m), 2 * np.arange(m) + 1, np.arange(m)
+    apart = np.zeros((2 * m, 2 * m))
+    apart[x, k], apart[y, k] = normal
+    apart[x, m + k], apart[y, m + k] = -normal[1], normal[0]
+    to = block_diag(np.eye(n), np.vstack([np.eye(2 * m)] * 2))
+    to = np.hstack([to, np.vstack([np.zeros((n + 2 * m, 2 * m)), -apart])])
+    total, forces = to.T @ matrix @ to, to.T @ load
+    gone, kept = np.arange(n, n + 2 * m), np.append(order, np.arange(n + 2 * m, n + 4 * m))
+    through = np.linalg.solve(total[np.ix_(gone, gone)], np.hstack([total[gone][:, kept], forces[gone]]))
+    rest = np.hstack([total[np.ix_(kept, kept)], forces[kept]]) - total[np.ix_(kept, gone)] @ through
+    return rest[:n, n : n + 2 * m], rest[n:, n : n + 2 * m], rest[n:, n + 2 * m :]
+
+
+def faces_of(whole: WholeGear, teeth: tuple[CrackedTooth, ...], inverse: NDArray[np.complex128]) -> Faces:
+    """`Faces` from the inverses ``(h, n, n)`` of the healthy gear's harmonics, as what holds its edge makes them."""
+    z, n = whole.gear.z, whole.stiffness.shape[1]
+    ends = np.cumsum([0, *(one.faces.shape[0] for one in teeth)])
+    parts = [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    force = np.zeros((z, n, ends[-1]))
+    for one, at in zip(teeth, parts, strict=True):
+        force[one.tooth, :, at] -= one.sides[:n]
+        force[(one.tooth + 1) % z, one.side, at] -= one.sides[n:]
+    waves = inverse @ np.fft.rfft(force, axis=0)
+    moved = np.fft.irfft(waves, n=z, axis=0)
+    by_teeth = np.fft.irfft(np.conj(whole.push.transpose(0, 2, 1)) @ waves, n=z, axis=0).transpose(2, 0, 1)
+    stiffness = block_diag(*(one.faces for one in teeth))
+    for one, at in zip(teeth, parts, strict=True):
+        stiffness[at] += one.sides[:n].T @ moved[one.tooth] + one.sides[n:].T @ moved[(one.tooth + 1) % z, one.side]
+        by_teeth[at, one.tooth] += one.loads
+    touch = np.concatenate([one.touch for one in teeth])
+    none = np.zeros((0, ends[-1])), np.zeros((ends[-1], z, PLACES))
+    return Faces((stiffness + stiffness.T) / 2, by_teeth, touch, moved[:, : whole.edge], *none)

@@ -11,7 +11,6 @@ from ..core.files import save
 from ..core.units import NEWTON_PER_UM
 from ..figures.set_plot import draw_curves
 from .rim import rim_angles, rim_moved
-from .rim_supports import RimSupports
 from .set_file import MESHES, content
 
 if TYPE_CHECKING:
@@ -55,7 +54,9 @@ class SetCurves:
     ring_moved : ndarray, shape (p, n, 2)
         Their displacements, outwards and clockwise [m].
     meta : dict
-        ``"case"``: the `PlanetaryCase`; ``"seconds_flexibility"``, ``"seconds_contact"``: time taken [s].
+        ``"case"``: the `PlanetaryCase`. ``"error"``: the relative errors that `set_error` estimates, if asked for. ``"left_out"``
+        ``(2, planets)``: part of k that the model of contact may be off by where tips touch off the path of contact. ``"shut"``:
+        positions at which faces of a crack touch. ``"seconds_flexibility"``, ``"seconds_contact"``: time taken [s].
     """
 
     position: NDArray[np.float64]
@@ -112,7 +113,9 @@ class SetCurves:
             np.array([getattr(one, name) for one in found]).transpose(1, 0, 2) for name in ("loads", "closing", "rim", "gap")
         )
         even = case.force / width
-        alone = np.array([[[meshes.alone(i, k, j, even) for j in range(n)] for i in range(p)] for k in (0, 1)])
+        alone, left_out = np.array(
+            [[[meshes.alone(i, k, j, even) for j in range(n)] for i in range(p)] for k in (0, 1)]
+        ).transpose(3, 0, 1, 2)
         orders = np.array(sorted({pair[2] for one in found for pair in one.pairs}))
         pair_force, tooth = np.zeros((2, p, n, orders.size)), np.full((2, p, n, orders.size), -1)
         teeth = case.gears.sun.z, case.gears.planet.z
@@ -123,23 +126,28 @@ class SetCurves:
         carries = loads > 0
         k = np.where(carries, loads * width / np.where(carries, closing * 1e-3, 1.0), 0.0)
         angle, moved = _rim_of(of, found)
+        marks = {"shut": [at for at, one in zip(position.tolist(), found, strict=True) if one.shut]}
         return cls(
             position, loads * width, k, even * width / (alone * 1e-3), rim * 1e-3, gap * 1e-3,
             np.array([one.turn for one in found]) * 1e-3, np.array([one.orbit for one in found]) * 1e-3,
-            pair_force, tooth, orders, angle, moved * 1e-3, {"case": case} | meta,
+            pair_force, tooth, orders, angle, moved * 1e-3, {"case": case, "left_out": left_out.max(axis=1)} | marks | meta,
         )  # fmt: skip
 
 
 def _rim_of(of, found):
     """Angles and displacements [mm] of the rim of a ring on supports."""
     rim = of.bodies.rim
-    if not (of.coupled and isinstance(of.case.ring, RimSupports)):
+    if rim.pads is None:
         return np.zeros(0), np.zeros((len(found), 0, 2))
-    moved = []
+    moved, faces, p = [], of.bodies.faces.get("ring"), rim.reaction.shape[0]
     for one in found:
         if of.case.ring.pushes:
             tractions, whole = one.lugs, one.whole
         else:
             tractions, whole = (np.einsum("pta,ta->p", values, one.on_ring) for values in (rim.reaction, rim.moves))
-        moved.append(rim_moved(rim, one.on_ring, tractions, whole))
+            if faces:
+                gripped = rim.grip @ (faces.pads @ one.opened)
+                tractions, whole = tractions + gripped[:p], whole + gripped[p:]
+        by_cracks = (faces.edge @ one.opened).reshape(-1, 2) if faces else 0.0
+        moved.append(rim_moved(rim, one.on_ring, tractions, whole) + by_cracks)
     return rim_angles(rim.whole), np.array(moved)

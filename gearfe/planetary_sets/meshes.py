@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
 
 from ..contact.kinks import kink_rows, near_kink
-from ..contact.pair_contact import KINK, PairContact, _closing
+from ..contact.pair_contact import KINK, PairContact
 from ..contact.rows import Wanted
 from ..contact.sliding import bounded
 from ..flexibility.energy.ritz.plane import flexibility
+from ..flexibility.section_contact import Solved
 from ..geometry.pair.contacts import near_pitches
 from .faults import faults
 from .standing import DIGITS, Standing
@@ -29,8 +29,8 @@ class Contacts(NamedTuple):
 
     `flexibility` ``(n, n)`` of both gears [mm per N/mm], `gap` [mm], `coefficient`, `radius` and `tilt` as of
     `gearfe.contact.sharing.line_contact`; places `roll_1`, `roll_2` [mm] and torques `turn_1`, `turn_2` on both gears as of
-    `gearfe.contact.rows.Row`; `order` of their pairs. `opening` ``(n, m)`` of cracks under unit loads and `faces` ``(m, m)``
-    under unit forces, None without cracks. `least` is the gap of the first touch.
+    `gearfe.contact.rows.Row`; `order` of their pairs. `least` is the gap of the first touch; all are contacts that an approach of
+    up to `reach` beyond it may close.
     """
 
     flexibility: NDArray[np.float64]
@@ -43,13 +43,8 @@ class Contacts(NamedTuple):
     turn_1: NDArray[np.float64]
     turn_2: NDArray[np.float64]
     order: NDArray[np.int64]
-    opening: NDArray[np.float64] | None
-    faces: NDArray[np.float64] | None
     least: float
-
-    def closed(self, force: NDArray[np.float64]) -> bool:
-        """Whether faces of cracks overlap under forces ``(n,)``."""
-        return self.opening is not None and bool(_closing(force @ self.opening))
+    reach: float
 
 
 class Mesh:
@@ -57,21 +52,20 @@ class Mesh:
 
     def __init__(self, contact: PairContact) -> None:
         self.contact = contact
-        self._found: dict[tuple[int, float], Contacts] = {}
-        self._alone: tuple[float, NDArray[np.float64]] | None = None
+        self._found: dict[tuple[int, float, float], Contacts] = {}
+        self._alone: tuple[float, Solved] | None = None
 
-    def at(self, wanted: list[int], line_load: float) -> list[Contacts]:
-        """Contacts at phases by their number, as many as a load of about `line_load` [N/mm] may close."""
-        new = sorted({i for i in wanted if (i, line_load) not in self._found})
-        if new:
-            solved = _contacts(self.contact, new, line_load)
-            self._found |= {(i, line_load): contacts for i, contacts in zip(new, solved, strict=True)}
-        return [self._found[i, line_load] for i in wanted]
+    def at(self, i: int, line_load: float, reach: float) -> Contacts:
+        """Contacts at a phase by its number, as many as a load of about `line_load` [N/mm] may close, or an approach [mm]."""
+        key = i, line_load, reach
+        if key not in self._found:
+            self._found[key] = _contacts(self.contact, i, line_load, reach)
+        return self._found[key]
 
-    def alone(self, line_load: float) -> NDArray[np.float64]:
-        """How far a load alone closes the pair ``(phases,)`` [mm]."""
+    def alone(self, line_load: float) -> Solved:
+        """The pair under a load of its own."""
         if self._alone is None or self._alone[0] != line_load:
-            self._alone = line_load, self.contact.solve(line_load).closing
+            self._alone = line_load, self.contact.solve(line_load)
         return self._alone[1]
 
 
@@ -86,8 +80,8 @@ class Met(NamedTuple):
 class Meshes:
     """All meshes of a case at the positions of a `Standing`; equal planets share what they have in common."""
 
-    def __init__(self, case: Any, stand: Standing, refine: float, cache: Any) -> None:
-        self.case, self._options = case, {"refine": refine, "cache": cache}
+    def __init__(self, case: Any, stand: Standing, options: dict[str, Any]) -> None:
+        self.case, self._options = case, options
         self._phases = (stand.outer, stand.inner)
         self._firsts = (stand.planet, stand.ring)
         self._mesh: dict[Any, tuple[Mesh, dict[float, int]]] = {}
@@ -97,19 +91,20 @@ class Meshes:
         differs = faults(self.case, bool(inner), planet, int(self._firsts[inner][planet]))[2]
         return inner, planet, differs, None if differs else self.case.flanks.get(("planet", planet))
 
-    def at(self, i: int, loads: NDArray[np.float64]) -> list[list[Met]]:
-        """`Met` of all meshes at position i by ``[inner][planet]``, made for loads ``(2, planets)`` [N/mm]."""
-        return [[self._met(i, k, p, float(loads[k, p])) for p in range(self.case.planets)] for k in (0, 1)]
+    def at(self, i: int, loads: NDArray[np.float64], reach: NDArray[np.float64]) -> list[list[Met]]:
+        """`Met` of all meshes at position i by ``[inner][planet]``, for loads [N/mm] and approaches [mm] ``(2, planets)``."""
+        return [[self._met(i, k, p, float(loads[k, p]), float(reach[k, p])) for p in range(self.case.planets)] for k in (0, 1)]
 
-    def _met(self, i, inner, planet, load):
+    def _met(self, i, inner, planet, load, reach):
         mesh, number, phase, whole = self._of(i, inner, planet)
         first = 0 if self._kind[inner, planet][2] else -whole
-        return Met(mesh.at([number[phase]], load)[0], first, whole if self._kind[inner, planet][2] else 0)
+        return Met(mesh.at(number[phase], load, reach), first, whole if self._kind[inner, planet][2] else 0)
 
-    def alone(self, i: int, inner: int, planet: int, load: float) -> float:
-        """How far a line load alone closes the pair of a mesh [mm]."""
+    def alone(self, i: int, inner: int, planet: int, load: float) -> tuple[float, float]:
+        """How far a line load alone closes the pair of a mesh [mm], and which part of it the model of contact may be off by."""
         mesh, number, phase, _ = self._of(i, inner, planet)
-        return float(mesh.alone(load)[number[phase]])
+        solved = mesh.alone(load)
+        return float(solved.closing[number[phase]]), float(solved.left_out[number[phase]])
 
     def _of(self, i, inner, planet):
         """`Mesh`, its phases' numbers, phase, and whole cycles of tooth 0 at position i."""
@@ -146,22 +141,22 @@ def near_load(line_load: float, unit: float) -> float:
     return float(unit * np.exp(step * round(np.log(max(line_load, 1e-3 * unit) / unit) / step)))
 
 
-def _contacts(contact: Any, phases: list[int], line_load: float) -> list[Contacts]:
-    """`Contacts` at some phases, chosen as `PairContact.solve` does."""
+def _contacts(contact: Any, i: int, line_load: float, reach: float) -> Contacts:
+    """`Contacts` at phase i, chosen as `PairContact.solve` does; `reach` is the least approach [mm] that they are chosen for."""
     candidates, tilt = contact.found, bounded(contact, line_load)
     least = candidates.gap.min(axis=1)
-    reach = contact._reach(line_load)
-    possible = candidates.gap - least[:, None] < reach[:, None]
+    reaches = np.maximum(contact._reach(line_load), reach)
+    possible = candidates.gap - least[:, None] < reaches[:, None]
     corner, zone, width = contact.corners(line_load, possible)
     kink = near_kink(contact, line_load) & possible & (corner == 0)
-    asked = np.zeros(possible.shape, dtype=bool)
-    asked[phases] = True
-    finest, at = contact.finest(line_load), np.argwhere((corner > 0) & asked).tolist()
-    rows = contact.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), finest, float(width[i, k])) for i, k in at])
-    rows = dict(zip(map(tuple, at), rows, strict=True)) | kink_rows(contact, np.argwhere(kink & asked), line_load)
+    finest, at = contact.finest(line_load), np.flatnonzero(corner[i]).tolist()
+    rows = contact.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), finest, float(width[i, k])) for k in at])
+    here = np.zeros_like(kink)
+    here[i] = kink[i]
+    rows = dict(zip([(i, k) for k in at], rows, strict=True)) | kink_rows(contact, np.argwhere(here), line_load)
     corner = np.where(kink, KINK, corner)
-    sets = contact.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in phases], rows, tilt)
-    return [_one(contact, i, built, rows, possible[i], least[i], reach[i]) for i, built in zip(phases, sets, strict=True)]
+    (built,) = contact.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near])], rows, tilt)
+    return _one(contact, i, built, rows, possible[i], least[i], reaches[i])
 
 
 def _one(contact, i, built, rows, possible, least, reach):
@@ -175,13 +170,11 @@ def _one(contact, i, built, rows, possible, least, reach):
             places.append([row.roll_1, row.roll_2, row.turn_1, row.turn_2])
     values = np.hstack([np.reshape(place, (4, -1)) for place in places])
     near = built["gap"] - least <= reach
-    seams = [flexible.seam for flexible in contact.flexibility if flexible.seam]
     return Contacts(
         built["flexibility"][np.ix_(near, near)],
         *(built[name][near] for name in ("gap", "coefficient", "radius", "tilt")),
         *values[:, near],
         candidates.order[built["column"][near]],
-        built["opening"][near] if seams else None,
-        block_diag(*(seam.influence for seam in seams)) if seams else None,
         float(least),
+        float(reach),
     )

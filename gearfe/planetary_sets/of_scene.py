@@ -95,7 +95,8 @@ def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, i
             f"case {case!r} has a {' and a '.join(other)}, but the section of a set knows cracks only: choose a case of cracks"
         )
     both = one.get("wheel", [])
-    ring_side = [replace(crack, side=_opposite(crack.side)) for crack in two.get("pinion", []) if crack not in both]
+    ring_side = [replace(crack, side=_opposite(crack.side)) for crack in two.get("pinion", [])]
+    ring_side = [crack for crack in ring_side if crack not in both]
     found = {"sun": one.get("pinion", []), ("planet", given.damaged_planet): both + ring_side, "ring": two.get("wheel", [])}
     return {name: cracks for name, cracks in found.items() if cracks}
 

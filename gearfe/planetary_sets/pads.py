@@ -22,12 +22,14 @@ SPREAD = 3  # edges of the rim to either side over which the mesh is given a tra
 class Pads:
     """Tractions of pads on the rim, p of them by pad, direction and polynomial.
 
-    `load` ``(z, r, p)`` are their nodal forces, `turns` ``(3, p)`` their forces along x and y and clockwise torque [mm].
+    `load` ``(z, r, p)`` are their nodal forces, spread over some edges, `close` the same on the edges under the pad only, `turns`
+    ``(3, p)`` their forces along x and y and clockwise torque [mm].
     `compliance` ``(p, p)`` is added to how the rim's mesh moves under them [mm per N/mm]: of springs, and close to each pad.
     `moved` are the edge's displacements by harmonic, as of `WholeGear.loose`.
     """
 
     load: NDArray[np.float64]
+    close: NDArray[np.float64]
     turns: NDArray[np.float64]
     compliance: NDArray[np.float64]
     moved: NDArray[np.complex128]
@@ -43,7 +45,7 @@ def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray
     stiff = (support.radial, support.tangential)
     held = [which for which in (0, 1) if stiff[which] > 0]
     hats = [_hat(which, step, z * nodes) for which in (0, 1)]
-    columns, turns, compliance, local = [], [], [], []
+    columns, close, turns, compliance, local = [], [], [], [], []
     for middle in support.middles:
         angle = middle + place * support.width / (2 * gear.held)
         at = (angle + math.pi / z) / step  # in edges from the first corner
@@ -54,6 +56,7 @@ def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray
         for which in held:
             hat = zip(number.tolist(), weight, strict=True)  # of each vertex under the pad: every second node, two unknowns each
             columns.append(sum(np.roll(hats[which], 4 * n)[:, None] * row for n, row in hat))
+            close.append(_nodal((angle + math.pi / z) % (2 * math.pi), which, step / 2, z * nodes) @ shapes)
             turns.append(force[which] @ shapes)
             compliance.append(np.append(width / stiff[which], np.zeros(terms - 1)))
         edge = step * gear.held
@@ -62,8 +65,8 @@ def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray
     total = np.zeros((support.count * p,) * 2)
     for k, pad in enumerate(local):
         total[k * p : (k + 1) * p, k * p : (k + 1) * p] = pad.transpose(0, 2, 1, 3).reshape(p, p)
-    load = np.concatenate(columns, axis=1).reshape(z, 2 * nodes, -1)
-    return Pads(load, np.concatenate(turns, axis=1), total + np.diag(np.concatenate(compliance)), moved)
+    load, own = (np.concatenate(values, axis=1).reshape(z, 2 * nodes, -1) for values in (columns, close))
+    return Pads(load, own, np.concatenate(turns, axis=1), total + np.diag(np.concatenate(compliance)), moved)
 
 
 def _hat(which, step, count):

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from .cracked import Cracks, Moved, cracked, on_pads
+from .cracked import CrackedTooth, Faces, faces_of
 from .pads import Pads, among, by_teeth, pads_on
 from .rim_supports import RimBed, RimSupports, check_support
 from .whole_gear import PLACES, WholeGear, between_teeth, motion
@@ -35,8 +35,8 @@ class Rim:
     `more` ``(z, PLACES, z, PLACES)`` is added to the flexibility with the rim held. With p pads' tractions per load `reaction`
     ``(p, z, PLACES)``, and motions of the whole ring `moves` ``(3, z, PLACES)``: along x, along y [mm], clockwise turn [rad].
     Lugs that only push (l of them) are contacts of their own: `lug` ``(l, l)`` and `across` ``(l, z, PLACES)`` their flexibility,
-    `turns` ``(3, l)`` and `gives` ``(3, z, PLACES)`` what motions of the whole ring do to them and to the loads. `hurt`: of
-    cracks.
+    `turns` ``(3, l)`` and `gives` ``(3, z, PLACES)`` what motions of the whole ring do to them and to the loads. `grip` ``(p + 3,
+    p)`` are tractions of pads and motions of the ring by unit displacements of the pads.
     """
 
     whole: WholeGear
@@ -48,35 +48,26 @@ class Rim:
     across: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
     turns: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
     gives: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    hurt: Moved | None = None
+    grip: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
 
 
-def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: float, cracks: Cracks | None = None) -> Rim:
-    """`Rim` of a ring by what holds it; pads' stiffnesses are shared by the face `width` [mm]. `cracks` of the ring.
+def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: float) -> Rim:
+    """`Rim` of a ring by what holds it; pads' stiffnesses are shared by the face `width` [mm].
 
     ValueError as of `check_support`, or if the ring could move without force.
     """
     gear = whole.gear
     check_support(support, gear)
     if isinstance(support, RimBed):
-        springs = np.array([support.radial, support.tangential])
-        if cracks is not None:
-            return Rim(whole, _more(cracks, whole.bedded_inverse(springs))[0])
-        return Rim(whole, between_teeth(whole.bedded(springs)))
+        return Rim(whole, between_teeth(whole.bedded(_springs(support))))
     if not isinstance(support, RimSupports):
         return Rim(whole, np.zeros((gear.z, PLACES) * 2))
     more, moved = whole.loose()
     pads = pads_on(whole, support, width, moved)
-    teeth, hurt = between_teeth(more), None
-    across, between = by_teeth(pads), among(pads) + pads.compliance
-    if cracks is not None:
-        inverse = whole.loose_inverse()
-        teeth, free = _more(cracks, inverse)
-        found = on_pads(free, inverse, pads.load, across)
-        across, between, hurt = found.by_teeth, between + found.among, found.moved
+    teeth, across, between = between_teeth(more), by_teeth(pads), among(pads) + pads.compliance
     gives = _moves(gear)
     if support.pushes:
-        return Rim(whole, teeth, pads, lug=between, across=across, turns=pads.turns, gives=gives, hurt=hurt)
+        return Rim(whole, teeth, pads, lug=between, across=across, turns=pads.turns, gives=gives)
     p, n = pads.compliance.shape[0], gear.z * PLACES
     scale = np.diag(between).mean()
     unit = scale * np.array([1.0, 1.0, 1 / gear.held])[:, None]  # so that all of the system is of one size
@@ -84,20 +75,39 @@ def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: floa
     if np.linalg.svd(unit * pads.turns, compute_uv=False)[-1] < SURE * scale:
         raise ValueError("ring: these pads let it move without force: give more of them, or hold both directions")
     right = np.concatenate([across.reshape(p, n), unit * gives.reshape(3, n)])
-    solved = -np.linalg.solve(system, right)
-    more = teeth.reshape(n, n) + right.T @ solved
+    solved = -np.linalg.solve(system, np.hstack([right, np.eye(p + 3, p)]))
+    more = teeth.reshape(n, n) + right.T @ solved[:, :n]
+    solved[p:] *= unit
     shape = gear.z, PLACES
     return Rim(
-        whole, ((more + more.T) / 2).reshape(*shape, *shape), pads, solved[:p].reshape(p, *shape),
-        (unit * solved[p:]).reshape(3, *shape), hurt=hurt,
+        whole, ((more + more.T) / 2).reshape(*shape, *shape), pads, solved[:p, :n].reshape(p, *shape),
+        solved[p:, :n].reshape(3, *shape), grip=solved[:, n:],
     )  # fmt: skip
 
 
-def _more(cracks, inverse):
-    """What an edge that is not held adds to the flexibility of a cracked ring's teeth, and the ring with that edge."""
-    free = cracked(cracks, inverse)
-    held = cracked(cracks, cracks.whole.held_inverse())
-    return (free.table - held.table)[:, :PLACES][:, :, :, :PLACES].copy(), free
+def _springs(bed):
+    return np.array([bed.radial, bed.tangential])
+
+
+def ring_faces(rim: Rim, support: "str | RimBed | RimSupports", teeth: tuple[CrackedTooth, ...]) -> Faces:
+    """`Faces` of a ring's cracks on its support; lugs are left to the contact problem."""
+    whole = rim.whole
+    held = faces_of(whole, teeth, whole.held_inverse())
+    if isinstance(support, RimBed):
+        found = faces_of(whole, teeth, whole.bedded_inverse(_springs(support)))
+    elif rim.pads is None:
+        return held
+    else:
+        found = faces_of(whole, teeth, whole.loose_inverse())
+        moved = np.einsum("zrp,zre->pe", rim.pads.close, found.edge, optimize=True)
+        by_teeth, stiffness = found.by_teeth[..., :PLACES], found.stiffness
+        if rim.grip.size:  # pads that push and pull
+            pulled = rim.grip[: moved.shape[0]] @ moved
+            by_teeth = by_teeth + np.einsum("pe,pta->eta", moved, rim.reaction)
+            stiffness = stiffness - moved.T @ pulled
+        found = found._replace(stiffness=stiffness, by_teeth=by_teeth, pads=moved)
+    by_teeth = found.by_teeth[..., :PLACES]
+    return found._replace(by_teeth=by_teeth, released=by_teeth - held.by_teeth[..., :PLACES])
 
 
 def _moves(gear):
@@ -115,16 +125,10 @@ def rim_moved(rim: Rim, loads: NDArray[np.float64], tractions: NDArray, whole: N
     ``(3,)``: along x, y [mm], clockwise turn [rad].
     """
     assert rim.pads is not None
-    gear, pads, r, hurt = rim.whole.gear, rim.pads, rim.whole.edge, rim.hurt
-    if hurt is not None:
-        forces = np.einsum("nta,ta->n", hurt.by_loads, loads) + hurt.by_pads @ tractions
-        loads = loads.copy()
-        loads[list(hurt.teeth)] = 0.0
+    gear, pads, r = rim.whole.gear, rim.pads, rim.whole.edge
     waves = np.einsum("hra,ha->hr", pads.moved[:, :, :PLACES], np.fft.rfft(loads, axis=0))
     waves += np.einsum("hrs,hs->hr", pads.moved[:, :, -r:], np.fft.rfft(pads.load @ tractions, axis=0))
     moved = np.fft.irfft(waves, n=gear.z, axis=0).reshape(-1, 2)
-    if hurt is not None:
-        moved = moved + (hurt.edge @ forces).reshape(-1, 2)
     angle = rim_angles(rim.whole)
     sin, cos = np.sin(angle), np.cos(angle)
     x, y, turn = whole

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from ..core.files import Content
 from ..stiffness.provenance import versions
 
@@ -22,4 +24,5 @@ def content(curves: Any) -> Content:
                 columns[f"{name} {kind} {planet} [{unit}]"] = getattr(curves, name)[k, :, planet]
     seconds = {name: value for name, value in curves.meta.items() if name.startswith("seconds")}
     meta = {"case": repr(curves.meta["case"]), "K_gamma": curves.K_gamma, **seconds, "versions": versions()}
+    meta["estimated_error"] = {name: np.asarray(value).tolist() for name, value in curves.meta.get("error", {}).items()}
     return Content(TITLE, columns, {name: getattr(curves, name) for name in UNITS}, meta, UNITS)

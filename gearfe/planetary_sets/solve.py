@@ -13,14 +13,17 @@ from ..flexibility.solved import solved_gears
 from ..stiffness.limits import FURTHEST
 from .assembly import Bodies, Position, Set
 from .case import PlanetaryCase
-from .cracked import cracked, cracks_of
+from .cracked import cracked_teeth, faces_of
 from .curves import SetCurves
 from .meshes import Meshes, near_load
-from .rim import ring_on
+from .rim import ring_faces, ring_on
+from .set_error import set_error
 from .standing import standing
 from .whole_gear import PLACES, between_teeth, whole_gear
 
-PASSES = 4  # at most, until the loads for which corners and kinks are resolved are those of the meshes
+CHECKED = 8  # positions of the estimate
+COARSER, ORDER = 0.7, 3  # its resolution relative to that of the curves, and the order of its polynomials
+PASSES = 5  # at most, until corners, kinks and pairs in reach are those of the loads that the meshes have
 
 
 def planetary_stiffness(
@@ -30,6 +33,7 @@ def planetary_stiffness(
     cycles: int = 1,
     coupled: bool = True,
     refine: float = 1.0,
+    error: bool = True,
     cache: Any = True,
 ) -> SetCurves:
     """Load and stiffness of every mesh of a planetary set, loads of its teeth, transmission error, and how the ring bends.
@@ -49,6 +53,8 @@ def planetary_stiffness(
         With False meshes do not feel each other's loads, as if each gear were held between them.
     refine : float
         Divides the edge lengths.
+    error : bool
+        Whether to estimate the error by a coarser solve of some of the positions: ``meta["error"]``, see `set_error`.
     cache : bool or SolvedGears
         See `gearfe.flexibility.solved.solved_gears`.
 
@@ -66,21 +72,31 @@ def planetary_stiffness(
     Notes
     -----
     The load is the same all over the face width. Phases are those of the mean pose of each mesh: its turn under load is shared by
-    both gears (`gearfe.geometry.pair.contacts`). What is left out of cracks: see `PlanetaryCase`.
+    both gears (`gearfe.geometry.pair.contacts`). The faces of all cracks belong to the same contact problem. They push each other
+    apart where they touch, and slide without friction.
     """
-    started = time.perf_counter()
     if not isinstance(case, PlanetaryCase):
         raise ValueError(f"case = {case!r}, but give a PlanetaryCase: what holds the set, and its load")
-    at, coupled, refine = _positions(positions, cycles), truth("coupled", coupled), checked_refine(refine)
+    at, refine, options = _positions(positions, cycles), checked_refine(refine), {"cache": solved_gears(cache)}
+    coupled, error = truth("coupled", coupled), truth("error", error)
+    found = _curves(case, at, coupled, options | {"refine": refine})
+    if error:
+        some = np.unique(np.linspace(0, at.size - 1, CHECKED).round().astype(int))
+        less = _curves(case, at[some], coupled, options | {"refine": COARSER * refine, "order": ORDER})
+        found.meta["error"] = set_error(found, less, some)
+    return found
+
+
+def _curves(case, at, coupled, options):
+    """`SetCurves` without an estimate; `options` are those of `gearfe.flexibility.energy.ritz.plane.flexibility`."""
+    started = time.perf_counter()
     stand = standing(case.gears, np.array(case.angles), at)
-    kept = solved_gears(cache)
-    bodies = bodies_of(case, refine=refine, cache=kept)
+    bodies = bodies_of(case if coupled else case.with_(ring="held"), refine=options["refine"], cache=options["cache"])
     solved = time.perf_counter() - started
-    meshes = Meshes(case, stand, refine, kept)
-    of = Set(case, bodies, stand, coupled)
+    of, meshes = Set(case, bodies, stand, coupled), Meshes(case.with_(damage=None), stand, options)
     solutions = [_position(of, meshes, i) for i in steps(range(at.size))]
     seconds = {"seconds_flexibility": solved, "seconds_contact": time.perf_counter() - started - solved}
-    return SetCurves.of(of, meshes, at, solutions, seconds)
+    return SetCurves.of(of, Meshes(case, stand, options) if case.damage else meshes, at, solutions, seconds)
 
 
 def _positions(positions, cycles):
@@ -95,15 +111,23 @@ def _positions(positions, cycles):
 
 
 def _position(of: Set, meshes: Meshes, i: int) -> Position:
-    """One position: pressures at corners and kinks are resolved for the nominal load, then for the one that each mesh has."""
-    nominal = of.case.force / of.case.width
-    loads = np.full((2, of.case.planets), nominal)
+    """One position: pressures at corners and kinks are resolved for the nominal load, then for the one that each mesh has.
+
+    Where teeth give way so much that further pairs may touch, these are taken in. RuntimeError if there is no end of them.
+    """
+    nominal, reach = of.case.force / of.case.width, np.zeros((2, of.case.planets))
+    loads = np.full(reach.shape, nominal)
     for _ in range(PASSES):
-        position = of.solved(i, meshes.at(i, loads))
+        met = meshes.at(i, loads, reach)
+        position = of.solved(i, met)
         new = np.array([[near_load(load, nominal) for load in row] for row in position.loads])
-        if (new == loads).all():
-            break
-        loads = new
+        approach = np.where(position.loads > 0, position.closing - position.rim, 0.0)
+        short = approach > np.array([[one.contacts.reach for one in row] for row in met])
+        if not short.any() and (new == loads).all():
+            return position
+        loads, reach = new, np.where(short, 2 * approach, reach)
+    if short.any():
+        raise RuntimeError("the teeth of a mesh give way so much that the contact has no end: give shorter cracks or less load")
     return position
 
 
@@ -111,23 +135,15 @@ def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) ->
     """`Bodies` of a case."""
     gears, kept = (case.gears.sun, case.gears.planet, case.ring_gear), solved_gears(cache)
     sun, planet, ring = (whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True))
-    cracked_gears = {}
+    key = ring.gear, case.material[2], case.ring, case.width, refine
+    rim = kept.get(("rim", *key), lambda: ring_on(ring, case.ring, case.width))
+    faces = {}
     for name, cracks in case.damage.items():
-        if cracks:
-            of = {"sun": sun, "ring": ring}.get(name, planet), tuple(cracks), refine
-            cracked_gears[name] = kept.get(("cracks", of[0].gear, of[0].material, *of[1:]), partial(cracks_of, *of))
-    key = ring.gear, case.material[2], case.ring, case.width, refine, case.damage.get("ring")
-    rim = kept.get(("rim", *key), lambda: ring_on(ring, case.ring, case.width, cracked_gears.get("ring")))
-    planets = {name[1]: _held(gear)[..., PLACES:] for name, gear in cracked_gears.items() if name not in ("sun", "ring")}
+        if not cracks:
+            continue
+        whole = {"sun": sun, "ring": ring}.get(name, planet)
+        of = whole, tuple(cracks), refine
+        teeth = kept.get(("cracks", whole.gear, whole.material, *of[1:]), partial(cracked_teeth, *of))
+        faces[name] = ring_faces(rim, case.ring, teeth) if name == "ring" else faces_of(whole, teeth, whole.held_inverse())
     across = planet.held()[:, :PLACES, PLACES:]
-    return Bodies(_alike(sun, cracked_gears.get("sun")), across, _alike(ring, cracked_gears.get("ring")), rim, planets)
-
-
-def _alike(whole, cracks):
-    """Flexibility ``(z, PLACES, z, PLACES)`` between the right flanks of a gear, its edge held."""
-    return between_teeth(whole.held()) if cracks is None else _held(cracks)[..., :PLACES].copy()
-
-
-def _held(cracks):
-    """That of its right flanks by loads on both."""
-    return cracked(cracks, cracks.whole.held_inverse()).table[:, :PLACES]
+    return Bodies(between_teeth(sun.held()), across, between_teeth(ring.held()), rim, faces)

@@ -20,6 +20,7 @@ from functools import partial
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 from scipy.sparse import coo_array
 
 from ..core.material import Material
@@ -146,10 +147,11 @@ def _solved(gear, material, refine):
     return WholeGear(gear, material, (stiffness + np.conj(stiffness.transpose(0, 2, 1))) / 2, back @ push, bed, places)
 
 
-def sector_stiffness(sector, material):
+def sector_stiffness(sector, material, faces=None):
     """Stiffness ``(n, n)`` of a sector, forces ``(n, 2 PLACES)`` of its tooth's loads, angles of its nodes.
 
-    Unknowns are polar components of the nodes of the left side, of the held edge between its corners, of the right side.
+    Unknowns are polar components of the nodes of the left side, of the held edge between its corners, of the right side. With
+    pairs of nodes ``(2, m)`` that face each other in its cracks, x and y of these follow: m of one face, m of the other.
     """
     body = Body(sector.mesh, material, held="rim")  # its own outline: only its elements are used
     local, dofs = body.local()
@@ -158,11 +160,12 @@ def sector_stiffness(sector, material):
     rolls = _rolls(sector.gear)
     load = np.hstack([line_loads(sector.gear, sector.mesh, sector.flank[k], sector.roll, rolls, k) for k in (0, 1)])
     centre = sector.mesh.doflocs[:, sector.mesh.t[:3]].mean(axis=1)
-    stays = (2 * ends[:, None] + np.arange(2)).ravel()
+    kept = ends if faces is None else np.concatenate([ends, *faces])
+    stays = (2 * kept[:, None] + np.arange(2)).ravel()
     total = condense(local, dofs, centre, coo_array(load), stays, leaf=LEAF)
     side = np.full(left.size, math.pi / sector.gear.z)
     angle = np.concatenate([-side, np.arctan2(*sector.mesh.doflocs[:, edge[1:-1]]), side])
-    turn = _polar(angle)
+    turn = block_diag(_polar(angle), np.eye(stays.size - 2 * ends.size))
     return turn.T @ total[: stays.size, : stays.size] @ turn, turn.T @ total[: stays.size, stays.size :], angle
 
 

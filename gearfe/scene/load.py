@@ -27,7 +27,8 @@ from .toml_file import read_toml
 class ScenePair:
     """A gear pair of a scene with its materials, its force along the line of action [N], and how its teeth run.
 
-    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage; `flanks`, `misalignment`, `supports` are as it has them.
+    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage, of one body on each side; `owned` holds it of all bodies,
+    by case, side and `gearfe.scene.parts.Owner`. `flanks`, `misalignment`, `supports` are as `gearfe.mesh_stiffness` has them.
     """
 
     pair: GearPair
@@ -39,6 +40,7 @@ class ScenePair:
     flanks: dict[str, Flank] = field(default_factory=dict)
     misalignment: Misalignment | None = None
     supports: dict[str, Support | Shaft] = field(default_factory=dict)
+    owned: dict[str, dict[str, parts.Owned]] = field(default_factory=dict)
 
     def case(self, name: str | None = None) -> Case:
         """The pair as it is solved, in a case of damage; None: healthy. ValueError if there is no such case of this pair."""
@@ -148,17 +150,25 @@ def _pair(file, name, rows, gears, materials):
     names = row["gear_1"], row["gear_2"]
     with located(file, f"pair.{name}", row):
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
+    owned = parts.damage_of(file, rows, name, made)
     return ScenePair(
         made,
         materials=tuple(materials[rows["gear"][gear]["material"]] for gear in names),
         force=float(row["force_N"]),
         face=row["face"],
         groove=float(row["groove_mm"]),
-        damage=parts.damage_of(file, rows, name, made),
+        damage={case: {side: _of_one_body(found) for side, found in by_side.items()} for case, by_side in owned.items()},
+        owned=owned,
         flanks=parts.flanks_of(file, rows, name, gears),
         misalignment=parts.misalignment_of(file, name, made, row),
         supports=parts.supports_of(file, rows, name, materials),
     )
+
+
+def _of_one_body(owned):
+    """Damage of the body that is named first: a pair has one on each side."""
+    first = next(iter(owned))
+    return [one for owner, damage in owned.items() if owner.body == first.body for one in damage]
 
 
 def _by_case(rows):

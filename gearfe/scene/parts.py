@@ -1,7 +1,8 @@
 """Damage, flanks, misalignment and supports of a gear pair, from the checked rows of a scene."""
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
@@ -34,16 +35,38 @@ def sides(file: str, where: str, row: Row, name: str, pairs: dict[str, Row]) -> 
     ]
 
 
-def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict[str, list[Damage]]]:
-    """Damage of the pair `name` by case and side."""
-    out: dict[str, dict[str, list[Damage]]] = {}
+class Owner(NamedTuple):
+    """Whose tooth is damaged: a `body` of the machine, or by default the one on `side` of the pair `home`."""
+
+    body: str | None
+    home: str
+    side: str
+
+
+Owned = dict[Owner, list[Damage]]
+
+
+def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict[str, Owned]]:
+    """Damage of the pair `name` by case, side and owner.
+
+    It lies on the flank that is loaded in its `pair`, by default the first pair of its gear. In a pair that loads the other flank
+    a crack lies on the unloaded side, and pits and spalls are in no contact.
+    """
+    out: dict[str, dict[str, Owned]] = {}
     for kind, make in DAMAGE.items():
         for i, row in enumerate(rows[kind]):
             where = f"{kind} {i + 1}"
+            home, first = next(
+                (other, found[0]) for other in rows["pair"] if (found := sides(file, where, row, other, rows["pair"]))
+            )
             for side in sides(file, where, row, name, rows["pair"]):
                 with located(file, where, row):
                     made = make(row, pair, SIDES.index(side), rows["pair"][name])
-                out.setdefault(row["case"], {}).setdefault(side, []).extend(made)
+                if side != first:
+                    made = [replace(one, side="unloaded") for one in made if isinstance(one, Crack)]
+                if made and not (name == home and side != first):
+                    owner = Owner(row["body"], home, first)
+                    out.setdefault(row["case"], {}).setdefault(side, {}).setdefault(owner, []).extend(made)
     return out
 
 

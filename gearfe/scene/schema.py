@@ -213,5 +213,5 @@ def arguments(kind: str, row: Mapping[str, Any], *names: str) -> dict[str, Any]:
     Those of these `names`, by default of all but the keys that say where it is.
     """
     keys = scene_schema()[kind].keys
-    wanted = names or [key.name for key in keys.values() if key.type not in NAMES and key.name != "case"]
+    wanted = names or [key.name for key in keys.values() if key.type not in NAMES and key.name not in ("case", "body")]
     return {keys[name].python_name: keys[name].in_python(row[name]) for name in wanted if row[name] is not None}

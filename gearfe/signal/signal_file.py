@@ -161,6 +161,7 @@ def read_signals(
         names = [_choose(path, recording, column) for column in columns]
     if not names:
         _choose(path, recording, None)
+    channel_units: Mapping[str, str | None]
     if isinstance(units, Mapping):
         channel_units = units
     else:  # one text is for the channels without a unit; of a single channel, `_signal` compares it with that of the file

@@ -2,13 +2,11 @@
 
 import math
 import time
-import warnings
 from dataclasses import asdict, replace
 
 import numpy as np
 
 from ..contact.pair_contact import PairContact
-from ..core.case import SIDES
 from ..core.steps import part, steps
 from ..flexibility.energy.closed.plain_sum import plain_sum
 from ..geometry.pair.contacts import near_pitches
@@ -79,7 +77,7 @@ def _numeric(row, how):
 
 
 def curve(case, phase, force, solve, meta):
-    """`StiffnessCurve` under a force [N] along the line of action; warns if no damaged tooth is in contact.
+    """`StiffnessCurve` under a force [N] along the line of action.
 
     To SI, in one place: widths and millimetres become newtons and metres here. `solve` is from the line load [N/mm] to
     `gearfe.contact.pair_contact.Solved` at the phases ``(n,)``, `meta` without the force.
@@ -91,7 +89,6 @@ def curve(case, phase, force, solve, meta):
     unloaded = None if solved.unloaded is None else solved.unloaded * 1e-3
     meta = meta | {"force_N": force, "seconds_contact": time.perf_counter() - started}
     if case.damaged:
-        _warn_if_unseen(case, solved.order[used])
         meta["crack_closed_phases"] = phase[list(solved.closed)].tolist()
     if solved.fillet:
         meta["tip_in_fillet_phases"] = phase[list(solved.fillet)].tolist()
@@ -126,13 +123,3 @@ def with_error(row, curves, case, how):
         meta = fine.meta | {"error_of_contact": contact.tolist()}
         out.append(replace(fine, error=doubt + contact, meta=meta))
     return out
-
-
-def _warn_if_unseen(case, order):
-    """Warn if no damaged tooth is in contact at any of the phases."""
-    gears = zip((case.pair.gear_1, case.pair.gear_2), SIDES, case.cracks, case.pits, strict=True)
-    if not any(sense * hurt.tooth % gear.z in order % gear.z for gear, (_, sense), *kinds in gears for hurt in sum(kinds, ())):
-        warnings.warn(
-            "no cracked tooth is in contact at these phases: tooth k is at phases from -k; use span='tooth' for tooth 0",
-            stacklevel=4,
-        )

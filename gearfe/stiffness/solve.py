@@ -1,6 +1,7 @@
 """`solve`: from a `Case` to its stiffness curve, as a `Solve` says; `mesh_stiffness` is both in one call."""
 
 import contextlib
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, Unpack, overload
@@ -8,7 +9,7 @@ from typing import Any, Unpack, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.case import NAMES, Case, CaseOptions, case_of
+from ..core.case import NAMES, SIDES, Case, CaseOptions, case_of
 from ..core.checks import checked_refine, is_number, one_of, truth
 from ..core.frozen import frozen
 from ..core.material import Material, check_state
@@ -200,6 +201,8 @@ def _curves(row, case, how):
         curves = row.curves(loads, how, at)
         for curve in curves:
             check_plausible(curve, pair, case.materials)
+        if case.damaged and how.span == "cycle" and row.kind != "solid":
+            _warn_if_unseen(case, curves[0].order)
         return curves
 
     def posed(at):
@@ -215,6 +218,16 @@ def _curves(row, case, how):
         return posed(phase)
     differs = [bool(case.cracks[i] or case.pits[i]) or (case.forms is not None and case.forms[i].differs) for i in (0, 1)]
     return over_turns(posed, phase, pair, how.span, differs)
+
+
+def _warn_if_unseen(case, order):
+    """Warn if no damaged tooth is in contact at any of the phases."""
+    gears = zip((case.pair.gear_1, case.pair.gear_2), SIDES, case.cracks, case.pits, strict=True)
+    if not any(sense * hurt.tooth % gear.z in order % gear.z for gear, (_, sense), *kinds in gears for hurt in sum(kinds, ())):
+        warnings.warn(
+            "no cracked tooth is in contact at these phases: tooth k is at phases from -k; use span='tooth' for tooth 0",
+            stacklevel=5,
+        )
 
 
 class PairOptions(CaseOptions, total=False):

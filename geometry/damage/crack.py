@@ -7,15 +7,15 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from ..checks import is_finite
 from ..kept import keeping
 from ..tooth.gear import Gear
-from ..tooth.profile import cartesian, fillet, fillet_length, form_point, root_curve, tangent_point
+from ..tooth.profile import cartesian, fillet_arc, fillet_length, root_curve, tangent_point, tangent_range
 from .given import finite, tooth_and_side
 
-STARTS = ("30deg", "root", "middle")
+TANGENTS = {"30deg": math.pi / 6, "60deg": math.pi / 3}  # with the centre-line of the tooth
+STARTS = (*TANGENTS, "root", "middle")
 SLACK = 1e-9  # rounding of the open part of a crack
 SHORTEST = 1e-4  # length of a crack in modules; k falls by 1e-5 by it, and meshes cannot be that small
 
@@ -35,9 +35,10 @@ class Crack:
         Size of the crack, as a level (``0 < level < 1``) or as a length [mm]: give one of the two.
     angle : float
         Angle between the crack and the tooth centre-line [rad], default 45 degrees.
-    start : {"30deg", "root", "middle"}
-        Where it starts: where the fillet's tangent makes 30 degrees with the centre-line (ISO 6336-3), where the fillet meets
-        the root circle, or in the middle of the fillet's arc.
+    start : {"30deg", "60deg", "root", "middle"}
+        Where it starts: where the fillet's tangent makes 30 or 60 degrees with the centre-line of the tooth, where the fillet
+        meets the root circle, or in the middle of the fillet's arc. ISO 6336-3 has its critical section at 30 degrees on external
+        gears and at 60 degrees on rings. The default is 30 degrees on both.
     turning : bool
     tooth : int
         Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0 (`gearfe.geometry.pair.contacts`).
@@ -56,7 +57,8 @@ class Crack:
     Raises
     ------
     ValueError
-        If the description is contradictory; a crack that leaves the body is refused when it meets its gear.
+        If the description is contradictory. A crack that leaves its gear's body, or starts at a tangent that the fillet lacks, is
+        rejected when it meets its gear.
 
     >>> Crack(level=0.6, width=(0.0, 12.5), ends=(1.0, 0.0)).width
     (0.0, 12.5)
@@ -215,12 +217,15 @@ def start_arc(gear, crack):
         return 0.0
     if crack.start == "middle":
         return fillet_length(gear) / 2
-    phi = np.linspace(math.pi / 2, form_point(gear)[0], 200)
-    wanted = float(fillet(gear, tangent_point(gear))[0])
-    radii = fillet(gear, phi)[0]
-    if not min(radii) < wanted < max(radii):
-        return fillet_length(gear) / 2
-    return brentq(lambda arc: float(root_curve(gear, arc)[0]) - wanted, 0.0, fillet_length(gear), xtol=1e-12 * gear.m_n)
+    inclination = TANGENTS[crack.start]
+    least, largest = tangent_range(gear)
+    if not least <= inclination <= largest:
+        others = ", ".join(repr(name) for name in STARTS if least <= TANGENTS.get(name, least) <= largest)
+        raise ValueError(
+            f"start = {crack.start!r}, but the fillet's tangents make {math.degrees(least):.1f} to {math.degrees(largest):.1f} "
+            f"degrees with the centre-line of a tooth of z = {gear.z}; use start = {others}"
+        )
+    return fillet_arc(gear, tangent_point(gear, inclination))
 
 
 @keeping(256)

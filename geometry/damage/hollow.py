@@ -17,6 +17,8 @@ import numpy as np
 
 from ..tooth.profile import arc_at, cartesian, flank, roll_at_arc
 
+PLACES = 65  # along a flank at which hollows are looked for
+
 
 def centre_arc(gear, hollow):
     """Arc of the hollow's centre [mm], as `gearfe.geometry.tooth.profile.arc_at` counts it."""
@@ -84,6 +86,19 @@ def doubts(gear, hollow, size):
     )
 
 
+def doubts_together(gear, hollows):
+    """What to warn of if several hollows of one flank together take all of it; empty if they do not, or one does alone."""
+    arcs = arc_at(gear, np.linspace(gear.roll_f, gear.roll_a, PLACES))
+    if len(hollows) < 2 or any(takes_all(gear, hollow) for hollow in hollows):
+        return ""
+    if (union_length(*intervals(gear, hollows, arcs)) < gear.b * (1 - 1e-9)).any():
+        return ""
+    return (
+        f"{len(hollows)} hollows together take the whole flank of tooth {hollows[0].tooth} of z = {gear.z}: nothing of it is "
+        "left to carry, but their floors"
+    )
+
+
 def check_hollows(gear, hollows):
     """Raise ValueError for a hollow whose centre is off the flank, or that is as deep as half the tooth where it lies.
 
@@ -139,11 +154,6 @@ def union_length(low, high):
     low, high = np.take_along_axis(low, order, axis=0), np.take_along_axis(high, order, axis=0)
     before = np.concatenate([low[:1], np.maximum.accumulate(high, axis=0)[:-1]])
     return np.maximum(high - np.maximum(low, before), 0.0).sum(axis=0)
-
-
-def lost_width(gear, hollows, arc):
-    """Width [mm] the hollows of one flank take away at profile arcs `arc` [mm]: length of the union of `intervals`."""
-    return union_length(*intervals(gear, hollows, arc))
 
 
 def in_circle(p, q, dp, dq, flat):

@@ -25,7 +25,7 @@ class PeriodicSector:
 
     `left`, `right` are the vertices of the sides from the held edge to the root, at the same radii; `held` those of the held
     edge from left to right, both corners included; `flank` those of the two flanks, right and left, from root to tip, `roll`
-    their roll lengths [mm].
+    their roll lengths [mm]. `seams` are the nodes of the faces of its cracks, as of `gearfe.geometry.mesh.section_mesh.Seam`.
     """
 
     gear: Gear
@@ -35,6 +35,7 @@ class PeriodicSector:
     held: np.ndarray
     flank: tuple
     roll: np.ndarray
+    seams: tuple = ()
 
 
 def periodic_sector(gear, cracks=(), *, refine=1.0):
@@ -62,10 +63,10 @@ def periodic_sector(gear, cracks=(), *, refine=1.0):
     first = np.cumsum([0, *(part[0].size - 1 for part in parts)]) // 2
     starts = {"loaded": (first[2], right, 1), "unloaded": (first[2], left, -1)}
     chains = [(int(top + sense * one.mark), lines[side]) for side, (top, one, sense) in starts.items() if side in lines]
-    mesh, _ = fill(cartesian(r, a), np.zeros((2, 0)), chains)
+    mesh, faces = fill(cartesian(r, a), np.zeros((2, 0)), chains)
     below, _, _, beyond, held = ((np.arange(first[k], first[k + 1] + 1)) % first[-1] for k in range(5))
     flanks = (first[2] + right.flank)[::-1], (first[2] - left.flank)[::-1]
-    return PeriodicSector(gear, mesh, below, beyond[::-1], held[::-1], flanks, roll)
+    return PeriodicSector(gear, mesh, below, beyond[::-1], held[::-1], flanks, roll, tuple(faces))
 
 
 def _parts(gear, right, left, refine):

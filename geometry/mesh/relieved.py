@@ -12,8 +12,8 @@ def relieved(body: Section, form: FlankForm, order: np.ndarray, sense: int) -> S
     """The section with the loaded flanks of some teeth modified.
 
     Every node of such a tooth turns about the gear's centre by ``C / r_b``, C the material removed at its radius: all of it on
-    the loaded flank, nothing on the other, linear in between, and fading from the form circle to the root. So no element
-    is distorted by more than the slope of C.
+    the loaded flank, nothing on the other (or as much with `both_sides`), linear in between, and fading from the form circle to
+    the root. So no element is distorted by more than the slope of C.
 
     Parameters
     ----------
@@ -40,7 +40,8 @@ def relieved(body: Section, form: FlankForm, order: np.ndarray, sense: int) -> S
         removed = form.of(k).removed(np.clip(roll, least, most)) + form.shift(k)
         inner = gear.outward * (radius[inside] - gear.r_form) < 0
         half = np.array([gear.half_thickness(r) for r in np.where(inner, gear.r_form, radius[inside])])
-        across = np.clip((angle[inside] / half + 1) / 2, 0.0, 1.0)
+        across = np.clip(angle[inside] / half, -1.0, 1.0)
+        across = across if form.flank.both_sides else (across + 1) / 2
         fade = np.clip((radius[inside] - gear.r_f) / (gear.r_form - gear.r_f), 0.0, 1.0)
         turned = angle[inside] + centre - across * fade * removed / gear.r_b
         points[:, inside] = radius[inside] * np.array([np.sin(turned), np.cos(turned)])

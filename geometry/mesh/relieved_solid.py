@@ -42,7 +42,8 @@ def relieved_points(points: NDArray[np.float64], gear: Gear, form: FlankForm, te
         removed = form_at_z.removed(np.clip(roll, least, most)) + form_at_z.shift(np.full(inside.size, tooth))
         inner = gear.outward * (r - gear.r_form) < 0
         half = np.array([gear.half_thickness(node_radius) for node_radius in np.where(inner, gear.r_form, r).tolist()])
-        across = np.clip((angle[inside] / half + 1) / 2, 0.0, 1.0)
+        across = np.clip(angle[inside] / half, -1.0, 1.0)
+        across = across if form.flank.both_sides else (across + 1) / 2
         fade = np.clip((r - gear.r_f) / (gear.r_form - gear.r_f), 0.0, 1.0)
         turned = angle[inside] + centre[inside] - across * fade * removed / gear.r_b
         out[:2, inside] = r * np.array([np.sin(turned), np.cos(turned)])

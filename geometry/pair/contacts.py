@@ -188,6 +188,7 @@ def _corners(pair, nominal):
     gaps, middle = np.full(rolls_1.shape, np.inf), sum(pair.path) / 2
     for number, roll, driver in corners_of(pair):
         half = nominal < middle if number in (2, 3) else nominal > middle  # corners touch in their own half of the cycle
+        half |= pair.gear_2.internal  # tips of a ring and its pinion may also meet on the other side of the path
         distance, met = approach(pair, roll, nominal[half], driver=driver)[:2]
         host, other = (rolls_1, rolls_2) if driver else (rolls_2, rolls_1)
         host[number - 1], other[number - 1, half] = roll, np.where(np.isnan(met), other[number - 1, half], met)

@@ -14,7 +14,7 @@ from .relief import relief_start
 from .tables import covering, each_tooth
 from .tip_edge import TipEdge
 
-LARGEST = 0.1  # most that may be removed [m_n]: the tooth's flexibility is that of the unmodified tooth
+LARGEST = 0.1  # most that may be removed [m_n]: the flexibility is that of the unmodified tooth and a beam's difference
 STEP = 1e-6  # roll length over which a slope is taken [m_n]
 
 
@@ -114,8 +114,19 @@ class FlankForm:
         Derivatives are those of the flank without the edge of its tip (for that see `bend`).
         The fillet goes on with what is removed at the form point.
         """
-        rolls, n = np.asarray(roll, dtype=float), derivative
-        at = np.maximum(rolls, self.low) if self.high > self.low else np.minimum(rolls, self.low)
+        at = self._on_flank(roll)
+        out = self._formed(at, derivative)
+        if self.flank.eccentricity and self._tooth is not None:
+            out = out + self._off_centre(at, derivative)
+        return out
+
+    def _on_flank(self, roll: ArrayLike) -> NDArray[np.float64]:
+        """Roll lengths, those in the fillet moved to the form point."""
+        rolls = np.asarray(roll, dtype=float)
+        return np.maximum(rolls, self.low) if self.high > self.low else np.minimum(rolls, self.low)
+
+    def _formed(self, at: NDArray, n: int) -> NDArray[np.float64]:
+        """What is removed by form, wear and the edge of the tip: all but what the whole gear is off its axis."""
         out = self._shaped(at, n)
         if self._scales.size:
             factor = self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], at)
@@ -124,9 +135,12 @@ class FlankForm:
             out = out + self._wear(at, n)
         if self.edge is not None and n == 0:
             out = out + self.edge.removed(at)
-        if self.flank.eccentricity and self._tooth is not None:
-            out = out + self._off_centre(at, n)
         return out
+
+    def thinned(self, roll: ArrayLike, tooth: int) -> NDArray[np.float64]:
+        """Material removed from a tooth at roll lengths [mm], which leaves it thinner; its edge, place and pitch left out."""
+        at = self.before_edge(self._on_flank(roll))
+        return self.of(np.array([tooth]))._formed(at[None, :], 0)[0]
 
     def slope(self, roll: ArrayLike) -> NDArray[np.float64]:
         """How far the flank leans towards its gear's tip, the tip's edge included: what is removed by arc length [mm/mm].
@@ -198,9 +212,13 @@ class FlankForm:
         return behind
 
     def bend(self, roll: ArrayLike) -> NDArray[np.float64]:
-        """Curvature that the modification adds to the flank, by its arc [1/mm] (kinks left out)."""
+        """Curvature that the modification adds to the flank, by its arc [1/mm] (kinks left out).
+
+        Eccentricity shifts the whole gear, which bends no flank.
+        """
         at = np.maximum(np.asarray(roll, dtype=float), 1e-3 * self.gear.r_b)  # an arc has no roll length at the base circle
-        out = (self.gear.r_b / at) ** 2 * (self.removed(at, 2) - self.removed(at, 1) / at)
+        on = self._on_flank(at)
+        out = (self.gear.r_b / at) ** 2 * (self._formed(on, 2) - self._formed(on, 1) / at)
         return out if self.edge is None else np.where(self.edge.on(at), self.edge.bend(at), out)
 
 

@@ -80,8 +80,8 @@ def checked_topography(given: Any) -> tuple[tuple[float, ...], tuple[float, ...]
         raise ValueError(
             "topography needs roll lengths, heights, and a row of amounts for each roll length, all full and numbers [mm]"
         ) from error
-    if not all(np.isfinite(part).all() for part in (rolls, heights, amounts)):
-        raise ValueError("topography has holes (numbers that are not finite): fill them before, or cut the grid")
+    if any(map(np.ma.is_masked, given)) or not all(np.isfinite(part).all() for part in (rolls, heights, amounts)):
+        raise ValueError("topography has holes (masked, or not finite): fill them before, or cut the grid")
     if rolls.ndim != 1 or heights.ndim != 1 or min(rolls.size, heights.size) < 2 or amounts.shape != (rolls.size, heights.size):
         raise ValueError(
             f"topography has {rolls.size} roll lengths, {heights.size} heights and amounts of shape {amounts.shape}: give a row "

@@ -17,6 +17,8 @@ LISTS = ("table", "topography", "pitch", "wear", "tooth_scale")
 class Flank:
     """Modifications and deviations of a gear's loaded flanks, from tip to root and from tooth to tooth.
 
+    The unloaded flanks stay involutes unless `both_sides` is true, as of a tool that relieves both.
+
     Amounts are in mm, normal to the involute in the transverse section (along the line of action), as ISO 1328-1 and ISO 21771
     measure them; **positive: material is removed**. With L the roll length, `roll_f` at the form point and `roll_a` at the tip,
     and t the part of the way from the start of a relief to the end of the flank, a place of the flank has less by::
@@ -79,11 +81,14 @@ class Flank:
         For each of the z teeth, how far its loaded flank lies behind its place (as if material were removed), along the reference
         circle [mm]: cumulative pitch deviations. Teeth are counted as those of a `Crack`: tooth k is in pair k.
 
+    both_sides : bool
+        Whether the same profile is removed from the unloaded flanks. Teeth are then thinner and bend more; gaps do not change.
+
     Raises
     ------
     ValueError
         If the description is contradictory, or, when it meets its gear, if a relief starts outside the flank or more is removed
-        than a tenth of the module: the tooth's own flexibility is taken from the unmodified one.
+        than a tenth of the module.
 
     Examples
     --------
@@ -121,16 +126,19 @@ class Flank:
     tooth_scale: Any = ()
     eccentricity: float = 0.0
     eccentric_tooth: float = 0.0
+    both_sides: bool = False
 
     def __post_init__(self) -> None:
         """Reject contradictory descriptions."""
         for name in self.__slots__:
             value = getattr(self, name)
-            if name in LISTS or (value is None and "_start_" in name) or name.startswith("end_"):
+            if name in (*LISTS, "both_sides") or (value is None and "_start_" in name) or name.startswith("end_"):
                 continue
             if not is_finite(value):
                 raise ValueError(f"{name} = {value!r}, but a flank needs a finite number here")
             object.__setattr__(self, name, float(value))
+        if not isinstance(self.both_sides, bool):
+            raise ValueError(f"both_sides = {self.both_sides!r}, but give True or False")
         for end in ("tip", "root"):
             given = [how for how in STARTS if getattr(self, f"{end}_start_{how}") is not None]
             needed = getattr(self, f"{end}_relief") != 0

@@ -188,6 +188,12 @@ def fillet_length(gear):
     return float(_fillet_arc(gear)[1][-1])
 
 
+def fillet_arc(gear, phi):
+    """Arc length [mm] from the root circle along the fillet at rack tip angle `phi` [rad]."""
+    angles, length = _fillet_arc(gear)
+    return float(np.interp(-phi, -angles, length))
+
+
 def fillet_angle(gear, arc):
     """Rack tip angle [rad] at arc lengths [mm] from the root circle along the fillet."""
     phi, length = _fillet_arc(gear)
@@ -201,18 +207,24 @@ def root_curve(gear, arc):
     return np.where(arc < 0, gear.r_f, radius), np.where(arc < 0, root_half_angle(gear) - arc / gear.r_f, angle)
 
 
-def tangent_point(gear, inclination=math.pi / 6):
-    """Rack tip angle [rad] where the fillet tangent makes `inclination` [rad] with the tooth centre-line.
-
-    The 30-degree point is the critical section of ISO 6336-3:2019, 6.2. Where the whole fillet is steeper than
-    asked (full undercut), the point nearest to it is returned.
-    """
+def _fillet_slope(gear):
+    """Rack tip angles [rad], and angles of the fillet's tangent to the centre-line of the tooth [rad], falling from the root."""
     phi = np.linspace(math.pi / 2, form_point(gear)[0], 2001)
     x, y = cartesian(*fillet(gear, phi))
-    slope = np.arctan2(-np.diff(x), np.diff(y))
-    middle = (phi[1:] + phi[:-1]) / 2
-    return (
-        float(np.interp(-inclination, -slope, middle))
-        if slope[0] > inclination > slope[-1]
-        else float(middle[np.argmin(abs(slope - inclination))])
-    )
+    return (phi[1:] + phi[:-1]) / 2, np.arctan2(-np.diff(x), gear.outward * np.diff(y))
+
+
+def tangent_range(gear):
+    """Least and largest angle [rad] that tangents of the fillet make with the centre-line of the tooth."""
+    slope = _fillet_slope(gear)[1]
+    return float(slope[-1]), float(slope[0])
+
+
+def tangent_point(gear, inclination=math.pi / 6):
+    """Rack tip angle [rad] where the fillet's tangent makes `inclination` [rad] with the centre-line of the tooth.
+
+    The point of 30 degrees on an external gear, of 60 degrees on a ring, is the critical section of ISO 6336-3:2019, 6.2. Outside
+    of `tangent_range` the end of the fillet nearest to it is returned.
+    """
+    phi, slope = _fillet_slope(gear)
+    return float(np.interp(-inclination, -slope, phi))

@@ -164,6 +164,15 @@ def test_a_spall_that_takes_the_whole_flank_is_warned_of():
         solved(replace(SPALL, sides=(30.0, 90.0), depth=1.0), phases=[0.8])
 
 
+def test_two_spalls_that_together_take_the_whole_flank_are_warned_of():
+    chosen, halves = (
+        pair(),
+        [replace(SPALL, sides=(30.0, 0.6 * pair().gear_1.b), z=part * pair().gear_1.b) for part in (0.25, 0.75)],
+    )
+    with pytest.warns(UserWarning, match="2 hollows together take the whole flank of tooth 0 of z = 21"):
+        gf.Case(chosen, 1200.0, STEEL, damage={"pinion": halves})
+
+
 def test_pair_plot_and_mesh_show_it(tmp_path):
     figure = gf.plot_pair(pair(), {"pinion": [SPALL]})
     assert "spall" in [text.get_text() for text in figure.axes[1].get_legend().get_texts()]

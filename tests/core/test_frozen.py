@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.flexibility.energy.ritz.plane import flexibility as ritz_flexibility
 
 pytestmark = pytest.mark.quick
 
@@ -74,6 +75,9 @@ def test_a_solve_does_not_change_either():
     assert hash(how) == hash(one)
     assert how.phases == (0.1, 0.6)
     assert pickle.loads(pickle.dumps(how)) == how
+    own = gf.OwnFlexibility(ritz_flexibility(gf.Gear(z=21, m_n=2.0, alpha_n=0.35, b=20.0, r_bore=7.4), STEEL))
+    assert hash(gf.Solve(own)) == hash(gf.Solve(own))
+    assert gf.Solve(own) == gf.Solve(own) != gf.Solve()
 
 
 def test_planetary_cases():
@@ -103,6 +107,9 @@ def test_masked_values_are_refused(pair):
         gf.mesh_stiffness(pair, 1000.0, STEEL, phases=np.ma.array([0.1, 0.2], mask=[True, False]))
     with pytest.raises(ValueError, match="pitch needs"):
         gf.Flank(pitch=np.ma.array(np.zeros(21), mask=np.arange(21) == 4))
+    grid = np.ma.array(np.zeros((2, 2)), mask=np.eye(2, dtype=bool))
+    with pytest.raises(ValueError, match="topography has holes"):
+        gf.Flank(topography=([0.0, 30.0], [0.0, 20.0], grid))
     assert gf.Case(pair, np.ma.array([1000.0, 2000.0]), STEEL).force == (1000.0, 2000.0)
 
 

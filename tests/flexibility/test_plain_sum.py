@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from checks import lost_width
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
@@ -16,7 +17,7 @@ from gearfe.flexibility.energy.closed.beam import SAINSOT, Validity, load_angle
 from gearfe.flexibility.energy.closed.plain_sum import plain_sum
 from gearfe.flexibility.energy.closed.section import ToothDamage
 from gearfe.flexibility.energy.closed.slices import faces
-from gearfe.geometry.damage.hollow import centre_arc, lost_width
+from gearfe.geometry.damage.hollow import centre_arc
 from gearfe.geometry.damage.pit import pit_row
 from gearfe.geometry.tooth.profile import arc_at, root_half_angle
 

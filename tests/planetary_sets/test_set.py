@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 from sets import FORCE, STEEL, case, gears, unequal
 
 import gearfe as gf
+from gearfe.planetary_sets.balance import Problem, _settled
 from gearfe.planetary_sets.case import PlanetaryCase
 from gearfe.planetary_sets.rim_supports import RimBed, RimSupports
 from gearfe.planetary_sets.solve import bodies_of, planetary_stiffness
@@ -15,6 +16,7 @@ from gearfe.planetary_sets.standing import standing
 from gearfe.planetary_sets.whole_gear import carry
 
 PADS = RimSupports(6, 4.8)
+MESHES = 5e-4  # of k with a crack: the pair has it in the energy method's triangles, the set in others of one sector
 
 
 def isolated(pair, phase, force=FORCE, **options):
@@ -164,12 +166,14 @@ def test_a_crack_softens_the_mesh_it_is_in():
     assert_allclose(away.k, planetary_stiffness(case(), [3.2]).k, rtol=2e-3)
 
 
-def test_uncoupled_cracks_are_those_of_isolated_pairs():
-    crack = gf.Crack(level=0.5)
-    at = [0.2, 0.9, 1.3]
+@pytest.mark.parametrize("crack", [gf.Crack(level=0.5), gf.Crack(level=0.95, turning=True)], ids=["half", "nearly off"])
+def test_uncoupled_cracks_are_those_of_isolated_pairs(crack):
+    """A tooth that is nearly off gives way until the next pair touches."""
+    at = [0.2, 0.75, 1.3]
     want = isolated(case().pairs[0], at, damage={"pinion": [crack]})
     one = planetary_stiffness(unequal(0, damage={"sun": [crack]}), at, coupled=False)  # one planet: the pair's load
-    assert_allclose(one.k[0, :, 0], want.k, rtol=1e-6)
+    assert_allclose(one.k[0, :, 0], want.k, rtol=2 * MESHES)
+    assert_allclose(one.k_alone[0, :, 0], want.k, rtol=1e-6)
 
 
 @pytest.mark.parametrize("name", [("planet", 0), "ring"])
@@ -187,18 +191,21 @@ def test_cracks_of_planet_and_ring_are_those_of_isolated_pairs(name):
         crack, damage = gf.Crack(level=0.5, tooth=tooth), {"pinion": [gf.Crack(level=0.5, tooth=pair, side="unloaded")]}
     hurt = planetary_stiffness(unequal(0, damage={name: [crack]}), [0.2], coupled=False)
     want = isolated(given.pairs[1], stand.inner[:, 0], damage=damage)
-    assert_allclose(hurt.k[1, :, 0], want.k, rtol=1e-6)
+    assert_allclose(hurt.k[1, :, 0], want.k, rtol=1e-3)  # where faces touch, the pair leaves out how contacts slide: 8e-4
     assert abs(hurt.k[1, 0, 0] / plain.k[1, 0, 0] - 1) > 1e-3
 
 
 def test_crack_faces_do_not_pass_through_each_other():
-    """A load on the next tooth closes the crack: the pair says so at some of these phases, and the set has its k."""
+    """A load on the next tooth closes the crack: the pair says so at the first of these phases, and the set has its k.
+
+    Before that its tooth is so far from the mesh that the pair leaves the crack out.
+    """
     crack = gf.Crack(level=0.5)
-    at = np.linspace(-1.0, 1.5, 11)
+    at = np.linspace(-0.25, 1.5, 8)
     want = isolated(case().pairs[0], at, damage={"pinion": [crack]})
-    assert want.meta["crack_closed_phases"]
     found = planetary_stiffness(unequal(0, damage={"sun": [crack]}), at, coupled=False)
-    assert_allclose(found.k[0, :, 0], want.k, rtol=1e-6)
+    assert found.meta["shut"] == want.meta["crack_closed_phases"] == [-0.25]
+    assert_allclose(found.k[0, :, 0], want.k, rtol=MESHES)
 
 
 def test_one_planet_has_no_neighbours():
@@ -298,3 +305,14 @@ def test_planets_out_of_mesh_carry_nothing_and_the_others_all():
 def test_lugs_do_not_hold_a_ring_that_one_planet_pushes_away():
     with pytest.raises(RuntimeError, match="no forces that only push"):
         planetary_stiffness(unequal(0, ring=RimSupports(6, 4.8, radial=0, pushes=True)), [0.2])
+
+
+def test_a_contact_that_carries_exactly_nothing_settles():
+    """Such as pressed faces of a crack in a tooth out of mesh: its force is 0, and no rounding moves it."""
+    zeros, ones = np.zeros(2), np.ones(2)
+    problem = Problem(
+        1e-6 * np.eye(2), zeros, np.array([1e-7, 0.0]), ones, 1e5 * ones, zeros, np.array([[1.0], [0.0]]), np.ones(1)
+    )
+    for at_once in (True, False):
+        force, _ = _settled(problem, np.array([True, True]), 1.0, 40, at_once)
+        assert_allclose(force, [1.0, 0.0], atol=1e-9)

@@ -41,7 +41,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
             "table_roll_mm": [0.0, 12.0], "table_removed_um": [0.0, 2.0], "pitch_um": [0.0, 1.0] * 10 + [0.0],
             "wear_roll_mm": [0.0, 12.0], "wear_um": [0.0, 2.0], "tip_rounding_mm": 0.0, "tip_chamfer_mm": 0.0,
             "tooth_scale": [1.0, 1.1] * 10 + [1.0],
-            "eccentricity_um": 0.0, "eccentric_tooth": 0.0,
+            "eccentricity_um": 0.0, "eccentric_tooth": 0.0, "both_sides": False,
         }
     },
     "support": {
@@ -60,7 +60,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
     "crack": [
         {
             "case": "cracked", "gear": "sun", "level": 0.3, "angle_deg": 45.0, "start": "30deg", "turning": False, "tooth": 0,
-            "pair": "stage", "width_mm": [0.0, 10.0], "ends": [1.0, 1.0], "rounded": False,
+            "body": "sun", "pair": "stage", "width_mm": [0.0, 10.0], "ends": [1.0, 1.0], "rounded": False,
         }
     ],
     "pits": [

@@ -215,9 +215,15 @@ def test_check_refuses_what_other_verbs_refuse(tmp_path, capsys):
         assert told in refused(tmp_path, capsys, text, "dynamics")
 
 
-def test_check_names_the_cases_that_a_machine_neglects(capsys):
-    assert main(["check", "herringbone"]) == 0
-    assert "case planet1 is not in the machine: case 'planet1' damages planet_ring" in capsys.readouterr().out
+def test_check_names_the_cases_that_a_machine_neglects(tmp_path, capsys):
+    text = gf.new_scene(tmp_path / "my.toml").read_text(encoding="utf-8")
+    crack = '\n[[crack]]\ncase = "other"\ngear = "pinion"\nlevel = 0.3\nbody = "planet2"\n'
+    machine = '\n[machine]\nmodel = "helical_pair"\nspeed_rpm = 100.0\ntorque_Nm = 40.0\n'
+    (tmp_path / "my.toml").write_text(text + crack + machine, encoding="utf-8")
+    assert main(["check", str(tmp_path / "my.toml")]) == 0
+    said = capsys.readouterr().out
+    assert "case other is not in the machine: case 'other' damages the pinion of stage, body 'planet2'" in said
+    assert "case cracked is not in the machine" not in said
 
 
 def test_schema_is_printed(capsys):

@@ -3,8 +3,9 @@
 import pytest
 
 from validation.make import sample
+from validation.shared.table_rows import rows_of
 
-ROWS = sample.rows_on_file()
+ROWS = rows_of(sample.TABLE)
 NUMBERS = ("difference", "fe_error", "fe_estimate", "ritz_error", "ritz_estimate")
 COVERED = ("apart_covered", "fe_covered", "ritz_covered")
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from full_contact import full_contact
 from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements import fe
 from gearfe.flexibility.finite_elements.elasticity import Body
-from validation.shared.full_contact import full_contact
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 FORCE = 2000.0

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from full_contact import full_contact
 from numpy.testing import assert_allclose
 
 import gearfe as gf
@@ -11,7 +12,6 @@ from gearfe.geometry.pair.contacts import approach
 from gearfe.geometry.pair.flanks import flank_forms
 from gearfe.geometry.pair.modified import flank_contacts
 from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal
-from validation.shared.full_contact import full_contact
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)

@@ -80,6 +80,18 @@ def test_tooth_crack_opens_and_grows_with_depth():
     assert_allclose([deep.K_I, deep.K_II], [fine.K_I, fine.K_II], rtol=0.01, atol=0.01 * fine.K_I)
 
 
+@pytest.mark.parametrize(
+    ("start", "level", "known"), [("30deg", 0.3, 104.74), ("30deg", 0.5, 94.90), ("60deg", 0.3, 90.05), ("60deg", 0.5, 72.35)]
+)
+def test_crack_of_a_ring(start, level, known):
+    """Truth: 13 ring teeth between polygons cut by a polygon of the cutter, Delaunay triangles of second order, a slit of
+    separate nodes from the polygon's own tangent point, K from the stiffness derivative and the opening.
+    """
+    ring = gf.Gear(z=84, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_rim=95.0, x=-0.4617, addendum=0.859, tip_radius=0.2)
+    found = gf.stress_intensity(ring, gf.Crack(level=level, start=start), 82.558, 100.0, STEEL)
+    assert_allclose(found.K_I, known, rtol=3e-3)
+
+
 def compliance(flexible, roll):
     """S(s, s) of the cracked tooth, glued part and opening."""
     opening = flexible.seam.at([float(arc_at(GEAR, roll))], [0])
@@ -130,7 +142,7 @@ def test_the_whole_load_acts_at_the_tip_too(tmp_path):
         (lambda: gf.Crack(level=1.0), "between 0 and 1"),
         (lambda: gf.Crack(length=-1.0), "positive length"),
         (lambda: gf.Crack(level=0.3, angle=45.0), "radians"),
-        (lambda: gf.Crack(level=0.3, start="foot"), "30deg, root, middle"),
+        (lambda: gf.Crack(level=0.3, start="foot"), "30deg, 60deg, root, middle"),
         (lambda: gf.Crack(level=0.3, side="left"), "loaded"),
         (lambda: gf.Crack(length=1.0, turning=True), "level"),
         (lambda: gf.stress_intensity(GEAR, gf.Crack(length=20.0), 19.5, 1.0, STEEL), "sector|held edge"),

@@ -2,16 +2,18 @@
 
 import csv
 import math
+import warnings
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.tooth.profile import cartesian, flank
 from validation.shared.arbiter.cases import random_pair
 from validation.shared.arbiter.outline import Outline
-from validation.shared.arbiter.unloaded import unloaded
+from validation.shared.arbiter.unloaded import compared, gaps, unloaded
 from validation.shared.arbiter.unloaded_table import LIMIT, TABLE, one_pair
 
 RACK = {"m_n": 2.5, "alpha_n": math.radians(20), "b": 1.0}
@@ -43,6 +45,47 @@ def test_gaps_are_those_of_whole_outlines(seed):
     assert not row["refused"]
     assert row["rows"] > 20
     assert float(row["largest_difference_um"]) < 1e-3
+
+
+def ring_pairs(count):
+    """Rings of random teeth, shifts, addenda and pressure angles with their pinions."""
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        rack = {"m_n": 2.0, "alpha_n": math.radians(rng.choice([17.5, 20, 25])), "b": 1.0, "tip_radius": rng.uniform(0.1, 0.38)}
+        z_1, more = int(rng.integers(11, 40)), int(rng.integers(8, 60))
+        shifts, addendum = (rng.uniform(-0.3, 0.8), rng.uniform(-0.5, 0.8)), rng.uniform(0.7, 1.0)
+        ring = {"z": z_1 + more, "r_rim": z_1 + more + 10.0, "addendum": addendum, "z_cutter": min(20, z_1 + more - 10)}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            try:
+                yield gf.GearPair(gf.Gear(z=z_1, x=shifts[0], r_bore=3.0, **rack), gf.Gear(x=shifts[1], **ring, **rack))
+            except ValueError:
+                continue
+        count -= 1
+        if not count:
+            return
+
+
+def test_tips_of_rings_meet_those_of_pinions_on_both_sides_of_the_path():
+    """Truth: outlines cut by brute force and pressed together; a ring's tip corner may touch after the end of the path, too."""
+    for pair in ring_pairs(12):
+        rows = np.array([row[:4] for row in compared(pair, None, np.arange(12) / 12 + 0.03, near=6e-3)])
+        assert_allclose(rows[:, 2], rows[:, 3], atol=0.02, err_msg=repr(pair))
+
+
+def test_a_ring_tip_after_the_path():
+    """19/47, trimmed: 0.82 base pitches after the end the outlines are 0.84 um apart, not 12."""
+    rack = {"m_n": 4.0, "alpha_n": math.radians(20), "b": 10.0}
+    ring = gf.Gear(z=47, x=-0.29, r_rim=110.0, tip_radius=0.3, **rack)
+    with pytest.warns(UserWarning, match="trimmed"):
+        pair = gf.GearPair(gf.Gear(z=19, x=0.27, r_bore=15.0, **rack), ring)
+    phase = pair.eps_alpha + 0.82
+    found = contacts(pair, [phase])
+    column = int(np.flatnonzero(found.order == 0)[0])
+    assert found.corner[0, column] == 2
+    assert_allclose(1e3 * found.gap[0, column], 0.84, atol=0.01)
+    truth, order, _ = gaps(pair, None, [phase])
+    assert_allclose(1e3 * truth[0, order == 0], 0.84, atol=0.01)
 
 
 def test_the_table_is_of_the_pairs_that_seeds_draw():

@@ -1,12 +1,10 @@
 """The page `assumptions`: the stiffness of each scene by what it assumes, one change at a time, and conventions of cracks."""
 
-import csv
 import math
 import warnings
 from dataclasses import replace
 
 import gearfe as gf
-from gearfe.core.files import written
 from gearfe.core.units import in_newton_per_um
 from gearfe.geometry.damage.crack import start_arc
 from gearfe.geometry.pair.gear_pair import GearPair
@@ -16,6 +14,7 @@ from gearfe.scene.load import scene_names
 from ..shared import page, reference
 from ..shared.kept_rows import kept
 from ..shared.places import TABLES
+from ..shared.table_rows import rows_of, write_table
 
 BASE = "as assumed [N/m]"
 CSV = TABLES / "assumptions.csv"
@@ -95,8 +94,7 @@ def pits(name):
 
 def read():
     """Committed rows."""
-    with open(CSV, encoding="utf-8", newline="") as file:
-        return [(r["scene"], r["pair"], r["change"], float(r["value"])) for r in csv.DictReader(file)]
+    return [(r["scene"], r["pair"], r["change"], float(r["value"])) for r in rows_of(CSV)]
 
 
 def text():
@@ -190,11 +188,7 @@ def compute():
             if name in PITTED:
                 rows += pits(name)
             print(f"  {name}: {len(rows)} rows", flush=True)
-    TABLES.mkdir(exist_ok=True)
-    with written(CSV) as name, open(name, "w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(("scene", "pair", "change", "value"))
-        out.writerows((*row[:3], f"{row[3]:.6g}") for row in rows)
+    write_table(CSV, ("scene", "pair", "change", "value"), rows)
 
 
 def run(again=True):

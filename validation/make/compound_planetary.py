@@ -1,6 +1,5 @@
 """The printed numbers of article S2 (two-stage compound planetary gearbox with a cracked sun tooth), computed."""
 
-import csv
 import math
 from fractions import Fraction
 from functools import cache
@@ -9,7 +8,6 @@ import numpy as np
 from scipy.signal import resample_poly
 
 import gearfe as gf
-from gearfe.core.files import written
 from gearfe.core.units import in_newton_per_um
 from gearfe.dynamics.machine.compound_planetary import compound_planetary
 
@@ -17,6 +15,7 @@ from ..shared.joint_inputs import Draw, changed, noise, through_mode
 from ..shared.laws import beside, tables
 from ..shared.places import TABLES
 from ..shared.simulated import amplitude, machine, noisy, record, scene, signal, spectrum, told
+from ..shared.table_rows import rows_of, write_table
 from .compound_numbers import LEVELS, NAME, QUICK, beams, converged, frequencies, of_mesh_lines  # noqa: F401
 
 PHASES, PARTS = TABLES / "compound_planetary_phases.csv", TABLES / "compound_planetary_parts.csv"
@@ -197,26 +196,23 @@ def write_more():
     """Tables: phases of the meshes, and what each ingredient leaves of the stiffness."""
     made = _made(None)
     beside("compound_planetary", BESIDE, SENSOR, SUN)
-    with written(PHASES) as target, open(target, "w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(("mesh", "against planet 1", "in its planet's chain"))
-        for name, pair in made.notes["relative phases"].items():
-            out.writerow((name, *(f"{value:.6g}" for value in pair)))
+    phases = [(name, *map(float, pair)) for name, pair in made.notes["relative phases"].items()]
+    write_table(PHASES, ("mesh", "against planet 1", "in its planet's chain"), phases)
     chosen = scene(NAME).pairs["sun_planet"].case()
-    with written(PARTS) as target, open(target, "w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(("model", "mean k [N/m]"))
-        with_ground = gf.mesh_stiffness(chosen, method="textbook", variants={"root": "prism"}, phases=400).k.mean()
-        out.writerow(("the article's beams: Hertz, bending, shear, axial", f"{beams('sun_planet').k.mean():.6g}"))
-        out.writerow(("with the foundation after Sainsot", f"{with_ground:.6g}"))
-        out.writerow(("converged energy model", f"{converged('sun_planet'):.6g}"))
+    parts = {
+        "the article's beams: Hertz, bending, shear, axial": beams("sun_planet").k.mean(),
+        "with the foundation after Sainsot": gf.mesh_stiffness(
+            chosen, method="textbook", variants={"root": "prism"}, phases=400
+        ).k.mean(),
+        "converged energy model": converged("sun_planet"),
+    }
+    write_table(PARTS, ("model", "mean k [N/m]"), parts.items())
 
 
 def more():
     """Lines of the page beside the verdicts."""
-    with open(PARTS, encoding="utf-8", newline="") as file:
-        parts = list(csv.reader(file))[1:]
-    first = float(parts[0][1])
+    parts = [row.values() for row in rows_of(PARTS)]
+    first = float(rows_of(PARTS)[0]["mean k [N/m]"])
     lines = [
         "What the foundation is worth, sun and planet, the same inferred gears:",
         "",
@@ -224,10 +220,9 @@ def more():
     ]
     lines += ["|---|---|---|", *(f"| {name} | {in_newton_per_um(float(k))} | {float(k) / first:.2f} |" for name, k in parts), ""]
     lines += tables("compound_planetary", SAID_OF, SENSOR, SUN)
-    with open(PHASES, encoding="utf-8", newline="") as file:
-        head, *rows = csv.reader(file)
-    lines += ["Phases of the meshes in cycles (S2's Table 2 is lost):", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
-    return [*lines, *(f"| {name} | {float(a):.4f} | {float(b):.4f} |" for name, a, b in rows), ""]
+    rows = rows_of(PHASES)
+    lines += ["Phases of the meshes in cycles (S2's Table 2 is lost):", "", f"| {' | '.join(rows[0])} |", "|---|---|---|"]
+    return [*lines, *(f"| {name} | {float(a):.4f} | {float(b):.4f} |" for name, a, b in map(dict.values, rows)), ""]
 
 
 BESIDE = {

@@ -6,21 +6,16 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 import gearfe as gf
-from gearfe.dynamics.motion import excitation
-from gearfe.dynamics.motion.response import acceleration
 from gearfe.dynamics.motion.simulate import simulate
 
 from ..shared import page
 from ..shared.kept_rows import kept, stored
-from ..shared.stages import article, compound, helical, machines, shaken, spur, stage
+from ..shared.stages import article, compound, helical, machines, spur, stage
 
-KEPT = ("dynamics_steps", "dynamics_chatter")  # tables of rows
 DURATION = 0.01  # of the comparison; the fast path is timed over one second
 RATES = (2e3, 5e3, 1e4, 2.5e4, 5e4)  # of the output [Hz]; the last holds all others
-SPAN = 0.03  # of the chattering stage [s]
 
 HOW = """
 `python -m validation dynamics` makes this page from `tables/dynamics_*.jsonl` and computes them.
@@ -42,15 +37,7 @@ HEAD = [
     "| machine | steps, us | estimates | largest displacement error | largest force error | covered | losses of contact |",
     "|---|---|---|---|---|---|---|",
 ]
-CHATTER = [
-    "## A chattering stage, with and without located changes",
-    "",
-    "`planetary_pitting`, severe, 0.1 mm of play, errors of 40 um, 30 ms: largest error of any mesh force over its range, and",
-    "of any displacement over that of its kind, against DOP853 (rtol 1e-12) between located changes of contact.",
-    "",
-    "| integrator | estimate | force | displacement | losses of contact |",
-    "|---|---|---|---|---|",
-]
+CHATTER = "A chattering stage, with and without located changes of contact: [dynamics_chatter.md](dynamics_chatter.md)."
 
 
 def accuracy(again=False):
@@ -84,65 +71,6 @@ def errors(made, duration):
 def exact(made, duration):
     """Response by DOP853 (rtol 1e-10) between located changes of contact, at the highest rate."""
     return simulate(made, duration, rate=RATES[-1], method="DOP853", rtol=1e-10, filtered=False)
-
-
-def chatter(again=False):
-    """Lines: the chattering stage by the fast path, and by DOP853 with and without located changes of contact."""
-    names = ["fast, step chosen", *(f"DOP853, rtol {r:g}, {how}" for r in (1e-8, 1e-10) for how in ("located", "not located"))]
-    for name in names:
-        row = kept("dynamics_chatter", name, lambda name=name: chattering(name), again)
-        yield f"| {name} | {row['estimate']} | {row['force']:.1e} | {row['displacement']:.1e} | {row['losses']} |"
-    row = kept("dynamics_chatter", "undamped", undamped, again)
-    yield ""
-    yield f"Without damping of the meshes and with errors of the mesh frequency, {row['losses']} losses, `simulate` says after"
-    yield f"{row['seconds']:.1f} s of the processor: {row['kept'] or 'nothing'}."
-
-
-def undamped():
-    """What `simulate` says of the stage without damping of the meshes and with errors of mesh frequency."""
-    made = gf.build_machine(gf.load_scene("planetary_pitting"), "severe")
-    meshes = [replace(m, backlash=1e-4, error=((4e-5, m.frequency, 1.3 * i),)) for i, m in enumerate(made.meshes)]
-    simulate(made, 0.001)  # compile
-    started = time.process_time()
-    got = simulate(replace(made, meshes=tuple(meshes)), SPAN, rate=RATES[-1], filtered=False)
-    told = got.stats.get("chaotic") or got.stats.get("switched") or ""
-    return {"losses": got.stats.get("losses", ""), "seconds": time.process_time() - started, "kept": told}
-
-
-def chattering(name):
-    """One row of `chatter`: errors against DOP853 at rtol 1e-12 between located changes."""
-    made, want = most_exact()
-    if name.startswith("fast"):
-        got = simulate(made, SPAN, rate=RATES[-1], filtered=False)
-    else:
-        rtol, how = float(name.split()[2].strip(",")), name.split(", ")[-1]
-        options = {"rate": RATES[-1], "method": "DOP853", "rtol": rtol, "filtered": False}
-        got = simulate(made, SPAN, **options) if how == "located" else _plain(made, want, rtol)
-    estimate = f"{got.stats['error']:.1e}" if "error" in got.stats else ""
-    row = {"estimate": estimate, "force": _error(got, want), "displacement": _moved(got, want)}
-    return row | {"losses": got.stats.get("losses", ""), "kept": got.stats.get("chaotic") or got.stats.get("switched") or ""}
-
-
-@cache
-def most_exact():
-    """The chattering stage, and its motion by DOP853 at rtol 1e-12 between located changes of contact."""
-    made = shaken(gf.build_machine(gf.load_scene("planetary_pitting"), "severe"))
-    return made, simulate(made, SPAN, rate=RATES[-1], method="DOP853", rtol=1e-12, filtered=False)
-
-
-def _plain(made, like, rtol):
-    """A run of scipy's method through all changes of contact, as if the forces were smooth."""
-    flat, n = excitation.flatten(made, like.time), len(made.dofs)
-    scale = np.abs(like.states).max(axis=0)
-
-    def rate(t, y):
-        u = y * scale
-        a = acceleration(made, flat, np.asarray(t), u[:n], u[n:])
-        return np.concatenate([u[n:], a]) / scale
-
-    options = {"method": "DOP853", "rtol": rtol, "atol": 1e-3 * rtol, "t_eval": like.time}
-    found = solve_ivp(rate, (0.0, like.time[-1]), like.states[0] / scale, **options)
-    return replace(like, states=(found.y * scale[:, None]).T, stats={})
 
 
 def speeds():
@@ -223,7 +151,7 @@ def answer():
 
 def run(again=True):
     """Write the page; `again`: compute its rows again."""
-    sections = [*HEAD, *accuracy(again)], [*CHATTER, *chatter(again)]
+    sections = [*HEAD, *accuracy(again)], [CHATTER]
     page.write("dynamics", answer(), HOW.strip().splitlines(), *sections)
 
 

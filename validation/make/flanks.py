@@ -1,7 +1,6 @@
 """The page `flanks.md`: modified flanks against CalculiX in nonlinear contact, and tip relief against transmission error."""
 
 import math
-import shutil
 import tempfile
 from pathlib import Path
 
@@ -10,7 +9,7 @@ import numpy as np
 import gearfe as gf
 
 from ..shared import page
-from ..shared.decks import calculix, digest
+from ..shared.decks import calculix, digest, installed
 from ..shared.kept_rows import kept, stored
 from ..shared.places import PAGES
 from . import flanks_three, flanks_wide
@@ -131,7 +130,8 @@ def text():
     )
     how = [
         "`python -m validation flanks` makes this page from `tables/flanks_*` and new solves of gearfe; `... flanks --reference`",
-        "computes the rows of CalculiX and of finite elements. Shared with CalculiX: the shapes of the flanks",
+        "computes the rows of CalculiX, in three dimensions on the finer mesh, and of finite elements. Shared with CalculiX: the",
+        "shapes of the flanks",
         "and where they stand.",
     ]
     return answer, how, lines, flanks_wide.text(), flanks_three.text()
@@ -140,8 +140,7 @@ def text():
 def reference():
     """Compute the rows of CalculiX, if it is installed, and of finite elements."""
     flanks_wide.reference()
-    if not shutil.which("ccx"):
-        print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
+    if not installed():
         return
     for case in CASES:
         kept(TABLE, told(case), lambda case=case: row_of(case), again=True)

@@ -1,8 +1,5 @@
 """The page `herringbone`: article S4's ten rows by every method, and under every reading of what it does not print."""
 
-import csv
-import math
-from dataclasses import replace
 from pathlib import Path
 
 import gearfe as gf
@@ -11,70 +8,16 @@ from gearfe.scene.stored import read_curves, stored_file, write_curves
 
 from ..shared import (
     herringbone_contact_line,
-    herringbone_layouts,
-    herringbone_layouts_page,
     herringbone_page,
-    herringbone_scan_page,
-    herringbone_section,
+    herringbone_reading,
     herringbone_statements,
     page,
 )
-from ..shared import herringbone_scan as scan
-from ..shared import herringbone_scan_nodes as nodes
-from ..shared.herringbone_page import SCENE, SUMS, TABLES
+from ..shared.herringbone_page import SCENE, TABLES
 from ..shared.kept_rows import begin
+from ..shared.table_rows import write_table
 
 REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}  # of the finite elements: 0.2 to 0.55 million unknowns a gear
-EVERY = 4  # of the cycle's phases, for the sensitivities
-VARIATIONS = {
-    "as in the scene": {},
-    "bores 0.35 of the root radius": {"bore": 0.35},
-    "bores 0.7 of the root radius": {"bore": 0.7},
-    "a quarter of the load": {"load": 0.25},
-    "four times the load": {"load": 4.0},
-    "pits of 2 mm diameter": {"pit": {"axes": (1.0, 1.0)}},
-    "pits 0.5 mm deep": {"pit": {"depth": 0.5}},
-    "pits 0.6 mm nearer the tip": {"shift": 0.6},
-    "pits 0.6 mm nearer the root": {"shift": -0.6},
-    "crack from the root circle": {"crack": {"start": "root"}},
-    "crack at 35 degrees": {"crack": {"angle": math.radians(35)}},
-}
-
-
-def varied(chosen, *, bore=None, load=1.0, pit=None, shift=0.0, crack=None):
-    """A scene's pair with other bores (part of the root radius; rings stay), load (factor), pits and cracks."""
-    pair = chosen.pair
-    if bore is not None:
-        gears = [g if g.internal else replace(g, r_bore=bore * g.r_f) for g in (pair.gear_1, pair.gear_2)]
-        pair = gf.GearPair(*gears, pair.a)
-
-    def other(one):
-        if isinstance(one, gf.Pit):
-            return replace(one, radius=one.radius + shift, **(pit or {}))
-        return replace(one, **(crack or {}))
-
-    damage = {case: {side: [other(one) for one in found] for side, found in own.items()} for case, own in chosen.damage.items()}
-    return replace(chosen, pair=pair, force=load * chosen.force, damage=damage)
-
-
-def sensitivity(variation, pair):
-    """Rows (variation, pair, case, mean k by `ritz3d` and by the closed forms [N/m]); work of one process."""
-    chosen = varied(gf.load_scene(SCENE).pair(pair), **VARIATIONS[variation])
-    phase = damage_cycle(chosen)[EVERY // 2 :: EVERY]
-    return [
-        [variation, pair, case or "healthy", *(case_curve(chosen.case(case), gf.Solve(m, phase)).mean for m in ("ritz3d", *SUMS))]
-        for name, case in printed_cases(gf.load_scene(SCENE))
-        if name == pair
-    ]
-
-
-def save(name, header, rows):
-    """Write a table of numbers and names."""
-    TABLES.mkdir(exist_ok=True)
-    with (TABLES / f"{name}.csv").open("w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(header)
-        out.writerows([[f"{v:.6g}" if isinstance(v, float) else v for v in row] for row in rows])
 
 
 def reference():
@@ -117,30 +60,23 @@ def every_case():
             )
     header = ["pair", "case", "method", "mean [N/m]", "max [N/m]", "error of mean", "error of max", "largest error at a phase"]
     header += ["largest drop", "drop of mean", "drop of the damaged tooth", "estimate", "seconds"]
-    save(SCENE, header, rows)
-
-
-def sensitivities():
-    """Compute the table of other assumptions and write it."""
-    jobs = [{"variation": name, "pair": pair} for pair in gf.load_scene(SCENE).pairs for name in VARIATIONS]
-    done = gf.batch(jobs, work=sensitivity, progress=lambda n, of: print(f"  sensitivity {n}/{of}", flush=True))
-    for found in done.results:
-        if isinstance(found, Exception):
-            raise found
-    header = ["variation", "pair", "case", "ritz3d [N/m]", *(f"{name} [N/m]" for name in SUMS)]
-    save(f"{SCENE}_sensitivity", header, [row for found in done.results for row in found])
+    write_table(TABLES / f"{SCENE}.csv", header, rows)
 
 
 def text():
     """Arguments of `page.text`, from the tables."""
-    answer = herringbone_layouts_page.answer(herringbone_scan_page.answer(), herringbone_page.beyond())
+    answer = herringbone_reading.answer(_claim(), herringbone_page.beyond())
     how = [
         "`python -m validation herringbone` computes this page and `tables/herringbone*.csv`.",
         "The finite elements, in `gearfe/scene/scenes/herringbone_fe3d.csv`, are computed by `... herringbone --reference`.",
     ]
-    layouts, readings = herringbone_layouts_page.section(), herringbone_scan_page.section()
-    said = herringbone_statements.section()
-    return answer, how, layouts, said, herringbone_page.ten_rows(), readings, herringbone_page.as_printed()
+    reading, said = herringbone_reading.section(), herringbone_statements.section()
+    return answer, how, reading, said, herringbone_page.ten_rows(), herringbone_page.as_printed()
+
+
+def _claim():
+    """What the frozen scan of readings opens with, and a link to it."""
+    return page.read("herringbone_readings")[0].splitlines()[2].replace("The claim", "[The claim](herringbone_readings.md)", 1)
 
 
 def run(again=True):
@@ -148,17 +84,8 @@ def run(again=True):
     if again:
         herringbone_statements.rows(again)
         every_case()
-        sensitivities()
-        section = herringbone_section.rows(gf.load_scene(SCENE), REFINE)
-        save(f"{SCENE}_section", ["pair", "resolution", "mean", "least", "most"], section)
-        for table in (nodes.path(), scan.table("_checks"), herringbone_layouts.PATH, herringbone_contact_line.path("ritz3d")):
-            table.unlink(missing_ok=True)
-        nodes.compute()
-        scan.compute()
-    herringbone_contact_line.compute()
-    herringbone_layouts.compute()
-    scan.check(herringbone_scan_page.to_check())
-    herringbone_scan_page.picture()
+        begin(herringbone_contact_line.path("ritz3d"))
+        herringbone_contact_line.compute()
     page.write("herringbone", *text())
 
 

@@ -1,18 +1,17 @@
 """The printed numbers of article S4 but its stiffness table (herringbone stage with crack and pits in the sun), computed."""
 
-import csv
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
 import gearfe as gf
-from gearfe.core.files import written
 from gearfe.dynamics.machine.of_scene import with_scene_errors
 
 from ..shared.laws import beside, tables
 from ..shared.places import TABLES
 from ..shared.simulated import PHASES, amplitude, machine, record, scene, signal, spectrum, told
+from ..shared.table_rows import rows_of, write_table
 from . import herringbone_play as play
 from .herringbone_numbers import NAME, QUICK, speeds  # noqa: F401
 from .herringbone_runs import (  # noqa: F401
@@ -180,27 +179,23 @@ def write_more():
     beside("herringbone_machine", BESIDE, ERRING, PERFECT)
     play.write_play()
     own = scene(NAME).machine
-    with written(MOVED) as target, open(target, "w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(("errors", "mean x [um]", "range of x [um]", "line at f_m [um]"))
-        rows = {"as assumed": {}} | {
-            f"{key} = {factor * own[key]:g}": {key: factor * own[key]} for key in ERRORS[:3] for factor in (0, 2)
-        }
-        for name, changes in rows.items():
-            out.writerow((name, *(f"{value:.6g}" for value in _moved(**changes))))
+    rows = {"as assumed": {}}
+    rows |= {f"{key} = {factor * own[key]:g}": {key: factor * own[key]} for key in ERRORS[:3] for factor in (0, 2)}
+    header = "errors", "mean x [um]", "range of x [um]", "line at f_m [um]"
+    write_table(MOVED, header, [(name, *map(float, _moved(**changes))) for name, changes in rows.items()])
 
 
 def more():
     """Lines of the page beside the verdicts."""
-    with open(MOVED, encoding="utf-8", newline="") as file:
-        head, *rows = csv.reader(file)
+    rows = rows_of(MOVED)
     lines = [
         "What each assumed error does to the healthy sun along x (from rest; of the transient some is left):",
         "",
-        f"| {' | '.join(head)} |",
-        "|---" * len(head) + "|",
+        f"| {' | '.join(rows[0])} |",
+        "|---|---|---|---|",
     ]
-    lines += [f"| {row[0]} | {' | '.join(f'{float(value):.3g}' for value in row[1:])} |" for row in rows]
+    for name, *values in map(dict.values, rows):
+        lines.append(f"| {name} | {' | '.join(f'{float(value):.3g}' for value in values)} |")
     return [*lines, "", *tables("herringbone_machine", BOTH, ERRING, PERFECT), *play.section()]
 
 

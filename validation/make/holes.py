@@ -23,14 +23,14 @@ PHASES = 16
 TEXT = f"""
 ## Pits of the scenes
 
-Everywhere else in gearfe pits take contact away and no material. Here they are cut out as elliptic cylinders with a flat bottom,
-the tooth is meshed with straight second-order tets (`geometry.mesh.holes`, `gearfe.strength.holed`), and it is solved with and
-without its holes on the same mesh, under the same load of the pair along the lines of contact that the pits leave, at {PHASES}
-phases of the engagement. The work of the load on the difference, over force times approach of the pair, is by how much k would
-fall if the load did not redistribute. The largest of all phases is given, beside the largest drop of k by lost contact alone.
-Volume: an integral over the involutes parallel to the flank, which knows nothing of the solid; cut: difference of the solid
-from it (more than 0.2 % is an error, not a result); meshed: of the tets, whose rims are polygons. Two values: on two meshes.
-Of pits in both halves of a herringbone tooth the volume is that of one half.
+Everywhere else in gearfe pits take contact away and no material. Here they are cut out as elliptic cylinders with a flat
+bottom, the tooth is meshed with straight second-order tets (`gearfe.geometry.mesh.holes`, `gearfe.strength.holed`), and it is
+solved with and without its holes on the same mesh, under the same load of the pair along the lines of contact that the pits
+leave, at {PHASES} phases of the engagement. The work of the load on the difference, over force times approach of the pair, is
+by how much k would fall if the load did not redistribute. The largest of all phases is given, beside the largest drop of k by
+lost contact alone. Volume: an integral over the involutes parallel to the flank, which knows nothing of the solid; cut:
+difference of the solid from it (more than 0.2 % is an error, not a result); meshed: of the tets, whose rims are polygons. Two
+values: on two meshes. Of pits in both halves of a herringbone tooth the volume is that of one half.
 """
 SHARED = """
 The loads are those that `ritz3d` finds with lost contact, spread over 0.15 modules to either side of their line: wider than

@@ -3,18 +3,17 @@
 The arbiter needs no more of gearfe than the shape of gears.
 """
 
-from ..shared import outlines_page, outlines_plane, outlines_three
+from ..shared import outlines_page, outlines_three
 from ..shared.arbiter import kept, unloaded_table
 from ..shared.arbiter.cases import fresh
 from ..shared.kept_rows import stored
 
 
 def reference():
-    """Compute gaps of random pairs, sections pressed by the arbiter and by CalculiX, and whole gears by CalculiX."""
+    """Compute gaps of random pairs, sections pressed by the arbiter, and whole gears by CalculiX."""
     unloaded_table.reference()
     kept.reference()
     kept.reference(fresh(), kept.FRESH)
-    outlines_plane.reference()
     outlines_three.reference()
 
 

@@ -8,7 +8,6 @@ import gearfe as gf
 
 from ..shared.laws import beside, tables
 from ..shared.simulated import amplitude, scene, spectrum, told
-from . import centroid
 from .planetary_numbers import CASES, NAME, QUICK, lengths, speeds  # noqa: F401
 from .planetary_repeats import (  # noqa: F401
     JUDGED_ON,
@@ -193,9 +192,10 @@ def more():
     """Lines of the page beside the verdicts."""
     laws = tables("planetary_pitting", BOTH, OWN, ROWS, LINEAR)
     paths = ["## The path to a sensor on the ring", "", *tables("planetary_pitting_paths", BOTH_PATHS, *PATHS)]
-    return ["## One line of pits, or rows of five", "", *laws, *section(), *paths, *centroid.section()]
+    return ["## One line of pits, or rows of five", "", *laws, *section(), *paths, CENTROID, ""]
 
 
+CENTROID = "What the two formulas of SC do on synthetic lines: [sideband_centroid.md](sideband_centroid.md)."
 BOTH = (
     "The articles' formula, L = 2 b - N l, has the N = 5, 10, 15 pits of a level on one line of contact. So they are judged "
     "above: on the pitch circle, evenly over the width, 1 mm wide, so that 5, 10 and 15 of the 20 mm are lost at once. The "

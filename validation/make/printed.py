@@ -1,16 +1,15 @@
 """The page `printed`: every number that the articles print, and whether it is judged, put in, or not used and why."""
 
-import csv
 import inspect
 import tomllib
 from importlib import import_module, resources
 
 import gearfe as gf
-from gearfe.core.files import written
 from gearfe.core.table import Column, Table
 
 from ..shared import page
 from ..shared.places import ROOT, SOURCES, TABLES
+from ..shared.table_rows import write_table
 
 KINDS = {"verdict": "judged", "used": "input: used", "unused": "input: not used"}
 CSV = TABLES / "printed.csv"
@@ -121,10 +120,7 @@ def articles(rows):
 def run(again=True):
     """Write table and page."""
     rows = ledger()
-    with written(CSV) as name, open(name, "w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(("article", *KINDS.values()))
-        out.writerows((name, *counts(rows, name)) for name in articles(rows))
+    write_table(CSV, ("article", *KINDS.values()), [(name, *counts(rows, name)) for name in articles(rows)])
     how = [
         "`python -m validation printed` writes this page from `sources/printed.toml`, which has every number as printed; a test",
         "compares it with scenes, references and code. A number that is printed twice stands where its rows do. Statements",

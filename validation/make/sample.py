@@ -1,20 +1,17 @@
 """The page `sample`: random pairs, finite elements against the energy model, and how often both error estimates cover."""
 
-import csv
 import datetime
-import io
 import math
 import time
 import warnings
-from pathlib import Path
 
 import numpy as np
 
 import gearfe as gf
-from gearfe.core.files import written
 
 from ..shared import kept_rows, page
 from ..shared.places import TABLES
+from ..shared.table_rows import rows_of, write_table
 from . import sample_three
 
 TABLE = TABLES / "sample.csv"
@@ -86,19 +83,14 @@ def run(again=True):
     """Write the page; `again`: compute its rows again."""
     if again:
         kept_rows.begin(TABLE)
-    rows = rows_on_file()
+    rows = rows_of(TABLE)
     seed = max((int(r["seed"]) for r in rows), default=FIRST - 1) + 1
     while len(rows) < COUNT:
         found = row(seed)
         seed += 1
         if found is not None:
             rows.append(found)
-            text = io.StringIO()
-            writer = csv.DictWriter(text, FIELDS, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(rows)
-            with written(TABLE) as name:
-                Path(name).write_text(text.getvalue(), encoding="utf-8")
+            write_table(TABLE, FIELDS, [row.values() for row in rows])
     solid = sample_three.rows()
     page.write(
         "sample",
@@ -114,14 +106,6 @@ def answer(rows, solid):
     (three, brute), count = sample_three.covered(solid)
     plane = " and ".join(f"{_count(rows, f'{name}_covered')} pairs for `{name}`" for name in ("ritz", "fe"))
     return f"In the section in {plane}, in three dimensions in {three} of {count} for `ritz3d` and {brute} of {count} for `fe3d`."
-
-
-def rows_on_file():
-    """Rows of `sample.csv` as dictionaries of strings."""
-    if not TABLE.exists():
-        return []
-    with TABLE.open(encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def section(rows):
@@ -169,7 +153,7 @@ def _count(rows, name):
 
 def cheap():
     """Rows that `validation.check` computes again: differences and estimates over k."""
-    for one in rows_on_file():
+    for one in rows_of(TABLE):
         if float(one["cpu_s"]) < 3.0:
             yield one["seed"], _over_k(one), lambda seed=int(one["seed"]): _over_k(row(seed))
 

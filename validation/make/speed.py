@@ -11,7 +11,7 @@ import gearfe as gf
 
 from ..shared import machine, page, speed_page
 from ..shared.places import TABLES
-from . import cost_three, dynamics, limits, speed_three
+from . import dynamics, speed_three
 
 TABLE = TABLES / "speed.json"
 REFINES = (0.5, 1.0, 2.0, 3.0)
@@ -37,10 +37,8 @@ def measure():
         found = {"machine": machine.describe(), "three": {"rows": speed_three.rows()}}  # a child's peak counts its parent's
         found |= {
             "sections": sections(),
-            "cost": cost_three.seconds(),
             "dynamics": {"rows": dynamics.integrators()},
             "steps": dynamics.speeds(),
-            "limits": limits.measured(),
         }
     page.replace(TABLE, json.dumps(found, indent=1) + "\n")
     speed_page.plot(found)
@@ -76,22 +74,11 @@ def text():
         "",
         "![seconds against error](speed.png)",
     ]
-    standard = ", ".join(f"{name} {value}" for name, value in cost_three.STANDARD.items())
     return (
         answer,
         how,
         ["## Sections (2-D)", "", found["sections"]["about"], "", *speed_page.table(found["sections"]["rows"])],
         ["## Three dimensions", "", speed_three.ABOUT, "", *speed_page.table(solid.values())],
-        [
-            "## What decides the cost in three dimensions",
-            "",
-            "A healthy pair by `ritz3d`, the wheel with one tooth more, nothing known before:",
-            f"{standard}; one of them is varied at a time, once more for spur gears, whose even and odd functions along the",
-            "width",
-            "are solved for apart. Exponent: of the last doubling, or of the last step of the order.",
-            "",
-            *speed_page.exponents(found["cost"], cost_three.OVER),
-        ],
         [
             "## Integrators",
             "",
@@ -105,7 +92,7 @@ def text():
             "",
             *speed_page.steps(found["steps"]),
         ],
-        limits.text(found["limits"]),
+        ["What decides the cost in three dimensions, and where the time goes: [speed_stages.md](speed_stages.md)."],
     )
 
 

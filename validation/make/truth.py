@@ -1,9 +1,6 @@
 """gearfe beside everything independent of it: published values, other codes, CalculiX on its own meshes and in contact."""
 
-import csv
 import math
-import shutil
-import subprocess
 import tempfile
 import warnings
 from pathlib import Path
@@ -12,12 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 import gearfe as gf
-from gearfe.core.files import written
 from gearfe.core.units import in_newton_per_um
 from gearfe.flexibility.finite_elements.elasticity import Body
 
 from ..shared import page, reference
+from ..shared.decks import calculix, installed
 from ..shared.places import TABLES
+from ..shared.table_rows import rows_of, write_table
 
 CSV = TABLES / "truth.csv"
 CONTACT = TABLES / "calculix.csv"
@@ -145,9 +143,7 @@ def contact_row(phase):
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         deck = gf.write_contact_inp(folder / "pair.inp", pair, phase, float(curve.lte[0]) * 1e3, LINE_LOAD, (steel, steel))
-        done = _calculix(folder, "pair")
-        if not (folder / "pair.dat").exists():
-            raise RuntimeError(f"CalculiX gave no result at phase {phase:g}: {done.stdout[-500:]}")
+        calculix(folder, "pair")
         force = deck.force(folder / "pair.dat")
     return phase, float(curve.k[0]), force * pair.gear_1.b / float(curve.lte[0])
 
@@ -165,10 +161,6 @@ def springs(phases):
     return [None if math.isnan(one) else one for one in added.tolist()]
 
 
-def _calculix(folder, name):
-    return subprocess.run(["ccx", "-i", name], cwd=folder, capture_output=True, text=True, timeout=900, check=False)
-
-
 LINEAR = {
     "21 teeth, healthy": ({"z": 21, "r_bore": 7.4}, 21.5, ()),
     "21 teeth, crack of 40 %": ({"z": 21, "r_bore": 7.4}, 21.5, (gf.Crack(level=0.4),)),
@@ -184,7 +176,7 @@ def linear_rows():
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             body, load = gf.write_inp(folder / "gear.inp", gear, radius, 100.0, steel, cracks=cracks, refine=0.6)
-            _calculix(folder, "gear")
+            calculix(folder, "gear")
             rows = [line.split() for line in (folder / "gear.dat").read_text(encoding="utf-8").splitlines()]
         theirs = max(math.hypot(float(r[1]), float(r[2])) for r in rows if len(r) == 4 and r[0].isdigit())
         ours = np.hypot(*Body(body.mesh, steel, order=2).solve(load)[:, 0].reshape(-1, 2).T).max()
@@ -193,25 +185,15 @@ def linear_rows():
 
 def read():
     """Committed rows."""
-    with open(CSV, encoding="utf-8", newline="") as file:
-        rows = csv.DictReader(file)
-        return [
-            Row(r["table"], r["case"], float(r["theirs"]), float(r["ours"]), float(r["tolerance"]), r["absolute"] == "True")
-            for r in rows
-        ]
+    return [
+        Row(r["table"], r["case"], float(r["theirs"]), float(r["ours"]), float(r["tolerance"]), r["absolute"] == "True")
+        for r in rows_of(CSV)
+    ]
 
 
 def read_contact():
     """Committed phases, k of `ritz`, k of CalculiX [N/m], as columns."""
     return np.loadtxt(CONTACT, delimiter=",", skiprows=1, unpack=True)
-
-
-def _write(path, header, rows):
-    TABLES.mkdir(exist_ok=True)
-    with written(path) as name, open(name, "w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(header)
-        out.writerows([f"{x:.6g}" if isinstance(x, float) else x for x in row] for row in rows)
 
 
 def text():
@@ -312,17 +294,16 @@ def compute():
             for row in source(tables):
                 rows.append(row)
                 print(f"  {row.table}, {row.case}: {row.ours:.6g} ({row.theirs:.6g})", flush=True)
-    if shutil.which("ccx"):
+    if installed():
         rows += list(linear_rows())
         found = []
         for phase in (np.arange(PHASES) + 0.5) / PHASES:
             found.append(contact_row(float(phase)))
             print(f"  CalculiX, phase {phase:.4f}: {100 * (found[-1][1] / found[-1][2] - 1):+.3f} %", flush=True)
-        _write(CONTACT, ("phase", "k_ritz_N_per_m", "k_calculix_N_per_m"), found)
+        write_table(CONTACT, ("phase", "k_ritz_N_per_m", "k_calculix_N_per_m"), found)
     else:
         rows += [row for row in read() if row.table == "calculix_linear"]
-        print("  CalculiX (ccx) is not installed: its committed rows are kept")
-    _write(CSV, Row._fields, rows)
+    write_table(CSV, Row._fields, rows)
 
 
 def run(again=True):

@@ -3,7 +3,9 @@
 import hashlib
 import re
 import resource
+import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
 NUMBER = re.compile(rb"-?\d+\.\d*(?:[eE][-+]?\d+)?")
@@ -22,3 +24,36 @@ def calculix(folder, name):
     if not (folder / f"{name}.dat").exists() or not (folder / f"{name}.dat").stat().st_size:
         raise RuntimeError(f"CalculiX gave no result: {done.stdout[-500:]}")
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+
+
+def installed():
+    """Whether CalculiX is there; if not, say that the runs on file are kept."""
+    if not shutil.which("ccx"):
+        print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
+    return shutil.which("ccx") is not None
+
+
+def pressed(write):
+    """A contact deck in three dimensions, run by CalculiX, as the row of a table.
+
+    Parameters
+    ----------
+    write : callable
+        Writes ``pair.inp`` into a folder and returns the deck.
+
+    Returns
+    -------
+    row : dict
+        Digest of the deck, nodes, CPU seconds, mean of both forces [N], forces apart.
+    carried : dict
+        Force [N] of each tooth pair and where along the width it acts [mm].
+    """
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        deck = write(folder)
+        seconds = calculix(folder, "pair")
+        first, second = deck.forces(folder / "pair.dat")
+        carried = deck.carried(folder / "pair.dat") if hasattr(deck, "carried") else {}
+        nodes = sum(part.points.shape[1] for part in deck.parts)
+        row = {"deck": digest(folder / "pair.inp"), "nodes": nodes, "seconds": round(seconds, 1)}
+    return row | {"force": (first + second) / 2, "forces apart": float(f"{first / second - 1:.3g}")}, carried

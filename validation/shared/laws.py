@@ -1,22 +1,17 @@
 """Two laws of contact beside each other: what a page computes under the article's own, and under another."""
 
-import csv
-
-from gearfe.core.files import written
-
 from .places import TABLES
+from .table_rows import rows_of, write_table
 
 
 def beside(name, functions, *laws):
     """Write the values of functions of a law, which give values by case, as ``tables/NAME_laws.csv``."""
-    with written(TABLES / f"{name}_laws.csv") as target, open(target, "w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(("quantity", "case", *laws))
-        for quantity, function in functions.items():
-            first, *others = (function(law) for law in laws)
-            for case, value in first.items():
-                if all(case in other for other in others):
-                    out.writerow((quantity, case, *(_cell(one) for one in (value, *(other[case] for other in others)))))
+    rows = []
+    for quantity, function in functions.items():
+        found = [function(law) for law in laws]
+        shared = [case for case in found[0] if all(case in one for one in found)]
+        rows += [(quantity, case, *(_cell(one[case]) for one in found)) for case in shared]
+    write_table(TABLES / f"{name}_laws.csv", ("quantity", "case", *laws), rows)
 
 
 def _cell(value):
@@ -27,8 +22,7 @@ def _cell(value):
 
 def tables(name, about, *laws):
     """Lines of Markdown of what `beside` wrote."""
-    with open(TABLES / f"{name}_laws.csv", encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(TABLES / f"{name}_laws.csv")
     lines = [f"{about}.", "", f"| quantity | case | {' | '.join(laws)} |", "|---|---|" + "---|" * len(laws)]
     last = ""
     for row in rows:

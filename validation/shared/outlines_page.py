@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import outlines_plane, outlines_three, page
+from . import outlines_three, page
 from .arbiter import kept, unloaded_table
 from .arbiter.beside import beside
 from .arbiter.cases import fresh
@@ -18,7 +18,8 @@ A corner touches off the path along the normal of the other gear's flank, severa
 a modified flank leans away from its involute. Up to this version gearfe took a tooth to yield by such a force's torque alone, or
 took it along the involute's normal; a tooth yields along and across its normal, with a coupling of both. That was 1.5 of 1.6 % on
 12/17 (form point), 0.6 of 0.7 % on 11/60 and 0.3 of 0.4 % on 10/32 (tips), and 0.3 to 0.5 % on the relief of 14/47; CalculiX
-(below) confirms the arbiter. At ridges of chamfers that touch off the path hats stood beside the ridge and not on it: 0.9 %
+([outlines_calculix.md](outlines_calculix.md)) confirms the arbiter.
+At ridges of chamfers that touch off the path hats stood beside the ridge and not on it: 0.9 %
 (14/47, 2/48) and 0.6 % (12/17, 38/48). The rules were found on these pairs; the fresh pairs judge them.
 
 What is left at corners: where a ring's tip touches before the path (13/46 and 9/26 at 47/48) both methods are 0.3 to 0.4 % too
@@ -72,7 +73,7 @@ def write(again=False):
                 f"{found['estimate']:.3f} | {row['places']} |\n"
             )
         parts.append("\n" + "".join(f"Refused: {text}\n" for text in refused) + "\n")
-    parts += [_fresh(), outlines_plane.section(), outlines_three.section()]
+    parts += [_fresh(), outlines_three.section()]
     answer = (
         f"At {off.size} phases at which tooth pairs off the path come near, {' and '.join(answers)} differ from whole "
         "outlines pressed together by an arbiter that shares none of gearfe's contact."

@@ -1,17 +1,14 @@
 """Undercut helical pairs whose form corners touch, pressed by CalculiX with their whole flanks and fillets, beside `ritz3d`.
 
-`reference` computes what `tables/outlines_three.jsonl` lacks if `ccx` is there, a run at a time.
+`reference` computes `tables/outlines_three.jsonl` if `ccx` is there, a run at a time.
 """
 
 import math
-import shutil
-import tempfile
-from pathlib import Path
 
 import gearfe as gf
 
 from . import kept_rows
-from .decks import calculix, digest
+from .decks import installed, pressed
 from .outsider import STEEL, told
 from .solid_pair import solid_contact
 
@@ -29,8 +26,9 @@ They were chosen before any was pressed; the phase is one of those at which `rit
 edge, differed most. CalculiX presses whole gears in 20-node hexahedra against each other, turned by the approach that `ritz3d`
 had under the load when CalculiX was run; the pinion's fillets are part of the contact and meshed as finely as its flanks.
 CalculiX knows no path and no corner. Asked for: within {100 * ASKED:g} %. Its k falls as a mesh is refined, so that the
-difference rises; two meshes do not tell the limit. `per_width`: edges per Hertz half width in the contact zone, on flank and
-fillet; `layers`: of elements along the width. 'Path alone': `ritz3d` without contact off the path.
+difference rises; two meshes do not tell the limit. Only the finer one is computed again. `per_width`: edges per Hertz half
+width in the contact zone, on flank and fillet; `layers`: of elements along the width. 'Path alone': `ritz3d` without contact
+off the path.
 
 """
 NAMES = ("pair", "mesh", "nodes", "`ritz3d` [N/um]", "path alone", "CalculiX", "difference")
@@ -77,15 +75,9 @@ def deck_of(folder, name, mesh, approach):
 def row_of(name, mesh):
     """A run of CalculiX at the approach that `ritz3d` has under the load, to four digits."""
     approach = float(f"{ours(name)[1]:.4g}")
-    with tempfile.TemporaryDirectory() as place:
-        folder = Path(place)
-        deck = deck_of(folder, name, mesh, approach)
-        seconds = calculix(folder, "pair")
-        first, second = deck.forces(folder / "pair.dat")
-        theirs = deck.carried(folder / "pair.dat")[0][0]
-        out = {"deck": digest(folder / "pair.inp"), "nodes": sum(part.points.shape[1] for part in deck.parts)}
-    values = {"theirs": (first + second) / 2e3 / approach, "forces apart": first / second - 1, "theirs there": theirs}
-    return out | {"seconds": round(seconds, 1), "approach": approach} | {key: float(f"{v:.6g}") for key, v in values.items()}
+    row, carried = pressed(lambda folder: deck_of(folder, name, mesh, approach))
+    values = {"theirs": row.pop("force") / 1e3 / approach, "theirs there": carried[0][0]}
+    return row | {"approach": approach} | {key: float(f"{v:.6g}") for key, v in values.items()}
 
 
 def wanted():
@@ -96,20 +88,15 @@ def wanted():
 def stored():
     """Runs on file, as dicts with their case, mesh and what `ritz3d` finds."""
     theirs, found = kept_rows.stored(TABLE), kept_rows.stored(OURS)
-    return [
-        found[name] | {"case": name, "mesh": told(mesh)} | theirs[key]
-        for name, mesh, key in wanted()
-        if key in theirs and name in found
-    ]
+    return [found[name] | {"case": name, "mesh": told(mesh)} | theirs[key] for name, mesh, key in wanted()]
 
 
 def reference():
-    """Compute all runs; without CalculiX say so."""
-    if not shutil.which("ccx"):
-        print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
+    """Compute the finest mesh of each case, coarser ones only if they are not on file; without CalculiX say so."""
+    if not installed():
         return
     for name, mesh, key in wanted():
-        kept_rows.kept(TABLE, key, lambda name=name, mesh=mesh: row_of(name, mesh), again=True)
+        kept_rows.kept(TABLE, key, lambda name=name, mesh=mesh: row_of(name, mesh), again=mesh == MESHES[-1])
 
 
 def refresh(again=False):
@@ -120,13 +107,10 @@ def refresh(again=False):
 
 def section():
     """The section of the page, from the tables alone."""
-    known = stored()
     lines = ["| " + " | ".join(NAMES) + " |\n", "|---" * len(NAMES) + "|\n"]
-    for row in known:
+    for row in stored():
         cells = [row["case"], row["mesh"], f"{row['nodes']:,}", *(f"{row[name]:.6g}" for name in ("k", "path only", "theirs"))]
         cells += [f"{100 * (row['k'] / row['theirs'] - 1):+.2f} %", *(f"{row[name]:.6g}" for name in ("carried", "theirs there"))]
         cells += [f"{100 * row['forces apart']:+.2f} %", f"{row['seconds']:.0f}"]
         lines.append("| " + " | ".join(cells) + " |\n")
-    done = {(row["case"], row["mesh"]) for row in known}
-    missing = [f"{name} ({told(mesh)})" for name, mesh, _ in wanted() if (name, told(mesh)) not in done]
-    return HEAD + "".join(lines) + (f"\nNot computed yet: {'; '.join(missing)}.\n" if missing else "")
+    return HEAD + "".join(lines)

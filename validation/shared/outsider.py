@@ -5,23 +5,22 @@ the run was made, which the row keeps, so that a change of `ritz3d` alone asks f
 """
 
 import math
-import shutil
 import tempfile
 import warnings
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 import gearfe as gf
-from gearfe.decks.contact_solid import SolidDeck
 from gearfe.flexibility import solid as flexibility3d
 from gearfe.flexibility.energy.ritz import solid as ritz3d
 from gearfe.flexibility.energy.ritz.join import join
 from gearfe.flexibility.energy.ritz.panel3d import SolidModel
 
 from . import kept_rows
-from .decks import calculix, digest
+from .decks import calculix, digest, installed, pressed
 from .solid_pair import solid_contact
 
 TABLE, OURS = "outsider_three", "outsider_three_ritz3d"  # tables of rows: runs of CalculiX; of `ritz3d`
@@ -143,8 +142,9 @@ def line_row(name, mesh):
         folder = Path(place)
         deck = line_deck(folder, name, mesh)
         seconds = calculix(folder, "gear")
-        theirs = deck.deflection(folder / "gear.dat") / deck.force
-        return _row(folder / "gear.inp", deck.part.points.shape[1], seconds, 1e6 * theirs, 0.0)
+        theirs = 1e6 * deck.deflection(folder / "gear.dat") / deck.force
+        row = {"deck": digest(folder / "gear.inp"), "nodes": deck.part.points.shape[1], "seconds": round(seconds, 1)}
+    return row | {"theirs": float(f"{theirs:.6g}"), "forces apart": 0.0}
 
 
 def contact_deck(folder, name, mesh, approach):
@@ -158,15 +158,10 @@ def contact_deck(folder, name, mesh, approach):
 def contact_row(name, mesh):
     """Stiffness [N/um] of a pair by CalculiX at the approach that `ritz3d` has under the load, to four digits."""
     approach = float(f"{ritz3d_row(name)['approach']:.4g}")
-    with tempfile.TemporaryDirectory() as place:
-        folder = Path(place)
-        deck = contact_deck(folder, name, mesh, approach)
-        seconds = calculix(folder, "pair")
-        first, second = deck.forces(folder / "pair.dat")
-        carried = deck.carried(folder / "pair.dat") if name == SHOWN and isinstance(deck, SolidDeck) else {}
-        nodes = sum(part.points.shape[1] for part in deck.parts)
-        own = _row(folder / "pair.inp", nodes, seconds, (first + second) / 2 / approach / 1e3, first / second - 1)
-    return own | {"approach": approach, "carried": {str(order): list(found) for order, found in sorted(carried.items())}}
+    row, carried = pressed(lambda folder: contact_deck(folder, name, mesh, approach))
+    row["theirs"] = float(f"{row.pop('force') / approach / 1e3:.6g}")
+    own = {str(order): list(found) for order, found in sorted(carried.items())} if name == SHOWN else {}
+    return row | {"approach": approach, "carried": own}
 
 
 def ritz3d_row(name):
@@ -193,11 +188,6 @@ def sharing(case):
     return out
 
 
-def _row(deck, nodes, seconds, theirs, forces_apart):
-    own = {"deck": digest(deck), "nodes": nodes, "seconds": round(seconds, 1)}
-    return own | {"theirs": float(f"{theirs:.6g}"), "forces apart": float(f"{forces_apart:.3g}")}
-
-
 def told(mesh):
     """A mesh's options as text."""
     return ", ".join(f"{key} {value:g}" for key, value in mesh.items())
@@ -218,14 +208,10 @@ def key_of(name, mesh):
 
 def stored():
     """Rows on file by (case, mesh), as dicts with both and with what `ritz3d` finds: `ours`, the approach `now`, and `shared`."""
-    theirs, out = kept_rows.stored(TABLE), {}
-    ours = {
-        name: {"ours": row["value"], "now": row.get("approach"), "shared": row.get("carried")}
-        for name, row in kept_rows.stored(OURS).items()
-    }
+    theirs, ours, out = kept_rows.stored(TABLE), kept_rows.stored(OURS), {}
     for name, mesh in wanted():
-        if key_of(name, mesh) in theirs and name in ours:
-            out[name, told(mesh)] = {"case": name, "mesh": told(mesh)} | ours[name] | theirs[key_of(name, mesh)]
+        own = {"case": name, "mesh": told(mesh), "ours": ours[name]["value"], "now": ours[name].get("approach")}
+        out[name, told(mesh)] = own | {"shared": ours[name].get("carried")} | theirs[key_of(name, mesh)]
     return out
 
 
@@ -236,13 +222,13 @@ def refresh(again=False):
 
 
 def reference():
-    """Compute all runs; without CalculiX say so and compute nothing."""
-    if not shutil.which("ccx"):
-        print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
+    """Compute the finest mesh of each case, coarser ones only if they are not on file; without CalculiX say so."""
+    if not installed():
         return
     for name, mesh in wanted():
-        work = line_row if name in lines() else contact_row
-        kept_rows.kept(TABLE, key_of(name, mesh), lambda work=work, name=name, mesh=mesh: work(name, mesh), again=True)
+        work, meshes = (line_row, LINE_MESHES) if name in lines() else (contact_row, cases()[name].meshes)
+        made = partial(work, name, mesh)
+        kept_rows.kept(TABLE, key_of(name, mesh), made, again=mesh == meshes[-1])
 
 
 def apart(row):

@@ -1,15 +1,10 @@
-"""Pictures that only pages of validation show: waves, phase portraits side by side, contact lines, states of sweeps."""
-
-from pathlib import Path
+"""Pictures that only pages of validation show: waves, phase portraits side by side, contact lines."""
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from gearfe.core.files import save_figure
 from gearfe.figures.look import COLOURS, SQUASHED, look
-
-STATES = ("#0072b2", "#e69f00", "#cc3311", "#009e73")  # of states of a gear, told apart by the colour-blind, too
 
 
 def plot_waves(signals, path, seconds=0.25, *, dpi=60, title=""):
@@ -79,43 +74,3 @@ def plot_lengths(phase, lengths, others=None, path=None, *, title="", told="othe
         axes.set_ylim(bottom=0)
     axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
     return save_figure(figure, path, dpi=100)
-
-
-def plot_states(
-    curves: dict[str, tuple[NDArray, NDArray]],
-    values: dict[str, NDArray],
-    path: str | Path | None = None,
-    *,
-    labels: tuple[str, str, str] = ("mesh phase", "k [N/um]", "mean k [N/um]"),
-) -> Figure:
-    """Bands of curves beside histograms of a number, by state of the gear.
-
-    Parameters
-    ----------
-    curves : dict of str to (ndarray, ndarray)
-        By state: places ``(n,)``, and low, middle and high percentile ``(3, n)``.
-    values : dict of str to ndarray
-        By state: a number of each machine.
-    path : str or path, optional
-    labels : (str, str, str)
-        Of the places, the curves and the number.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    figure = Figure(figsize=(9.0, 3.6), layout="constrained")
-    left, right = figure.subplots(1, 2)
-    for (state, (place, low_middle_high)), colour in zip(curves.items(), STATES, strict=False):
-        low, middle, high = low_middle_high
-        left.fill_between(place, low, high, color=colour, alpha=0.3, linewidth=0)
-        left.plot(place, middle, color=colour, label=state)
-    edges = np.histogram_bin_edges(np.concatenate(list(values.values())), 20)
-    for (state, own), colour in zip(values.items(), STATES, strict=False):
-        right.hist(own, edges, color=colour, alpha=0.2, density=True)
-        right.hist(own, edges, color=colour, histtype="step", linewidth=1.8, label=state, density=True)
-    left.set(xlabel=labels[0], ylabel=labels[1])
-    right.set(xlabel=labels[2], yticks=[], ylabel="machines")
-    left.legend(frameon=False)
-    right.legend(frameon=False)
-    return save_figure(figure, path, 150)

@@ -1,6 +1,5 @@
 """Sections and picture of the page of speed against error, of what one run measured."""
 
-import math
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -35,33 +34,10 @@ def _percent(value):
     return "" if value is None else "reference" if value == 0 else f"{100 * value:.2g} %"
 
 
-def exponents(found, over):
-    """Lines: CPU seconds over each of the varied numbers, and the exponent of the last step."""
-    lines = ["| varied | values | CPU seconds | exponent |", "|---|---|---|---|"]
-    for name, values in over.items():
-        seconds = found[name]
-        rise = math.log(seconds[-1] / seconds[-2]) / math.log(values[-1] / values[-2])
-        cells = ", ".join(map(str, values)), ", ".join(f"{one:.3g}" for one in seconds)
-        lines.append(f"| {name} | {' | '.join(cells)} | {rise:.1f} |")
-    return lines
-
-
 def steps(found):
     """Lines: seconds of each machine at the step that `simulate` chooses."""
     lines = ["| machine | step, us | estimate | seconds |", "|---|---|---|---|"]
     return lines + [f"| {r['name']} | {r['step']:.2g} | {r['estimate']:.1e} | {r['seconds']:.3g} |" for r in found]
-
-
-def stages(name, rows, most):
-    """Lines: a problem's stages ``[label, seconds, operations]`` with shares of its time and of `most` billions a second."""
-    whole, work = sum(row[1] for row in rows), sum(row[2] for row in rows)
-    lines = [f"### {name}: {whole:.3g} s, limit {work / most / 1e9:.2g} s", ""]
-    lines += ["| stage | seconds | share | billion operations a second |", "|---|---|---|---|"]
-    for label, seconds, operations in sorted(rows, key=lambda row: -row[1]):
-        rate = operations / max(seconds, 1e-9) / 1e9
-        told = f"{rate:.0f}, {100 * rate / most:.0f} %" if operations else ""
-        lines.append(f"| {label} | {seconds:.2g} | {100 * seconds / whole:.0f} % | {told} |")
-    return lines
 
 
 def plot(found):

@@ -26,7 +26,7 @@ def planetary_set(arguments):
         check_meshable(case)
     at, refine = spread(case, arguments.positions, arguments.cycles), arguments.refine
     with working("loads of all meshes"):
-        healthy = planetary_stiffness(build_set(scene), at, refine=refine) if arguments.case else None
+        healthy = planetary_stiffness(build_set(scene), at, refine=refine, error=False) if arguments.case else None
         found = planetary_stiffness(case, at, refine=refine)
     print(f"{scene.title}\n\n{set_headline(found, healthy)}\n\n{told_set(case)};\n{told_span(at)}\n\n{set_table(found)}")
     _print_assumptions(scene, arguments.assumptions)
@@ -38,7 +38,7 @@ def planetary_set(arguments):
         plot_planetary_set(found, 0, arguments.picture)
     if arguments.animate:
         with working("moving picture"):
-            moving = planetary_stiffness(case, FRAMES, cycles=arguments.cycles or 1, refine=refine)
+            moving = planetary_stiffness(case, FRAMES, cycles=arguments.cycles or 1, refine=refine, error=False)
             animate_planetary_set(moving, arguments.animate)
     for path in filter(None, (arguments.output, arguments.plot, arguments.picture, arguments.animate)):
         print(f"written: {path}")

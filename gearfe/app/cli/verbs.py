@@ -34,7 +34,7 @@ def _title(scene, arguments, *more):
 
 def stiffness(arguments):
     """``gearfe stiffness``."""
-    from ...comparison.losses import beside_health, zone_table
+    from ...comparison.losses import beside_health, damaged_pairs, engaged_phases, zone_table
     from ...comparison.told_scene import told_supports
     from ...scene.load import load_scene
     from ...stiffness.methods import fitted
@@ -58,7 +58,8 @@ def stiffness(arguments):
             arguments.method, arguments.phases, "tooth" if arguments.case else "cycle", not arguments.no_extended,
             refine=arguments.refine, variants=variants, error=arguments.error, tell=tell, pose=arguments.pose,
         )  # fmt: skip
-        curve = solve(case, how)
+        apart = arguments.case and list(damaged_pairs(case)) != [0]
+        curve = solve(case, replace(how, phases=engaged_phases(case, arguments.phases), span="cycle") if apart else how)
         meta = curve.meta
         answer = beside_health(curve, case, replace(how, method=meta["method"])) if arguments.case else zone_table(curve)
     print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:")
@@ -254,6 +255,8 @@ def dynamics(arguments):
     made = next(iter(found.values())).machine
     for name, value in made.notes.items():
         print(f"  {name}: {_rounded(value)}")
+    for fault in list(found.values())[-1].machine.faults:
+        print(f"  {fault}")
     print(f"  natural frequencies [Hz]: {_rounded(tuple(natural_frequencies(made)[0][:12]))} ...")
     for case, one in found.items():
         stats = one.stats

@@ -2,15 +2,17 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ...geometry.pair.gear_pair import GearPair
-from .gear_mesh import Curve, GearMesh, Stiffness, ToothDamage
+from .gear_mesh import GearMesh, Stiffness
 from .layout import Body, Layout, around, through
 from .member import disc
-from .scene_curves import healthy_and_hurt, speed_of
+from .planetary import teeth_damaged
+from .scene_curves import Meshed, scene_curves, speed_of
 from .tables import Load, Machine, Stage
 
 SCENE_PAIRS = {  # by kind of mesh (b inner, c outer planet of stage 2), the pair of a scene
@@ -21,14 +23,28 @@ SCENE_PAIRS = {  # by kind of mesh (b inner, c outer planet of stage 2), the pai
     "c_ring": "planet_ring_2",
 }
 KINDS = tuple(SCENE_PAIRS)
+HOMES = {  # by pair of a scene, the bodies whose teeth damage is in unless it names another
+    "sun_planet": ("sun2", "b1"),
+    "planet_planet": ("b1", "c1"),
+    "planet_ring_1": ("p1", "ring"),
+    "planet_ring_2": ("c1", "ring"),
+}
 
 
 def scene_compound(scene, case, **options):
     """Machine of a scene: the stiffness curves of its pairs."""
-    healthy, hurt = healthy_and_hurt(scene, case, options, SCENE_PAIRS)
-    damage = {"sun2": (0, {"sun2_b": hurt["sun2_b"]})} if hurt else None
-    settings = {"speed": speed_of(scene), "torque": scene.machine["torque_Nm"], "n_planets": scene.machine["n_planets"]}
-    return compound_planetary(healthy, pairs=scene_pairs(scene), damage=damage, **settings)
+    pairs, n = scene_pairs(scene), scene.machine["n_planets"]
+    meshes = {name: mesh._replace(pair=SCENE_PAIRS[mesh.pair]) for name, mesh in _meshes(compound_table(pairs, n)).items()}
+    found = scene_curves(scene, case, options, meshes, HOMES)
+    healthy = {kind: found.healthy[name] for kind, name in SCENE_PAIRS.items()}
+    settings = {"speed": speed_of(scene), "torque": scene.machine["torque_Nm"], "n_planets": n}
+    made = compound_planetary(healthy, pairs=pairs, damage=found.damage, **settings)
+    return replace(made, faults=found.faults(made))
+
+
+def _meshes(table):
+    """`Meshed` of the meshes of a `compound_table`; planets are called ``p1``, ``b1``, ``c1`` and so on."""
+    return {name: Meshed(kind, bodies, fields["first"]) for name, (kind, bodies, _, fields) in table.items()}
 
 
 def scene_pairs(scene):
@@ -119,7 +135,7 @@ def compound_planetary(
     stiffness: Mapping[str, Stiffness],
     *,
     pairs: Mapping[str, GearPair],
-    damage: Mapping[str, tuple[int, Mapping[str, Curve]]] | None = None,
+    damage: Mapping[str, Any] | None = None,
     speed: float = 700 * math.pi / 30,
     torque: float = 200.0,
     n_planets: int = 3,
@@ -143,7 +159,8 @@ def compound_planetary(
     pairs : dict
         GearPairs by kind (`scene_pairs` of a scene).
     damage : dict, optional
-        ``{"sun2": (tooth, {"sun2_b": curve})}``: by body, the tooth and its curves by kind of mesh.
+        ``{"sun2": (tooth, {"sun2_b": curve})}``: by body, the tooth and its curves by kind of mesh; a list of such pairs for
+        several teeth. Or by mesh (``"sun2_b1"``) a tuple of `ToothDamage`.
     speed : float
         Speed of sun 2 [rad/s]; the article has 700 rpm.
     torque : float
@@ -179,12 +196,10 @@ def compound_planetary(
     rates = -turn * suns[0].z / (2 * math.pi), (speed - turn) * suns[1].z / (2 * math.pi)
     table = compound_table(pairs, n_planets, rates)
     layout, springs = _bodies(pairs, n_planets, (density, bearing, zeta, hold, drive))
-    meshes = []
+    meshes, hurt = [], teeth_damaged(damage, _meshes(table))
     for name, (kind, bodies, place, fields) in table.items():
-        hurt = ((body, *(damage or {}).get(member, (0, {}))) for body, member in enumerate(bodies))
-        tooth_damage = tuple(ToothDamage(body, tooth, curves[kind]) for body, tooth, curves in hurt if kind in curves)
         row = layout.mesh(*bodies, **place)
-        meshes.append(GearMesh(name, row, stiffness[kind], damage=tooth_damage, **({"beta": beta} | fields | mesh)))
+        meshes.append(GearMesh(name, row, stiffness[kind], damage=hurt[name], **({"beta": beta} | fields | mesh)))
     arms = [1e-3 * g.r_b for g in suns]
     rings = pairs["c_ring"].gear_2.r_b / pairs["p_ring"].gear_2.r_b  # force in stage 1 over that in stage 2
     driven = torque * arms[1] / (arms[1] + rings * arms[0])
@@ -200,11 +215,23 @@ def compound_planetary(
     stages = tuple(
         Stage(
             f"stage {i + 1}", (f"sun{i + 1}",), (planet,), abs(rate), abs(rate) / gear.z, n_planets * abs(rate) / gear.z,
-            turn / (2 * math.pi),
+            turn / (2 * math.pi), returns,
         )
-        for i, (planet, rate, gear) in enumerate(zip(("p1", "b1"), rates, suns, strict=True))
+        for i, (planet, rate, gear, returns) in enumerate(zip(("p1", "b1"), rates, suns, _returns(table, rates), strict=True))
     )  # fmt: skip
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), loads, notes, stages)
+
+
+def _returns(table, rates):
+    """How often a tooth meshes [Hz], by body of both stages; a ring that both have is of the driven one."""
+    out = [{}, {}]
+    for kind, bodies, _, fields in table.values():
+        stage = 0 if kind in KINDS[:2] else 1
+        for body, z in zip(bodies, fields["teeth"], strict=True):
+            central = body.startswith(("sun", "ring"))
+            many = sum(body in row[1] and row[0] == kind for row in table.values()) if central else 1
+            out[stage][body] = many * abs(rates[stage]) / z
+    return out
 
 
 def relative_phases(table):

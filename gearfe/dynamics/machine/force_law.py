@@ -5,7 +5,7 @@ true of one load alone. Under a law of several loads the mesh pushes with ``F(de
 pressed beyond their first touch, and for small vibrations about a load it has its tangent stiffness ``dF/d depth``.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Unpack
 
@@ -80,10 +80,16 @@ class Secant:
         """Depth of each column [m]."""
         return self.deepest * np.linspace(0.0, 1.0, self.k.shape[1]) ** 2
 
-    def less(self, healthy: "Secant") -> "Secant":
-        """Its difference from a `healthy` cycle, with two rows of zeros beyond either end."""
+    def less(self, healthy: "Secant", others: Iterable[tuple[float, float, "Secant"]] = ()) -> "Secant":
+        """Its difference from a `healthy` cycle, with two rows of zeros beyond either end.
+
+        `others` are changes that it includes: cycles until each returns, and where its phase 0 lies.
+        """
         phase = self.start + self.width * np.arange(len(self.k))
         change = self.k - healthy((phase % 1.0)[:, None], self.depths)[0]
+        for z, first, other in others:
+            at = (phase - first - other.start) % z + other.start
+            change = change - np.where((at < other.end)[:, None], other(at[:, None], self.depths)[0], 0.0)
         none = np.zeros((2, self.k.shape[1]))
         return Secant(self.start - 2 * self.width, self.width, self.deepest, np.concatenate([none, change, none]))
 
@@ -297,5 +303,5 @@ def law_of(case: Case, how: Solve, force: float | None = None) -> ForceLaw:
         return law
     parts = np.arange(1, BETWEEN + 1) / (BETWEEN + 1)
     extra = (ends[changing, None] + np.diff(ends)[changing, None] * parts).ravel()
-    finer = solve(case, replace(how, phases=extra, span="cycle"))
+    finer = solve(case, replace(how, phases=extra))
     return ForceLaw.of([joined(both).without_supports() for both in zip(curves, finer, strict=True)], force)

@@ -7,8 +7,9 @@ interval.
 """
 
 import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +33,33 @@ Curve = StiffnessCurve | Samples  # stiffness over the phase
 
 
 Stiffness = float | NDArray[np.float64] | Curve | ForceLaw | Table  # what `GearMesh` takes
+Change = tuple[float, float, Table]  # cycles until it returns, the first of them, and the change over the phase from there on
+NOWHERE = 1e-12  # m: smaller shifts of a tooth are rounding
+ALIKE = 1e-6  # of a mesh cycle, of a cell: how far samples of two curves are apart that count as the same
+
+
+def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[Table, Any], Any] = Table.__call__) -> Any:
+    """Sum of all changes at running phases, or of another `value` of their tables."""
+    running: NDArray[np.float64] = np.asarray(phase, dtype=float)
+    out = np.zeros(running.shape)
+    for z, first, change in changes:
+        tooth_phase = running - first - change.start
+        tooth_phase = tooth_phase - z * np.floor(tooth_phase / z) + change.start
+        out = out + np.where(tooth_phase < change.end, value(change, np.minimum(tooth_phase, change.end)), 0.0)
+    return out
+
+
+def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> NDArray[np.float64] | None:
+    """Coefficients ``(count, 4)`` of the sum of changes in cells from a running phase on; None if their cells are others."""
+    out = np.zeros((count, 4))
+    for z, first, change in changes:
+        place = (start - first - change.start) / change.width
+        if abs(change.width - width) > ALIKE * width or abs(place - round(place)) > ALIKE:
+            return None
+        cell = (round(place) + np.arange(count)) % round(z / width)
+        inside = cell < len(change.cells)
+        out[inside] += change.cells[cell[inside]]
+    return out
 
 
 def cycle_table(stiffness: Stiffness) -> Table:
@@ -70,25 +98,46 @@ class ToothDamage:
         Its number.
     curve : StiffnessCurve, Samples or ForceLaw
         Stiffness over the tooth's whole engagement (``span="tooth"``): phase 0 is where its pair enters. A law where the mesh
-        has one.
+        has one. A curve over all mesh cycles until the tooth returns repeats without end.
+    every : int, optional
+        Mesh cycles until it returns, if these are not the teeth of its body: the hunting period of two damaged teeth that are in
+        mesh with each other. Such a curve replaces those of the teeth before it in `GearMesh.damage`.
     """
 
     body: int
     tooth: int
     curve: Curve | ForceLaw
+    every: int | None = None
 
-    def change(self, healthy: Table) -> Table:
-        """`Table` of the difference from the `healthy` cycle, zero one cell beyond either end."""
-        curve = Samples(*self.curve.at(self.curve.force)) if isinstance(self.curve, ForceLaw) else self.curve
-        phase, k = np.asarray(curve.phase, dtype=float), np.asarray(curve.k, dtype=float)
+    def change(self, usual: Sequence[Change], first: float, cycles: int, name: str = "k") -> Table:
+        """`Table` of the difference of `name` from the sum of what is `usual`, zero one cell beyond either end.
+
+        `first` is the running phase at which the tooth enters, `cycles` those until it returns; a curve that lasts as long
+        repeats. Of curves at the same samples the cubics are subtracted: their sum is that through the curve itself.
+        """
+        curve = Samples(*self.curve.at(self.curve.force)) if isinstance(self.curve, ForceLaw) and name == "k" else self.curve
+        phase, values = np.asarray(curve.phase, dtype=float), getattr(curve, name, None)
+        values = np.zeros(phase.size) if values is None else np.asarray(values, dtype=float)
         if phase.size < 2 or not (np.diff(phase) > 0).all():
             raise ValueError("the phases of a damaged tooth's curve must rise: use mesh_stiffness(..., span='tooth')")
         width = np.diff(phase).min()
         count = round((phase[-1] - phase[0]) / width)
         grid = phase[0] + np.arange(count + 1) * (phase[-1] - phase[0]) / max(count, 1)
-        values = np.interp(grid, phase, k) - healthy(grid % 1.0)
-        width = grid[1] - grid[0]
-        return table(np.concatenate([[0.0], values, [0.0]]), grid[0] - width, width, periodic=False)
+        values, width = np.interp(grid, phase, values), grid[1] - grid[0]
+        whole = abs((count + 1) * width - cycles) < ALIKE
+        if whole:
+            own = table(values, grid[0], width, periodic=True)
+        else:
+            beyond = width * np.array([-2, -1])
+            before, after = (changed(usual, first + end) for end in (grid[0] + beyond, grid[-1] - beyond[::-1]))
+            own = table(np.concatenate([before, values, after]), grid[0] - 2 * width, width, periodic=False)
+            own = Table(grid[0] - width, width, own.cells[1:-1])
+        cells = cells_of(usual, first + own.start, width, len(own.cells))
+        if cells is not None and isinstance(self.curve, StiffnessCurve):
+            return Table(own.start, width, own.cells - cells)
+        values = values - changed(usual, first + grid)
+        values = values if whole else np.concatenate([[0.0], values, [0.0]])
+        return table(values, grid[0] if whole else grid[0] - width, width, periodic=whole)
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +203,8 @@ class GearMesh:
     law: Law | None = None
     contact: Law = field(init=False)
     cycle: Table = field(init=False)
-    changes: tuple[tuple[float, float, Table], ...] = field(init=False)
+    changes: tuple[Change, ...] = field(init=False)
+    shifts: tuple[Change, ...] = field(init=False)
     secants: tuple[Secant, ...] = field(init=False)
     average: Secant | None = field(init=False)
 
@@ -165,10 +215,11 @@ class GearMesh:
         object.__setattr__(self, "contact", self.law or law_of(self.power, self.depth))
         self._check_contact()
         object.__setattr__(self, "cycle", cycle_table(self.stiffness))
+        object.__setattr__(self, "changes", self._changes(self.cycle))
+        object.__setattr__(self, "shifts", self._shifts())
         secants = self._secants()
         object.__setattr__(self, "secants", secants)
         object.__setattr__(self, "average", secants[0].mean if secants else None)
-        object.__setattr__(self, "changes", tuple(self._change(hurt) for hurt in self.damage))
 
     def _check(self) -> None:
         for name in ("frequency", "phase", "damping", "beta", "zeta", "depth", "gap"):
@@ -196,11 +247,29 @@ class GearMesh:
         if power != 1 and isinstance(self.stiffness, ForceLaw):
             raise ValueError(f"mesh {self.name}: power = {power} besides a law of force, which says itself how force rises")
 
-    def _change(self, hurt: ToothDamage) -> tuple[float, float, Table]:
-        z, change = self.teeth[hurt.body], hurt.change(self.cycle)
-        if change.end - change.start > z:
-            raise ValueError(f"mesh {self.name}: the damaged tooth's curve is longer than the {z} cycles until it returns")
-        return float(z), float((hurt.tooth - self.first[hurt.body]) % z), change
+    def _changes(self, healthy: Table, name: str = "k") -> tuple[Change, ...]:
+        """Differences of `name` by damage from a `healthy` cycle; of curves with `every` also from the damage before them."""
+        out: list[Change] = []
+        for hurt in self.damage:
+            z = hurt.every or self.teeth[hurt.body]
+            first = float((hurt.tooth - self.first[hurt.body]) % z)
+            change = hurt.change([(1.0, 0.0, healthy), *(out if hurt.every else ())], first, z, name)
+            if change.end - change.start > z + ALIKE:
+                raise ValueError(f"mesh {self.name}: the damaged tooth's curve is longer than the {z} cycles until it returns")
+            out.append((float(z), first, change))
+        return tuple(out)
+
+    def _shifts(self) -> tuple[Change, ...]:
+        """What teeth off their places change of the unloaded transmission error [m]; none if no curve has any."""
+        curves = [hurt.curve for hurt in self.damage]
+        if all(getattr(curve, "unloaded", None) is None for curve in curves):
+            return ()
+        given = self.stiffness
+        own = given.unloaded if isinstance(given, (StiffnessCurve, ForceLaw)) else None
+        grid = np.arange(len(self.cycle.cells)) / len(self.cycle.cells)
+        values = np.zeros(grid.size) if own is None else np.interp(grid, given.phase % 1.0, own, period=1.0)
+        found = self._changes(table(values, 0.0, 1 / grid.size, periodic=True), "unloaded")
+        return tuple(shift for shift in found if np.abs(shift[2].cells[:, 0]).max() > NOWHERE)
 
     def _secants(self) -> tuple[Secant, ...]:
         """`Secant` of the healthy cycle, then the change by each damage; none without a `ForceLaw`."""
@@ -211,8 +280,11 @@ class GearMesh:
             return ()
         if not self.stiffness.periodic:
             raise ValueError(f"mesh {self.name}: its law of force is not of one mesh cycle: make it with span='cycle'")
-        healthy = self.stiffness.secant
-        return healthy, *(hurt.curve.secant.less(healthy) for hurt in self.damage if isinstance(hurt.curve, ForceLaw))
+        out = [self.stiffness.secant]
+        for hurt, (_, first, _) in zip(self.damage, self.changes, strict=True):
+            others = [(z, begin, less) for (z, begin, _), less in zip(self.changes, out[1:], strict=False)] if hurt.every else []
+            out.append(hurt.curve.secant.less(out[0], [(z, begin - first, less) for z, begin, less in others]))
+        return tuple(out)
 
     @property
     def openings(self) -> tuple[tuple[float, float, float], ...]:
@@ -225,11 +297,7 @@ class GearMesh:
 
     def at_phase(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:
         """Stiffness at running phases."""
-        out = self.cycle(phase - np.floor(phase))
-        for z, first, change in self.changes:
-            tooth_phase = phase - first - change.start
-            tooth_phase = tooth_phase - z * np.floor(tooth_phase / z) + change.start
-            out = out + np.where(tooth_phase < change.end, change(np.minimum(tooth_phase, change.end)), 0.0)
+        out = self.cycle(phase - np.floor(phase)) + changed(self.changes, phase)
         return np.maximum(out, 0.0) if self.changes else out
 
     def e(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -239,7 +307,8 @@ class GearMesh:
             turn = 2 * math.pi * frequency * np.asarray(t) + angle
             out = out + amplitude * np.sin(turn)
             rate = rate + amplitude * 2 * math.pi * frequency * np.cos(turn)
-        return out, rate
+        phase = self.phase + self.frequency * np.asarray(t)
+        return out + changed(self.shifts, phase), rate + self.frequency * changed(self.shifts, phase, Table.slope)
 
     def cycles(self) -> int:
         """Mesh cycles after which the stiffness repeats: 1, or the common multiple of the damaged bodies' tooth numbers."""

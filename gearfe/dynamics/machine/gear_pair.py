@@ -82,5 +82,6 @@ def gear_pair(
         "mesh frequency [Hz]": frequency,
         "turning frequencies [Hz]": tuple(frequency / g.z for g in (pair.gear_1, pair.gear_2)),
     }
-    stage = Stage("pair", (body_1.name,), (body_2.name,), frequency, frequency / pair.gear_1.z)
+    returns = {body.name: frequency / gear.z for body, gear in zip(bodies, (pair.gear_1, pair.gear_2), strict=True)}
+    stage = Stage("pair", (body_1.name,), (body_2.name,), frequency, frequency / pair.gear_1.z, returns=returns)
     return Machine(layout.dofs, layout.mass, tuple(springs), (gear_mesh,), loads, notes, (stage,))

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +15,10 @@ from .gear_mesh import ToothDamage
 from .gear_pair import gear_pair
 from .layout import Body
 from .member import disc
-from .scene_curves import curves, speed_of
+from .scene_curves import Meshed, scene_curves, speed_of
 from .tables import Machine
 
+BODIES = ("pinion", "wheel")
 DENSITY = 7850.0  # kg/m3
 BEARING = {"x": 1e8, "y": 1e8, "z": 1e8}  # N/m, assumed
 SHAFT = 1e4  # N m/rad, to the motor, assumed
@@ -24,18 +26,17 @@ SHAFT = 1e4  # N m/rad, to the motor, assumed
 
 def scene_pair(scene, case, **options):
     """Machine of a scene with linear contact: the stiffness curves of its pair."""
-    chosen = scene.pair()
-    name = next(name for name, candidate in scene.pairs.items() if candidate is chosen)
-    healthy, hurt = curves(name, chosen, case, options)
-    damage = () if hurt is None else (ToothDamage(0, 0, hurt),)
-    return gear_pair(
-        chosen.pair, _bodies(chosen.pair, DENSITY), healthy, speed=speed_of(scene), torque=scene.machine["torque_Nm"],
-        support=BEARING, torsion=(SHAFT, 0.0), damage=damage,
+    name, pair = next(iter(scene.pairs)), scene.pair().pair
+    found = scene_curves(scene, case, options, {"mesh": Meshed(name, BODIES)}, {name: BODIES})
+    made = gear_pair(
+        pair, _bodies(pair, DENSITY), found.healthy[name], speed=speed_of(scene), torque=scene.machine["torque_Nm"],
+        support=BEARING, torsion=(SHAFT, 0.0), damage=found.damage["mesh"],
     )  # fmt: skip
+    return replace(made, faults=found.faults(made))
 
 
 def _bodies(pair, density):
-    discs = {"pinion": disc(pair.gear_1, density, 0.0), "wheel": disc(pair.gear_2, density, 0.0)}
+    discs = {name: disc(gear, density, 0.0) for name, gear in zip(BODIES, (pair.gear_1, pair.gear_2), strict=True)}
     return [Body(name, member.mass, member.inertia, "x y z theta") for name, member in discs.items()]
 
 

@@ -9,11 +9,11 @@ import numpy as np
 
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
-from .gear_mesh import Curve, GearMesh, Stiffness
+from .gear_mesh import GearMesh, Stiffness
 from .layout import SPACE, Body, Layout
 from .member import disc
-from .planetary import damages, stage_phases
-from .scene_curves import healthy_and_hurt, speed_of, stage_of
+from .planetary import HOMES, stage_meshes, stage_phases, teeth_damaged
+from .scene_curves import scene_curves, speed_of, stage_of
 from .tables import Load, Machine, Spring, Stage
 
 HALVES = {"L": -1, "R": 1}
@@ -23,7 +23,7 @@ def herringbone_planetary(
     stage: PlanetarySet,
     stiffness: Mapping[str, Stiffness],
     *,
-    damage: Mapping[str, tuple[int, Mapping[str, Curve]]] | None = None,
+    damage: Mapping[str, Any] | None = None,
     speed: float = 2000 * math.pi / 30,
     torque: float = 400.0,
     members: Mapping[str, tuple[float, float]] | None = None,
@@ -100,11 +100,12 @@ def herringbone_planetary(
         springs += _neck(layout, name, gear, (groove, shear_modulus, apart, zeta))
     meshes, helix = [], math.tan(abs(sun.beta_b))
     angles = dict(zip(range(1, n + 1), 2 * math.pi * np.arange(n) / n, strict=True))
-    for name, fields in stage_phases((outer, inner), n, frequency=frequency).items():
+    phases = stage_phases((outer, inner), n, frequency=frequency)
+    hurt = teeth_damaged(damage, stage_meshes(phases))
+    for name, fields in phases.items():
         kind, i = name[:-1] if n < 10 else name.rstrip("0123456789"), int(name.rpartition(name.rstrip("0123456789"))[2])
         inside = kind == "planet_ring"
         pair = inner if inside else outer
-        tooth_damage = damages(name, damage)
         for half, hand in HALVES.items():
             body_1, body_2 = (f"planet{i}{half}", "ring") if inside else (f"sun{half}", f"planet{i}{half}")
             place = {"angle": angles[i], "alpha": pair.alpha_w, "radii": (1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b)}
@@ -113,7 +114,7 @@ def herringbone_planetary(
             row = layout.mesh(body_1, body_2, **place)
             if inside:
                 row = row + _offset(layout, row, hand * apart, "ring")
-            options = {"zeta": mesh_zeta} | fields | {"damage": tooth_damage} | mesh
+            options = {"zeta": mesh_zeta} | fields | {"damage": hurt[name]} | mesh
             meshes.append(GearMesh(f"{name}{half}", row, stiffness[kind], **options))
     loads = [Load(f"sun{half} torque", layout.unit(f"sun{half}", "theta"), torque / 2) for half in HALVES]
     loads.append(Load("carrier torque", layout.unit("carrier", "theta"), -torque * (1 + ring.z / sun.z)))
@@ -125,7 +126,9 @@ def herringbone_planetary(
         "overlap ratio of one half": outer.eps_beta_of(sun.b),
     }
     driver, first = tuple(f"sun{half}" for half in HALVES), tuple(f"planet1{half}" for half in HALVES)
-    whole = Stage("stage", driver, first, frequency, frequency / sun.z, n * frequency / sun.z, notes["carrier frequency [Hz]"])
+    returns = {"sun": n * frequency / sun.z, "planet": frequency / planet.z, "ring": n * frequency / ring.z}
+    carrier = notes["carrier frequency [Hz]"]
+    whole = Stage("stage", driver, first, frequency, frequency / sun.z, returns["sun"], carrier, returns)
     rotors = _rotors(layout, stage, speed) if gyroscopic else {}
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, (whole,), rotors=rotors)
 
@@ -151,10 +154,12 @@ def scene_herringbone(scene, case, **options):
             scene_pair, pair=GearPair(*gears, scene_pair.pair.a), force=scene_pair.force / 2, face="helical", groove=0.0
         )
     half = replace(scene, pairs=halves)
-    healthy, hurt = healthy_and_hurt(half, case, options, {"sun_planet": "sun_planet", "planet_ring": "planet_ring"})
-    damage, members = {"sun": (0, hurt)} if hurt else None, scene.machine.get("bodies") or None
-    settings = {"speed": speed_of(scene), "torque": scene.machine["torque_Nm"], "members": members}
-    return herringbone_planetary(stage_of(half), healthy, damage=damage, **settings)
+    stage = stage_of(half)
+    meshes = stage_meshes(stage_phases((stage.sun_planet, stage.planet_ring), stage.n_planets))
+    found = scene_curves(half, case, options, meshes, HOMES)
+    settings = {"speed": speed_of(scene), "torque": scene.machine["torque_Nm"], "members": scene.machine.get("bodies") or None}
+    made = herringbone_planetary(stage, found.healthy, damage=found.damage, **settings)
+    return replace(made, faults=found.faults(made))
 
 
 def _solid(stage, density):

@@ -48,7 +48,7 @@ def impact_planetary(scene, case):
     if tooth_pits:
         loss, width = pits_loss(pair, tooth_pits), min(pair.gear_1.b, pair.gear_2.b)
         hurt = impact_cycle(pair, materials["sun_planet"], lost=lambda phase: loss(phase) / width)
-        damage = {"sun": (tooth_pits[0].tooth, {"sun_planet": hurt})}
+        damage = {"sun": (-tooth_pits[0].tooth % stage.sun.z, {"sun_planet": hurt})}
     steady, load = machine["torque_Nm"] * (1 + stage.ring.z / stage.sun.z), None
     if options["pulse_Nm"]:
         period = options["pulse_period_s"]
@@ -73,7 +73,7 @@ def impact_helical(scene, case):
             raise ValueError(f"[machine.impact] {key} = {options[key]}: only the model 'planetary' has it; leave it out")
     radii = (float(r) for r in pair.curvature_radii(pair.pitch_phase))
     law = _law(options, machine, hertz_coefficient(*radii, materials))
-    pits = [(tooth_pits[0].tooth, pits_loss(pair, tooth_pits))] if tooth_pits else []
+    pits = [(-tooth_pits[0].tooth % pair.gear_1.z, pits_loss(pair, tooth_pits))] if tooth_pits else []  # in the order they enter
     return pitted_helical(
         pair, materials, pits=pits, speed=speed_of(scene), torque=machine["torque_Nm"],
         **{key: law[key] for key in ("damping", "depth", "backlash")},

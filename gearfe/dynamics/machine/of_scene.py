@@ -74,6 +74,12 @@ def build_machine(
             f"loads = {tuple(loads)}: the impact law has a coefficient and no curves under loads; take contact = 'linear'"
         )
     if contact == "impact":
+        for name, pair in scene.pairs.items():
+            if pair.flanks or pair.misalignment:
+                raise ValueError(
+                    f"[pair.{name}] has flanks or misalignment, but the impact law is of involutes without deviations: use "
+                    "contact = 'linear'"
+                )
         return with_scene_errors(scene, build(scene, case))
     if not len(loads) or not all(math.isfinite(multiple) and multiple > 0 for multiple in loads):
         raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")
@@ -86,10 +92,13 @@ def build_machine(
     return with_scene_errors(scene, with_flanks(out.with_meshes(backlash=1e-6 * play) if play else out))
 
 
-def check_machine(scene: Scene, case: str | None = None) -> None:
-    """Raise ValueError if `build_machine` refuses the machine of a scene; nothing is solved."""
+def flat_machine(scene: Scene, case: str | None = None) -> Machine:
+    """The machine of a scene with a constant mesh stiffness, for its frequencies and faults; nothing is solved.
+
+    ValueError if `build_machine` refuses it.
+    """
     build, contact = _builder(scene, case)
-    build(scene, case, **({} if contact == "impact" else {"phases": ROUGH, "method": None, "loads": None}))
+    return build(scene, case, **({} if contact == "impact" else {"phases": ROUGH, "method": None, "loads": None}))
 
 
 def _builder(scene, case):

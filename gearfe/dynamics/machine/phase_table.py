@@ -37,6 +37,13 @@ class Table:
         c = self.cells[cell]
         return c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
 
+    def slope(self, phase: ArrayLike) -> NDArray[np.float64]:
+        """Derivative by the phase, at phases as of a call."""
+        place = (np.asarray(phase) - self.start) / self.width
+        cell = np.clip(place.astype(np.int64), 0, len(self.cells) - 1)
+        u, c = place - cell, self.cells[cell]
+        return (c[..., 1] + u * (2 * c[..., 2] + 3 * u * c[..., 3])) / self.width
+
     @property
     def mean(self) -> float:
         """Mean over the table."""

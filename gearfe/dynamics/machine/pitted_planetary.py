@@ -9,11 +9,11 @@ import numpy as np
 
 from ...geometry.pair.planetary import PlanetarySet
 from .contact_cycle import friction_weights
-from .gear_mesh import Curve, Stiffness
+from .gear_mesh import Stiffness
 from .layout import Body, Layout
 from .member import Member, disc
-from .planetary import damages, planetary, stage_phases
-from .scene_curves import healthy_and_hurt, speed_of, stage_of
+from .planetary import HOMES, planetary, stage_meshes, stage_phases, teeth_damaged
+from .scene_curves import scene_curves, speed_of, stage_of
 from .tables import History, Machine, Stage
 
 
@@ -21,7 +21,7 @@ def pitted_planetary(
     stage: PlanetarySet,
     stiffness: Mapping[str, Stiffness],
     *,
-    damage: Mapping[str, tuple[int, Mapping[str, Curve]]] | None = None,
+    damage: Mapping[str, Any] | None = None,
     speed: float = 1000 * math.pi / 30,
     torque: float = 100.0,
     carrier_torque: History | None = None,
@@ -42,7 +42,8 @@ def pitted_planetary(
         ``{"sun_planet": ..., "planet_ring": ...}``: mesh stiffnesses [N/m], or with ``power=1.5, backlash=...`` coefficients of
         the impact law [N/m^1.5] (`gearfe.dynamics.machine.contact_cycle.impact_cycle`).
     damage : dict, optional
-        By gear: ``{"sun": (tooth, {"sun_planet": curve})}``, planets as ``"planet1"`` with curves for both meshes, ``"ring"``.
+        By gear: ``{"sun": (tooth, {"sun_planet": curve})}``, planets as ``"planet1"`` with curves for both meshes, ``"ring"``; a
+        list of such pairs for several teeth. Or by mesh (``"sun_planet1"``) a tuple of `ToothDamage`.
     speed : float
         Speed of the sun [rad/s]; the articles have 1000 rpm.
     torque : float
@@ -83,7 +84,8 @@ def pitted_planetary(
     turn = speed * sun.z / (sun.z + ring.z)
     frequency = (speed - turn) * sun.z / (2 * math.pi)
     phases = stage_phases((outer, inner), n, frequency=frequency)
-    phases = {name: fields | {"damage": damages(name, damage)} for name, fields in phases.items()}
+    hurt = teeth_damaged(damage, stage_meshes(phases))
+    phases = {name: fields | {"damage": hurt[name]} for name, fields in phases.items()}
     member = {name: disc(gear, density, bearing) for name, gear in (("sun", sun), ("planet", planet), ("ring", ring))}
     together, a = n * member["planet"].mass, 1e-3 * stage.a
     member["carrier"] = Member(together, together * a**2, bearing, a)
@@ -107,7 +109,8 @@ def pitted_planetary(
         "phases": {name: fields["phase"] for name, fields in phases.items()},
     }
     turning = frequency / sun.z
-    only = Stage("stage", ("sun",), ("planet1",), frequency, turning, n * turning, notes["carrier frequency [Hz]"])
+    returns = {"sun": n * turning, "planet": frequency / planet.z, "ring": n * frequency / ring.z}
+    only = Stage("stage", ("sun",), ("planet1",), frequency, turning, n * turning, notes["carrier frequency [Hz]"], returns)
     machine = replace(machine, notes=notes, stages=(only,))
     return (
         machine if friction is None else _rubbed(machine, outer, (speed - turn, -(speed - turn) * sun.z / planet.z), friction, n)
@@ -116,9 +119,12 @@ def pitted_planetary(
 
 def scene_planetary(scene, case, **options):
     """Machine of a scene with linear contact: the stiffness curves of its pairs."""
-    healthy, hurt = healthy_and_hurt(scene, case, options, {"sun_planet": "sun_planet", "planet_ring": "planet_ring"})
-    damage, torque = {"sun": (0, hurt)} if hurt else None, scene.machine["torque_Nm"]
-    return pitted_planetary(stage_of(scene), healthy, damage=damage, speed=speed_of(scene), torque=torque)
+    stage = stage_of(scene)
+    meshes = stage_meshes(stage_phases((stage.sun_planet, stage.planet_ring), stage.n_planets))
+    found = scene_curves(scene, case, options, meshes, HOMES)
+    settings = {"speed": speed_of(scene), "torque": scene.machine["torque_Nm"]}
+    made = pitted_planetary(stage, found.healthy, damage=found.damage, **settings)
+    return replace(made, faults=found.faults(made))
 
 
 def _against(value):

@@ -6,6 +6,8 @@ name as anything `gearfe.dynamics.machine.gear_mesh.GearMesh` takes; damage by m
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from difflib import get_close_matches
+from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,7 @@ from ...geometry.pair.gear_pair import GearPair
 from .gear_mesh import GearMesh, Stiffness, ToothDamage
 from .layout import Body, Layout, around, through
 from .member import Member
+from .scene_curves import Meshed
 from .tables import History, Load, Machine
 
 
@@ -146,9 +149,46 @@ def stage_phases(
     return {name: fields | {"frequency": frequency} for name, fields in out.items()}
 
 
-def damages(mesh, damage):
-    """Damage of a mesh ``sun_planet1`` or ``planet_ring1`` from damage by gear (see `pitted_planetary`)."""
-    kind, number = mesh.rstrip("0123456789"), mesh[len(mesh.rstrip("0123456789")) :]
-    names = [gear + (number if gear == "planet" else "") for gear in kind.split("_")]
-    hurt = ((body, *(damage or {}).get(name, (0, {}))) for body, name in enumerate(names))
-    return tuple(ToothDamage(body, tooth, curves[kind]) for body, tooth, curves in hurt if kind in curves)
+def stage_meshes(phases):
+    """`Meshed` of the meshes of `stage_phases`, whose bodies are the sun, ``planet1`` and so on, and the ring."""
+    out = {}
+    for name, fields in phases.items():
+        kind = name.rstrip("0123456789")
+        planet = f"planet{name[len(kind) :]}"
+        bodies = ("sun", planet) if kind == "sun_planet" else (planet, "ring")
+        out[name] = Meshed(kind, bodies, fields.get("first", (0, 0)))
+    return out
+
+
+HOMES = {"sun_planet": ("sun", "planet1"), "planet_ring": ("planet1", "ring")}
+
+
+def teeth_damaged(damage, meshes):
+    """`ToothDamage` of each of the `meshes` (dict of `Meshed`, whose pair is the kind of mesh), from damage by gear or by mesh.
+
+    Raises
+    ------
+    ValueError
+        If a gear, a mesh, a kind of mesh or a tooth is unknown.
+    """
+    damage, kinds = dict(damage or {}), {mesh.pair for mesh in meshes.values()}
+    bodies = dict.fromkeys(body for mesh in meshes.values() for body in mesh.bodies)
+    out = {name: tuple(damage.pop(name, ())) for name in meshes}
+    for gear, given in damage.items():
+        check_named("damage of", gear, (*bodies, *meshes))
+        for tooth, curves in [given] if isinstance(given, tuple) and len(given) == 2 else given:
+            if not isinstance(tooth, Integral) or isinstance(tooth, bool):
+                raise ValueError(f"damage of {gear!r}: tooth {tooth!r}, but give the number of a tooth, a whole one")
+            for kind, curve in curves.items():
+                check_named(f"damage of {gear!r}: mesh", kind, kinds)
+                for name, mesh in meshes.items():
+                    if mesh.pair == kind and gear in mesh.bodies:
+                        out[name] += (ToothDamage(mesh.bodies.index(gear), int(tooth), curve),)
+    return out
+
+
+def check_named(what, name, known):
+    """ValueError, with the nearest name, if a name is not `known`."""
+    if name not in known:
+        near = get_close_matches(str(name), [str(one) for one in known], 1, 0.0)
+        raise ValueError(f"{what} {name!r}, but there is {', '.join(map(str, known))}; nearest: {', '.join(map(repr, near))}")

@@ -2,14 +2,21 @@
 
 import math
 from dataclasses import replace
+from difflib import get_close_matches
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...geometry.damage.kinds import told
 from ...geometry.pair.planetary import PlanetarySet
 from ...stiffness.curve import StiffnessCurve
+from ...stiffness.mesh_cycle import NAMES as SIDES
+from ...stiffness.mesh_cycle import MeshCycle, differing, like_all, mesh_cycle, renumbered
 from ...stiffness.solve import Solve, solve
 from .contact_law import force
 from .force_law import law_of
+from .gear_mesh import ToothDamage
+from .tables import Fault
 
 IDLE = 1e-3  # of the load that a scene states for a pair: below it a mesh at rest counts as unloaded, and that load is taken
 
@@ -37,41 +44,149 @@ def own_forces(machine):
     return out
 
 
-def curves(name, pair, case, options):
-    """Stiffness of a scene's pair over one cycle, and over its damaged tooth's engagement (None if healthy), by one method.
+class Meshed(NamedTuple):
+    """A mesh of a machine: pair of the scene, names of both bodies, and the teeth that meet at phase 0."""
 
-    `options` are those of `mesh_stiffness`, and ``loads``: by the pair's name the loads [N] it is solved under and the one it
-    works at on average. Several make laws of force, one makes curves; None: curves without damage under the load that the scene
-    states.
-    Method None makes flat curves of 1e8 N/m without solving anything, to check a machine.
-    Without the part of shafts that hold its gears: a machine has bearings of its own.
+    pair: str
+    bodies: tuple[str, str]
+    first: tuple[int, int] = (0, 0)
+
+
+class SceneCurves(NamedTuple):
+    """Healthy stiffness by pair of the scene, damage by mesh, and the teeth that differ by body."""
+
+    healthy: dict[str, Any]
+    damage: dict[str, tuple[ToothDamage, ...]]
+    teeth: dict[tuple[str, int], tuple[str, int]]  # by body and tooth: in words, and the number of teeth
+
+    def faults(self, machine):
+        """`Fault` of each tooth that differs."""
+        out = []
+        for (body, tooth), (what, z) in self.teeth.items():
+            stage, gear = machine.stage_of(body), body.rstrip("0123456789")
+            returns = stage.returns[body if body in stage.returns else gear]
+            out.append(Fault(body, tooth, what, returns, stage.mesh / z))
+        return tuple(out)
+
+
+def scene_curves(scene, case, options, meshes, homes):
+    """`SceneCurves` of a machine of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    case : str or None
+    options : dict
+        As of `mesh_stiffness`, and ``loads``: by the pair's name the loads [N] it is solved under and the one it works at on
+        average. Several make laws of force, one makes curves; None: curves of teeth all alike under the load that the scene
+        states. Method None makes flat curves of 1e8 N/m without solving anything, to check a machine.
+    meshes : dict of str to Meshed
+        By name.
+    homes : dict of str to (str, str)
+        By pair, the bodies whose teeth damage is in unless it names another.
+
+    Raises
+    ------
+    ValueError
+        If a case damages a body that no mesh has.
+    """
+    hurt = {name: _at(scene.pair(mesh.pair), case, mesh.bodies, homes) for name, mesh in meshes.items()}
+    _check_owners(scene, case, meshes, homes)
+    cases = {name: replace(scene.pair(mesh.pair).case(), damage=hurt[name] or None) for name, mesh in meshes.items()}
+    healthy, damage, teeth, kept = {}, {}, {}, {}
+    for name, mesh in meshes.items():
+        own, by = cases[name], mesh.first[1] - mesh.first[0]
+        teeth |= _teeth(own, mesh.bodies)
+        own = renumbered(own, by) if by and all(differing(own, side) for side in (0, 1)) else own
+        alike = mesh.pair, repr(own.damage), own is cases[name] or by
+        if alike not in kept:
+            same_pair = [cases[other] for other, one in meshes.items() if one.pair == mesh.pair]
+            kept[alike] = curves(mesh.pair, own, options, same_pair)
+        healthy.setdefault(mesh.pair, kept[alike].healthy)
+        damage[name] = teeth_of(kept[alike], mesh.first if own is not cases[name] else (0, 0))
+    return SceneCurves(healthy, damage, teeth)
+
+
+def _at(pair, case, bodies, homes):
+    """Damage of a mesh by side: of its two bodies."""
+    out = {}
+    for side, body in zip(SIDES, bodies, strict=True):
+        owned = pair.owned.get(case, {}).get(side, {})
+        found = [one for owner, damage in owned.items() if _owner(owner, homes) == body for one in damage]
+        out |= {side: found} if found else {}
+    return out
+
+
+def _owner(owner, homes):
+    return owner.body or homes[owner.home][SIDES.index(owner.side)]
+
+
+def _check_owners(scene, case, meshes, homes):
+    """Raise ValueError if a case damages a body that is not on this side of any mesh of its pair."""
+    for name, pair in scene.pairs.items():
+        for side, owned in pair.owned.get(case, {}).items():
+            there = {mesh.bodies[SIDES.index(side)] for mesh in meshes.values() if mesh.pair == name}
+            for owner in owned:
+                if owner.home == name and (name not in homes or _owner(owner, homes) not in there):
+                    body = owner.body or name
+                    near = get_close_matches(body, there, 1, 0.0)
+                    raise ValueError(
+                        f"case {case!r} damages the {side} of {name}, body {body!r}, but in this machine it is "
+                        f"{', '.join(sorted(there)) or 'in no mesh'}" + (f"; nearest: {near[0]!r}" if near else "")
+                    )
+
+
+def _teeth(case, bodies):
+    """Teeth of a case that differ, in words, with the number of teeth of their gear; of an eccentric gear one for all."""
+    out = {}
+    for side, (name, body) in enumerate(zip(SIDES, bodies, strict=True)):
+        gear = (case.pair.gear_1, case.pair.gear_2)[side]
+        hurt = (case.damage or {}).get(name, ())
+        teeth = sorted({one.tooth % gear.z for one in hurt})
+        said = {tooth: told({name: gear}, {name: [one for one in hurt if one.tooth % gear.z == tooth]}) for tooth in teeth}
+        others = sorted(set(differing(case, side)) - set(teeth))
+        if others:
+            said[others[0]] = "off its place" if len(others) == 1 else f"off its place, as {len(others) - 1} others"
+        out |= {(body, tooth): (what, gear.z) for tooth, what in said.items()}
+    return out
+
+
+def curves(name, case, options, same_pair=()):
+    """`MeshCycle` of a case of a scene's pair `name`, by the method that suits all cases of the `same_pair`.
+
+    `options` as of `scene_curves`. Without the part of shafts that hold its gears: a machine has bearings of its own.
     """
     loads = options["loads"]
     if options["method"] is None:
         phase = np.arange(options["phases"]) / options["phases"]
         flat, pairs = np.full(phase.size, 1e8), np.full((phase.size, 1), np.nan)
-        return StiffnessCurve(phase, flat, flat, pair.force / flat, np.zeros(1, dtype=int), pairs, pairs), None
-    hurt = pair.case(case if loads is not None and case in pair.damage else None)
-    options = {key: value for key, value in options.items() if key != "loads"}
-    if options["method"] == "auto":  # one method for both
-        options["method"] = Solve().chosen(hurt)[0].name
-    results = []
-    for solved, span in ((hurt.healthy, "cycle"), (hurt, "tooth"))[: 1 + hurt.damaged]:
-        if loads is None or len(loads[name][0]) == 1:
-            solved = solved if loads is None else replace(solved, force=loads[name][0][0])
-            curve = solve(solved, Solve(span=span, **options)).without_supports()
-            results.append(replace(curve, meta=curve.meta | {"scene_pair": name}))
-        else:
-            results.append(law_of(replace(solved, force=loads[name][0]), Solve(span=span, **options), loads[name][1]))
-    return results[0], results[1] if hurt.damaged else None
+        curve = StiffnessCurve(phase, flat, flat, case.forces[0] / flat, np.zeros(1, dtype=int), pairs, pairs)
+        return MeshCycle(case, options["phases"], curve, ())
+    how = Solve(**{key: value for key, value in options.items() if key != "loads"})
+    if loads is None:
+        case = like_all(case, (0, 1))
+    elif len(loads[name][0]) == 1:
+        case = replace(case, force=loads[name][0][0])
+    if how.method == "auto" and loads is not None:
+        chosen = [how.chosen(one)[0] for one in (case, *same_pair)]
+        how = replace(how, method=next((row for row in chosen if row.kind == "solid"), chosen[0]).name)
+
+    def of_one(solved, at):
+        curve = solve(solved, at).without_supports()
+        return replace(curve, meta=curve.meta | {"scene_pair": name})
+
+    def of_several(solved, at):
+        return law_of(replace(solved, force=loads[name][0]), at, loads[name][1])
+
+    return mesh_cycle(case, how, curve=of_one if loads is None or len(loads[name][0]) == 1 else of_several)
 
 
-def healthy_and_hurt(scene, case, options, kinds):
-    """Healthy curves by kind of mesh, and damage of the sun's tooth 0, from ``kinds[kind]``, a scene pair's name."""
-    for kind, name in kinds.items():
-        if case in scene.pair(name).damage and not kind.startswith("sun"):
-            raise ValueError(f"case {case!r} damages {name}, but in this machine only the sun has damage: use its cases")
-    pair_curves = {name: curves(name, scene.pairs[name], case, options) for name in dict.fromkeys(kinds.values())}
-    healthy = {kind: pair_curves[name][0] for kind, name in kinds.items()}
-    hurt = {kind: pair_curves[name][1] for kind, name in kinds.items() if pair_curves[name][1] is not None}
-    return healthy, hurt
+def teeth_of(cycle, first=(0, 0)):
+    """`ToothDamage` of all parts of a `MeshCycle`, for `GearMesh`: its teeth are numbered in the order they enter.
+
+    `first` are the teeth of the pair that enters at phase 0 if the wheel's teeth were renumbered to them.
+    """
+    both = [part for part in cycle.parts if len(part.gears) == 2]
+    alone = [part for part in cycle.parts if len(part.gears) == 1]
+    damage = [ToothDamage(part.gears[0], part.position - first[0] + first[part.gears[0]], part.curve) for part in alone]
+    return (*damage, *(ToothDamage(0, part.position, part.curve, every=part.period) for part in both))

@@ -1,7 +1,7 @@
 """`Machine`: masses, linear springs, gear meshes and loads as tables; its matrices, modes and state of rest."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from html import escape
 from typing import Any
@@ -148,6 +148,8 @@ class Stage:
         How often a damaged tooth of the driving gear meshes, if that gear meets several others [Hz]; None: once a turn.
     carrier : float, optional
         Turning frequency of the carrier [Hz].
+    returns : dict of str to float
+        How often a tooth of each gear meshes with the same flank [Hz], by body; of planets without their number.
     """
 
     name: str
@@ -157,6 +159,40 @@ class Stage:
     turning: float
     fault: float | None = None
     carrier: float | None = None
+    returns: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A tooth that differs from the others of its gear.
+
+    Attributes
+    ----------
+    gear : str
+        Body of the machine.
+    tooth : int
+    what : str
+        Its damage or deviation in words.
+    frequency : float
+        How often it meshes [Hz].
+    turning : float
+        Turning frequency of its gear [Hz], relative to the carrier if there is one.
+
+    Examples
+    --------
+    >>> print(Fault("wheel", 5, "3 mm crack at 60 degrees", 17.89, 17.89))
+    tooth 5 of the wheel: 3 mm crack at 60 degrees; it meshes at 17.89 Hz
+    """
+
+    gear: str
+    tooth: int
+    what: str
+    frequency: float
+    turning: float
+
+    def __str__(self) -> str:
+        gear = f"the {self.gear}" if self.gear.isalpha() else self.gear
+        return f"tooth {self.tooth} of {gear}: {self.what}; it meshes at {self.frequency:.4g} Hz"
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,6 +223,8 @@ class Machine:
         without them.
     rotors : dict of str to float
         Angular velocities of bodies that tilt, against the ground, counter-clockwise [rad/s]: with their gyroscopic moments.
+    faults : tuple of Fault
+        Teeth that differ, whose lines spectra are searched for; the driven stage's last stage names its frequencies.
 
     Attributes
     ----------
@@ -218,6 +256,7 @@ class Machine:
     speed: Speed | None = None
     spin: float = 0.0
     rotors: dict[str, float] = field(default_factory=dict)
+    faults: tuple[Fault, ...] = ()
     K: NDArray[np.float64] = field(init=False)
     C: NDArray[np.float64] = field(init=False)
     G: NDArray[np.float64] = field(init=False)
@@ -285,6 +324,19 @@ class Machine:
     def fastest(self) -> float:
         """Largest speed over the nominal one."""
         return 1.0 if self.speed is None else self.speed.fastest
+
+    def stage_of(self, body: str) -> Stage:
+        """The stage in which a body's teeth return as `Stage.returns` says; the driven one, the last, if none has it."""
+        names = {body, body.rstrip("LR"), body.rstrip("LR0123456789")}
+        return next((stage for stage in reversed(self.stages) if names & set(stage.returns)), self.stages[-1])
+
+    def fault_frequencies(self) -> tuple[Stage, float, float]:
+        """Stage of the first fault, how often its tooth meshes and its gear turns [Hz]; without, those of the driving gear."""
+        if self.faults:
+            first = self.faults[0]
+            return self.stage_of(first.gear), first.frequency, first.turning
+        stage = self.stages[-1]
+        return stage, stage.fault or stage.turning, stage.turning
 
     def mean_stiffness(self) -> NDArray[np.float64]:
         """Mean of each mesh's stiffness over its healthy cycle ``(m,)`` [N/m^power]."""

@@ -14,8 +14,8 @@ class Flat(NamedTuple):
 
     `cells` holds the coefficients of all tables one after the other. Of each mesh: place and number of its cycle's cells. Of each
     damaged tooth: its mesh, number of teeth, first cycle, and start, width, place and number of cells of the change. Of each
-    sinusoid of an error: mesh, amplitude, angular frequency, phase. Of each friction row: mesh, place and number of cells. Of
-    each load: where its knots start and end.
+    sinusoid of an error: mesh, amplitude, angular frequency, phase. Of each tooth off its place the same as of a damaged one. Of
+    each friction row: mesh, place and number of cells. Of each load: where its knots start and end.
     `twin` is the first mesh whose stiffness is always that of a mesh. `pace` are the knots of `machine.speed.Speed`, none
     at a constant speed.
     `secant` holds the tables of all laws of force one after the other; `shape` is, of each mesh and then of each damaged tooth,
@@ -33,6 +33,10 @@ class Flat(NamedTuple):
     change_count: np.ndarray
     error_mesh: np.ndarray
     error: np.ndarray  # (n, 3): amplitude, angular frequency, phase
+    shift_mesh: np.ndarray
+    shift: np.ndarray  # (n, 4): teeth, first, start, width
+    shift_place: np.ndarray
+    shift_count: np.ndarray
     rub_mesh: np.ndarray
     rub_place: np.ndarray
     rub_count: np.ndarray
@@ -55,7 +59,10 @@ def flatten(machine, times):
 
     meshes = machine.meshes
     cycles = [add(m.cycle) for m in meshes]
-    changes = [(i, z, first, change, *add(change)) for i, m in enumerate(meshes) for z, first, change in m.changes]
+    changes, shifts = (
+        [(i, z, first, change, *add(change)) for i, m in enumerate(meshes) for z, first, change in getattr(m, name)]
+        for name in ("changes", "shifts")
+    )
     errors = [(i, a, 2 * math.pi * f, p) for i, m in enumerate(meshes) for a, f, p in m.openings]
     rubs = [(i, *add(weight)) for i, m in enumerate(meshes) for _, weight in m.friction]
     knots = [_knots(load, times) for load in machine.loads]
@@ -68,12 +75,10 @@ def flatten(machine, times):
         np.array([m.phase for m in meshes], dtype=float),
         np.array([c[0] for c in cycles], dtype=whole),
         np.array([c[1] for c in cycles], dtype=whole),
-        np.array([c[0] for c in changes], dtype=whole),
-        np.array([(c[1], c[2], c[3].start, c[3].width) for c in changes], dtype=float).reshape(-1, 4),
-        np.array([c[4] for c in changes], dtype=whole),
-        np.array([c[5] for c in changes], dtype=whole),
+        *_passing(changes),
         np.array([e[0] for e in errors], dtype=whole),
         np.array([e[1:] for e in errors], dtype=float).reshape(-1, 3),
+        *_passing(shifts),
         np.array([r[0] for r in rubs], dtype=whole),
         np.array([r[1] for r in rubs], dtype=whole),
         np.array([r[2] for r in rubs], dtype=whole),
@@ -82,6 +87,17 @@ def flatten(machine, times):
         np.array([next(j for j, other in enumerate(meshes) if _twins(m, other)) for m in meshes], dtype=whole),
         np.zeros((0, 3)) if machine.speed is None else machine.speed.knots,
         *_laid_out(laws),
+    )
+
+
+def _passing(changes):
+    """Meshes, ``(n, 4)`` numbers, places and counts of cells of what comes with a tooth."""
+    whole = np.int64
+    return (
+        np.array([c[0] for c in changes], dtype=whole),
+        np.array([(c[1], c[2], c[3].start, c[3].width) for c in changes], dtype=float).reshape(-1, 4),
+        np.array([c[4] for c in changes], dtype=whole),
+        np.array([c[5] for c in changes], dtype=whole),
     )
 
 
@@ -127,18 +143,20 @@ def stiffness(flat, t):
     """Stiffness of all meshes at times `t` ``(..., m)`` and the running phases; of laws of force that under the law's `force`."""
     phase = flat.phase + flat.frequency * _paced(flat, t)[0][..., None]
     k = _value(flat, phase - np.floor(phase), flat.place, flat.count)
-    for mesh, (z, first, start, width), place, count in zip(
-        flat.change_mesh, flat.change, flat.change_place, flat.change_count, strict=True
-    ):
+    for mesh, c, u, _ in _passed(flat, phase, flat.change_mesh, flat.change, flat.change_place, flat.change_count):
+        k[..., mesh] += c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
+    return (np.maximum(k, 0.0) if len(flat.change_mesh) else k), phase
+
+
+def _passed(flat, phase, meshes, teeth, places, counts):
+    """What comes with a tooth at running phases: mesh, coefficients (0 where it is out of mesh), place in its cell and width."""
+    for mesh, (z, first, start, width), place, count in zip(meshes, teeth, places, counts, strict=True):
         tooth_phase = phase[..., mesh] - first - start
         tooth_phase = (tooth_phase - z * np.floor(tooth_phase / z)) / width
         inside = tooth_phase < count
         if inside.any():
             cell = np.minimum(tooth_phase, count - 1).astype(np.int64)
-            c, u = flat.cells[place + cell], tooth_phase - cell
-            change = c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
-            k[..., mesh] += np.where(inside, change, 0.0)
-    return (np.maximum(k, 0.0) if len(flat.change_mesh) else k), phase
+            yield mesh, np.where(inside[..., None], flat.cells[place + cell], 0.0), tooth_phase - cell, width
 
 
 def stiffness_at(machine, flat, t, x):
@@ -192,6 +210,10 @@ def errors(flat, t):
     for mesh, (amplitude, omega, angle) in zip(flat.error_mesh, flat.error, strict=True):
         e[..., mesh] += amplitude * np.sin(omega * t + angle)
         rate[..., mesh] += amplitude * omega * pace * np.cos(omega * t + angle)
+    phase = flat.phase + flat.frequency * t[..., None]
+    for mesh, c, u, width in _passed(flat, phase, flat.shift_mesh, flat.shift, flat.shift_place, flat.shift_count):
+        e[..., mesh] += c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
+        rate[..., mesh] += (c[..., 1] + u * (2 * c[..., 2] + 3 * u * c[..., 3])) * flat.frequency[mesh] * pace / width
     return e, rate
 
 

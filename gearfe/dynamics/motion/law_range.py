@@ -35,8 +35,8 @@ def compared(response):
         return response
     some = response.raw.part(slice(None, None, max(1, len(response.time) // LOOKS)))
     told = {"above": [], "other": []}
-    for mesh, own in zip(machine.meshes, np.abs(some.mesh()).T, strict=True):
-        given, most = mesh.stiffness, float(own.max())
+    for mesh, own in zip(machine.meshes, some.mesh().T, strict=True):
+        given, most = mesh.stiffness, float(np.abs(own).max())
         if isinstance(given, ForceLaw) and most > given.load[-1]:
             told["above"].append(f"{mesh.name} {most:.4g} N, its law of force up to {given.load[-1]:.4g} N")
         if isinstance(given, StiffnessCurve) and "force_N" in given.meta:
@@ -76,8 +76,8 @@ def _other(mesh, own, seconds):
     """What is told of a mesh whose forces, at equal times of a run, are not those of its stiffness curve: one line or none."""
     stated = mesh.stiffness.meta["force_N"]
     count = min(own.size // LEAST, math.floor(seconds * abs(mesh.frequency)))
-    means = np.array([part.mean() for part in np.array_split(own, max(count, 1))])
-    low, high, mean = float(means.min()), float(means.max()), float(own.mean())
+    means = np.abs([part.mean() for part in np.array_split(own, max(count, 1))])
+    low, high, mean = float(means.min()), float(means.max()), abs(float(own.mean()))
     if mean < IDLE * stated or max(high / stated - 1, 1 - low / stated) <= OTHER:
         return []
     swing = f", {low:.4g} to {high:.4g} N by turns" if high - low > OTHER * stated else ""

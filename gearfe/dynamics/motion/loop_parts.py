@@ -64,6 +64,14 @@ def _cubic(cells, place, count, at):
 
 
 @compiled
+def _slope(cells, place, count, at):
+    """Derivative of `_cubic` by the place in the cells."""
+    cell = min(int(at), count - 1)
+    u, row = at - cell, place + cell
+    return cells[row, 1] + u * (2 * cells[row, 2] + 3 * u * cells[row, 3])
+
+
+@compiled
 def _load(knots, low, high, t):
     """Straight between knots ``low <= i < high``, constant before and after them; a knot twice is a jump, and its end counts."""
     if t >= knots[high - 1, 0]:
@@ -131,6 +139,21 @@ def secant(table, one, place, u, depth):
 
 
 @compiled
+def _shifted(flat, now, row, turned, fast):
+    """Add what teeth off their places open, and its rate, to the errors in a row of `now`."""
+    m = flat.frequency.size
+    for j in range(flat.shift_mesh.size):
+        i, z, first = flat.shift_mesh[j], flat.shift[j, 0], flat.shift[j, 1]
+        start, width = flat.shift[j, 2], flat.shift[j, 3]
+        place = flat.phase[i] + flat.frequency[i] * turned - first - start
+        place = (place - z * np.floor(place / z)) / width
+        if place < flat.shift_count[j]:
+            now[row, m + i] += _cubic(flat.cells, flat.shift_place[j], flat.shift_count[j], place)
+            steep = _slope(flat.cells, flat.shift_place[j], flat.shift_count[j], place) / width
+            now[row, 2 * m + i] += steep * flat.frequency[i] * fast
+
+
+@compiled
 def lookup(flat, now, first, last, origin, h, low, share):
     """Fill in rows ``first <= i < last`` of `now`: what acts at the times ``origin + h (low + share (i - first))``.
 
@@ -174,6 +197,7 @@ def lookup(flat, now, first, last, origin, h, low, share):
             i, turn = error_mesh[j], error[j, 1] * turned + error[j, 2]
             now[row, m + i] += error[j, 0] * np.sin(turn)
             now[row, 2 * m + i] += error[j, 0] * error[j, 1] * fast * np.cos(turn)
+        _shifted(flat, now, row, turned, fast)
         for j in range(rub):
             i = rub_mesh[j]
             phase = phases[i] + frequency[i] * turned

@@ -47,6 +47,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
+from ...dynamics.machine.of_scene import flat_machine
 from ...scene.dotted_keys import check_key, set_values, tables_near
 from ...scene.load import Scene, scene_of
 from ...scene.parts import DAMAGE
@@ -54,7 +55,7 @@ from ...scene.reading import checked
 from ...scene.toml_file import given_tables
 from ..sweeps.axes import RUNS
 from ..sweeps.samples import check_shape
-from .faults import FAULTS
+from .faults import CASE, FAULTS
 
 SIDES = ("train", "validation", "test")
 MOST = 1_000_000  # conditions
@@ -167,17 +168,12 @@ def _check_scatter(plan):
 
 def _check_scenes(plan):
     """Build the scene of every fault at every severity once, and see that the machine takes it."""
-    model = plan.tables["machine"].get("model")
     if plan.tables["machine"].get("contact", "linear") != "linear":
         raise ValueError("[machine] contact = 'impact': a data set has linear contact; give a scene with contact = 'linear'")
     plan.scene_at({})
     for fault in plan.fault:
-        gear = fault.get("gear")
-        first = next(iter(plan.tables["pair"].values()))["gear_1"]
-        if gear is not None and gear != first:
-            raise ValueError(f"fault of gear {gear!r}, but in a machine {model!r} only the teeth of {first!r} have damage")
         for severity in fault["severity"]:
-            plan.scene_at({}, fault, severity)
+            flat_machine(plan.scene_at({}, fault, severity), CASE if FAULTS[fault["kind"]].damage else None)
 
 
 def combinations(plan: Plan) -> list[tuple[dict[str, Any] | None, float, int]]:

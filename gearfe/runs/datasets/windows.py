@@ -7,7 +7,7 @@ import numpy as np
 
 from ...comparison.vibration import recorded
 from ...core.threads import own_warnings
-from ...dynamics.machine.of_scene import build_machine
+from ...dynamics.machine.of_scene import build_machine, flat_machine
 from ...dynamics.machine.tables import Machine, Stage
 from ...dynamics.motion.housing import housing_signal
 from ...dynamics.motion.response import Response
@@ -25,6 +25,8 @@ COLUMNS = {  # beside the signal: kind and unit, and, where the name does not sa
     "side": (Field("text"), "of the split"),
     "fault": (Field("text"), "kind, or healthy"),
     "gear": (Field("text"), "whose tooth is damaged"),
+    "body": (Field("text"), "of the machine, which tells planets apart"),
+    "tooth": (Field("whole"), "number of the damaged tooth"),
     "severity": (Field("number", "see severity_unit"), "see the faults above; 0: healthy"),
     "severity_unit": (Field("text"), ""),
     "loss_max": (Field("number"), "largest loss of mesh stiffness"),
@@ -38,7 +40,10 @@ COLUMNS = {  # beside the signal: kind and unit, and, where the name does not sa
     "speed_rpm": (Field("number", "rpm"), ""),
     "torque_Nm": (Field("number", "N m"), ""),
     "mesh_Hz": (Field("number", "Hz"), "mesh frequency"),
-    "turning_Hz": (Field("number", "Hz"), "of the driving gear, against the carrier if there is one"),
+    "turning_Hz": (
+        Field("number", "Hz"),
+        "of the gear with the fault, by default the driving one; against the carrier if there is one",
+    ),
     "fault_Hz": (Field("number", "Hz"), "how often a faulty tooth meshes"),
     "carrier_Hz": (Field("number", "Hz"), ""),
     "rate_Hz": (Field("number", "Hz"), ""),
@@ -100,7 +105,7 @@ def losses(machine: Machine) -> tuple[float, float]:
     worst = (0.0, 0.0)
     for mesh in machine.meshes:
         for _, _, change in mesh.changes:
-            phase = np.linspace(change.start, change.end, 1001)
+            phase = np.linspace(-0.25, change.start + change.end + 0.25, 1001)  # neighbours are in mesh as long before as after
             loss = -change(phase) / mesh.cycle(phase % 1.0)
             worst = max(worst, (float(loss.max()), float(loss.mean())))
     return worst
@@ -131,15 +136,18 @@ def rows_of(plan: Plan, condition: Condition) -> list[dict[str, Any]]:
 
 def _labels(plan, condition, machine, response):
     """What all windows of a condition have in common."""
-    stage, fault = stage_of(machine), None if condition.fault is None else plan.fault[condition.fault]
+    fault = None if condition.fault is None else plan.fault[condition.fault]
+    stage, frequency, turning = machine.fault_frequencies()
+    tooth = next(iter(machine.faults), None)
     largest, mean = losses(machine)
     stats = response.stats
     return condition.scatter | {
         "condition": condition.number, "side": condition.side, "fault": condition.label, "seed": plan.seed,
         "gear": fault.get("gear") if fault else None, "severity": condition.severity,
+        "body": tooth and tooth.gear, "tooth": tooth and tooth.tooth,
         "severity_unit": FAULTS[fault["kind"]].unit if fault else "-", "loss_max": largest, "loss_mean": mean,
         "machine": plan.scene, "speed_rpm": condition.speed, "torque_Nm": condition.torque, "mesh_Hz": stage.mesh,
-        "turning_Hz": stage.turning, "fault_Hz": stage.fault or stage.turning, "carrier_Hz": stage.carrier,
+        "turning_Hz": turning, "fault_Hz": frequency, "carrier_Hz": stage.carrier,
         "rate_Hz": plan.window["rate_Hz"], "error": stats.get("error"), "free": stats["free"],
     }  # fmt: skip
 
@@ -151,6 +159,17 @@ def table_of(plan: Plan, rows: list[dict[str, Any]]) -> Any:
     flat = pa.array(np.concatenate([row["signal"] for row in rows]))
     columns.append(pa.FixedSizeListArray.from_arrays(flat, samples_of(plan)))
     return pa.Table.from_arrays(columns, schema=form)
+
+
+def slowest_fault(plan: Plan, values: dict[str, float]) -> float:
+    """Least frequency at which a faulty tooth meshes [Hz], at the `values` of speed and torque."""
+    stage = stage_of(flat_machine(plan.scene_at(values)))
+    out = [stage.fault or stage.turning]
+    for fault in plan.fault:
+        if FAULTS[fault["kind"]].damage:
+            scene = plan.scene_at(values, fault, fault["severity"][0])
+            out += [tooth.frequency for tooth in flat_machine(scene, CASE).faults]
+    return min(out)
 
 
 def check_machine(plan: Plan) -> dict[str, Any]:
@@ -171,7 +190,7 @@ def check_machine(plan: Plan) -> dict[str, Any]:
             f"[window] rate_Hz = {window['rate_Hz']:g}, but {window['harmonics']} harmonics of the mesh at {max(speeds):g} rpm "
             f"reach {window['harmonics'] * top:.4g} Hz: give {2 * window['harmonics'] * top:.4g} or more, or fewer harmonics"
         )
-    slow = (stage.fault or stage.turning) * min(speeds) / max(speeds) * (1 - spread)
+    slow = slowest_fault(plan, values) * min(speeds) / max(speeds) * (1 - spread)
     if window["seconds"] * slow < 1:
         raise ValueError(
             f"[window] seconds = {window['seconds']:g}, but at {min(speeds):g} rpm a faulty tooth meshes every {1 / slow:.4g} s, "

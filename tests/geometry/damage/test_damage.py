@@ -11,13 +11,16 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.flexibility.energy.ritz import plane as ritz
 from gearfe.flexibility.finite_elements import fe
-from gearfe.geometry.damage.crack import check_apart, crack_path, start_arc
+from gearfe.geometry.damage.crack import check_apart, crack_path, path_length, start_arc
 from gearfe.geometry.damage.front import crack_in_band, open_part
 from gearfe.geometry.mesh.outline import stations
 from gearfe.geometry.mesh.section_mesh import section
 from gearfe.geometry.tooth.profile import cartesian, root_curve
 from gearfe.stiffness import cache
 from validation.shared import reference
+from validation.shared.arbiter.cracks import crack_line
+from validation.shared.arbiter.outline import Outline
+from validation.shared.arbiter.side import Side
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 1.0}
 PAIR = gf.GearPair(gf.Gear(z=18, r_bore=9.0, **RACK), gf.Gear(z=27, r_bore=12.0, **RACK))
@@ -50,6 +53,31 @@ def test_level_is_spelled_out(turning):
     assert_allclose(np.degrees(np.arctan2(*-np.diff(half)[:, 0])), 45, rtol=1e-12)
     start = cartesian(*root_curve(gear, start_arc(gear, gf.Crack(level=0.3))))
     assert_allclose(half[:, 0], start)
+
+
+@pytest.mark.parametrize("start", ["30deg", "60deg", "root", "middle"])
+@pytest.mark.parametrize("seed", range(6))
+def test_start_is_where_the_tangent_of_the_cut_fillet_has_its_angle(seed, start):
+    """Truth: tooth spaces cut by brute force, `validation.shared.arbiter.cutting`; external gears and rings."""
+    rng = np.random.default_rng(seed)
+    own = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 1.0, "tip_radius": float(rng.uniform(0.1, 0.25))}
+    gear = (
+        gf.Gear(z=int(rng.integers(40, 130)), x=float(rng.uniform(-0.4, 0.3)), addendum=0.8, r_rim=150.0, **own)
+        if seed % 2
+        else gf.Gear(z=int(rng.integers(20, 90)), x=float(rng.uniform(-0.2, 0.5)), r_bore=5.0, **own)
+    )
+    crack = gf.Crack(level=0.3, start=start)
+    line = crack_line(Side(Outline(gear)), crack)
+    path = crack_path(gear, crack)
+    assert_allclose(path[:, 0], line[0], atol=1e-3 * gear.m_n)
+    assert_allclose(np.diff(path)[:, 0] / path_length(gear, crack), line[1], atol=1e-12)
+
+
+def test_a_ring_without_the_tangent_names_the_other_starts():
+    ring = gf.Gear(z=50, m_n=2.0, alpha_n=math.radians(20), b=1.0, x=0.8, addendum=0.8, tip_radius=0.2, r_rim=65.0)
+    with pytest.raises(ValueError, match=r"make 3\d\.\d to 9\d\.\d degrees .* use start = '60deg', 'root', 'middle'"):
+        crack_path(ring, gf.Crack(level=0.3))
+    assert crack_path(ring, gf.Crack(level=0.3, start="60deg"))[0, 0] > 0
 
 
 def test_turning_crack_heads_for_the_opposite_fillet():
@@ -206,7 +234,7 @@ def test_a_wrong_hit_is_impossible(counted, tmp_path):
     stiffness(PAIR, 127.0, gf.Material(E=207e3, nu=0.3000001), **run)
     assert counted == ["flexibility"] * 5
     # a file whose name matches but whose contents belong to another gear, or are damaged, is not used
-    files = sorted(tmp_path.glob("*.npz"))
+    files = sorted(tmp_path.glob("*.gear"))
     first, second = (f.read_bytes() for f in files[:2])
     files[0].write_bytes(second)
     files[1].write_bytes(first[:100])

@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from checks import lost_width
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 import gearfe as gf
-from gearfe.geometry.damage.hollow import centre_arc, check_hollows, intervals, lost_width, rolls, takes_all, union_length
+from gearfe.geometry.damage.hollow import centre_arc, check_hollows, intervals, rolls, takes_all, union_length
 from gearfe.geometry.damage.pit import pit_row
 from gearfe.geometry.tooth.profile import arc_at
 

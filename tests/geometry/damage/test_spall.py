@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from checks import lost_width
 from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.flexibility.energy.closed.section import section
-from gearfe.geometry.damage.hollow import centre_arc, check_hollows, flank_edge, intervals, lost_width, takes_all
+from gearfe.geometry.damage.hollow import centre_arc, check_hollows, flank_edge, intervals, takes_all
 from gearfe.geometry.damage.hollow_volume import removed_volume
 from gearfe.geometry.mesh.holes import holed_sector
 from gearfe.geometry.pair.gear_pair import GearPair

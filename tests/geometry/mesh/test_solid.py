@@ -133,7 +133,7 @@ CRACKS = {
     "past the middle": (GEAR, (gf.Crack(level=0.6, tooth=1, side="unloaded"),)),
     "turning": (HELICAL, (gf.Crack(level=0.8, turning=True, tooth=-1),)),
     "both sides": (GEAR, (gf.Crack(level=0.2), gf.Crack(level=0.3, side="unloaded"))),
-    "ring": (RING, (gf.Crack(level=0.3),)),
+    "ring": (RING, (gf.Crack(level=0.3, start="60deg"),)),
     "two teeth": (GEAR, (gf.Crack(level=0.3), gf.Crack(level=0.3, tooth=1))),
 }
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from checks import lost_width
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import gearfe as gf
 from gearfe.flexibility.energy.closed.slices import stations
-from gearfe.geometry.damage.hollow import lost_width
 from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.pair.lines import contact_lines, face_bands, lost_length, removed, total_length
 from gearfe.geometry.tooth.profile import arc_at

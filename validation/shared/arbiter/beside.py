@@ -5,8 +5,9 @@ from itertools import groupby
 
 import gearfe as gf
 
+from ..table_rows import rows_of
 from .cases import LOADED, loaded_case
-from .kept import STEEL, TABLE, rows_on_file
+from .kept import STEEL, TABLE
 
 
 def beside(method, seeds=None, given=LOADED, table=TABLE):
@@ -18,7 +19,7 @@ def beside(method, seeds=None, given=LOADED, table=TABLE):
         The row on file, and ``k``, ``estimate``, ``difference`` [%]; or ``refused``, why gearfe gives no curve.
     """
     cases = {str(row[0]): row for row in given}
-    for seed, rows in groupby(rows_on_file(table), key=lambda row: row["seed"]):
+    for seed, rows in groupby(rows_of(table), key=lambda row: row["seed"]):
         if seed not in cases or (seeds is not None and int(seed) not in seeds):
             continue
         rows = list(rows)

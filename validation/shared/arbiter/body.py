@@ -201,16 +201,14 @@ class Body:
         return (2 * math.pi / self.outline.gear.z + other - loaded + behind) * self.outline.r_f
 
     def _other(self, s):
-        """The side that is not loaded, as cut, by the arc lengths of the loaded side (whose modifications it lacks)."""
+        """The side that is not loaded by the arc lengths of the loaded side (whose modifications it may lack)."""
         radius = self.side.place(np.asarray(s, dtype=float))[0]
         last = self.side.joints[-2]
         tip = np.asarray(s) >= last
-        full = float(self.outline.cut(self.outline.r_a))
+        full = -float(self.outline.unloaded(self.outline.r_a))
         middle = float(self.side.place(np.array([self.side.joints[-1]]))[1][0])
         part = (np.asarray(s) - last) / (self.side.joints[-1] - last)
-        return radius, np.where(
-            tip, -full + part * (full + middle), -self.outline.cut(np.clip(radius, *sorted((self.outline.r_f, self.outline.r_a))))
-        )
+        return radius, np.where(tip, -full + part * (full + middle), self.outline.unloaded(radius))
 
     def _held(self, rim):
         gear = self.outline.gear

@@ -8,6 +8,9 @@ import numpy as np
 import gearfe as gf
 from gearfe.geometry.pair.contacts import contacts
 
+from ..places import SOURCES
+from ..table_rows import rows_of
+
 FIRST, COUNT = 260_000, 1000  # seeds of the unloaded comparison: pairs of these seeds, those refused left out, until so many
 PHASES = np.arange(48) / 48
 
@@ -77,58 +80,23 @@ def random_flank(rng, gear):
     return gf.Flank(**given)
 
 
-# Seed, what is special, load [N/mm], crack (gear, level, tooth) or None, phases in 48ths. Chosen before any of them was pressed:
-# the first pairs from seed 270000 on, spur and below 96 teeth in sum, that filled a number of each kind (form: an undercut
-# flank's corner within 3 um; fillet: contact on a fillet; trimmed: a ring's tip; rounded: rounded or chamfered tips; ring,
-# modified, plain: none of these); up to five phases with an off-path tooth pair within 3 um, the others spread over the cycle.
-LOADED = (
-    (270000, "plain", 146.0, ("pinion", 0.2, 1), (0, 11, 16, 17, 24, 35, 46, 47)),  # 35/12 plain
-    (270012, "rounded", 109.0, ("pinion", 0.48, 0), (0, 8, 9, 16, 24, 32, 39, 47)),  # 15/40 rounded
-    (270013, "form", 16.2, None, (0, 11, 22, 33, 44, 45, 46, 47)),  # 8/68 form
-    (270027, "trimmed", 107.0, None, (0, 1, 2, 11, 20, 29, 38, 47)),  # 14/47 ring trimmed+rounded
-    (270038, "ring", 118.0, ("pinion", 0.5, 0), (0, 19, 20, 21, 24, 45, 46, 47)),  # 9/57 ring ring
-    (270070, "modified", 878.0, None, (0, 2, 3, 4, 5, 25, 45, 47)),  # 49/36 modified
-    (270165, "fillet", 22.9, None, (0, 3, 6, 10, 13, 29, 46, 47)),  # 11/63 fillet
-    (270004, "plain", 140.0, None, (0, 9, 13, 19, 28, 37, 46, 47)),  # 9/16 plain
-    (270021, "rounded", 200.0, None, (0, 19, 20, 22, 24, 26, 28, 47)),  # 52/20 rounded
-    (270015, "form", 46.7, None, (0, 1, 2, 3, 4, 25, 46, 47)),  # 33/9 form+rounded
-    (270032, "trimmed", 76.3, None, (0, 11, 12, 13, 24, 35, 46, 47)),  # 9/26 ring trimmed
-    (270085, "ring", 293.0, None, (0, 7, 9, 22, 41, 43, 45, 47)),  # 13/48 ring ring
-    (270083, "modified", 400.0, ("pinion", 0.44, 1), (0, 4, 8, 12, 27, 34, 38, 47)),  # 15/68 modified
-    (270316, "fillet", 52.2, None, (0, 2, 4, 5, 6, 26, 46, 47)),  # 13/46 ring fillet+trimmed
-    (270008, "plain", 413.0, None, (0, 9, 18, 19, 28, 37, 46, 47)),  # 73/21 plain
-    (270023, "rounded", 25.0, None, (0, 3, 6, 9, 12, 13, 30, 47)),  # 13/16 rounded
-    (270016, "form", 10.5, None, (0, 2, 6, 22, 37, 38, 43, 47)),  # 11/14 form
-    (270037, "trimmed", 101.0, None, (0, 5, 6, 7, 24, 45, 46, 47)),  # 10/35 ring trimmed
-    (270091, "ring", 900.0, None, (0, 20, 22, 24, 25, 44, 45, 47)),  # 31/48 ring ring
-    (270159, "modified", 18.8, ("pinion", 0.18, 1), (0, 2, 4, 6, 8, 9, 28, 47)),  # 11/13 modified
-    (270384, "fillet", 5.75, None, (0, 10, 16, 22, 39, 40, 44, 47)),  # 16/67 fillet+form
-    (270010, "plain", 17.1, None, (0, 9, 18, 21, 28, 37, 46, 47)),  # 16/34 plain
-    (270040, "rounded", 129.0, ("pinion", 0.14, 1), (0, 1, 2, 11, 20, 29, 38, 47)),  # 14/10 rounded
-    (270017, "form", 12.0, None, (0, 18, 28, 33, 35, 38, 40, 47)),  # 12/17 form+rounded
-    (270043, "trimmed", 158.0, ("pinion", 0.39, 1), (0, 19, 21, 22, 23, 25, 27, 47)),  # 21/61 ring trimmed+rounded
-    (270096, "ring", 90.5, ("pinion", 0.37, 0), (0, 14, 21, 22, 23, 32, 46, 47)),  # 12/64 ring ring
-    (270183, "modified", 20.0, None, (0, 4, 10, 16, 21, 27, 36, 47)),  # 31/23 modified
-    (270416, "fillet", 37.2, None, (0, 2, 5, 8, 9, 28, 46, 47)),  # 13/45 fillet
-    (270034, "plain", 14.2, ("pinion", 0.26, 0), (0, 6, 7, 8, 24, 45, 46, 47)),  # 27/13 plain
-    (270052, "rounded", 33.1, None, (0, 6, 12, 19, 25, 26, 36, 47)),  # 13/51 rounded
-    (270018, "form", 93.9, None, (0, 11, 18, 19, 24, 35, 46, 47)),  # 22/13 form
-    (270112, "ring", 200.0, ("pinion", 0.2, 0), (0, 21, 26, 27, 28, 45, 46, 47)),  # 11/60 ring ring
-    (270236, "modified", 359.0, ("pinion", 0.42, 0), (0, 4, 7, 10, 14, 15, 31, 47)),  # 16/10 modified
-    (270562, "fillet", 90.3, None, (0, 7, 14, 20, 30, 39, 40, 47)),  # 37/52 ring fillet+trimmed+rounded
-    (270039, "plain", 225.0, None, (0, 5, 6, 13, 24, 35, 46, 47)),  # 11/23 plain
-    (270054, "rounded", 40.3, None, (0, 2, 3, 4, 5, 6, 26, 47)),  # 36/10 rounded
-    (270028, "form", 200.0, None, (0, 4, 8, 12, 26, 41, 43, 47)),  # 14/13 form
-    (270245, "modified", 6.11, None, (0, 7, 8, 9, 14, 25, 36, 47)),  # 62/27 modified
-    (270568, "fillet", 98.7, None, (0, 9, 18, 29, 39, 40, 43, 47)),  # 11/42 fillet+form
-    (270058, "plain", 6.12, None, (0, 9, 14, 19, 28, 37, 46, 47)),  # 14/13 plain
-    (270030, "form", 23.6, ("wheel", 0.39, 0), (0, 18, 19, 21, 23, 26, 46, 47)),  # 38/13 form
-    (270061, "plain", 28.8, None, (0, 7, 10, 19, 28, 37, 46, 47)),  # 14/18 plain
-    (270048, "form", 5.41, ("wheel", 0.13, 1), (0, 13, 15, 30, 44, 45, 46, 47)),  # 9/18 form
-    (270050, "form", 454.0, None, (0, 2, 20, 39, 41, 43, 45, 47)),  # 10/32 form
-)
+def loaded():
+    """Rows of `sources/outlines.csv`: seed, what is special, load [N/mm], crack (gear, level, tooth) or None, phases in 48ths.
+
+    Chosen before any of them was pressed: the first pairs from seed 270000 on, spur and below 96 teeth in sum, that filled a
+    number of each kind; up to five phases with an off-path tooth pair within 3 um, the others spread over the cycle. Kinds, form:
+    an undercut flank's corner within 3 um; fillet: contact on a fillet; trimmed: a ring's tip; rounded: rounded or chamfered
+    tips; ring, modified, plain: none of these.
+    """
+    rows = []
+    for row in rows_of(SOURCES / "outlines.csv"):
+        crack = (row["cracked"], float(row["level"]), int(row["tooth"])) if row["cracked"] else None
+        phases = tuple(map(int, row["phases_48"].split()))
+        rows.append((int(row["seed"]), row["kind"], float(row["load_N_mm"]), crack, phases))
+    return tuple(rows)
 
 
+LOADED = loaded()
 FRESH, FRESH_COUNT = 276_001, 14  # seeds of pairs on which nothing was tried: judged once, when all was done
 
 

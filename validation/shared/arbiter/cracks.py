@@ -6,7 +6,7 @@ import numpy as np
 
 
 def crack_start(side, crack):
-    """Place on the fillet at which a crack begins: where its tangent makes 30 degrees with the centre-line, root or middle."""
+    """Place on the fillet at which a crack begins: root, middle, or its tangent's angle to the centre-line in degrees."""
     last = side.joints[1]
     if crack.start == "root":
         return 1e-6 * last
@@ -14,8 +14,7 @@ def crack_start(side, crack):
         return last / 2
     s = np.linspace(0, last, 4001)[1:-1]
     steep = np.abs(side.normal(s) - math.pi / 2)  # of the tangent against the centre-line
-    under = np.flatnonzero(steep <= math.pi / 6)
-    return float(s[under[0]]) if under.size else float(s[np.argmin(steep)])
+    return float(s[np.flatnonzero(steep <= math.radians(float(crack.start.removesuffix("deg"))))[0]])
 
 
 def crack_line(side, crack):

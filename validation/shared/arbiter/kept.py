@@ -1,13 +1,10 @@
 """Rows of the arbiter: computed once, a case at a time, and kept in a table."""
 
-import csv
-
 import numpy as np
-
-from gearfe.core.files import written
 
 from ..kept_rows import begin
 from ..places import TABLES
+from ..table_rows import rows_of, write_table
 from .cases import LOADED, loaded_case
 from .pressing import pressed
 
@@ -15,14 +12,6 @@ TABLE, FRESH = TABLES / "outlines.csv", TABLES / "outlines_fresh.csv"
 STEEL = (206e3, 0.3)  # Young's modulus [MPa], Poisson's ratio of all loaded cases
 FIELDS = ("seed", "kind", "pair", "flanks", "crack", "load_N_mm", "phase_48", "k_N_um_mm", "mesh_error_percent", "approach_um")
 FIELDS += ("least_gap_um", "shares", "places", "edge", "unknowns", "cpu_s")
-
-
-def rows_on_file(table=TABLE):
-    """Rows of the table, dicts of texts."""
-    if not table.is_file():
-        return []
-    with table.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def places_of(sides, answer, margin=0.3):
@@ -77,7 +66,7 @@ def reference(rows=LOADED, table=TABLE):
     """Press all of `rows` (resumable: a stop loses one case at most)."""
     begin(table)
     for row in rows:
-        known = rows_on_file(table)
+        known = rows_of(table)
         if any(old["seed"] == str(row[0]) for old in known):
             continue
         try:
@@ -85,9 +74,5 @@ def reference(rows=LOADED, table=TABLE):
         except RuntimeError as error:
             print(f"{row[0]}: {error}", flush=True)
             continue
-        table.parent.mkdir(exist_ok=True)
-        with written(table) as target, open(target, "w", encoding="utf-8", newline="") as file:
-            out = csv.DictWriter(file, FIELDS, lineterminator="\n")
-            out.writeheader()
-            out.writerows(known + new)
+        write_table(table, FIELDS, [row.values() for row in (*known, *new)])
         print(f"outlines: {row[0]} {new[0]['pair']}, {sum(float(one['cpu_s']) for one in new):.1f} s of CPU", flush=True)

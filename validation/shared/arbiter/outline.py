@@ -16,7 +16,18 @@ from .cutting import Space
 
 FILLET, FLANK = 260, 90  # nodes of the splines through cut points
 ALLOWED = (
-    *("tip_relief", "root_relief", "tip_exponent", "root_exponent", "crowning", "slope", "pitch", "tip_rounding", "tip_chamfer"),
+    *(
+        "tip_relief",
+        "root_relief",
+        "tip_exponent",
+        "root_exponent",
+        "crowning",
+        "slope",
+        "pitch",
+        "tip_rounding",
+        "tip_chamfer",
+        "both_sides",
+    ),
     *(f"{end}_start_{how}" for end in ("tip", "root") for how in ("diameter", "roll", "angle")),
 )
 
@@ -95,8 +106,10 @@ class Outline:
         return angle - self.removed(radius) / self.r_b
 
     def unloaded(self, radius):
-        """Angle of the other side, which is as cut [rad], counted as `half`: negative."""
-        return -self.cut(np.clip(radius, *sorted((self.r_f, self.r_a))))
+        """Angle of the other side [rad], counted as `half`: negative; as cut, or modified like the loaded one."""
+        radius = np.clip(radius, *sorted((self.r_f, self.r_a)))
+        removed = self.removed(radius) / self.r_b if self.flank is not None and self.flank.both_sides else 0.0
+        return removed - self.cut(radius)
 
     def _pieces(self, starts):
         fillet = 0.0, math.sqrt(self.outward * (self.r_form - self.r_f)), lambda t: self.r_f + self.outward * t**2

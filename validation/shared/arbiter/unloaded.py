@@ -1,7 +1,6 @@
 """Gaps of `gearfe.geometry.pair.contacts` beside those of whole outlines, where either is near contact."""
 
 import math
-import time
 import warnings
 
 import numpy as np
@@ -63,18 +62,3 @@ def unloaded(seeds, phases=PHASES):
             yield from ((seed, name, *row) for row in compared(pair, flanks, phases))
         except ValueError as error:
             yield seed, name, math.nan, 0, math.nan, math.nan, str(error)
-
-
-def summary(seeds, limit=0.05):
-    """Differences above `limit` [um] by kind, and how many pairs were looked at: a dict of counts and the worst rows."""
-    started, rows = time.process_time(), list(unloaded(seeds))
-    apart = [row for row in rows if not abs(row[4] - row[5]) <= limit]
-    worst = sorted(apart, key=lambda row: -abs(row[4] - row[5]) if math.isfinite(row[4] - row[5]) else -math.inf)
-    return {
-        "pairs": len({row[0] for row in rows}),
-        "rows": len(rows),
-        "rows apart": len(apart),
-        "pairs apart": len({row[0] for row in apart}),
-        "worst": worst[:20],
-        "cpu_s": time.process_time() - started,
-    }

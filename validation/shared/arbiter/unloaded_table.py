@@ -1,14 +1,12 @@
 """The unloaded comparison of all pairs, computed once and kept: a row for each pair, and what the page says of them."""
 
-import csv
 import itertools
 import math
 
 import numpy as np
 
-from gearfe.core.files import written
-
 from ..places import TABLES
+from ..table_rows import rows_of, write_table
 from .cases import COUNT, FIRST
 from .unloaded import unloaded
 
@@ -31,19 +29,13 @@ def one_pair(rows):
 def reference():
     """Compare `COUNT` pairs from seed `FIRST` on (about four minutes)."""
     pairs = (list(rows) for _, rows in itertools.groupby(unloaded(itertools.count(FIRST)), key=lambda row: row[0]))
-    with written(TABLE) as target, open(target, "w", encoding="utf-8", newline="") as file:
-        table = csv.DictWriter(file, FIELDS, lineterminator="\n")
-        table.writeheader()
-        table.writerows(one_pair(rows) for rows in itertools.islice(pairs, COUNT))
+    write_table(TABLE, FIELDS, [one_pair(rows).values() for rows in itertools.islice(pairs, COUNT)])
     print(f"wrote {TABLE.name}", flush=True)
 
 
 def section():
     """Markdown of the page."""
-    if not TABLE.is_file():
-        return ""
-    with TABLE.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(TABLE)
     compared = [row for row in rows if not row["refused"]]
     apart = np.array([float(row["largest_difference_um"]) for row in compared])
     share = " | ".join(f"{value:.3g}" for value in np.quantile(apart, [0.5, 0.9, 0.99, 1.0]))

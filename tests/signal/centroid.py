@@ -1,4 +1,4 @@
-"""A part of the page `planetary_pitting`: the sideband centroid SC of S0 and S1, in both definitions, on synthetic lines."""
+"""The frozen page `sideband_centroid`: the sideband centroid SC of S0 and S1, in both definitions, on synthetic lines."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Measured gearboxes of others, as far as their numbers are public, beside simulations of the same gears."""
+"""The page `measured`: measured gearboxes of others, as far as their numbers are public, beside simulations of the same gears."""
 
 import math
 from dataclasses import replace
@@ -13,9 +13,8 @@ from gearfe.dynamics.machine.gear_pair import gear_pair
 from gearfe.dynamics.machine.layout import Body
 from gearfe.dynamics.machine.member import disc
 from gearfe.dynamics.machine.scene_curves import stage_of
-
-from ..shared.page import put, text
-from ..shared.places import SOURCES
+from validation.shared.page import filled
+from validation.shared.places import SOURCES
 
 TREND = "follow as a trend"
 TURNS, SETTLED = 8, 3  # turns of the carrier that are kept, and that are left out before
@@ -165,15 +164,12 @@ def phm_stiffness():
     return out
 
 
-def page():
-    """The page as Markdown."""
+def lines():
+    """Lines of the page but its title and how it is made."""
     found = planetary()
     tables = {rpm: spur(rpm * math.pi / 30) for rpm in (600, 1200, 1800)}
     parts = [*_planetary_text(found, perfect()), *_spur_text(tables), *_phm_text(), *_modes_text()]
-    how = _line("""Numbers of measurements that are public without the records themselves, beside simulations of the same gears.
-        What a source does not print is scanned, and named. `python -m validation measured` makes this page; scenes:
-        `validation/sources/`. Shared with the measurements: what the sources print of the gears, nothing else.""")
-    return text("measured", answer(found), [how], "\n\n".join(parts).splitlines())
+    return [answer(found), *filled("\n\n".join(parts).splitlines())]
 
 
 def answer(found):
@@ -301,8 +297,3 @@ def _modes_text():
             not be obtained as text, so that there is no scene: a simulation would be fitted, not compared. The same model meets
             the natural frequencies that J. Lin, R. G. Parker (1999) print to 5e-4 (`tests/dynamics/test_models.py`)."""),
     ]
-
-
-def run(again=True):
-    """Write the page."""
-    put("measured", page())

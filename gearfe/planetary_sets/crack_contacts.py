@@ -1,0 +1,69 @@
+"""Faces of a set's cracks under the loads of its meshes: how far they open, and what that adds to the flexibility."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+
+from ..contact.pair_contact import OVERLAP
+from .cracked import Faces
+from .whole_gear import PLACES
+
+
+class CrackContacts(NamedTuple):
+    """All e openings of the cracks at a position under n contact loads.
+
+    `more` ``(n, n)`` is what free faces add to the flexibility of the contacts, `by_loads` ``(e, n)`` are the openings of free
+    faces under unit loads, and `ease` ``(e, e)`` those under unit forces on the faces. `touch` ``(e,)`` as of `Faces`; `ring`:
+    those of the ring.
+    """
+
+    more: NDArray[np.float64]
+    by_loads: NDArray[np.float64]
+    ease: NDArray[np.float64]
+    touch: NDArray[np.bool_]
+    ring: slice
+
+    def overlap(self, opened: NDArray[np.float64]) -> bool:
+        """Whether faces that may touch overlap."""
+        return bool(opened[self.touch].min() < -OVERLAP * np.abs(opened).max())
+
+
+def crack_contacts(cracked: dict[Any, Faces], blocks: list[Any], n: int, lugs: int, *, apart: bool) -> CrackContacts | None:
+    """`CrackContacts` of the `cracked` gears in the meshes `blocks`; None without cracks.
+
+    The last `lugs` of the n loads are those of the ring's lugs. `apart`: each mesh has the cracks of its gears for itself.
+    """
+    rows, stiffness, touch, ring = [], [], [], slice(0)
+    for name, faces in cracked.items():
+        loaded = [(one, *way) for one in blocks if (way := _loads_on(one, name))]
+        for group in [[one] for one in loaded] if apart else [loaded]:
+            row = np.zeros((faces.touch.size, n))
+            for one, which, flank in group:
+                teeth = one.teeth[which] % faces.by_teeth.shape[1]
+                row[:, one.at] = faces.by_teeth[:, teeth, flank].reshape(faces.touch.size, -1) @ one.spread[which].T
+            if name == "ring":
+                ring = slice(start := sum(part.size for part in touch), start + faces.touch.size)
+                if lugs:
+                    row[:, -lugs:] = faces.pads.T
+            rows.append(row)
+            stiffness.append(faces.stiffness)
+            touch.append(faces.touch)
+    if not rows:
+        return None
+    ease, by_openings = np.linalg.inv(block_diag(*stiffness)), np.vstack(rows)
+    ease = (ease + ease.T) / 2
+    by_loads = ease @ by_openings
+    return CrackContacts(by_openings.T @ by_loads, by_loads, ease, np.concatenate(touch), ring)
+
+
+def _loads_on(block, name):
+    """Which gear of a mesh (0 pinion, 1 wheel) a gear is, and the loads of its flank there; None if it has no part in it."""
+    if name == "sun":
+        return None if block.inner else (0, slice(PLACES))
+    if name == "ring":
+        return (1, slice(PLACES)) if block.inner else None
+    if name[1] != block.planet:
+        return None
+    return (0, slice(PLACES, None)) if block.inner else (1, slice(PLACES))

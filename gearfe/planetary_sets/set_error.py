@@ -1,0 +1,42 @@
+"""The estimated error of a planetary set, from a coarser solve of some of its positions."""
+
+from typing import Any
+
+import numpy as np
+
+from ..stiffness.section_curves import MODEL
+
+CARRIES = 0.2  # of the mean load of its kind: k of a mesh that carries less says little of its own teeth
+
+
+def set_error(found: Any, coarse: Any, some: Any) -> dict[str, Any]:
+    """Estimated relative errors of `SetCurves`, from a coarser solve of the positions `some` by their numbers.
+
+    Each is the largest difference of the two solves plus the mean one, as of `gearfe.stiffness.estimate`, plus what the model of
+    contact may be off by. The coarser solve has longer edges, also along the faces of cracks, and one polynomial order less.
+
+    Returns
+    -------
+    dict
+        ``"k"`` ``(2, planets)`` of the stiffness of each mesh where it carries more than `CARRIES` of the mean load, nan if it
+        never does; ``"force"`` ``(2, planets)`` of its load, as a part of the mean load of its kind; ``"te"`` of the
+        transmission error, as a part of its mean.
+    """
+    force = found.force[:, some]
+    even = force.mean(axis=(1, 2), keepdims=True)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        k = np.where(force > CARRIES * even, np.abs(coarse.k / found.k[:, some] - 1), np.nan)
+    model = float(found.meta["left_out"].max()) + MODEL  # a planet's load depends on the contact of all others
+    te = np.abs(coarse.te - found.te[some]) / np.abs(found.te).mean()
+    return {
+        "k": _worst(k) + found.meta["left_out"] + MODEL,
+        "force": _worst(np.abs(coarse.force - force) / even) + model,
+        "te": float(te.max() + te.mean() + model),
+    }
+
+
+def _worst(apart):
+    """Largest plus mean difference ``(2, planets)`` over the positions; nan where there is none."""
+    counts = np.isfinite(apart)
+    values, number = np.where(counts, apart, 0.0), counts.sum(axis=1)
+    return np.where(number > 0, values.max(axis=1) + values.sum(axis=1) / np.maximum(number, 1), np.nan)

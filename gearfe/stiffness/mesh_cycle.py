@@ -1,0 +1,279 @@
+"""`MeshCycle`: stiffness and unloaded transmission error of a pair whose teeth differ, over all mesh cycles until it repeats.
+
+Two teeth k of pinion and wheel form pair k, which enters at phase -k. A tooth that differs from the others (damage, pitch, scale,
+eccentricity) returns after the z cycles of its gear. Two teeth of both gears meet again after the hunting period. Each distinct
+tooth is solved once, over all phases at which it or a neighbour is in mesh.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.case import SIDES, Case
+from .curve import StiffnessCurve, joined
+from .limits import check_count
+from .solve import Solve, solve
+
+MARGIN = 0.25  # mesh cycles before and after the path of contact in which corners touch
+AT_ONCE = 16  # mesh cycles solved in one call: memory grows with their square
+MOST = 1_000_000  # phases of a hunting period in which every cycle differs
+NAMES = tuple(name for name, _ in SIDES)
+
+
+class Part(NamedTuple):
+    """Stiffness over the mesh cycles in which some teeth differ from the rest.
+
+    Attributes
+    ----------
+    gears : tuple of int
+        0: pinion, 1: wheel. Of both, the teeth that differ are in mesh with each other, or next to each other.
+    teeth : tuple of int
+        Numbers of the teeth, of a part of one gear.
+    position : int
+        Mesh cycle at which the first of these teeth enters; phase 0 of the curve.
+    period : int
+        Mesh cycles after which the same teeth return.
+    curve : StiffnessCurve
+        Stiffness and unloaded transmission error over the phases at which they differ from those of a healthy cycle.
+    """
+
+    gears: tuple[int, ...]
+    teeth: tuple[int, ...]
+    position: int
+    period: int
+    curve: Any
+
+
+class Window(NamedTuple):
+    """Samples ``start <= i < stop`` of a gear's revolution in which `teeth` of it, or their neighbours, are in mesh."""
+
+    start: int
+    stop: int
+    teeth: tuple[int, ...]
+    position: int
+
+
+@dataclass(frozen=True, slots=True)
+class MeshCycle:
+    """A pair whose teeth have an identity: one healthy mesh cycle, and a curve for each distinct tooth that differs.
+
+    Attributes
+    ----------
+    case : Case
+    phases : int
+        Samples per mesh cycle.
+    healthy : StiffnessCurve
+        One mesh cycle of teeth without damage and deviations from tooth to tooth.
+    parts : tuple of Part
+        Of pinion, of wheel, then of both where their teeth that differ meet.
+    """
+
+    case: Case
+    phases: int
+    healthy: Any
+    parts: tuple[Part, ...]
+
+    @property
+    def cycles(self) -> int:
+        """Mesh cycles after which the pair repeats: 1, the teeth of a gear, or the hunting period."""
+        return math.lcm(1, *(part.period for part in self.parts))
+
+    def sampled(self, name: str = "k") -> NDArray[np.float64]:
+        """``k`` [N/m], ``lte`` [m] or ``unloaded`` [m] at the samples of all `cycles`, ``(cycles phases,)``."""
+        n, size = self.phases, self.cycles * self.phases
+        healthy = _values(self.healthy, name)
+        out = np.tile(healthy, self.cycles)
+        for part in self.parts:
+            values = _values(part.curve, name)
+            first = round(part.curve.phase[0] * n) + part.position * n
+            at = (first + np.arange(values.size) + np.arange(0, size, part.period * n)[:, None]) % size
+            out[at] = values if len(part.gears) == 2 else out[at] + values - healthy[at % n]
+        return out
+
+
+def mesh_cycle(case: Case, how: Solve | None = None, *, curve: Callable[[Case, Solve], Any] = solve) -> MeshCycle:
+    """`MeshCycle` of a `Case`: each distinct tooth that differs is solved once.
+
+    Parameters
+    ----------
+    case : Case
+        Damage and flanks number the teeth of each gear; tooth k of both is in pair k, which enters at phase -k.
+    how : Solve, optional
+        Its `phases` are a number per mesh cycle.
+    curve : callable, optional
+        ``curve(case, how)`` is solved instead of `solve`, for example for a law of force.
+
+    Returns
+    -------
+    MeshCycle
+
+    Raises
+    ------
+    ValueError
+        If the phases are spelled out, or every cycle of a hunting period of more than `MOST` phases differs; as `solve`.
+
+    Examples
+    --------
+    A crack in tooth 5 of the pinion returns after 21 cycles:
+
+    >>> import math, gearfe as gf
+    >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), b=20.0)
+    >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
+    >>> case = gf.Case(pair, 2000.0, gf.Material(E=207e3, nu=0.25), damage={"pinion": [gf.Crack(level=0.3, tooth=5)]})
+    >>> cycle = gf.mesh_cycle(case, gf.Solve(phases=16))
+    >>> cycle.cycles, cycle.parts[0].teeth, cycle.parts[0].position
+    (21, (5,), 16)
+    """
+    how = how or Solve()
+    n = check_count(how.phases)
+    if how.method == "auto":  # one method for what is compared
+        how = replace(how, method=how.chosen(case)[0].name)
+    how = replace(how, span="cycle")
+    both = [_windows(case, side, n) for side in (0, 1)]
+    meetings = _meetings(case, both, n)
+    healthy = curve(like_all(case, (0, 1)), how)
+    parts = []
+    for side, windows in enumerate(both):
+        alone = like_all(case, (1 - side,))
+        z = _gears(case)[side].z
+        for window in windows:
+            found = _solved(curve, alone, how, n, (window.start, window.stop), window.position)
+            parts.append(Part((side,), window.teeth, window.position, z, found))
+    hunting = math.lcm(*(gear.z for gear in _gears(case)))
+    for start, stop in meetings:
+        position = 0 if stop - start == hunting * n else -(-start // n)
+        parts.append(Part((0, 1), (), position, hunting, _solved(curve, case, how, n, (start, stop), position)))
+    return MeshCycle(case, n, healthy, tuple(parts))
+
+
+def like_all(case: Case, sides: Sequence[int]) -> Case:
+    """The case with all teeth of some gears (0: pinion, 1: wheel) alike: no damage, no deviations from tooth to tooth."""
+    damage, flanks = dict(case.damage or {}), dict(case.flanks or {})
+    for side in sides:
+        name = NAMES[side]
+        damage.pop(name, None)
+        if name in flanks:
+            flanks[name] = _plain(flanks[name], _gears(case)[side])
+    return replace(case, damage=damage or None, flanks=flanks or None)
+
+
+def differing(case: Case, side: int) -> tuple[int, ...]:
+    """Numbers of the teeth of a gear (0: pinion, 1: wheel) that differ from the others."""
+    gear, flank = _gears(case)[side], (case.flanks or {}).get(NAMES[side])
+    teeth = {hurt.tooth % gear.z for hurt in (case.damage or {}).get(NAMES[side], ())}
+    if flank is not None and flank.on(gear).differs:
+        usual = _plain(flank, gear)
+        if flank.eccentricity:
+            teeth |= set(range(gear.z))
+        for values, common in ((flank.pitch, usual.pitch), (flank.tooth_scale, usual.tooth_scale)):
+            teeth |= {tooth for tooth, value in enumerate(values) if value != common[0]}
+    return tuple(sorted(teeth))
+
+
+def renumbered(case: Case, by: int) -> Case:
+    """The case with the teeth of the wheel numbered higher, so that tooth k of the pinion meets what was tooth k - `by`."""
+    damage, flanks, z = dict(case.damage or {}), dict(case.flanks or {}), case.pair.gear_2.z
+    if "wheel" in damage:
+        damage["wheel"] = [replace(hurt, tooth=(hurt.tooth + by) % z) for hurt in damage["wheel"]]
+    if "wheel" in flanks:
+        flank = flanks["wheel"]
+        lists = {name: tuple(np.roll(getattr(flank, name), by).tolist()) for name in ("pitch", "tooth_scale")}
+        flanks["wheel"] = replace(flank, eccentric_tooth=flank.eccentric_tooth + by, **lists)
+    return replace(case, damage=damage or None, flanks=flanks or None)
+
+
+def _gears(case):
+    return case.pair.gear_1, case.pair.gear_2
+
+
+def _plain(flank, gear):
+    """The flank of most teeth. Its pitch is spelled out, so that all teeth are solved in the same way as those that differ."""
+    if not flank.on(gear).differs:
+        return flank
+    pitch = (_commonest(flank.pitch or (0.0,)),) * gear.z
+    scale = (_commonest(flank.tooth_scale),) * gear.z if flank.tooth_scale else ()
+    return replace(flank, pitch=pitch, tooth_scale=scale, eccentricity=0.0)
+
+
+def _commonest(values):
+    numbers, counts = np.unique(values, return_counts=True)
+    return float(numbers[np.argmax(counts)])
+
+
+def _windows(case, side, n):
+    """`Window` of each group of teeth of a gear that differ; groups whose windows overlap are one."""
+    z, teeth = _gears(case)[side].z, differing(case, side)
+    if not teeth:
+        return []
+    span = case.pair.eps_alpha + case.overlap()
+    before = math.ceil((max(1, math.ceil(case.pair.eps_alpha) - 1) + MARGIN) * n)
+    length = before + math.ceil(span * n) + before
+    entries = sorted(-tooth % z for tooth in teeth)
+    breaks = [i for i, entry in enumerate(entries) if (entries[i - len(entries) + 1] - entry - 1) % z * n + n > length]
+    if not breaks or length > z * n:
+        return [Window(0, z * n, teeth, 0)]
+    groups = []
+    for last, end in zip((breaks[-1] - len(entries), *breaks[:-1]), breaks, strict=True):
+        own = [entries[i] - (z if i < 0 else 0) for i in range(last + 1, end + 1)]
+        groups.append(Window(own[0] * n - before, own[-1] * n - before + length, tuple(-e % z for e in own), own[0]))
+    return groups
+
+
+def _meetings(case, both, n):
+    """Samples (start, stop) of the hunting period in which teeth of both gears that differ are in mesh at the same time."""
+    z_1, z_2 = (gear.z for gear in _gears(case))
+    cycles = math.lcm(z_1, z_2)
+    spans = {span for one in both[0] for two in both[1] for span in _overlaps((one, z_1 * n), (two, z_2 * n), cycles * n)}
+    if sum(stop - start for start, stop in spans) > MOST:
+        raise ValueError(
+            f"teeth of both gears differ, and the same two meet every {cycles} mesh cycles, more than {MOST:g} phases: give "
+            "fewer phases, or deviations of one gear"
+        )
+    return sorted(spans)
+
+
+def _overlaps(first, second, size):
+    """Samples (start, stop) of a hunting period of `size` samples in which windows of both gears overlap."""
+    (one, turn_1), (two, turn_2) = first, second
+    whole_1, whole_2 = (window.stop - window.start == turn for window, turn in (first, second))
+    if whole_1 and whole_2:
+        return {(0, size)}
+    if whole_1 or whole_2:
+        window, turn = (two, turn_2) if whole_1 else (one, turn_1)
+        return {(at, at + window.stop - window.start) for at in range(window.start, size + window.start, turn)}
+    starts = np.arange(one.start, size + one.start, turn_1)
+    ahead = (two.start - starts) % turn_2  # from the start of the first to that of the second, which may have begun before
+    out = set()
+    for start, gap in zip(starts.tolist(), ahead.tolist(), strict=True):
+        for begin in (gap, gap - turn_2):
+            low, high = max(begin, 0), min(begin + two.stop - two.start, one.stop - one.start)
+            if low < high:
+                out.add((start + low, start + max(high, low + 2)))
+    return out
+
+
+def _solved(curve, case, how, n, samples, position):
+    """Curve of the samples ``start <= i < stop``, phase 0 at mesh cycle `position`.
+
+    Few mesh cycles are solved at once; of many the forces by pair are left out.
+    """
+    bounds = [*range(*samples, AT_ONCE * n), samples[1]]
+    spans = zip(bounds[:-1], bounds[1:], strict=True)
+    found = [curve(case, replace(how, phases=np.arange(low, high) / n, span="tooth")) for low, high in spans]
+    if len(found) > 1 and not all(isinstance(one, StiffnessCurve) for one in found):
+        raise ValueError(
+            "a law of force over several loads is of single teeth that differ, but here all teeth of a gear do: give one load"
+        )
+    if len(found) > 1:
+        bare = [replace(one, order=one.order[:0], force=one.force[:, :0], pressure=one.pressure[:, :0]) for one in found]
+        found = [joined(bare)]
+    return replace(found[0], phase=found[0].phase - position)
+
+
+def _values(curve, name):
+    values = getattr(curve, name)
+    return np.zeros(curve.phase.size) if values is None else values

@@ -1,0 +1,191 @@
+"""Vibration with damage and deviations of any tooth: lines, shifts in time, quasi-static limit, another integrator."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+from scipy.interpolate import PchipInterpolator
+
+import gearfe as gf
+from gearfe.comparison.vibration import analysis, recorded
+from gearfe.dynamics.machine.scene_curves import teeth_of
+from gearfe.scene.load import scene_of
+
+GEAR = {"m_n_mm": 3.0, "alpha_n_deg": 20.0, "b_mm": 15.0, "material": "steel"}
+MESH = 680.0  # Hz
+TURNS = {"pinion": MESH / 17, "wheel": MESH / 38}
+
+
+def scene(flank=None, machine=None, **damage):
+    """Pair of 17 and 38 teeth at 2400 rpm with tables of damage by case."""
+    tables = {
+        "title": "Pair 17/38",
+        "source": "own gear pair",
+        "material": {"steel": {"E_MPa": 206000.0, "nu": 0.3}},
+        "gear": {"pinion": GEAR | {"z": 17, "r_bore_mm": 10.9}, "wheel": GEAR | {"z": 38, "r_bore_mm": 26.6}},
+        "pair": {"stage": {"gear_1": "pinion", "gear_2": "wheel", "force_N": 1669.298}},
+        "machine": {"model": "helical_pair", "speed_rpm": 2400.0, "torque_Nm": 40.0} | (machine or {}),
+        "flank": {} if flank is None else {flank["gear"]: flank},
+        "crack": [{"case": "cracked", "angle_deg": 60.0, "length_mm": 2.0} | row for row in damage.get("crack", ())],
+    }
+    return scene_of("pair.toml", tables)
+
+
+def amplitude(machine, *frequencies, seconds=0.95):
+    """Amplitudes of the mesh force [N] at some frequencies; the record holds whole turns of both gears."""
+    force = recorded(machine, seconds, 16 * MESH)["force mesh"]
+    size = round(16 * MESH * seconds)
+    parts = 2 / size * np.abs(np.fft.rfft(np.asarray(force)[:size]))
+    return parts[[round(frequency * seconds) for frequency in frequencies]]
+
+
+@pytest.mark.parametrize(("gear", "tooth"), [("pinion", 0), ("pinion", 5), ("wheel", 0), ("wheel", 23)])
+def test_lines_stand_at_the_turns_of_the_damaged_gear_and_nowhere_else(gear, tooth):
+    """17 and 38 have no common factor: sidebands at both gears' turns are lines apart."""
+    machine = gf.build_machine(scene(crack=[{"gear": gear, "tooth": tooth}]), "cracked")
+    other = {"pinion": "wheel", "wheel": "pinion"}[gear]
+    own = amplitude(machine, *(MESH + sign * TURNS[gear] for sign in (-2, -1, 1)))
+    beside = amplitude(machine, *(MESH + sign * TURNS[other] for sign in (-2, -1, 1)))
+    assert own.min() > 0.2
+    assert beside.max() < 2e-2 * own.min()
+    assert [(one.gear, one.tooth, round(one.frequency, 6)) for one in machine.faults] == [(gear, tooth, round(TURNS[gear], 6))]
+
+
+def test_sidebands_of_a_cracked_wheel():
+    """2 mm on the wheel: 0.6 and 0.8 N at 662.1 and 644.2 Hz, 3e-4 N at the pinion's 640 Hz."""
+    machine = gf.build_machine(scene(crack=[{"gear": "wheel"}]), "cracked")
+    near, far, pinion = amplitude(machine, MESH - TURNS["wheel"], MESH - 2 * TURNS["wheel"], MESH - TURNS["pinion"])
+    assert_allclose([near, far], [0.60, 0.74], rtol=0.2, err_msg="damage put on the wheel by hand")
+    assert pinion < 1e-2
+
+
+def test_teeth_of_both_gears_show_both_lines():
+    """Cracks of pinion and wheel: both sidebands, and both faults are named."""
+    both = scene(crack=[{"gear": "pinion", "tooth": 3}, {"gear": "wheel", "tooth": 5}])
+    machine = gf.build_machine(both, "cracked")
+    assert amplitude(machine, MESH - TURNS["wheel"], MESH - TURNS["pinion"]).min() > 0.3
+    assert [f"{fault}".split(" mm")[0] for fault in machine.faults] == ["tooth 3 of the pinion: 2", "tooth 5 of the wheel: 2"]
+    found = analysis({"healthy": recorded(gf.build_machine(both), 0.5, 8000.0), "cracked": recorded(machine, 0.5, 8000.0)})
+    assert_allclose([found.lines["f_m - f_r"], found.lines["f_m - f_wheel"]], [MESH - TURNS[gear] for gear in TURNS])
+
+
+@pytest.mark.parametrize(("gear", "tooth", "entry"), [("pinion", 5, 12), ("wheel", 30, 8)])
+def test_a_tooth_is_tooth_0_shifted_in_time(gear, tooth, entry):
+    """Tooth k enters z - k mesh cycles after tooth 0; the step divides the mesh period."""
+    machines = [gf.build_machine(scene(crack=[{"gear": gear, "tooth": k}]), "cracked") for k in (0, tooth)]
+    runs = [
+        gf.simulate(machine, 0.05, dt=1 / MESH / 64, start=start)
+        for machine, start in zip(machines, (0.0, entry / MESH), strict=True)
+    ]
+    force = [run["force mesh"] for run in runs]
+    assert_allclose(force[0], force[1], atol=1e-6 * np.ptp(force[0]))
+    still = gf.simulate(machines[1], 0.05, dt=1 / MESH / 64)["force mesh"]
+    assert np.abs(still - force[0]).max() > 1e-2 * np.ptp(force[0])
+
+
+def small_pair(**fields):
+    """Case of 11 and 13 teeth, whose same teeth meet every 143 cycles."""
+    rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
+    pair = gf.GearPair(gf.Gear(z=11, x=0.45, r_bore=5.5, **rack), gf.Gear(z=13, x=0.35, r_bore=7.0, **rack))
+    return gf.Case(pair, 1000.0, gf.Material(E=206e3, nu=0.3), **fields)
+
+
+def one_mass(case, phases, *, mass, frequency, **mesh):
+    """A mass on the mesh of a `small_pair`."""
+    cycle = gf.mesh_cycle(case, gf.Solve(phases=phases))
+    return gf.single_mesh(mass, cycle.healthy, frequency, force=case.forces[0], teeth=(11, 13), damage=teeth_of(cycle), **mesh)
+
+
+FLANKS = {
+    "pitch and eccentricity": {
+        "pinion": gf.Flank(pitch=(0.0,) * 3 + (0.01,) + (0.0,) * 7),
+        "wheel": gf.Flank(eccentricity=0.008, eccentric_tooth=1.5),
+    },
+    "eccentricity": {"pinion": gf.Flank(eccentricity=0.015)},
+}
+
+
+@pytest.mark.parametrize("name", FLANKS)
+def test_slow_motion_is_the_loaded_transmission_error(name):
+    """So slow and damped that nothing vibrates: the compression is the transmission error over the hunting period."""
+    case = small_pair(flanks=FLANKS[name], damage={"wheel": [gf.Crack(level=0.3, tooth=6)]})
+    found = gf.transmission_error(case, phases=16, span="hunting")
+    machine = one_mass(case, 16, mass=1e-6, frequency=1.0, zeta=1.0)
+    run = gf.simulate(machine, 143.0, dt=1 / 256, every=16, filtered=False)
+    assert_allclose(run["pair.x"][16:-1], found.te[0][16:], atol=1e-3 * np.ptp(found.te))
+
+
+@pytest.mark.slow
+def test_another_integrator_with_contact_solved_for_the_teeth_that_meet():
+    """DOP853 with k of every phase of 143 cycles of 11/13 teeth, cracked on both gears: within 1e-4 of the range."""
+    case = small_pair(damage={"pinion": [gf.Crack(level=0.4, tooth=4)], "wheel": [gf.Crack(level=0.3, tooth=9)]})
+    phases, frequency, mass = 256, 900.0, 0.15
+    machine = one_mass(case, phases, mass=mass, frequency=frequency, zeta=0.03)
+    run = gf.simulate(machine, 143 / frequency, dt=1 / frequency / 256, every=8, filtered=False)
+    brute = gf.solve(case, gf.Solve(phases=phases, span="hunting"))
+    k = PchipInterpolator(np.append(brute.phase, 143.0), np.append(brute.k, brute.k[0]))
+    c = machine.law["damping"][0]
+
+    def rate(t, y):
+        return y[1], (case.forces[0] - k(frequency * t) * y[0] - c * y[1]) / mass
+
+    want = solve_ivp(rate, (0, run.time[-1]), (run.q[0, 0], 0.0), "DOP853", run.time, rtol=1e-8, max_step=0.05 / frequency)
+    assert_allclose(run["pair.x"], want.y[0], atol=1e-4 * np.ptp(want.y[0]))
+
+
+def test_eccentric_pinion_runs_as_one_off_its_axis():
+    """30 um: one line of 30 um a turn in the transmission error; the force is that of a body off its axis."""
+    flank = {"gear": "pinion", "eccentricity_um": 30.0}
+    for phases in (8, 32):
+        te = gf.transmission_error(scene(flank).case(), phases=phases, span="revolution").te[0]
+        assert_allclose(2 / te.size * np.abs(np.fft.rfft(te))[1], 30e-6, rtol=1e-3)
+    machines = gf.build_machine(scene(flank)), gf.build_machine(scene(machine={"runout_um": 30.0}))
+    own, other = (recorded(machine, 0.2, 16 * MESH)["force mesh"] for machine in machines)
+    assert_allclose([own.min(), own.max(), own.mean()], [other.min(), other.max(), other.mean()], atol=0.05 * np.ptp(other))
+    assert_allclose(own.mean(), 1669.3, rtol=2e-3)
+
+
+def test_pitch_of_one_tooth_reaches_the_vibration():
+    """20 um on tooth 3: sidebands of the pinion's turns, and the fault is named."""
+    machine = gf.build_machine(scene({"gear": "pinion", "pitch_um": [0.0, 0.0, 0.0, 20.0] + [0.0] * 13}))
+    assert amplitude(machine, MESH - TURNS["pinion"]).min() > 10
+    assert f"{machine.faults[0]}" == "tooth 3 of the pinion: off its place; it meshes at 40 Hz"
+
+
+def test_several_loads_with_damage_of_both_gears():
+    """Laws of force: at the load of the curves they give the same force as curves do."""
+    both = scene(crack=[{"gear": "pinion", "tooth": 3}, {"gear": "wheel", "tooth": 3}])
+    one, law = (gf.build_machine(both, "cracked", phases=32, loads=loads) for loads in ((1.0,), (0.8, 1.0, 1.25)))
+    phase = np.arange(-4, 4, 1 / 32)
+    secant = law.meshes[0].secants[0](phase % 1.0, 5.3e-6)[0]
+    assert len(law.meshes[0].changes) == len(one.meshes[0].changes) == len(law.meshes[0].secants) - 1
+    at = law.meshes[0].at_phase(phase)
+    assert_allclose(at, one.meshes[0].at_phase(phase), rtol=5e-3)
+    assert np.abs(secant / at - 1).max() > 0.05
+    with pytest.raises(ValueError, match="give one load"):
+        gf.build_machine(scene({"gear": "pinion", "eccentricity_um": 5.0}), phases=16, loads=(0.8, 1.0, 1.25))
+
+
+def test_mean_force_is_that_of_the_force_not_of_its_size():
+    """A force that swings through zero has the mean of its own sign."""
+    cycle = gf.mesh_cycle(small_pair(), gf.Solve(phases=16))
+    swing = gf.single_mesh(0.15, cycle.healthy, MESH, force=lambda t: 1000 + 4000 * np.sin(2 * math.pi * MESH * t), zeta=0.03)
+    run = gf.simulate(swing, 0.1)
+    assert run["force mesh"].min() < -1000
+    assert not run.stats.get("loads")
+
+
+def test_models_that_cannot_have_an_input_say_why():
+    """The impact law is of involutes, and of one pinion tooth."""
+    with pytest.raises(ValueError, match="involutes without deviations"):
+        gf.build_machine(replace(scene({"gear": "pinion", "eccentricity_um": 5.0}), machine=impact()))
+    with pytest.raises(ValueError, match="one tooth of the pinion"):
+        gf.build_machine(replace(scene(crack=[{"gear": "wheel"}]), machine=impact()), "cracked")
+
+
+def impact():
+    """Machine table with the impact law."""
+    return scene(machine={"contact": "impact"}).machine

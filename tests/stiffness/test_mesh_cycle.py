@@ -1,0 +1,98 @@
+"""Every tooth has its identity: curves of teeth that differ against contact solved over the whole hunting period."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+
+pytestmark = pytest.mark.quick
+RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
+PAIR = gf.GearPair(gf.Gear(z=11, x=0.45, r_bore=5.5, **RACK), gf.Gear(z=13, x=0.35, r_bore=7.0, **RACK))
+CASE = gf.Case(PAIR, 1000.0, gf.Material(E=206e3, nu=0.3))
+PHASES = 8
+PITCH = (0.0,) * 3 + (0.02,)
+
+
+def crack(tooth, length=2.0):
+    """A root crack."""
+    return gf.Crack(length=length, angle=math.radians(60), tooth=tooth)
+
+
+def with_pitch(z):
+    """Pitch deviation of tooth 3 of z teeth."""
+    return gf.Flank(pitch=(*PITCH, *(0.0,) * (z - 4)))
+
+
+CASES = {
+    "tooth 5 of the pinion": {"damage": {"pinion": [crack(5)]}},
+    "tooth 7 of the wheel": {"damage": {"wheel": [crack(7)]}},
+    "two teeth apart": {"damage": {"pinion": [crack(0), crack(5, 3.0)]}},
+    "two teeth side by side": {"damage": {"pinion": [crack(2), crack(3)]}},
+    "three teeth of both gears": {"damage": {"pinion": [crack(0), crack(5, 3.0)], "wheel": [crack(4)]}},
+    "pitch of one tooth": {"flanks": {"pinion": with_pitch(11)}},
+    "pitch of one, a crack in another": {"flanks": {"pinion": with_pitch(11)}, "damage": {"pinion": [crack(9)]}},
+    "pitch of both gears": {"flanks": {"pinion": with_pitch(11), "wheel": with_pitch(13)}},
+    "an eccentric pinion, a cracked wheel": {
+        "flanks": {"pinion": gf.Flank(eccentricity=0.01, eccentric_tooth=2.0)},
+        "damage": {"wheel": [crack(1)]},
+    },
+    "teeth of several scales": {"flanks": {"wheel": gf.Flank(slope=0.01, tooth_scale=(1.0,) * 6 + (1.6,) + (1.0,) * 6)}},
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_cycle_of_the_hunting_period_is_that_of_the_teeth_that_meet(name):
+    """Brute force: the contact of the teeth that really meet, at every phase of the hunting period of 143 cycles."""
+    case = replace(CASE, **CASES[name])
+    cycle = gf.mesh_cycle(case, gf.Solve(phases=PHASES))
+    period = 143 if len({side for part in cycle.parts for side in part.gears}) == 2 else cycle.cycles
+    assert cycle.cycles == period
+    span = "revolution" if period == 11 else "hunting"
+    want = gf.solve(case, gf.Solve(phases=PHASES, span=span))
+    again = want.k.size // cycle.sampled().size
+    assert_allclose(np.tile(cycle.sampled(), again), want.k, rtol=1e-7)
+    unloaded = 0.0 if want.unloaded is None else want.unloaded
+    assert_allclose(np.tile(cycle.sampled("unloaded"), again), unloaded + 0 * want.k, atol=1e-12)
+    te = cycle.sampled("lte") + cycle.sampled("unloaded")
+    assert_allclose(np.tile(te, again), want.te, atol=1e-12)
+
+
+@pytest.mark.parametrize(("side", "tooth"), [("pinion", 5), ("pinion", 10), ("wheel", 8)])
+def test_a_tooth_is_tooth_0_at_another_time(side, tooth):
+    """The curve of tooth n is that of tooth 0, n mesh cycles earlier."""
+    one, other = (gf.mesh_cycle(replace(CASE, damage={side: [crack(k)]}), gf.Solve(phases=PHASES)) for k in (0, tooth))
+    assert_allclose(np.roll(one.sampled(), -tooth * PHASES), other.sampled(), rtol=1e-12)
+    assert np.ptp(one.sampled() - np.roll(one.sampled(), PHASES)) > 0
+
+
+def test_changes_add_where_engagements_do_not_overlap():
+    """Cracks five teeth apart: the changes of k add within the estimated error of k; those of neighbours add less well."""
+    how = gf.Solve(phases=PHASES)
+
+    def change(*teeth):
+        cycle = gf.mesh_cycle(replace(CASE, damage={"pinion": [crack(k) for k in teeth]}), how)
+        return cycle.sampled() - np.tile(cycle.healthy.k, cycle.cycles)
+
+    apart, beside = (np.abs(change(0) + change(tooth) - change(0, tooth)).max() for tooth in (5, 1))
+    assert apart < gf.solve(CASE, replace(how, error=True)).error.max()
+    assert beside > 3 * apart
+
+
+def test_neighbours_of_a_cracked_tooth_are_softer():
+    """The tooth is out of mesh, the next one is not: k is lower than healthy by a part of a per cent."""
+    cycle = gf.mesh_cycle(replace(CASE, damage={"pinion": [crack(0, 3.0)]}), gf.Solve(phases=PHASES))
+    loss = 1 - cycle.sampled()[-PHASES:] / cycle.healthy.k
+    assert 3e-4 < loss.max() < 1e-2
+
+
+def test_teeth_that_all_differ_need_one_load_and_few_phases():
+    """What cannot be held is refused with the reason."""
+    flanks = {side: gf.Flank(eccentricity=0.01) for side in ("pinion", "wheel")}
+    with pytest.raises(ValueError, match="fewer phases"):
+        gf.mesh_cycle(replace(CASE, flanks=flanks), gf.Solve(phases=8192))
+    with pytest.raises(ValueError, match="phases"):
+        gf.mesh_cycle(CASE, gf.Solve(phases=np.arange(4) / 4))

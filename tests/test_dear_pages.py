@@ -1,0 +1,41 @@
+"""Pages without cheap rows: one of their rows computed again."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from validation.make import holes, speed
+from validation.shared.kept_rows import stored
+
+pytestmark = pytest.mark.slow
+
+
+def test_a_hole_takes_what_the_page_says():
+    found, known = holes.row("helical_pitting", "minor"), stored("holes")["helical_pitting, minor"]
+    for name in ("volume", "cut", "lost", "extra", "phase"):
+        assert_allclose(found[name], known[name], rtol=1e-3, err_msg=name)
+
+
+def test_errors_of_the_energy_model_are_those_of_the_page():
+    """Of sections, against the page's finite elements."""
+    scene = gf.load_scene("planetary_pitting").pair()
+    case = {"force": scene.force, "material": scene.materials, "cache": False}
+    truth = gf.mesh_stiffness(scene.pair, method="fe", refine=speed.REFERENCE, **case).k
+    known = {row[1]: row for row in json.loads(speed.TABLE.read_text(encoding="utf-8"))["sections"]["rows"]}
+    for order in speed.ORDERS:
+        off = np.abs(gf.mesh_stiffness(scene.pair, method="ritz", order=order, **case).k / truth - 1)
+        assert_allclose([off.mean(), off.max()], known[f"ritz, order {order}"][3:5], rtol=1e-3)
+
+
+def test_bores_move_the_stiffness_as_the_scene_says():
+    """1.74 times from 0.33 to 0.85 of the root radius, which reasons of verdicts quote."""
+    one, k = gf.load_scene("herringbone").pairs["sun_planet"], []
+    for part in (0.33, 0.85):
+        pair = gf.GearPair(*(replace(g, r_bore=part * g.r_f) for g in (one.pair.gear_1, one.pair.gear_2)), one.pair.a)
+        k.append(gf.mesh_stiffness(pair, one.force, one.materials, method="ritz3d", face=one.face, phases=6).k.mean())
+    quoted = f"move the value {k[1] / k[0]:.2f} times"
+    assert any(quoted in str(one) for one in gf.load_scene("herringbone").references)
