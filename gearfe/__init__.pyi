@@ -1,6 +1,6 @@
 # The public names as a type checker reads them; at run time gearfe/__init__.py loads each on first use.
 
-from .comparison.by_zone import compare as compare
+from .comparison.compare import compare as compare
 from .comparison.model_file import read_model as read_model
 from .comparison.own_model import PairModel as PairModel
 from .comparison.pattern import face_load as face_load

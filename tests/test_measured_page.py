@@ -22,6 +22,7 @@ def test_a_perfect_planetary_set_has_its_line_at_a_multiple_of_three():
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::UserWarning")
 def test_the_page_is_what_is_computed_now():
     text = TEXT.splitlines()
     assert [line for line in measured.lines() if line not in text] == []

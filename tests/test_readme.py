@@ -26,7 +26,7 @@ def test_programs_print_what_is_shown():
 
 
 def test_table_is_what_compare_gives():
-    table = gf.compare(gf.load_scene("planetary_pitting")).table()
+    table = gf.compare(gf.load_scene("planetary_pitting")).table().markdown()
     same(table.rpartition("\n")[0], readme.TABLE.search(TEXT)[0].rpartition("\n")[0])
 
 

@@ -206,7 +206,7 @@ def test_closed_form_and_damage_are_compared(told):
     left = (20 - 6) / 20
     k = 1e-3 * 20 * STEEL.E / (8 + 4 * (1 - STEEL.nu**2) / math.pi / left)
     assert_allclose(table(said, "single", "errors against ritz3d")[-2], k, rtol=2e-4)
-    healthy, banded, loss, doubt, *_ = table(said, "single", "what the damage takes")
+    healthy, banded, loss, doubt, *_ = table(said, "single", "loss of stiffness")
     assert 0 < doubt < loss < 100 * (1 - left)
     assert banded < healthy
     ours, theirs = ([table(told[case], row) for row in ("single", "double", "mean", "max")] for case in ("banded", "spalled"))

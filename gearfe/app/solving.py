@@ -5,16 +5,14 @@ import json
 import math
 import os
 import tempfile
-from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..comparison.by_zone import Comparison
-from ..comparison.losses import damage_phases, engaged_phases, kind_of, loss_errors, told_teeth, within
-from ..core.markdown import table_cells
+from ..comparison.compare import beside_health
+from ..comparison.comparison import Comparison
 from ..core.threads import own_warnings
 from ..core.units import NEWTON_PER_UM
 from ..figures.pair_plot import NEAR
@@ -26,7 +24,7 @@ from ..scene.load import Scene, scene_names, scene_of
 from ..scene.schema import shown
 from ..scene.toml_file import toml
 from ..stiffness.methods import fitted
-from ..stiffness.solve import Solve, solve
+from ..stiffness.solve import Solve
 from .fields import START
 from .program import program
 from .state import CASE, SeveralError, read, tables_of, title_of
@@ -50,17 +48,8 @@ def scene_from(state: dict[str, Any]) -> Scene:
 def compared(scene: Scene, method: str, phases: int, *, error: bool) -> tuple[Comparison, tuple[str, ...]]:
     """A scene's pair, in its case of damage beside health, by one method as `gearfe.compare` has it; and what that leaves out."""
     chosen = scene.pair()
-    case, variants, left_out = fitted(method, chosen.case(CASE if chosen.damage else None))
-    how = Solve(method, phases, variants=variants, error=error)
-    if not case.damaged:
-        return Comparison("stage", {method: solve(case, how)}, {method: 0.0}), left_out
-    cycle = damage_phases(case, phases)
-    how = replace(how, phases=engaged_phases(case, phases))
-    whole, hurt = solve(case.healthy, how), solve(case, how)
-    coarse = replace(how, phases=cycle, error=False)
-    doubt = loss_errors(within(whole, cycle), within(hurt, cycle), case, coarse) if error else {}
-    damage_and_kind = next(iter(told_teeth(case).values())), kind_of(case.damage)
-    return Comparison("stage", {method: hurt}, {method: 0.0}, {method: whole}, doubt, *damage_and_kind, {}, cycle), left_out
+    case, _, left_out = fitted(method, chosen.case(CASE if chosen.damage else None))
+    return beside_health(case, Solve(method, phases, error=error)), left_out
 
 
 def quick(state: dict[str, Any]) -> dict[str, Any]:
@@ -96,7 +85,7 @@ def _answer(state, method, phases, *, error):
         "method": f"{method}: {phases} phases in a mesh cycle"
         + (", with estimated errors" if error else ", a first picture without estimates" if method == "ritz" else ""),
         "section": bool(left_out or further),
-        "table": _table(comparison),
+        "table": (comparison.loss_table() or comparison.table()).cells(),
         "curves": [*(_curve("healthy", entry) for entry in comparison.healthy.values()),
                    _curve(comparison.kind or "healthy", curve)],
         "share": {"phase": _numbers(curve.phase), "order": [int(entry) for entry in curve.order],
@@ -124,14 +113,6 @@ def _curve(name, curve):
     error = [] if curve.error is None else _numbers(curve.error / NEWTON_PER_UM)
     return {"name": name, "phase": _numbers(phase), "k": _numbers(k), "at": _numbers(curve.phase), "solved": _numbers(curve.k),
             "error": error, "te": _numbers(curve.te * UM)}  # fmt: skip
-
-
-def _table(found):
-    """Cells of the table by zone: what damage takes; of a healthy pair its stiffness."""
-    text = found.loss_table() or found.table()
-    rows = [table_cells(line) for line in text.splitlines() if line.startswith("|")]
-    kept = [row for row in rows if row[0] != "seconds" and not set("".join(row)) <= set("-: ")]
-    return [["" if cell == "± nan %" else cell for cell in row] for row in kept]
 
 
 def picture(scene: Scene) -> dict[str, Any]:

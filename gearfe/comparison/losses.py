@@ -7,20 +7,17 @@ tooth is in contact all the time, and a healthy pair has the same mean over it a
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.case import Case
 from ..core.checks import COARSEST
-from ..core.markdown import aligned, table_row
-from ..core.units import in_newton_per_um
 from ..geometry.damage.kinds import Damage, called, told
 from ..geometry.pair.gear_pair import GearPair
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.estimate import other_solves
-from ..stiffness.methods import METHODS, RING_FOUNDATIONS, Method
+from ..stiffness.methods import METHODS
 from ..stiffness.phases import phase_array
 from ..stiffness.solve import Solve, solve
 
@@ -46,11 +43,14 @@ def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
     return (math.ceil((middle - 0.5) * phases - 1e-9) + np.arange(phases)) / phases
 
 
+def cycle_of_tooth(case: Case, phases: int) -> NDArray:
+    """Phases ``(phases,)`` of the mesh cycle that begins when the first damaged tooth enters."""
+    return phase_array(phases, "cycle", case.pair) - (case.first_tooth or 0)
+
+
 def engaged_phases(case: Case, phases: int) -> NDArray:
     """Phases ``(n,)`` of the damaged teeth's engagements and a quarter of a cycle at their ends, in steps of ``1 / phases``."""
-    one = phase_array(phases, "tooth", case.pair, case.overlap())
-    numbers = np.unique([np.round((one - pair) * phases) for pair in damaged_pairs(case) or (0,)])
-    return np.asarray(numbers / phases, dtype=np.float64)
+    return phase_array(phases, "tooth", case.pair, case.overlap(), case.damaged_pairs or (0,))
 
 
 def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
@@ -91,42 +91,11 @@ def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
     return replace(curve, **{name: value[rows] for name, value in arrays.items()})
 
 
-def told_cycle(phases: NDArray, kind: str = "") -> str:
-    """What zones and means are over, in words; `kind` as of `kind_of`, of a damaged pair."""
+def told_cycle(phases: NDArray | None, kind: str = "") -> str:
+    """What zones and means are over, in words; `kind` as of `kind_of`, of a damaged pair; phases None: of several pairs."""
     over = f"the mesh cycle that has the {kind} tooth in the middle of its engagement" if kind else "the mesh cycle"
-    return f"zones, mean and max are over {over}, phases {phases.min():.3g} to {phases.max():.3g}"
-
-
-def zone_table(curve: StiffnessCurve) -> str:
-    """A curve by zone [N/um], with its estimated errors if it has them, as aligned text."""
-    doubt = curve.zone_errors()
-    lines = [table_row(["zone", "k [N/um]", *(["error at most about"] if doubt else [])]), "|---" * (3 if doubt else 2) + "|"]
-    for zone, value in curve.zones().items():
-        lines.append(table_row([zone, in_newton_per_um(value, 5), *([f"{100 * doubt[zone]:.2f} %"] if doubt else [])]))
-    return aligned("\n".join(lines))
-
-
-def beside_health(curve: StiffnessCurve, case: Case, how: Solve) -> str:
-    """A damaged pair's curve beside that of the same pair without damage, by the same method, in words and a table by zone.
-
-    The curve is over the whole engagements of the damaged teeth (`engaged_phases`), solved as `how` says, whose phases are a
-    number per mesh cycle. There is a table for each tooth.
-    """
-    return "\n\n".join(_beside_health(curve, case, how, pair, said) for pair, said in told_teeth(case).items())
-
-
-def _beside_health(curve, case, how, pair, said):
-    cycle = damage_phases(case, cast(int, how.phases), pair)
-    healthy = solve(case.healthy, replace(how, phases=cycle, span="cycle", error=False))
-    hurt, kind = within(curve, cycle), kind_of(damaged_pairs(case)[pair])
-    losses, doubt, before, after = loss(healthy, hurt), hurt.zone_errors(), healthy.zones(), hurt.zones()
-    head = ["zone", "healthy [N/um]", f"{kind} [N/um]", *(["error at most about"] if doubt else []), "loss"]
-    lines = [table_row(head), "|---" * len(head) + "|"]
-    for zone, lost in losses.items():
-        cells = [in_newton_per_um(by_zone[zone]) if zone in by_zone else "" for by_zone in (before, after)]
-        about = [f"{100 * doubt[zone]:.2f} %" if zone in doubt else ""] if doubt else []
-        lines.append(table_row([zone, *cells, *about, f"{100 * lost:.1f} %"]))
-    return f"{said}; {told_cycle(cycle, kind)}\n" + aligned("\n".join(lines))
+    span = "" if phases is None else f", phases {phases.min():.3g} to {phases.max():.3g}"
+    return f"zones, mean and max are over {over}{span}"
 
 
 def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:
@@ -189,20 +158,14 @@ def percent_with_doubt(value: float, doubt: float) -> str:
     """A part in percent with its doubt, which is rounded up: ``15.8 ± 0.3 %``; without a doubt the number alone."""
     if not math.isfinite(doubt):
         return f"{100 * value:.1f} %"
-    return f"{100 * value:.1f} ± {max(math.ceil(1000 * doubt), 1) / 10:.1f} %"
+    return f"{100 * value:.1f} ± {rounded_up(100 * doubt):.1f} %"
 
 
-def why_not(row: Method, case: Case, solid: str) -> str:
-    """Why a comparison has no column of a method; `solid` says why the case needs three dimensions, if it does."""
-    pair = case.pair
-    if pair.gear_2.internal and row.rings != "yes" and row.rings not in RING_FOUNDATIONS:
-        return "not for rings"
-    if pair.gear_2.internal and row.rings != "yes":
-        return f"not for rings: it {RING_FOUNDATIONS[row.rings]}"
-    if row.name == "fe3d" and solid:
-        return "takes minutes for each gear; ask for it: --reference fe3d (reference='fe3d')"
-    if row.kind == "solid":
-        return "nothing changes along the width; of narrow teeth ask for it: --reference ritz3d (reference='ritz3d')"
-    if solid and row.kind == "section":
-        return f"a transverse section, but {solid}"
-    return "for healthy gears only" if case.damaged and not row.cracks else "left out"
+def rounded_up(percent: float) -> float:
+    """A doubt in percent with one decimal, rounded up."""
+    return max(math.ceil(10 * percent), 1) / 10
+
+
+def tooth_stiffness(curve: StiffnessCurve, tooth: int) -> NDArray:
+    """Stiffness ``(n,)`` of one tooth pair, its force over the common approach [N/m]."""
+    return curve.force[:, curve.order == tooth].sum(axis=1) / curve.lte

@@ -186,12 +186,21 @@ class Case:
         return "shafts tilt the gears" if any(one.tilts for one in self.held or () if one) else ""
 
     @property
+    def damaged_pairs(self) -> tuple[int, ...]:
+        """Numbers of the tooth pairs that cracks and pits are in, that of the first crack or pit first."""
+        return tuple(
+            dict.fromkeys(
+                sense * defect.tooth
+                for i, (_, sense) in enumerate(SIDES)
+                for kind in (self.cracks, self.pits)
+                for defect in kind[i]
+            )
+        )
+
+    @property
     def first_tooth(self) -> int | None:
         """Number of the tooth pair that the first crack or pit is in; None without damage."""
-        teeth = [
-            sense * defect.tooth for i, (_, sense) in enumerate(SIDES) for kind in (self.cracks, self.pits) for defect in kind[i]
-        ]
-        return teeth[0] if teeth else None
+        return next(iter(self.damaged_pairs), None)
 
     def overlap(self, face: str | None = None) -> float:
         """Overlap ratio of teeth that run as `face` says (default `runs`), of one half if herringbone; 0 for spur."""

@@ -35,7 +35,8 @@ def crack_contacts(cracked: dict[Any, Faces], blocks: list[Any], n: int, lugs: i
 
     The last `lugs` of the n loads are those of the ring's lugs. `apart`: each mesh has the cracks of its gears for itself.
     """
-    rows, stiffness, touch, ring = [], [], [], slice(0)
+    rows, stiffness, ring = [], [], slice(0)
+    touch: list[NDArray[np.bool_]] = []
     for name, faces in cracked.items():
         loaded = [(one, *way) for one in blocks if (way := _loads_on(one, name))]
         for group in [[one] for one in loaded] if apart else [loaded]:

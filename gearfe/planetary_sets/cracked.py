@@ -61,7 +61,8 @@ def cracked_teeth(whole: WholeGear, cracks: Any, refine: float) -> tuple[Cracked
         sector = periodic_sector(whole.gear, [one for one in cracks if one.tooth % whole.gear.z == tooth], refine=refine)
         pairs, normal, touch = _pairs(sector.mesh, sector.seams)
         matrix, load, _ = sector_stiffness(sector, whole.material, pairs)
-        out.append(CrackedTooth(tooth, side, *_opened(matrix, load, normal, order), touch))
+        sides, faces, loads = _opened(matrix, load, normal, order)
+        out.append(CrackedTooth(tooth, side, sides, faces, loads, touch))
     return tuple(out)
 
 

@@ -4,7 +4,7 @@ import contextlib
 import time
 from dataclasses import dataclass, field
 
-from ..comparison.by_zone import compare
+from ..comparison.compare import compare
 from ..comparison.vibration import Analysis, analysis, check_run, responses
 from ..core.steps import part, steps
 from ..core.threads import own_warnings
@@ -19,7 +19,7 @@ class Findings:
 
     scene: Scene
     case: str | None  # of damage, shown beside healthy
-    comparisons: dict = field(default_factory=dict)  # `gearfe.comparison.by_zone.Comparison` by (pair, case or None)
+    comparisons: dict = field(default_factory=dict)  # `gearfe.comparison.comparison.Comparison` by (pair, case or None)
     tooth: tuple | None = None  # (name of the pair, `Pressed`, `Field`): the tooth in three dimensions
     vibration: Analysis | None = None
     responses: dict = field(default_factory=dict)  # `Response` by case

@@ -1,6 +1,7 @@
 """`report`: a page of a scene in one file that needs no network."""
 
 import base64
+import itertools
 import os
 import tempfile
 import time
@@ -8,18 +9,19 @@ from importlib import resources
 from pathlib import Path
 
 from ..comparison.told_scene import told_details, told_load, told_supports
-from ..core.markdown import table_cells
 from ..core.steps import part
 from ..core.table import Column, Table
 from ..scene.load import Scene, scene_names
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import versions
 from ..strength.render import enlarged, render_stress, rounded_up
-from .figures import cases_figure, curves_figure, part_of_page, share_figure, spectra_figure, tooth_figure
+from . import figures
+from .figures import part_of_page
 from .findings import find
 from .template import page_maker
 from .whole_set import set_section
 
+MARK = 10.0  # errors beyond it are emphasised [%]
 PICTURE, REFINE = (1120, 840), 0.7  # of stress [px], and of its mesh
 
 
@@ -62,69 +64,21 @@ def report(
         pictures = _pictures(found)
         sets = set_section(found.sets)
         found.seconds["stress pictures"] = time.perf_counter() - drawing
-    figures = _Figures()
     cost = [*found.seconds.items(), ("all", time.perf_counter() - started)]
     return write(
-        found=found, headline=found.headline, scene=found.scene, command=_command(found), case=found.case,
-        pairs=_pairs(found, figures), pictures=pictures, sets=sets,
-        tooth=_tooth(found, figures), vibration=_vibration(found, figures), methods=_methods(found),
-        versions=versions(), duration=duration, total=cost[-1][1],
-        cost=Table(("part", Column("time", "s", "{:.1f}")), cost, "What it cost"),
-        libraries=Table(["library", "version"], list(versions().items()), "Versions"), assumed=_assumed(found.scene),
-        turning=(resources.files("gearfe.reports") / "page.js").read_text(encoding="utf-8"),
+        found=found, scene=found.scene, case=found.case, command=_command(found), pictures=pictures, sets=sets,
+        tooth=_tooth(found), methods=_methods(found), assumed=_assumed(found.scene), version=versions()["gearfe"],
+        cost=Table(("part", Column("time", "s", "{:.1f}")), cost, "What it cost"), duration=duration, total=cost[-1][1],
+        libraries=Table(("library", "version"), list(versions().items()), "Versions"), mark=MARK, refine=REFINE,
+        draw=_numbered(), figures=figures, told=lambda pair: [told_load(pair), *told_details(pair), *pair.pair.notes],
+        supports=told_supports, turning=(resources.files("gearfe.reports") / "page.js").read_text(encoding="utf-8"),
     )  # fmt: skip
 
 
-class _Figures:
-    """Figures as text of a page, numbered."""
-
-    def __init__(self):
-        self.number = 0
-
-    def __call__(self, figure):
-        self.number += 1
-        return {"name": f"figure-{self.number}", "html": part_of_page(figure, f"figure-{self.number}")}
-
-
-def _pairs(found, figures):
-    """What is shown of each pair: numbers, comparisons healthy and damaged, curves and shares."""
-    out = []
-    for name, chosen in found.scene.pairs.items():
-        pair = chosen.pair
-        told = [told_load(chosen), *told_details(chosen), *pair.notes]
-        parts = [_comparison(found.comparisons[key], key[1], figures) for key in found.comparisons if key[0] == name]
-        out.append({"name": name, "drawing": pair._repr_html_(), "told": told, "parts": parts})
-        if found.case in chosen.damage:
-            out[-1]["cases"] = figures(cases_figure(_both(found, name)))
-    return out
-
-
-def _both(found, name):
-    """Curves of a pair, healthy and damaged, by the reference and over the same phases."""
-    one = found.comparisons[name, found.case]
-    reference = next(iter(one.healthy))
-    return {f"healthy ({reference})": one.healthy[reference], f"{found.case} ({reference})": one.reference}
-
-
-def _comparison(one, case, figures):
-    rows = [
-        {"zone": zone, "truth": truth / 1e6, "doubt": 100 * doubt, "others": [(k / 1e6, 100 * e) for k, e in others.values()]}
-        for zone, truth, doubt, others in one.rows()
-    ]
-    names = list(one.curves)
-    return {
-        "case": case or "healthy",
-        "headline": one.headline,
-        "definition": one.definition,
-        "losses": _table(one.loss_table()),
-        "reasons": one.reasons(),
-        "names": names,
-        "rows": rows,
-        "seconds": [one.seconds[name] for name in names],
-        "curves": figures(curves_figure(one.curves)),
-        "share": figures(share_figure(one.reference)),
-        "supports": told_supports(one.reference),
-    }
+def _numbered():
+    """Function that makes a figure an element of a page; the elements are numbered."""
+    numbers = itertools.count(1)
+    return lambda figure: part_of_page(figure, f"figure-{next(numbers)}")
 
 
 def _pictures(found):
@@ -141,44 +95,18 @@ def _pictures(found):
                 out.append({"missing": f"{title}: {error}"})
                 continue
             data = base64.b64encode(file.read_bytes()).decode()
-        out.append({"data": data, "title": title, "told": told, "refine": REFINE})
+        out.append({"data": data, "title": title, "told": told})
     return out
 
 
-def _tooth(found, figures):
+def _tooth(found):
+    """The loaded tooth in three dimensions, its stress, and how far its displacements are enlarged; None without one."""
     if found.tooth is None:
         return None
     name, pressed, field = found.tooth
     scale = enlarged(field.opening, pressed.sector.gear.m_n)
-    return {
-        "figure": figures(tooth_figure(pressed, field, scale, rounded_up(field.root))),
-        "pair": name,
-        "gear": pressed.gear,
-        "phase": float(pressed.contact.phase[0]),
-        "load": float(pressed.load[0]),
-        "root": field.root,
-        "enlarged": scale,
-        "unknowns": pressed.unknowns,
-    }
-
-
-def _vibration(found, figures):
-    if found.vibration is None:
-        return None
-    return {
-        "figure": figures(spectra_figure(found.vibration)),
-        "lines": found.vibration.lines_table(),
-        "hidden": found.vibration.hidden_lines(),
-        "indicators": found.vibration.indicators_table(),
-        "stats": {case: one.stats for case, one in found.responses.items()},
-        "machine": repr(next(iter(found.responses.values())).machine).strip("<>"),
-    }
-
-
-def _table(markdown):
-    """Rows of a Markdown table, the head first."""
-    rows = [table_cells(line) for line in markdown.splitlines() if line.startswith("|")]
-    return [row for row in rows if not all(set(cell) <= set("-: ") for cell in row)]
+    drawn = part_of_page(figures.tooth_figure(pressed, field, scale, rounded_up(field.root)), "figure-0")
+    return {"drawn": drawn, "pair": name, "pressed": pressed, "root": field.root, "enlarged": scale}
 
 
 def _methods(found):

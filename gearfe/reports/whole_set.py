@@ -40,9 +40,9 @@ def set_section(found: dict[str, SetCurves]) -> list[dict[str, Any]]:
     for name, curves in found.items():
         healthy = found.get("healthy") if name != "healthy" else None
         out.append({
+            "loads": _picture("loads", curves.plot), "bent": _picture("bent", partial(plot_planetary_set, curves, 0)),
             "case": name, "headline": set_headline(curves, healthy), "told": told_set(curves.meta["case"]),
             "span": told_span(curves.position), "table": set_table(curves),
-            "loads": _picture("loads", curves.plot), "bent": _picture("bent", partial(plot_planetary_set, curves, 0)),
         })  # fmt: skip
     return out
 

@@ -181,8 +181,8 @@ def renumbered(case: Case, by: int) -> Case:
         damage["wheel"] = [replace(hurt, tooth=(hurt.tooth + by) % z) for hurt in damage["wheel"]]
     if "wheel" in flanks:
         flank = flanks["wheel"]
-        lists = {name: tuple(np.roll(getattr(flank, name), by).tolist()) for name in ("pitch", "tooth_scale")}
-        flanks["wheel"] = replace(flank, eccentric_tooth=flank.eccentric_tooth + by, **lists)
+        pitch, scale = (tuple(np.roll(values, by).tolist()) for values in (flank.pitch, flank.tooth_scale))
+        flanks["wheel"] = replace(flank, eccentric_tooth=flank.eccentric_tooth + by, pitch=pitch, tooth_scale=scale)
     return replace(case, damage=damage or None, flanks=flanks or None)
 
 

@@ -1,7 +1,7 @@
 """The methods of `mesh_stiffness` and what each can: one row for each, read wherever somebody asks.
 
 A row answers for itself: `Method.refuses` what it does not model of a case, `Method.curves` the stiffness. The command line's
-help, `compare`, `case_table` and `error_map` list its names. It imports nothing heavy.
+help, `compare` and `error_map` list its names. It imports nothing heavy.
 
 To add a closed form, write one file in ``gearfe/flexibility/energy/closed/`` and one row in `ROWS`:
 

@@ -1,6 +1,7 @@
 """Which phases of the mesh cycle a curve is at: a number of them over a span, or spelled out."""
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -15,13 +16,17 @@ SPANS = ("cycle", "tooth", "revolution", "hunting")
 LONG = SPANS[2:]  # of many cycles
 
 
-def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0) -> NDArray[np.float64]:
-    """Phases ``(n,)`` of a number of them over a `span`, or those given; an engagement lasts ``eps_alpha + overlap`` cycles."""
+def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0, teeth: Iterable[int] = (0,)) -> NDArray[np.float64]:
+    """Phases ``(n,)`` of a number of them over a `span`, or those given; an engagement lasts ``eps_alpha + overlap`` cycles.
+
+    Those of the `span` ``tooth`` are of the engagements of all tooth pairs of these numbers.
+    """
     one_of("span", span, SPANS)
     if np.ndim(phases) == 0:
         phases = check_count(phases)
         if span == "tooth":
-            return np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + overlap + 0.25) * phases) + 1) / phases
+            one = np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + overlap + 0.25) * phases) + 1)
+            return np.asarray(np.unique([one - tooth * phases for tooth in teeth]) / phases, dtype=np.float64)
         check_length(pair, span, phases)
         return np.arange(phases * cycles_in(pair, span)) / phases
     if span in LONG:

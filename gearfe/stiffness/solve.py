@@ -57,10 +57,10 @@ class Solve:
         Number of equidistant phases per mesh cycle, or the phases themselves; with pitch deviations those of as many teeth as are
         to be seen.
     span : {"cycle", "tooth", "revolution", "hunting"}
-        Which phases a number stands for: from 0 to 1; or the whole engagement of pair 0 and a quarter cycle before and
-        after it (where the damaged tooth is); or every cycle of one revolution of the pinion, or of the hunting period after
-        which the same teeth meet again (for pitch deviations; cycles that are alike are solved once). In three dimensions pair 0
-        enters at one end at phase 0.
+        Which phases a number stands for: from 0 to 1; or the whole engagements of the tooth pairs with damage (without damage of
+        pair 0) and a quarter cycle before and after each; or every cycle of one revolution of the pinion, or of the hunting
+        period after which the same teeth meet again (for pitch deviations; cycles that are alike are solved once). Pair k, of the
+        teeth k of both gears, enters at phase -k, in three dimensions at one end.
     extended : bool
         Let corners touch before the start and after the end of the path of contact (all but the closed
         forms, which know no contact there).
@@ -213,7 +213,8 @@ def _curves(row, case, how):
             in_pose(lambda phase, single=single: of_loads(phase, single)[0], at, pair, how.pose, case.forms) for single in alone
         ]
 
-    phase = phase_array(how.phases, how.span, pair, case.overlap(case.runs if row.kind == "solid" else case.face or "spur"))
+    overlap = case.overlap(case.runs if row.kind == "solid" else case.face or "spur")
+    phase = phase_array(how.phases, how.span, pair, overlap, case.damaged_pairs or (0,))
     if how.span not in LONG:
         return posed(phase)
     differs = [bool(case.cracks[i] or case.pits[i]) or (case.forms is not None and case.forms[i].differs) for i in (0, 1)]

@@ -175,8 +175,8 @@ def test_numbers_of_the_page_are_those_of_mesh_stiffness(kind, tmp_path):
     chosen, count = scene.pair(PAIR), 64 if error else 32
     cycle = damage_phases(chosen.case(), count)
     zones = [gf.mesh_stiffness(chosen.case(case), phases=cycle, method="ritz").zones() for case in (None, CASE)]
-    for zone, *two, _ in found["table"][1:-1]:
-        assert two == [in_newton_per_um(one[zone]) for one in zones]
+    for zone, *two in found["table"][1:-1]:
+        assert two[:2] == [in_newton_per_um(one[zone]) for one in zones]
     if error:
         assert "±" in found["headline"]
 
@@ -186,7 +186,7 @@ def test_the_program_prints_the_numbers_of_the_page(capsys):
     text = json.loads(answer("python", state))["text"]
     exec(compile(text, "gear.py", "exec"), {})
     lines = {line.split(":")[0]: line for line in capsys.readouterr().out.splitlines()}
-    for zone, healthy, damaged, _ in json.loads(answer("fine", state))["table"][1:-1]:
+    for zone, healthy, damaged, *_ in json.loads(answer("fine", state))["table"][1:-1]:
         assert lines[zone] == f"{zone}: healthy {float(healthy):.4g} N/um, damaged {float(damaged):.4g} N/um"
 
 

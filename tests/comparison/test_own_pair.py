@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.comparison.by_zone import Comparison
+from gearfe.comparison.comparison import Comparison
 
 
 def test_a_pair_without_a_scene_is_compared_as_in_one():
@@ -14,7 +14,9 @@ def test_a_pair_without_a_scene_is_compared_as_in_one():
     run = {"models": {"mine": lambda phase: 3e8 + 0 * phase}, "phases": 4, "refine": 0.3}
     one = gf.compare(pair=chosen.pair, **own, **run)
     other = gf.compare("planetary_pitting", **run)
-    assert one.pair_name == "21/31"
+    assert one.subject == ("21/31", None)
+    with pytest.warns(DeprecationWarning, match="use subject"):
+        assert one.pair_name == "21/31"
     assert list(one.curves) == list(other.curves)
     for name in one.curves:
         assert_allclose(one.curves[name].k, other.curves[name].k, rtol=1e-12)
@@ -36,12 +38,14 @@ def test_a_model_that_is_a_tenth_too_stiff_is_told_so():
         gf.StiffnessCurve(phase, part * k, part * k, none[:, 0], np.array([0]), none, none, meta={"eps_alpha": 1.5})
         for part in (1.0, 1.1)
     )
-    made = Comparison("21/31", {"fe": truth, "mine": stiffer}, {"fe": 1.0, "mine": 1.0})
-    rows = {zone: (value, others["mine"]) for zone, value, _, others in made.rows()}
-    assert list(rows) == ["single", "double", "mean", "max"]
-    for value, (own, error) in rows.values():
-        assert_allclose([own, error], [1.1 * value, 0.1], rtol=1e-12)
-    assert "+10.0 %" in made.table()
+    case = gf.load_scene("planetary_pitting").case()
+    key = ("21/31", None)
+    made = Comparison({key: case}, (key,), {(*key, "fe"): truth, (*key, "mine"): stiffer})
+    rows = list(made.rows())
+    assert [row.zone for row in rows[::2]] == ["single", "double", "mean", "max"]
+    for fe, own in zip(rows[::2], rows[1::2], strict=True):
+        assert_allclose([own.k, own.error], [1.1 * fe.k, 0.1], rtol=1e-12)
+    assert {row[-1] for row in made.table().cells()[1:]} == {"+10.0 %"}
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,6 @@
 """Pairs of the frozen page `pairs_three`: by the energy model, and by hexahedra of both whole gears on file."""
 
 import csv
-import json
 import math
 import warnings
 
@@ -12,7 +11,6 @@ from gearfe.geometry.damage.pit import pit_row
 from validation.shared.places import TABLES
 
 TABLE = TABLES / "pairs_three.csv"
-OURS = "pairs_three_ritz3d"  # table of rows
 STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 100.0  # [N/mm]
 PHASES = 12  # of a mesh cycle, over the whole engagement of the damaged tooth
@@ -79,9 +77,3 @@ def stored():
             run["phase"].append(float(row["phase"]))
             run["k"].append(float(row["k [N/m]"]))
     return {key: run | {name: np.array(run[name]) for name in ("phase", "k")} for key, run in out.items()}
-
-
-def on_file():
-    """Stiffness by the energy model [N/m] on file, by pair and case."""
-    lines = (TABLES / f"{OURS}.jsonl").read_text(encoding="utf-8").splitlines()
-    return {row["row"]: row["k"] for row in map(json.loads, lines)}

@@ -1,5 +1,6 @@
 """A report is one file that draws all its figures without a network and without a complaint of the browser."""
 
+import math
 import re
 import shutil
 import subprocess
@@ -9,6 +10,7 @@ import pytest
 from matplotlib.colors import to_rgb
 
 import gearfe as gf
+from gearfe.core.units import significant
 from gearfe.figures.look import COLOURS
 from gearfe.reports.findings import Findings, _tooth, find
 
@@ -42,11 +44,10 @@ def test_page_is_one_file_with_all_its_parts(page):
 def test_numbers_of_the_page_are_those_of_compare(page):
     text = page.read_text(encoding="utf-8")
     found = gf.compare(gf.load_scene(page.parent / "own.toml"), case="cracked", phases=12)
-    for _, truth, _, others in found.rows():
-        assert f"<td>{truth / 1e6:.1f}</td>" in text
-        for k, error in others.values():
-            assert f"<td>{k / 1e6:.1f}</td>" in text
-            assert f">{100 * error:+.1f} %</td>" in text
+    for row in found.rows():
+        assert math.isnan(row.k) or f"<td>{significant(row.k / 1e6)}</td>" in text
+        assert math.isnan(row.error) or f">{100 * row.error:+.1f} %</td>" in text
+        assert math.isnan(row.loss) or f"<td>{100 * row.loss:.1f} %</td>" in text
 
 
 def test_first_sentence_is_the_answer(page):
@@ -62,7 +63,7 @@ def test_tooth_is_pressed_as_its_scene_says(tmp_path, monkeypatch):
     given = {}
 
     def pressed_tooth(case):
-        given.update(case)
+        given.update(case.as_dict())
         raise ValueError("seen")
 
     monkeypatch.setattr("gearfe.reports.findings.pressed_tooth", pressed_tooth)

@@ -280,7 +280,7 @@ def test_own_flexibility_in_compare():
     found = gf.compare(scene, models=models, phases=2, refine=0.4)
     assert_allclose(found.curves["energy"].k, found.curves["ritz"].k, rtol=1e-12)
     assert_allclose(found.curves["mine"].k, found.curves["coupled"].k, rtol=1e-6)
-    assert found.table().splitlines()[0].endswith("| energy [N/um] | error | mine [N/um] | error |")
+    assert found.table().markdown().splitlines()[0].endswith("| energy [N/um] | error | mine [N/um] | error |")
     assert found.curves["mine"].meta["method"] == "mine"
     assert list(own_models([gf.OwnFlexibility(sections)])) == ["sections"]
 

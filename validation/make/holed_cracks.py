@@ -1,7 +1,8 @@
 """A part of the page `holes`: pits cut out of cracked teeth, the damaged rows of article S4 with holes and crack in the tooth."""
 
 import gearfe as gf
-from gearfe.comparison.case_table import damage_cycle, printed_cases
+from gearfe.comparison.compare import damage_cycle
+from gearfe.comparison.printed_stiffness import printed_cases
 from gearfe.strength.holed import pressed_tooth
 
 from ..shared.herringbone_page import SCENE

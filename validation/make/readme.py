@@ -71,7 +71,7 @@ def run(again=True):
     """Write the README anew."""
     text = README.read_text(encoding="utf-8")
     gf.compare(gf.load_scene("planetary_pitting"))  # warm
-    table = gf.compare(gf.load_scene("planetary_pitting")).table()
+    table = gf.compare(gf.load_scene("planetary_pitting")).table().markdown()
     text = TABLE.sub(lambda _: table, text)
     text = FIVE.sub(lambda _: five_rows(), text)
     printed = iter(outputs(text))

@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 import gearfe as gf
-from gearfe.comparison.case_table import printed_beside
+from gearfe.comparison.printed_stiffness import printed_beside
 from gearfe.core.units import in_newton_per_um
 from gearfe.scene.verdicts import judge, text
 

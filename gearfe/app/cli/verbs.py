@@ -34,11 +34,11 @@ def _title(scene, arguments, *more):
 
 def stiffness(arguments):
     """``gearfe stiffness``."""
-    from ...comparison.losses import beside_health, damaged_pairs, engaged_phases, zone_table
+    from ...comparison.compare import beside_health
     from ...comparison.told_scene import told_supports
     from ...scene.load import load_scene
     from ...stiffness.methods import fitted
-    from ...stiffness.solve import Solve, solve
+    from ...stiffness.solve import Solve
 
     _check_outputs(arguments, output="curve", plot="picture")
     scene = load_scene(arguments.scene)
@@ -55,15 +55,15 @@ def stiffness(arguments):
         return
     with working(f"stiffness by {arguments.method}") as tell:
         how = Solve(
-            arguments.method, arguments.phases, "tooth" if arguments.case else "cycle", not arguments.no_extended,
-            refine=arguments.refine, variants=variants, error=arguments.error, tell=tell, pose=arguments.pose,
+            arguments.method, arguments.phases, extended=not arguments.no_extended, refine=arguments.refine,
+            error=arguments.error, tell=tell, pose=arguments.pose,
         )  # fmt: skip
-        apart = arguments.case and list(damaged_pairs(case)) != [0]
-        curve = solve(case, replace(how, phases=engaged_phases(case, arguments.phases), span="cycle") if apart else how)
-        meta = curve.meta
-        answer = beside_health(curve, case, replace(how, method=meta["method"])) if arguments.case else zone_table(curve)
-    print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:")
-    print(answer)
+        found = beside_health(case, how)
+    curve, meta = found.reference, found.reference.meta
+    print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:\n")
+    for one in found.by_tooth() if case.damaged else ():
+        print(f"{one.headline};\n{one.definition}\n\n{one.loss_table()}\n")
+    print(f"{found.definition}\n\n{found.table(digits=5)}")
     if soft := told_supports(curve):
         print(f"\n{soft}")
     _print_assumptions(scene, arguments.assumptions)
@@ -80,6 +80,7 @@ def stiffness(arguments):
 def _transmission_error(scene, arguments, case, variants):
     """``gearfe stiffness --forces`` and ``--torques``."""
     from ...comparison.harris import harris
+    from ...comparison.losses import cycle_of_tooth
     from ...figures.error_plots import plot_transmission_error
     from ...figures.stiffness_plots import told
     from ...stiffness.solve import Solve
@@ -89,9 +90,8 @@ def _transmission_error(scene, arguments, case, variants):
     r_b = case.pair.gear_1.r_b
     forces = arguments.forces or [1e3 * torque / r_b for torque in arguments.torques]
     with working(f"transmission error by {arguments.method}"):
-        how = Solve(
-            arguments.method, arguments.phases, extended=not arguments.no_extended, refine=arguments.refine, variants=variants
-        )
+        phases = cycle_of_tooth(case, arguments.phases) if case.first_tooth else arguments.phases
+        how = Solve(arguments.method, phases, extended=not arguments.no_extended, refine=arguments.refine, variants=variants)
         found, plain = harris(replace(case, force=forces), how)
     print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle\n")
     print(found.table(plain, r_b))
@@ -103,44 +103,56 @@ def _transmission_error(scene, arguments, case, variants):
 
 def compare(arguments):
     """``gearfe compare``."""
-    from ...comparison.by_zone import compare as run
-    from ...comparison.case_table import printed_cases
+    from ...comparison.compare import compare as run
+    from ...comparison.compare import compare_cases
+    from ...comparison.printed_stiffness import printed_cases, printed_text
     from ...comparison.told_scene import told_supports
-    from ...core.markdown import aligned
     from ...scene.load import load_scene
     from ...scene.references import printed_stiffness
 
-    _check_outputs(arguments, plot="picture")
+    _check_outputs(arguments, output="table", plot="picture")
     scene = load_scene(arguments.scene)
-    printed = printed_cases(scene)
-    one = arguments.pair or arguments.case or arguments.model or arguments.plot
-    if arguments.cases or (printed and not one):
-        _compare_cases(scene, arguments, None if arguments.cases or not printed else printed)
-        return
+    printed, one = printed_cases(scene), arguments.pair or arguments.case or arguments.model or arguments.plot
+    several = arguments.cases or (printed and not one)
+    if several and one:
+        raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
+    if several and arguments.reference not in (None, "fe3d"):
+        raise ValueError(f"--reference {arguments.reference} with --cases: only fe3d can be asked for")
+    options = {"phases": arguments.phases, "reference": arguments.reference}
     with working("finite elements and energy methods"):
-        options = {"models": arguments.model, "phases": arguments.phases, "refine": arguments.refine}
-        result = run(scene, arguments.pair, case=arguments.case, reference=arguments.reference, **options)
-    meta = result.reference.meta
-    load = f"{meta['force_N']:g} N on {meta['width_mm']:g} mm"
+        if several:
+            result = compare_cases(scene, None if arguments.cases else printed, **options)
+        else:
+            more = {"models": arguments.model, "refine": arguments.refine}
+            result = run(scene, arguments.pair, case=arguments.case, **more, **options)
+    meta, reference = result.reference.meta, result.methods[0]
+    load = "" if several else f", {meta['force_N']:g} N on {meta['width_mm']:g} mm"
+    names = ", ".join(dict.fromkeys(pair for pair, _ in result.asked))
     print(f"{scene.title}\n\n{result.headline}\n")
-    print(f"{result.pair_name}: mesh stiffness along the line of action, {load};\n{result.definition}")
+    print(f"{names}: mesh stiffness along the line of action{load};\n{result.definition}")
     if soft := told_supports(result.reference):
         print(soft)
-    if result.healthy:
-        print(f"\nwhat the damage takes, ± its estimated error\n\n{aligned(result.loss_table())}")
-    print(f"\nerrors against {meta['method']}; the estimate is its own discretisation error\n")
-    print(aligned(result.table()))
-    for text in printed_stiffness(scene, result.pair_name, arguments.case):
+    for one in result.by_tooth() if result.healthy else ():
+        print(f"\nloss of stiffness by the damage; {one.definition}\n\n{one.loss_table()}")
+    print(f"\nerrors against {reference}; the estimate is its own discretisation error\n")
+    table = result.table(digits=5 if several else 4)
+    print(table)
+    if several and (text := printed_text(scene, result)):
+        print(f"\nas printed, and after the stated corrections, beside `published` and {reference}\n\n{text}")
+    for text in () if several else printed_stiffness(scene, *result.subject):
         print(text)
     print()
-    for why, names in result.reasons().items():
-        print(f"  no {names}: {why.partition(' (reference=')[0]}")
+    for why, methods in result.reasons().items():
+        print(f"  no {methods}: {why.partition(' (reference=')[0]}")
     _print_assumptions(scene, arguments.assumptions)
     if arguments.plot:
         from ...figures.stiffness_plots import plot_curves, told
 
         plot_curves(result.curves, arguments.plot, _title(scene, arguments, told(result.reference)))
         print(f"\nwritten: {arguments.plot}")
+    if arguments.output:
+        (result.record() if arguments.output.lower().endswith(".csv") else table).save(arguments.output)
+        print(f"\nwritten: {arguments.output}")
 
 
 def _print_assumptions(scene, every, told=None):
@@ -159,28 +171,6 @@ def _print_assumptions(scene, every, told=None):
     rest = len(scene.assumptions) - len(told)
     if rest or any(note["why"] for note in told):
         print(f"  why{f', and {rest} more that leave the stiffness alone' if rest else ''}: --assumptions")
-
-
-def _compare_cases(scene, arguments, cases):
-    """``gearfe compare --cases``."""
-    from ...comparison.case_table import case_table, printed_text
-    from ...core.markdown import aligned
-
-    if arguments.pair or arguments.case or arguments.model or arguments.plot:
-        raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
-    if arguments.reference not in (None, "fe3d"):
-        raise ValueError(f"--reference {arguments.reference} with --cases: only fe3d can be asked for")
-    with working("every case by every method"):
-        result = case_table(scene, cases, phases=arguments.phases, compute=arguments.reference == "fe3d")
-    print(f"{scene.title}\n\n{result.headline}\n")
-    print("mesh stiffness along the line of action over the mesh cycle that has the damaged tooth in the middle of its")
-    print(f"engagement; errors are against {result.reference}\n")
-    print(aligned(result.table()))
-    print(f"\nloss of stiffness: largest at a phase of that cycle, and of the mean over it\n\n{aligned(result.drop_table())}")
-    printed = printed_text(scene, result)
-    if printed:
-        print(f"\nas printed, and after the stated corrections, beside `published` and {result.reference}\n\n{printed}")
-    _print_assumptions(scene, arguments.assumptions)
 
 
 def render(arguments):

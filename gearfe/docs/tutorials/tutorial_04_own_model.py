@@ -42,10 +42,11 @@ np.savetxt("cosine.csv", np.transpose([phase, k]), delimiter=",", header="phase,
 # and puts yours beside them.
 
 result = gf.compare(scene, models=[square_wave, gf.PairModel(parabola), "cosine.csv"])
-for zone, fe, _, others in result.rows():
-    print(f"{zone:6s} fe {fe / 1e6:.1f} N/um")
-    for name, (_, error) in others.items():
-        print(f"       {name:12s} {100 * error:+6.1f} %")
+for row in result.rows():
+    if row.method == "fe":
+        print(f"{row.zone:6s} fe {row.k / 1e6:.1f} N/um")
+    else:
+        print(f"       {row.method:12s} {100 * row.error:+6.1f} %")
 
 figure, axes = plt.subplots(layout="constrained")
 for name, curve in result.curves.items():

@@ -264,7 +264,7 @@ class GearMesh:
         curves = [hurt.curve for hurt in self.damage]
         if all(getattr(curve, "unloaded", None) is None for curve in curves):
             return ()
-        given = self.stiffness
+        given: Any = self.stiffness
         own = given.unloaded if isinstance(given, (StiffnessCurve, ForceLaw)) else None
         grid = np.arange(len(self.cycle.cells)) / len(self.cycle.cells)
         values = np.zeros(grid.size) if own is None else np.interp(grid, given.phase % 1.0, own, period=1.0)
@@ -283,7 +283,8 @@ class GearMesh:
         out = [self.stiffness.secant]
         for hurt, (_, first, _) in zip(self.damage, self.changes, strict=True):
             others = [(z, begin, less) for (z, begin, _), less in zip(self.changes, out[1:], strict=False)] if hurt.every else []
-            out.append(hurt.curve.secant.less(out[0], [(z, begin - first, less) for z, begin, less in others]))
+            law: Any = hurt.curve
+            out.append(law.secant.less(out[0], [(z, begin - first, less) for z, begin, less in others]))
         return tuple(out)
 
     @property

@@ -11,8 +11,8 @@ from ..machine.force_law import ForceLaw
 from ..machine.gear_mesh import cycle_table
 from ..machine.phase_table import table
 
-LOOKS = 2000  # times of a run at which its mesh forces are compared with the loads of their laws
-LEAST = 40  # of them in a stretch over which forces are averaged, one mesh cycle or more
+LOOKS = 20_000  # times of a run at which its mesh forces are compared with the loads of their laws
+LEAST = 400  # of them in a stretch over which forces are averaged, one mesh cycle or more
 OTHER = 0.1  # of the load of a stiffness curve: a mean force further off is told
 IDLE = 1e-3  # of that load: a mesh that carries less on average carries nothing
 FEWEST = 10  # samples of a stiffness whose error between them is told
@@ -24,8 +24,9 @@ def compared(response):
 
     And with ``stats["error_phases"]`` (`between_phases`), where stiffnesses are over the phase.
 
-    Looked at at `LOOKS` times of the run. Of a stiffness over the phase the forces are means of stretches of one mesh cycle or
-    more: a load that swings slowly leaves the curve's although its mean over the run does not.
+    Looked at at `LOOKS` times of the run, by chance: equal steps may fall on one place of every vibration. Of a stiffness over
+    the phase the forces are means of stretches of one mesh cycle or more: a load that swings slowly leaves the curve's although
+    its mean over the run does not.
     """
     machine = response.machine
     between = between_phases(machine)
@@ -33,7 +34,7 @@ def compared(response):
         response = replace(response, stats=response.stats | {"error_phases": between})
     if not any(isinstance(mesh.stiffness, (ForceLaw, StiffnessCurve)) for mesh in machine.meshes):
         return response
-    some = response.raw.part(slice(None, None, max(1, len(response.time) // LOOKS)))
+    some = response.raw.part(_looks(len(response.time)))
     told = {"above": [], "other": []}
     for mesh, own in zip(machine.meshes, some.mesh().T, strict=True):
         given, most = mesh.stiffness, float(np.abs(own).max())
@@ -49,6 +50,13 @@ def compared(response):
         )
     found = [*told["above"], *told["other"]]
     return replace(response, stats=response.stats | {"loads": found}) if found else response
+
+
+def _looks(count):
+    """Samples that are looked at: all of few, else one by chance in each of `LOOKS` equal parts."""
+    if count <= LOOKS:
+        return slice(None)
+    return ((np.arange(LOOKS) + np.random.default_rng(0).random(LOOKS)) * (count / LOOKS)).astype(np.int64)
 
 
 def between_phases(machine):

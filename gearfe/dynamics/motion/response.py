@@ -64,8 +64,8 @@ class Response:
         """The same, its channels those of the integrator at these times, not filtered."""
         return replace(self, filtered=None)
 
-    def part(self, kept: slice) -> "Response":
-        """Some of the samples, as a slice of them."""
+    def part(self, kept: slice | NDArray[np.int64]) -> "Response":
+        """Some of the samples, as a slice of them or by their numbers."""
         filtered = None if self.filtered is None else self.filtered[kept]
         return replace(self, time=self.time[kept], states=self.states[kept], filtered=filtered)
 

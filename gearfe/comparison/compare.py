@@ -1,0 +1,299 @@
+"""`compare`: stiffness by every formulation and by the reference, of pairs in cases of damage; what each differs and costs."""
+
+import os
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Unpack
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.case import Case, CaseOptions, case_of, overlap
+from ..core.checks import one_of
+from ..core.material import Material
+from ..core.steps import steps
+from ..geometry.mesh.mesher import gmsh_session
+from ..geometry.pair.gear_pair import GearPair
+from ..scene.load import Scene, ScenePair, load_scene
+from ..scene.parts import DAMAGE
+from ..scene.stored import read_curves
+from ..stiffness.curve import StiffnessCurve
+from ..stiffness.limits import check_count
+from ..stiffness.methods import METHODS, RING_FOUNDATIONS, ROWS, SUMS, Method, fitted
+from ..stiffness.solve import Solve, solve
+from .comparison import Comparison, Key
+from .losses import damage_phases, engaged_phases, kind_of, loss_errors, told_damage, told_teeth, within
+from .own_model import OwnModel, own_curve, own_models
+
+REFERENCE, REFERENCE_SOLID = "fe", "ritz3d"  # of sections, and where the third dimension is needed
+REFERENCES = (REFERENCE, REFERENCE_SOLID, "fe3d")
+FORMULATIONS = tuple(row.name for row in ROWS if row.kind != "solid" and row.name != REFERENCE)  # of spur gears
+STORED = 32  # phases of the cycle of curves on file
+COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # about, of a curve, in CPU seconds: for the time left
+
+
+class OwnPair(CaseOptions, total=False):
+    """Load and material of a pair of one's own, and the options of its `Case`."""
+
+    force: float
+    torque: float
+    material: Material | tuple[Material, Material]
+
+
+def compare(
+    scene: Scene | Case | GearPair | str | os.PathLike[str] | None = None,
+    pair: str | GearPair | None = None,
+    *,
+    case: str | None = None,
+    models: Sequence[OwnModel] | Mapping[str, OwnModel] = (),
+    phases: int | ArrayLike = 64,
+    refine: float = 1.0,
+    reference: str | None = None,
+    **given: Unpack[OwnPair],
+) -> Comparison:
+    """Compare every formulation that models it with the reference, on one pair of a scene or of your own, healthy or damaged.
+
+    The reference is finite elements of the section; where pits or helical teeth need the third dimension, `ritz3d`. A damaged
+    pair is compared with itself without damage, too, at the same phases.
+
+    Parameters
+    ----------
+    scene : Scene, str, path or Case, optional
+        A scene, the name of a built-in one, or its file; or a `Case`, or a pair of your own, see `pair`.
+    pair : str or GearPair, optional
+        Name of the scene's pair; default the first. Or, without a scene, a pair of your own with `force` or `torque`, and
+        `material`.
+    case : str, optional
+        Name of a case of damage: the phases then are those of the mesh cycle in which its tooth is in the middle of its
+        engagement.
+    models : sequence or dict of str to model
+        Your own: functions ``f(phase) -> k`` [N/m] of the total mesh stiffness, ``PairModel(f)`` of one tooth pair,
+        ``OwnFlexibility(f)`` of one gear, or files with stated units (see `gearfe.comparison.own_model` and `gearfe.read_model`).
+    phases : int or array
+        As in `mesh_stiffness`.
+    refine : float
+        Resolution of the reference.
+    reference : str, optional
+        ``"fe3d"``: finite elements of whole gears, minutes for each; or another of fe and ritz3d than the default.
+    **given
+        Of a pair of your own, as of `Case`: ``force`` along the line of action [N] or ``torque`` on the pinion [N m],
+        ``material``, ``damage``, ``face``, ``groove``, ``flanks`` and so on.
+
+    Returns
+    -------
+    Comparison
+        Its ``headline`` is the answer in one sentence; ``left_out`` says why a formulation has no curve.
+
+    Raises
+    ------
+    ValueError
+        If there is no such scene, pair or case, or a pair of your own comes without its load or material.
+    """
+    chosen, key = _chosen(scene, pair, case, given)
+    methods, left_out = _methods(chosen, reference)
+    named = own_models(models, taken=(REFERENCE, *FORMULATIONS))
+    plan, cycles = _beside(key, chosen, phases)
+    for method in methods:  # what they and gmsh load is no part of their seconds
+        METHODS[method].load()
+    with gmsh_session():
+        pass
+    how = Solve(refine=refine, error=True)
+    found = _compared(plan, (key,), methods, how, cycles, fresh=True, left_out=left_out)
+    for name, model in named.items():
+        started = time.perf_counter()
+        found.solved[*key, name] = own_curve(name, model, chosen.pair, found.solved[*key, methods[0]])
+        found.times[*key, name] = time.perf_counter() - started
+    return found
+
+
+def compare_cases(
+    scene: Scene, cases: Iterable[Key] | None = None, *, phases: int = 64, reference: str | None = None
+) -> Comparison:
+    """Compare the converged methods and the closed forms on all pairs of a scene in all their cases of damage.
+
+    The reference is finite elements: of the section where that is the whole truth, else of the whole gears in three dimensions.
+    The latter take minutes a gear. Those of a built-in scene are read from the file that comes with it. Without a file for
+    these gears, loads and damages the energy model `ritz3d` is the reference.
+
+    Parameters
+    ----------
+    scene : Scene
+    cases : iterable of (str, str or None), optional
+        Pair and case, each pair with None (healthy) too; default all, pairs without damage too.
+    phases : int
+        Number in the mesh cycle; where curves on file are read, theirs.
+    reference : "fe3d", optional
+        Compute finite elements of whole gears that are not on file.
+
+    Raises
+    ------
+    ValueError
+        If the scene has no damage.
+    """
+    every = [(name, case) for name, pair in scene.pairs.items() for case in (None, *pair.damage)]
+    if all(case is None for _, case in every):
+        names = " or ".join(f"[[{name}]]" for name in DAMAGE)
+        raise ValueError(f"scene {scene.name} has no cases of damage: add {names} tables")
+    wide = any(scene.case(*key).why_wide for key in every)
+    stored = read_curves(scene) if wide else {}
+    asked = tuple(every if cases is None else cases)
+    solid = wide and (reference == "fe3d" or all(key in stored for key in asked))
+    first = "fe3d" if solid else REFERENCE_SOLID if wide else REFERENCE
+    methods = (*dict.fromkeys([first, "ritz3d" if wide else "ritz"]), *SUMS)
+    plan = {key: (case := scene.case(*key), damage_cycle(case) if stored else damage_phases(case, phases)) for key in asked}
+    known = {(*key, "fe3d"): _on_file(plan[key][0], *row) for key, row in stored.items() if key in plan and solid}
+    return _compared(plan, asked, methods, Solve(), known=known)
+
+
+def beside_health(case: Case, how: Solve, pair: str = "pair") -> Comparison:
+    """Compare a damaged pair with itself without damage by one method; of a healthy pair its curve alone.
+
+    Of a damaged pair a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth.
+    """
+    key = (pair, kind_of(case.damage) if case.damaged else None)
+    (plan, cycles), (row, why) = _beside(key, case, how.phases), how.chosen(case)
+    found = _compared(plan, (key,), (row.name,), how, cycles)
+    for curve in found.solved.values():
+        curve.meta["why"] = why
+    return replace(found, times={})
+
+
+def _beside(key, case, phases):
+    """Case and phases by key, those of the healthy pair too; and the phases that zones are over by damaged tooth in words."""
+    cycles = {}
+    if case.damaged and np.ndim(phases) == 0:
+        count = check_count(phases)
+        cycles = {words: damage_phases(case, count, number) for number, words in told_teeth(case).items()}
+        phases = engaged_phases(case, count)
+    return {key: (case, phases)} | ({(key[0], None): (case.healthy, phases)} if case.damaged else {}), cycles
+
+
+def _compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None, left_out=None):
+    """`Comparison` of cases at their phases (`plan`, by key), the first of the `methods` being the reference.
+
+    `how` is a `Solve` without method and phases; `fresh`: what is `asked` is timed without gears that are solved already, and
+    estimates of errors come after it; `known` are curves and their seconds.
+    """
+    solved, seconds, left_out, reference = {}, {}, left_out or {}, methods[0]
+    known = known or {}
+    work = [(key, method, False) for key in plan for method in methods] + [(key, reference, True) for key in asked if fresh]
+    cost = [0.0 if (*key, name) in known else COST.get(name, 0.3) * (1 + again) for key, name, again in work]
+    for key, method, again in steps(work, lambda item: f"{item[0][0]}, {item[0][1] or 'healthy'}: {item[1]}", cost):
+        place, timed = (*key, method), fresh and key in asked and not again
+        if place in known:
+            solved[place], seconds[place] = known[place]
+            continue
+        case, phases = plan[key]
+        own = replace(how, method=method, phases=phases, error=False, cache=False if timed else how.cache)
+        if method == reference:
+            own = replace(own, error=how.error and not timed and (again or not fresh or method == "fe3d"))
+        elif fresh:
+            own = replace(own, refine=1.0)
+        started = time.perf_counter()
+        try:
+            solved[place] = solve_fitted(case, own)
+        except ValueError as error:
+            if method == reference:
+                raise
+            left_out[method if len(asked) == 1 else f"{method} of {key[0]} {key[1] or 'healthy'}"] = str(error)
+            continue
+        if not again:
+            seconds[place] = time.perf_counter() - started
+    teeth = {}
+    for pair, case in asked:
+        hurt, phases = plan[pair, case]
+        for words, cycle in (cycles or dict.fromkeys([told_damage(hurt.pair, hurt.damage)])).items() if case else ():
+            curves = (within(solved[pair, which, reference], cycle) for which in (None, case))
+            rough = replace(how, method=reference, phases=phases if cycle is None else cycle, error=False)
+            doubt = loss_errors(*curves, hurt, rough) if how.error else {}
+            teeth.setdefault((pair, case), {})[words] = cycle, doubt
+    return Comparison({key: case for key, (case, _) in plan.items()}, asked, solved, seconds, teeth, left_out)
+
+
+def solve_fitted(case: Case, how: Solve) -> StiffnessCurve:
+    """Curve of a case by a method as far as the method models it (`gearfe.stiffness.methods.fitted`)."""
+    known, variants, _ = fitted(how.method, case)
+    return solve(known, replace(how, variants=variants))
+
+
+def damage_cycle(chosen: Case | ScenePair) -> NDArray:
+    """Phases ``(STORED,)`` of curves on file: of the cycle in which the damaged tooth is in the middle of its engagement."""
+    length = chosen.pair.eps_alpha + overlap(chosen.pair, chosen.face, chosen.groove)
+    tooth = (chosen.first_tooth or 0) if isinstance(chosen, Case) else 0
+    return length / 2 - 0.5 - tooth + (np.arange(STORED) + 0.5) / STORED
+
+
+def _on_file(case, phase, k, tooth, estimate, seconds):
+    """Curve of finite elements on file (`read_curves`) and its seconds; of the tooth pairs the damaged one alone is known."""
+    lte, nothing = case.forces[0] / k, np.full((k.size, 1), np.nan)
+    meta = {"method": "fe3d", "force_N": case.forces[0], "face": case.runs, "eps_alpha": case.pair.eps_alpha}
+    error = None if np.isnan(estimate) else estimate * k
+    order, force = np.array([case.first_tooth or 0]), (tooth * lte)[:, None]
+    return StiffnessCurve(phase, k, nothing[:, 0], lte, order, force, nothing, error, meta), seconds
+
+
+def _chosen(scene, pair, case, given):
+    """`Case` and its key: of a scene, or of one's own."""
+    if isinstance(scene, (Case, GearPair)) and pair is None:
+        scene, pair = None, scene
+    if isinstance(pair, (Case, GearPair)):
+        if scene is not None or case is not None:
+            raise ValueError("a pair of your own has no scene and no case: leave them out, and give its damage as damage=")
+        return _own(pair, given)
+    stated = [name for name, value in given.items() if value not in (None, 0.0)]
+    if stated:
+        raise ValueError(f"{stated[0]} is stated by the scene: leave it out, or give pair=GearPair(...) instead of a scene")
+    if isinstance(scene, (str, os.PathLike)):
+        scene = load_scene(scene)
+    if not isinstance(scene, Scene):
+        raise ValueError(
+            f"scene = {scene!r}, but give a Scene, the name or file of one, or pair=GearPair(...) with force= and material="
+        )
+    return scene.case(pair, case), (pair or next(iter(scene.pairs)), case)
+
+
+def _own(pair, given):
+    load = [given.get(name) for name in ("force", "torque")]
+    if isinstance(pair, GearPair) and (given.get("material") is None or load == [None, None]):
+        raise ValueError(
+            "a pair of your own needs its load and material: force= [N] or torque= [N m], and material=Material(...)"
+        )
+    case = case_of(pair, **given)
+    if len(case.forces) > 1:
+        raise ValueError(f"force = {load[0]!r}, torque = {load[1]!r}, but one load is compared at a time")
+    name = f"{case.pair.gear_1.z}/{case.pair.gear_2.z}"
+    return replace(case, force=case.forces[0]), (name, kind_of(case.damage) if case.damaged else None)
+
+
+def _methods(case, reference):
+    """Reference and formulations for a case that have it whole, a ring's body included; why others are left out."""
+    if reference is not None:
+        one_of("reference", reference, REFERENCES)
+    solid, ring = case.why_wide, case.pair.gear_2.internal
+    if reference == REFERENCE and solid:
+        raise ValueError(f"reference = {reference!r}, a transverse section, but {solid}: use 'ritz3d' or 'fe3d'")
+    first = reference or (REFERENCE_SOLID if solid else REFERENCE)
+    rows = [row for row in ROWS if row.rings == "yes" or not ring]
+    if solid:
+        others = [row.name for row in rows if row.kind == "sum" or (row.name == REFERENCE_SOLID)]
+    else:
+        others = [row.name for row in rows if row.name in (REFERENCE, *FORMULATIONS) and (row.cracks or not case.damaged)]
+    methods = tuple(dict.fromkeys([first, *others]))
+    return methods, {row.name: why_not(row, case, solid) for row in ROWS if row.name not in methods}
+
+
+def why_not(row: Method, case: Case, solid: str) -> str:
+    """Why a comparison has no column of a method; `solid` says why the case needs three dimensions, if it does."""
+    pair = case.pair
+    if pair.gear_2.internal and row.rings != "yes" and row.rings not in RING_FOUNDATIONS:
+        return "not for rings"
+    if pair.gear_2.internal and row.rings != "yes":
+        return f"not for rings: it {RING_FOUNDATIONS[row.rings]}"
+    if row.name == "fe3d" and solid:
+        return "takes minutes for each gear; ask for it: --reference fe3d (reference='fe3d')"
+    if row.kind == "solid":
+        return "nothing changes along the width; of narrow teeth ask for it: --reference ritz3d (reference='ritz3d')"
+    if solid and row.kind == "section":
+        return f"a transverse section, but {solid}"
+    return "for healthy gears only" if case.damaged and not row.cracks else "left out"

@@ -1,0 +1,263 @@
+"""`Comparison`: stiffness of pairs in cases of damage by several methods, with errors, losses and cost, and its tables."""
+
+import math
+import warnings
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+from numpy.typing import NDArray
+
+from ..core.case import Case
+from ..core.table import Column, Table, stiffness_column
+from ..core.units import NEWTON_PER_UM, in_newton_per_um
+from ..stiffness.curve import StiffnessCurve
+from .losses import LARGEST, headline, kind_of, loss, rounded_up, told_cycle, within
+
+ZONES = ("single", "double", "triple", "mean", "max", LARGEST)
+BRIEF = ("mean", "max", LARGEST)  # of many cases
+Key = tuple[str, str | None]  # pair and case of damage; None: healthy
+
+RENAMED: dict[str, tuple[str, Callable[[Any], Any]]] = {  # what replaces a name of before, and its value
+    "pair_name": ("subject", lambda one: one.subject[0]),
+    "damage": ("teeth", lambda one: one.first_tooth()[0]),
+    "cycle": ("teeth", lambda one: one.first_tooth()[1]),
+    "doubt": ("teeth", lambda one: one.first_tooth()[2]),
+}
+
+
+class Row(NamedTuple):
+    """One method in one zone: stiffness [N/m] and its cost [s]; nan where there is none.
+
+    `estimate` is the estimated relative discretisation error of k. `error` is that against the reference. `loss` is what the
+    damage takes of the healthy stiffness, and `doubt` the estimated error of the loss.
+    """
+
+    pair: str
+    case: str | None
+    method: str
+    zone: str
+    k: float
+    estimate: float
+    error: float
+    loss: float
+    doubt: float
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Curves by pair, case and method, the first method being the reference.
+
+    Attributes
+    ----------
+    cases : dict of (str, str or None) to Case
+        By the names of pair and case of damage; None is healthy. What is damaged has its healthy pair beside it.
+    asked : tuple of (str, str or None)
+        Those that tables show.
+    solved : dict of (str, str or None, str) to StiffnessCurve
+        By pair, case and method. Of one damaged pair over the whole engagement of the damaged tooth.
+    times : dict of (str, str or None, str) to float
+        Seconds by pair, case and method, without imports and estimates of errors; none where nothing was timed.
+    teeth : dict of (str, str) to dict of str to (ndarray or None, dict)
+        Of damaged pairs, by damaged tooth in words: the phases that zones, mean and max are over, None for all, and by zone the
+        estimated error of the loss by the reference, as a part of the healthy stiffness. The phases are those of the mesh cycle
+        in which the damaged tooth is in the middle of its engagement, so that it is in contact all the time. Tables are of the
+        first tooth, see `by_tooth`.
+    left_out : dict of str to str
+        Methods without a curve, and why.
+    """
+
+    cases: dict[Key, Case]
+    asked: tuple[Key, ...]
+    solved: dict[tuple[str, str | None, str], StiffnessCurve]
+    times: dict[tuple[str, str | None, str], float] = field(default_factory=dict)
+    teeth: dict[Key, dict[str, tuple[NDArray | None, dict[str, float]]]] = field(default_factory=dict)
+    left_out: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """Names of the methods of what was asked for, the reference first."""
+        return tuple(dict.fromkeys(method for *key, method in self.solved if tuple(key) in self.asked))
+
+    @property
+    def subject(self) -> Key:
+        """Pair and case that the headline is about: the one that loses most of its mean stiffness."""
+        return max(self.asked, key=lambda key: self.losses(key).get(self.methods[0], {}).get("mean", -math.inf))
+
+    @property
+    def curves(self) -> dict[str, StiffnessCurve]:
+        """Curves of the `subject` by method."""
+        return self.of(*self.subject)
+
+    @property
+    def healthy(self) -> dict[str, StiffnessCurve]:
+        """Curves of the same pair without its damage by method, at the same phases; empty of a healthy pair."""
+        pair, case = self.subject
+        return {} if case is None else self.of(pair, None)
+
+    @property
+    def reference(self) -> StiffnessCurve:
+        """The curve the others are compared with, of the `subject`."""
+        return self.curves[self.methods[0]]
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Seconds that the curves of the `subject` took, by method."""
+        return {name: self.times[*self.subject, name] for name in self.curves if (*self.subject, name) in self.times}
+
+    def __getattr__(self, name: str) -> Any:
+        """Names of before, of the `subject`; they leave with the next version."""
+        if name not in RENAMED:
+            raise AttributeError(f"a Comparison has no {name!r}")
+        new, value = RENAMED[name]
+        warnings.warn(f"Comparison.{name} leaves with the next version: use {new}", DeprecationWarning, stacklevel=2)
+        return value(self)
+
+    @property
+    def kind(self) -> str:
+        """What the damaged teeth are called: "cracked", "pitted" or "damaged"; empty of healthy pairs."""
+        kinds = {kind_of(case.damage) for key in self.asked if (case := self.cases[key]).damaged}
+        return "damaged" if len(kinds) > 1 else "".join(kinds)
+
+    def by_tooth(self) -> list["Comparison"]:
+        """Comparisons by damaged tooth of the `subject`, each over its own mesh cycle; of several cases this one alone."""
+        teeth = self.teeth.get(self.subject, {})
+        if len(self.asked) > 1 or not teeth:
+            return [self]
+        return [replace(self, teeth={self.subject: {words: one}}) for words, one in teeth.items()]
+
+    def first_tooth(self, key: Key | None = None) -> tuple[str, NDArray | None, dict[str, float]]:
+        """First damaged tooth of a pair in a case (default: the `subject`) in words, its phases and its doubts, see `teeth`."""
+        words, (cycle, doubt) = next(iter(self.teeth.get(key or self.subject, {"": (None, {})}).items()))
+        return words, cycle, doubt
+
+    def of(self, pair: str, case: str | None) -> dict[str, StiffnessCurve]:
+        """Curves of a pair in a case by method."""
+        return {name: curve for (*key, name), curve in self.solved.items() if tuple(key) == (pair, case)}
+
+    def _cut(self, key, over=None):
+        """Curves by method over the phases that zones of `over` (default: the same) are over."""
+        return {name: within(curve, self.first_tooth(over or key)[1]) for name, curve in self.of(*key).items()}
+
+    def losses(self, key: Key | None = None) -> dict[str, dict[str, float]]:
+        """What damage takes of the stiffness [-] by method and zone, and at the phase where it takes most; empty if healthy.
+
+        `key` names pair and case, by default those of the `subject`.
+        """
+        pair, case = key or self.subject
+        if case is None or (pair, None) not in self.cases:
+            return {}
+        healthy, hurt = (self._cut((pair, which), (pair, case)) for which in (None, case))
+        return {name: loss(healthy[name], hurt[name]) for name in hurt if name in healthy}
+
+    def rows(self) -> Iterator[Row]:
+        """All that was asked for, by pair, case, zone and method."""
+        for key in self.asked:
+            curves, losses = self._cut(key), self.losses(key)
+            zones = {name: curve.zones() for name, curve in curves.items()}
+            estimates = {name: curve.zone_errors() for name, curve in curves.items()}
+            truth, doubt = zones[self.methods[0]], self.first_tooth(key)[2]
+            largest = [LARGEST] if losses else []
+            for zone in sorted([*truth, *largest], key=lambda zone: ZONES.index(zone) if zone in ZONES else 2):
+                for name in curves:
+                    k, first = zones[name].get(zone, math.nan), name == self.methods[0]
+                    yield Row(
+                        *key, name, zone, k, estimates[name].get(zone, math.nan),
+                        math.nan if first else k / truth.get(zone, math.nan) - 1, losses.get(name, {}).get(zone, math.nan),
+                        doubt.get(zone, math.nan) if first else math.nan, self.times.get((*key, name), math.nan),
+                    )  # fmt: skip
+
+    def record(self) -> Table:
+        """`Table` of all `rows`."""
+        parts = [Column(name, "%", "{:.2f}") for name in ("estimate", "error", "loss", "error of the loss")]
+        columns = ("pair", "case", "method", "zone", Column("k", "N/m"), *parts, Column("time", "s", "{:.3g}"))
+        return Table(columns, [
+            [row.pair, row.case or "healthy", row.method, row.zone, row.k, *(100 * part for part in row[5:9]), row.seconds]
+            for row in self.rows()
+        ])  # fmt: skip
+
+    @property
+    def headline(self) -> str:
+        """The answer in one sentence: what damage takes; of a healthy pair its mean stiffness and who is how far off it."""
+        key = self.subject
+        which = f"{key[0]}, {key[1] or 'healthy'}: " if len(self.asked) > 1 else ""
+        if self.losses(key):
+            teeth = ((one.first_tooth(key), one.losses(key)[self.methods[0]]) for one in self.by_tooth())
+            return which + "; ".join(headline(words, self.kind, lost, doubt) for (words, _, doubt), lost in teeth)
+        first, *others = (row for row in self.rows() if (row.pair, row.case, row.zone) == (*key, "mean"))
+        doubt = f" ± {in_newton_per_um(first.k * first.estimate, 2)}" if math.isfinite(first.estimate) else ""
+        errors = ", ".join(f"{row.method} {100 * row.error:+.1f} %" for row in others)
+        text = f"{which}healthy mesh stiffness {in_newton_per_um(first.k)}{doubt} N/um in the mean by {first.method}"
+        return f"{text}; {errors}" if errors else text
+
+    @property
+    def definition(self) -> str:
+        """What the zones and the mean are over."""
+        return told_cycle(None if len(self.asked) > 1 else self._cut(self.subject)[self.methods[0]].phase, self.kind)
+
+    def reasons(self) -> dict[str, str]:
+        """Methods without a curve by why they have none: names with commas."""
+        whys = dict.fromkeys(self.left_out.values())
+        return {why: ", ".join(name for name, reason in self.left_out.items() if reason == why) for why in whys}
+
+    def _pivot(self, zones, shown, kept):
+        """Columns and rows of a table, a row for each pair, case and zone; pair and case are told of several cases only.
+
+        `shown` are columns by method, each with the number that it shows of a `Row`; `kept` says which rows count.
+        """
+        labels = ("pair", "case", "zone")[-3 if len(self.asked) > 1 else -1 :]
+        zones = zones or (BRIEF if len(self.asked) > 1 else None)
+        rows: dict[tuple[str, ...], dict[str, Row]] = {}
+        for row in self.rows():
+            if kept(row) and (not zones or row.zone in zones):
+                rows.setdefault((row.pair, row.case or "healthy", row.zone)[-len(labels) :], {})[row.method] = row
+        cells = [(name, *part) for name, parts in shown.items() for part in parts]
+        body = [[*at, *(number(by[name]) if name in by else "none" for name, _, number in cells)] for at, by in rows.items()]
+        return [*labels, *(column for _, column, _ in cells)], body
+
+    def table(self, zones: Collection[str] | None = None, *, digits: int = 4, mark: float = math.inf) -> Table:
+        """`Table` of the reference [N/um] and every method with its error, by zone; the last row has the seconds.
+
+        Parameters
+        ----------
+        zones : collection of str, optional
+            Those that are shown; default all, of several cases the mean and the maximum.
+        digits : int
+            Of the stiffness.
+        mark : float
+            Errors of more than `mark` in size are emphasised [%].
+        """
+        error = Column("error", "%", "{:+.1f}", mark), lambda row: 100 * row.error
+        shown = {name: [(stiffness_column(name, digits), _in_um), error] for name in self.methods}
+        estimate = Column("estimate", "%", "± {:.2f}"), lambda row: 100 * row.estimate
+        shown[self.methods[0]][1:] = [estimate] if any(row.estimate >= 0 for row in self.rows()) else []
+        columns, body = self._pivot(zones, shown, lambda row: row.zone != LARGEST)
+        if self.times:
+            last: list[Any] = ["seconds", *([""] * (columns.index("zone")))]
+            for name, parts in shown.items():
+                total = sum(self.times.get((*key, name), 0.0) for key in self.asked)
+                last += [(total, "{:.4f}"), *([None] * (len(parts) - 1))]
+            body.append(last)
+        return Table(columns, body, "errors of each method")
+
+    def loss_table(self, zones: Collection[str] | None = None) -> Table | None:
+        """`Table` by zone of the reference [N/um] healthy and damaged, and what damage takes by each method.
+
+        The last row is the phase at which it takes most. None without damage.
+        """
+        first, *others = self.losses() or [""]
+        lost, share = Column("", "%", "{:.1f}"), lambda row: 100 * row.loss
+        before = stiffness_column(f"healthy {first}"), lambda row: _in_um(row) / (1 - row.loss)
+        doubt = Column("error of the loss", "%", lambda doubt: f"± {rounded_up(doubt):.1f} %"), lambda row: 100 * row.doubt
+        shown = {
+            first: [before, (stiffness_column(f"{self.kind} {first}"), _in_um), (lost._replace(name=f"loss by {first}"), share)]
+        }
+        shown[first] += [doubt] if self.first_tooth()[2] else []
+        shown |= {name: [(lost._replace(name=f"by {name}"), share)] for name in others}
+        columns, body = self._pivot(zones, shown, lambda row: math.isfinite(row.loss))
+        return Table(columns, body, "loss of stiffness by the damage") if body else None
+
+
+def _in_um(row):
+    return row.k / NEWTON_PER_UM

@@ -1,0 +1,41 @@
+"""Stiffnesses that the source of a scene prints for healthy and damaged gears, beside a `Comparison`."""
+
+from ..scene.verdicts import judge, text
+from .losses import LARGEST
+
+
+def printed_beside(scene, published, reference, drops):
+    """Our values for the stiffnesses that the source of a scene prints, by id of its reference, for `judge`.
+
+    By (case, pair), case "healthy" without damage: mean stiffness [N/m] by the source's own formulas (`published`) and by the
+    `reference`, and the largest loss of stiffness [%] (`drops`). The printed errors are recomputed from the printed (corrected)
+    stiffnesses. Empty without such rows.
+    """
+    ids = {"stiffness_analytical": published, "stiffness_fe": reference, "stiffness_reduction": drops}
+    targets = {entry.id: {(row.case, row.pair): row.target for row in entry.rows} for entry in scene.references}
+    if not all(name in targets for name in (*ids, "stiffness_error")):
+        return {}
+    analytical, by_fe = targets["stiffness_analytical"], targets["stiffness_fe"]
+    return ids | {
+        "stiffness_error": {key: round(100 * abs(analytical[key] - by_fe[key]) / analytical[key], 2) for key in analytical}
+    }
+
+
+def printed_cases(scene):
+    """(pair, case) of the stiffnesses that the source of a scene prints for healthy and damaged gears; none if it does not."""
+    rows = [row for reference in scene.references if reference.id == "stiffness_fe" for row in reference.rows]
+    return [(row.pair, None if row.case == "healthy" else row.case) for row in rows]
+
+
+def printed_text(scene, found):
+    """The source's own table of stiffness beside a `Comparison`, as Markdown with verdicts; empty if it prints none."""
+    reference, rows = found.methods[0], list(found.rows())
+
+    def by_case(method, zone, number, factor=1.0):
+        chosen = (row for row in rows if (row.method, row.zone) == (method, zone))
+        return {(row.case or "healthy", row.pair): factor * getattr(row, number) for row in chosen}
+
+    means = (by_case(method, "mean", "k") for method in ("published", reference))
+    ours = printed_beside(scene, *means, by_case(reference, LARGEST, "loss", 100.0))
+    printed = [entry for entry in scene.references if entry.id in ours]
+    return text(printed, [row for entry in printed for row in judge(entry, ours[entry.id])]) if printed else ""

@@ -1,0 +1,98 @@
+"""Every verb that takes damage, with damage on a gear and a tooth by chance: its result is not the healthy one, or it refuses."""
+
+import random
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import gearfe as gf
+from gearfe.app.cli import main
+from gearfe.comparison.vibration import analysis, responses
+from gearfe.planetary_sets.of_scene import build_set
+from gearfe.runs.sweeps.kinds import KINDS
+from gearfe.scene.load import read_tables, scene_of
+
+RACK = {"m_n_mm": 3.0, "alpha_n_deg": 20.0, "b_mm": 15.0, "material": "steel"}
+TEETH = {"pinion": 17, "wheel": 38}
+CHANCE = random.Random(17)  # the same gears and teeth in every run of the tests
+PLACES = [(gear, CHANCE.randrange(1, z)) for gear, z in TEETH.items()]
+OPTIONS = {
+    "stiffness": {"span": None, "method": "ritz", "phases": 8},
+    "transmission error": {"span": None, "method": "ritz", "phases": 8},
+    "vibration": {"phases": 8, "curves": "ritz", "duration_s": 0.5, "rate_Hz": None, "method": "fast", "channel": None,
+                  "signal": False},
+}  # fmt: skip
+
+
+def tables(gear, tooth):
+    """A pair with a crack in one tooth."""
+    return {
+        "title": "pair",
+        "source": "own gear pair",
+        "material": {"steel": {"E_MPa": 206000.0, "nu": 0.3}},
+        "gear": {"pinion": RACK | {"z": 17, "r_bore_mm": 10.9}, "wheel": RACK | {"z": 38, "r_bore_mm": 26.6}},
+        "pair": {"stage": {"gear_1": "pinion", "gear_2": "wheel", "force_N": 1669.3}},
+        "machine": {"model": "helical_pair", "speed_rpm": 2400.0, "torque_Nm": 40.0},
+        "crack": [{"case": "cracked", "gear": gear, "tooth": tooth, "angle_deg": 60.0, "length_mm": 2.5}],
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("gear", "tooth"), PLACES)
+def test_every_kind_of_result_shows_a_tooth_by_chance(gear, tooth):
+    scene = scene_of("pair.toml", tables(gear, tooth))
+    case = scene.case(case="cracked")
+    how = gf.Solve("ritz", 8, "tooth")
+    hurt = gf.solve(case, how)
+    healthy = gf.mesh_stiffness(**case.healthy.as_dict(), method="ritz", phases=hurt.phase)
+    assert (1 - hurt.k / healthy.k).max() > 0.05
+    assert np.abs(hurt.te - healthy.te).max() > 0.05 * np.ptp(healthy.te)
+    compared = gf.compare(scene, case="cracked", phases=8)
+    assert compared.headline.startswith(f"tooth {tooth} of the {gear}: 2.5 mm crack")
+    assert all(found["mean"] > 0.02 for found in compared.losses().values())
+    for kind, options in OPTIONS.items():
+        work = KINDS[kind].work
+        rows = [
+            work(scene, one, options) if KINDS[kind].whole else work(replace(scene.case(case=one), force=[1669.3]), options)
+            for one in (None, "cracked")
+        ]
+        name = {"stiffness": "k_min", "transmission error": "te_peak_to_peak", "vibration": "rms"}[kind]
+        before, after = (row[0][name] for row in rows)
+        assert abs(after / before - 1) > 2e-5, (kind, before, after)
+    found = responses(scene, "cracked", duration=0.5, phases=8)
+    lines = analysis(found)
+    turn = found["cracked"].machine.stages[-1].mesh / TEETH[gear]
+    assert lines.lines["f_r"] == pytest.approx(turn)
+    assert "f_m - f_r" in lines.standing()
+
+
+@pytest.mark.parametrize(("gear", "tooth"), PLACES)
+def test_verbs_print_a_tooth_by_chance(tmp_path, capsys, gear, tooth):
+    from gearfe.scene.toml_file import toml
+
+    path = tmp_path / "pair.toml"
+    path.write_text(toml(tables(gear, tooth)), encoding="utf-8")
+    assert main(["stiffness", str(path), "--case", "cracked", "--phases", "8"]) == 0
+    assert f"tooth {tooth} of the {gear}: 2.5 mm crack at 60 degrees" in capsys.readouterr().out
+    assert main(["stiffness", str(path), "--case", "cracked", "--phases", "8", "--forces", "1000"]) == 0
+    hurt = capsys.readouterr().out
+    assert main(["stiffness", str(path), "--phases", "8", "--forces", "1000"]) == 0
+    assert hurt != capsys.readouterr().out
+    assert main(["dynamics", str(path), "--case", "cracked", "--duration", "0.4"]) == 0
+    hertz = 680 / TEETH[gear]
+    assert f"tooth {tooth} of the {gear}: 2.5 mm crack at 60 degrees; it meshes at {hertz:.4g} Hz" in capsys.readouterr().out
+
+
+def test_a_set_has_the_tooth_or_refuses():
+    """The planetary set takes cracks of each gear; what it lacks it names."""
+    given = {
+        key: value
+        for key, value in read_tables("planetary_pitting")[1].items()
+        if key not in ("assumption", "given", "reference")
+    }
+    given |= {"set": {"n_planets": 3}, "crack": [{"case": "x", "gear": "planet", "tooth": 4, "level": 0.3}]}
+    made = build_set(scene_of("set.toml", given), "x")
+    assert {name: [crack.tooth for crack in cracks] for name, cracks in made.damage.items()} == {("planet", 0): [4]}
+    with pytest.raises(ValueError, match="cracks only"):
+        build_set(scene_of("set.toml", given), "mild")
