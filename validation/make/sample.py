@@ -129,7 +129,7 @@ def section(rows):
         "",
         f"The median estimate is {_ratio(rows, 'fe'):.1f} times the median error of `fe` and {_ratio(rows, 'ritz'):.1f} times "
         "that of `ritz`. The mean and the finer hats in the estimate of `fe` were added after the first seven rows were seen, in "
-        "three of which it was exceeded at a phase. Pairs in which the estimates cover at every phase: "
+        "four of which it was exceeded at a phase. Pairs in which the estimates cover at every phase: "
         f"the difference by the sum of both {_count(rows, 'apart_covered')}, the error of `fe` {_count(rows, 'fe_covered')}, the "
         f"error of `ritz` {_count(rows, 'ritz_covered')}.",
     ]
