@@ -65,7 +65,7 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
                 if side != first:
                     made = [replace(one, side="unloaded") for one in made if isinstance(one, Crack)]
                 if made and not (name == home and side != first):
-                    owner = Owner(row["body"], home, first)
+                    owner = Owner(row.get("body"), home, first)
                     out.setdefault(row["case"], {}).setdefault(side, {}).setdefault(owner, []).extend(made)
     return out
 

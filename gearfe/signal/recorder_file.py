@@ -154,7 +154,7 @@ def _tdms_channel(found: Found, name: str, data: Any, properties: Any) -> None:
 
 def labview_file(path: str | os.PathLike[str], lines: list[str] | None = None) -> Found:
     """Channels of a LabVIEW measurement file (``.lvm``) with one segment, whose header states names, units and step."""
-    with needing("lvm_read"):
+    with needing("lvm-read"):
         import lvm_read
     try:  # `lvm_read.read` would unpickle a file of the same name
         parts = lvm_read.read_str("\n".join(read_text(path) if lines is None else lines) + "\n")

@@ -34,7 +34,7 @@ def test_zsh_reads_the_same_completions(capsys):
 
 def test_info_says_what_is_there_and_what_would_help(capsys, tmp_path, monkeypatch):
     monkeypatch.setenv("GEARFE_CACHE", str(tmp_path))
-    (tmp_path / "a.npz").write_bytes(b"0" * 1_500_000)
+    (tmp_path / "a.gear").write_bytes(b"0" * 1_500_000)
     assert main(["info"]) == 0
     text = capsys.readouterr().out
     assert f"{tmp_path}, 1 files, 1.5 MB" in text

@@ -87,7 +87,7 @@ def first_angle(scene):
 @pytest.mark.parametrize(
     ("scene", "keys", "message"),
     [
-        (STAGE, {"contact": "hard"}, "must be 'linear' or 'impact'"),
+        (STAGE, {"contact": "hard"}, "must be one of linear, impact"),
         (gf.load_scene("herringbone"), {"contact": "impact"}, "linear contact only"),
         (HELICAL, {"contact": "impact", "impact": {"pulse_Nm": 3.0}}, "only the model 'planetary'"),
         (STAGE, {"contact": "impact", "impact": {"pulse_Nm": 3.0, "pulse_width_s": 2.0}}, "0 < width < period"),

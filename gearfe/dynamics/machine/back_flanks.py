@@ -77,7 +77,7 @@ def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machin
     Raises
     ------
     ValueError
-        If there is no such mesh, it has no back flanks (`backlash` 0 or inf), or it has friction.
+        If there is no such mesh, it has no back flanks (`backlash` 0 or inf), it has friction, or its teeth are off their places.
 
     Examples
     --------
@@ -95,6 +95,11 @@ def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machin
             raise ValueError(f"mesh {name}: backlash = {known[name].backlash} m, but back flanks need one above 0 and finite")
         if known[name].friction:
             raise ValueError(f"mesh {name}: back flanks of their own are without friction, which this mesh has")
+        if known[name].shifts:
+            raise ValueError(
+                f"mesh {name}: its teeth are off their places (pitch deviations, eccentricity), and back flanks of their own "
+                "neglect that: leave out the back flanks or these deviations"
+            )
     damping = dict(zip(known, machine.law["damping"], strict=True))
     front = tuple(
         replace(mesh, backlash=math.inf, zeta=0.0, damping=float(damping[mesh.name])) if mesh.name in back else mesh
