@@ -134,6 +134,8 @@ from .signal.stage_lines import stage_lines as stage_lines
 from .signal.tachometer import with_tachometer as with_tachometer
 from .signal.time_frequency import cepstrum as cepstrum
 from .signal.time_frequency import spectrogram as spectrogram
+from .stiffness.convergence import Convergence as Convergence
+from .stiffness.convergence import convergence as convergence
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.mesh_cycle import MeshCycle as MeshCycle
 from .stiffness.mesh_cycle import mesh_cycle as mesh_cycle

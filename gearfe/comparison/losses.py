@@ -16,7 +16,7 @@ from ..core.checks import COARSEST
 from ..geometry.damage.kinds import Damage, called, told
 from ..geometry.pair.gear_pair import GearPair
 from ..stiffness.curve import StiffnessCurve
-from ..stiffness.estimate import coarser
+from ..stiffness.estimate import other_solves
 from ..stiffness.methods import METHODS
 from ..stiffness.phases import phase_array
 from ..stiffness.solve import Solve, solve
@@ -105,24 +105,21 @@ def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:
 
 
 def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: Solve) -> dict[str, float]:
-    """Estimated discretisation error of the losses by zone: how far coarser solves of both gears move them.
+    """Estimated discretisation error of the losses by zone: how far a coarser solve of both gears moves them.
 
-    The differences from all coarser solves that an estimate of k looks at are added; empty if there are none so coarse. Of finite
-    elements in three dimensions, which take minutes, the relative errors of both stiffnesses are added: a much wider bound.
+    It is the coarser solve that an estimate of k looks at; empty if it would be too coarse. Of finite elements in three
+    dimensions, which take minutes, the relative errors of both stiffnesses are added: a much wider bound.
     """
     losses, method = loss(healthy, hurt), str(how.method)
     if method == "fe3d":
         before, after = healthy.zone_errors(), hurt.zone_errors()
         widest = {zone: (1 - losses[zone]) * (before[zone] + after[zone]) for zone in before.keys() & after.keys()}
         return widest | {LARGEST: max(widest.values(), default=math.nan)}
-    away = dict.fromkeys(losses, 0.0)
-    rougher = coarser(how.refine, METHODS[method].order)
-    if any(options["refine"] < COARSEST for options in rougher):
+    options = other_solves(how.refine, METHODS[method].order)[0]
+    if options["refine"] < COARSEST:
         return {}
-    for options in rougher:
-        rough = loss(*(solve(each_case, replace(how, **options)) for each_case in (case.healthy, case)))
-        away = {zone: away[zone] + abs(losses[zone] - rough[zone]) for zone in away}
-    return away
+    rough = loss(*(solve(each_case, replace(how, **options)) for each_case in (case.healthy, case)))
+    return {zone: abs(losses[zone] - rough[zone]) for zone in losses}
 
 
 def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Damage]] | None) -> str:

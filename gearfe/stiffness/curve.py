@@ -164,12 +164,12 @@ class StiffnessCurve:
         return out | {"mean": float(self.k.mean()), "max": float(self.k.max())}
 
     def zone_errors(self) -> dict[str, float]:
-        """Largest relative error estimate by the same zones; empty if none was asked for."""
+        """Relative error estimates of `zones`, of a mean that of the mean; empty if none was asked for."""
         if self.error is None:
             return {}
-        relative = self.error / self.k
-        out = {name: float(relative[rows].max()) for name, rows in self._rows().items()}
-        return out | {"mean": float(relative.max()), "max": float(relative[np.argmax(self.k)])}
+        means = {"mean": slice(None), **self._rows()}
+        out = {name: float(self.error[rows].mean() / self.k[rows].mean()) for name, rows in means.items()}
+        return out | {"max": float((self.error / self.k)[np.argmax(self.k)])}
 
     def _rows(self):
         if self.meta.get("face") in ("helical", "herringbone"):

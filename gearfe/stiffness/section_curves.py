@@ -11,7 +11,7 @@ from ..core.steps import part, steps
 from ..flexibility.energy.closed.plain_sum import plain_sum
 from ..geometry.pair.contacts import near_pitches
 from .curve import StiffnessCurve
-from .estimate import MODEL, coarser, estimate, finer_hats, fixed_phases
+from .estimate import MODEL, estimate, fixed_phases, other_solves
 from .own_flexibility import flexibility_of
 from .provenance import provenance
 from .supported import yielding
@@ -109,16 +109,17 @@ def curve(case, phase, force, solve, meta):
 def with_error(row, curves, case, how):
     """The curves with their estimated error, by other solves of the same case."""
     order = _numeric(row, how).get("order")
-    less, hats = coarser(how.refine, order), finer_hats(order)
     periodic = not (any(case.cracks) or any(form.differs for form in case.forms or ()))
     phase = curves[0].phase
     where = np.append(phase, fixed_phases(phase, periodic))
-    solvers = [section_solver(row, case, how, where, **options)[0] for options in steps(({}, *less, *hats))]
+    solvers = [section_solver(row, case, how, where, **options)[0] for options in steps(({}, *other_solves(how.refine, order)))]
     out = []
     width = min(case.pair.gear_1.b, case.pair.gear_2.b)
     for fine in curves:
         solved = [solve(fine.meta["force_N"] / width) for solve in solvers]
-        k, *others = (fine.meta["force_N"] / (1e-3 * contact.closing) for contact in solved)
-        doubt = estimate(phase, periodic, k, others[: len(less)], others[len(less) :])
-        out.append(replace(fine, error=doubt + fine.k * (MODEL + solved[0].left_out[: phase.size])))
+        k = (fine.meta["force_N"] / (1e-3 * contact.closing) for contact in solved)
+        doubt = estimate(phase, periodic, *k, energy=order is not None)
+        contact = fine.k * (MODEL + solved[0].left_out[: phase.size])
+        meta = fine.meta | {"error_of_contact": contact.tolist()}
+        out.append(replace(fine, error=doubt + contact, meta=meta))
     return out

@@ -55,8 +55,9 @@ def row(seed):
             return None
     apart = np.abs(finite.k - energy.k)
     off = [np.abs(curve.k - fine) for curve in (finite, energy)]
-    covered = [(apart <= finite.error + energy.error).all(), (off[0] <= finite.error).all(), (off[1] <= energy.error).all()]
-    values = [apart, off[0], finite.error, off[1], energy.error]
+    said = [curve.error - np.array(curve.meta["error_of_contact"]) for curve in (finite, energy)]
+    covered = [(apart <= sum(said)).all(), (off[0] <= said[0]).all(), (off[1] <= said[1]).all()]
+    values = [apart, off[0], said[0], off[1], said[1]]
     names = f"{pair.gear_1.z}/{pair.gear_2.z}{' ring' if pair.gear_2.internal else ''} m {pair.gear_1.m_n:g}"
     hurt = "" if not damage else "; ".join(f"{name} crack {100 * one[0].level:.0f} %" for name, one in damage.items())
     percent = [f"{100 * float((v / fine).max()):.4f}" for v in values]
@@ -115,7 +116,8 @@ def section(rows):
         f"{len(rows)} pairs (seeds {rows[0]['seed']} to {rows[-1]['seed']}; external and rings, 60 % cracked), not used to",
         "develop the methods. Largest values over the phases of each pair, in percent of k; errors are against `ritz` with",
         f"{FINE['refine']:g} times the resolution and order {FINE['order']}. Shared by both methods: the profile, the held bore",
-        "and the contact, which [outlines.md](outlines.md) judges.",
+        "and the contact, which [outlines.md](outlines.md) judges. The part of the estimates that stands for the contact",
+        '(`meta["error_of_contact"]`) is therefore left out here: it would hide what the rest does not cover.',
         "",
         "| in percent of k | median | 95th percentile | worst | of the pair |",
         "|---|---|---|---|---|",
@@ -125,7 +127,9 @@ def section(rows):
         _line(rows, "ritz_error", "error of `ritz`"),
         _line(rows, "ritz_estimate", "its estimate"),
         "",
-        "Pairs in which the estimates cover at every phase: "
+        f"The median estimate is {_ratio(rows, 'fe'):.1f} times the median error of `fe` and {_ratio(rows, 'ritz'):.1f} times "
+        "that of `ritz`. The mean and the finer hats in the estimate of `fe` were added after the first seven rows were seen, in "
+        "four of which it was exceeded at a phase. Pairs in which the estimates cover at every phase: "
         f"the difference by the sum of both {_count(rows, 'apart_covered')}, the error of `fe` {_count(rows, 'fe_covered')}, the "
         f"error of `ritz` {_count(rows, 'ritz_covered')}.",
     ]
@@ -136,6 +140,12 @@ def _line(rows, name, text):
     worst = rows[int(values.argmax())]
     spread = f"{np.median(values):.3f} | {np.quantile(values, 0.95):.3f} | {values.max():.3f}"
     return f"| {text} | {spread} | {worst['pair']}{', ' if worst['damage'] else ''}{worst['damage']}, seed {worst['seed']} |"
+
+
+def _ratio(rows, name):
+    """Median estimate over median error of a method."""
+    said, off = (np.median([float(row[f"{name}_{what}"]) for row in rows]) for what in ("estimate", "error"))
+    return float(said / off)
 
 
 def _count(rows, name):

@@ -12,7 +12,7 @@ from ..machine.gear_mesh import cycle_table
 from ..machine.phase_table import table
 
 LOOKS = 20_000  # times of a run at which its mesh forces are compared with the loads of their laws
-LEAST = 400  # of them in a stretch over which forces are averaged, one mesh cycle or more
+LEAST, PARTS = 40, 50  # of them in a stretch over which forces are averaged, one mesh cycle or more; most stretches
 OTHER = 0.1  # of the load of a stiffness curve: a mean force further off is told
 IDLE = 1e-3  # of that load: a mesh that carries less on average carries nothing
 FEWEST = 10  # samples of a stiffness whose error between them is told
@@ -83,7 +83,7 @@ def _left_out(mesh):
 def _other(mesh, own, seconds):
     """What is told of a mesh whose forces, at equal times of a run, are not those of its stiffness curve: one line or none."""
     stated = mesh.stiffness.meta["force_N"]
-    count = min(own.size // LEAST, math.floor(seconds * abs(mesh.frequency)))
+    count = min(own.size // LEAST, PARTS, math.floor(seconds * abs(mesh.frequency)))
     means = np.abs([part.mean() for part in np.array_split(own, max(count, 1))])
     low, high, mean = float(means.min()), float(means.max()), abs(float(own.mean()))
     if mean < IDLE * stated or max(high / stated - 1, 1 - low / stated) <= OTHER:
