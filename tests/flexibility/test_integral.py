@@ -71,6 +71,7 @@ def test_a_rigid_stub_is_a_held_face(mesh):
     assert_allclose(integral_influence(mesh, STEEL, PATCHES, thick).matrix, expected, rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_a_shaft_seen_from_its_other_end(mesh):
     one, two = (integral_influence(mesh, STEEL, PATCHES, held).matrix.reshape(2, 2) for held in (shaft(), shaft().turned()))
     assert_allclose(one * [[1, -1], [-1, 1]], two, rtol=1e-5, atol=1e-9 * one.max())
