@@ -122,7 +122,7 @@ def test_bores_and_textbook_formulas(pair):
     truth, book = solved(pair).zones(), solved(pair, method="textbook").zones()
     above = {zone: 100 * (book[zone] / truth[zone] - 1) for zone in truth}
     says("faq.md", "textbook formulas are {} % above the converged solution", above["double"])
-    says("faq.md", "with one pair they are {} % above", above["single"])
+    says("faq.md", "With one pair they are {} % above", above["single"])
     says("faq.md", "Corner contact off the path of contact adds {} %", 100 * (mean(pair) / mean(pair, extended=False) - 1))
 
 
