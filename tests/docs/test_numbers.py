@@ -118,27 +118,27 @@ def test_bores_and_textbook_formulas(pair):
 
     sentence = "Held bores of 0.33, 0.5, 0.7 and 0.85 of the root radius give k of {}, {}, {} and {} N/um"
     says("faq.md", sentence, *(mean(bored(part)) for part in (0.33, 0.5, 0.7, 0.85)))
-    says("faq.md", "k is the mean of its mesh stiffness, {} N/um", mean(pair))
+    says("faq.md", "The mean mesh stiffness $k$ is {} N/um", mean(pair))
     truth, book = solved(pair).zones(), solved(pair, method="textbook").zones()
     above = {zone: 100 * (book[zone] / truth[zone] - 1) for zone in truth}
     says("faq.md", "textbook formulas are {} % above the converged solution", above["double"])
-    says("faq.md", "with one pair they are {} % above", above["single"])
-    says("faq.md", "Contact beyond the path of contact adds {} %", 100 * (mean(pair) / mean(pair, extended=False) - 1))
+    says("faq.md", "With one pair they are {} % above", above["single"])
+    says("faq.md", "Corner contact off the path of contact adds {} %", 100 * (mean(pair) / mean(pair, extended=False) - 1))
 
 
 def test_crack(pair):
     alone, whole, worst = loss(middle(pair), pair, angle=radians(60))
-    says("faq.md", "At 60 degrees it takes {} % where the cracked tooth carries alone", alone)
-    says("faq.md", "(`single`), {} % of the mean over the mesh cycle that has it", whole)
+    says("faq.md", "At 60 degrees it is {} % in single tooth contact", alone)
+    says("faq.md", "(`single`), {} % of the mean over the mesh cycle in the middle", whole)
     says("faq.md", "and {} % at the worst phase", worst)
     first = loss(64, pair, angle=radians(60))[1]
-    says("faq.md", "where the tooth is not in the middle: {} %", first)
+    says("faq.md", "where the cracked tooth is not in the middle of its engagement: {} %", first)
     crack = {"pinion": [gf.Crack(length=2.0, angle=radians(60))]}
     engaged = 100 * (1 - mean(pair, span="tooth", damage=crack) / mean(pair, span="tooth"))
-    says("faq.md", "and some of its neighbours': {} %", engaged)
-    says("faq.md", "Between {} and {} %, by the stretch", min(engaged, first, whole), worst)
+    says("faq.md", "and a part of the next ones: {} %", engaged)
+    says("faq.md", "between {} and {} %, because definitions differ", min(engaged, first, whole), worst)
     cracks = [{}, {"angle": radians(30)}, *({"angle": radians(60)} | more for more in ({"start": "root"}, {"side": "unloaded"}))]
-    sentence = """at 45 degrees the same 2 mm take {} % alone, at 30 degrees {} %, at 60 from the root circle {} %, on the
+    sentence = """the loss by 2 mm at 45 degrees is {} %, at 30 degrees {} %, at 60 degrees from the root circle {} %, and on the
         unloaded side {} %"""
     says("faq.md", sentence, *(loss(middle(pair), pair, **crack)[0] for crack in cracks))
 
@@ -167,13 +167,17 @@ def test_width_and_helix(pair):
     stiff = [100 * (flat.mean() / full.mean() - 1) for flat, full in zip(section, whole, strict=True)]
     says("faq.md", "it is {} % too stiff in the mean, at 15 degrees {} %, at 30 degrees {} %", *stiff)
     swings = [100 * np.ptp(k) / k.mean() for k in (section[1], *whole[1:])]
-    says("faq.md", "it changes by {} % over the cycle where the helical gears change by {} % at 15 and 30 degrees", *swings[:2])
+    says(
+        "faq.md",
+        "Its k changes by {} % over the cycle. The k of the helical gears changes by {} % at 15 and 30 degrees",
+        *swings[:2],
+    )
     assert_allclose(swings[1], swings[2], atol=0.5)
 
 
 def test_support(pair):
     held = mean(pair, supports={"pinion": gf.Support(radial=200e3)})
-    says("faq.md", "at the pinion alone, leaves {} of {} N/um", held, mean(pair))
+    says("faq.md", "at the pinion alone leave {} of {} N/um", held, mean(pair))
 
 
 @pytest.mark.slow
@@ -190,9 +194,9 @@ def test_law_of_force(pair):
     says("faq.md", "(natural frequency {} kHz)", gf.natural_frequencies(machine)[0][0] / 1000)
     (parted, least), (kept, most) = swing(curve, 1500.0), swing(law, 1500.0)
     assert least <= 0 < most
-    says("faq.md", "swings by {} N RMS under k over the phase", parted)
+    says("faq.md", "the mesh force under the curve swings by {} N RMS", parted)
     says("faq.md", "`gearfe.force_law` gives {} N", kept)
-    says("faq.md", "at a third, 2500 Hz, by {} for {} N", swing(curve, 2500.0)[0], swing(law, 2500.0)[0])
+    says("faq.md", "At a third, 2500 Hz, the values are {} for {} N", swing(curve, 2500.0)[0], swing(law, 2500.0)[0])
     apart = {f: 100 * abs(swing(curve, f)[0] / swing(law, f)[0] - 1) for f in (280.0, 3500.0, 3000.0, 5500.0, 7000.0, 12000.0)}
     values = list(apart.values())
     sentence = "At 280 and 3500 Hz they are up to {} % apart, at 3000, 5500, 7000 and 12 000 Hz up to {} %"
@@ -233,7 +237,7 @@ def test_what_other_pages_say():
     says("faq.md", "Values of other codes and standards: {} of {} within a tolerance", *map(int, found))
     for page, sentence in (
         ("planetary_pitting", "S0 and S1 {} of {} are reproduced and {} in their order"),
-        ("herringbone_machine", "of S4's vibration {} of {} and {} in their order"),
+        ("herringbone_machine", "Of the vibration results of S4 {} of {} are reproduced and {} in their order"),
     ):
         told = re.search(r"(\d+) results of a model: (\d+) reproduced, (\d+) trend only", words_of(PAGES / f"{page}.md")).groups()
         says("faq.md", sentence, int(told[1]), int(told[0]), int(told[2]))
@@ -251,10 +255,10 @@ def test_the_frequent_questions_count_the_articles_results():
         shown.insert(-1, len(rows))
     says(
         "faq.md",
-        """in the articles S0 and S1 {} of {} are reproduced and {} in their order, of S4's vibration {} of {} and {} in their
-        order""",
+        """in the articles S0 and S1 {} of {} are reproduced and {} in their order. Of the vibration results of S4 {} of {} are
+        reproduced and {} in their order""",
         *shown,
     )
     solid = [row.verdict for row in herringbone_page.judged()[1] if row.kind == "model"]
     found = (len(solid), solid.count(verdicts.REPRODUCED) + solid.count(verdicts.CORRECTED), solid.count(verdicts.ASSUMED))
-    says("faq.md", "of its {} stiffnesses and reductions {}, and {} agree by what the scene assumes", *found)
+    says("faq.md", "Of its {} stiffnesses and reductions {} are reproduced, and {} agree by an assumption of the scene", *found)

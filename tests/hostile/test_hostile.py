@@ -27,7 +27,7 @@ def small():
 
 def told(words):
     """How many inputs of this kind the page of clear answers counts."""
-    text = (Path(__file__).parents[2] / "gearfe" / "docs" / "clear_answers.md").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[2] / "gearfe" / "docs" / "invalid_input.md").read_text(encoding="utf-8")
     return int(re.search(rf"^\| (\d+) {words}", text, re.M)[1])
 
 
