@@ -192,6 +192,7 @@ def test_what_shafts_and_springs_take_is_told(scene, tmp_path, capsys):
     assert not told_supports(rigid)
 
 
+@pytest.mark.slow
 def test_each_of_several_damaged_teeth_is_compared_over_its_own_cycle(pair):
     """As a pair with that tooth alone, up to what a crack five teeth away softens the body."""
     cracks = [gf.Crack(level=0.3), gf.Crack(level=0.1, tooth=5)]

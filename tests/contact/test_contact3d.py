@@ -134,6 +134,7 @@ def test_gears_of_another_size_are_alike():
     assert_allclose(per_width(0.5), per_width(2.0), rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_herringbone_is_twice_a_half():
     run = {"order": 2, "axial": 6, "phases": 4}
     half = solid_contact(pair_of(), 1500.0, STEEL, **run)

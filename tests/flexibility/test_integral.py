@@ -62,6 +62,7 @@ def test_a_rigid_gear_on_elastic_stubs_is_a_rigid_piece_of_a_beam(mesh, side):
     assert_allclose(found, by_beam(rigid), rtol=1e-3, atol=1e-4 * by_beam(rigid)[0, 0])
 
 
+@pytest.mark.slow
 def test_a_rigid_stub_is_a_held_face(mesh):
     """Of an overhung gear: both bearings are on the thick stub beside z = 0, and z = b is free."""
     parts = {"bearings": (0.0, 10.0), "gear": 10.0 + B / 2, "material": STEEL, "torque": 10.0, "integral": True}

@@ -44,7 +44,10 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
+COSTLY = ("pitch of both gears", "three teeth of both gears")
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow if name in COSTLY else ()) for name in CASES])
 def test_every_cycle_of_the_hunting_period_is_that_of_the_teeth_that_meet(name):
     """Brute force: the contact of the teeth that really meet, at every phase of the hunting period of 143 cycles."""
     case = replace(CASE, **CASES[name])
