@@ -37,6 +37,7 @@ def test_single_pair_stiffness(row, table):
     assert_allclose(reference.single_pair(row, table), row["value"], rtol=table["tolerance"], err_msg=table["source"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("row", "table"), rows("root_stress"))
 def test_root_stress(row, table):
     assert_allclose(reference.root_stress(row), row["value"], rtol=table["tolerance"], err_msg=table["source"])
@@ -70,6 +71,7 @@ def test_errors_of_the_textbook(row, table):
         assert_allclose([errors.min(), errors.max()], row[zone], atol=table["tolerance"], err_msg=f"{zone}: {table['source']}")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("row", "table"), rows("load_trend"))
 def test_error_of_the_textbook_moves_with_the_load(row, table):
     composed, whole = reference.load_trend(row["line_load"])

@@ -27,7 +27,7 @@ for line in sys.argv[1:]:
 print(json.dumps([done, callable(gearfe.compare)]))
 """
 LINES = {
-    "compare": "compare planetary_pitting --phases 8 --refine 0.6 --plot k.png",
+    "compare": "compare planetary_pitting --phases 4 --refine 0.4 --plot k.png",
     "dynamics": "dynamics planetary_pitting --duration 0.2",
     "render": "render planetary_pitting -o s.png",
 }

@@ -230,6 +230,7 @@ def test_of_a_planetary_set_one_pair_is_shown_and_that_is_said():
     assert "not taken from my.toml: the planetary set" in told
 
 
+@pytest.mark.slow
 def test_gears_that_a_slider_passes_are_not_written_to_the_disk(tmp_path):
     """By a solver process in three dimensions, whose gears other programs keep there."""
     work = "from gearfe.app.solving import *; begin(); print(answer('solid', START | {'beta': 9.0, 'z_1': 23}).decode())"

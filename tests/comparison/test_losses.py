@@ -71,8 +71,8 @@ def test_any_tooth_loses_as_tooth_nought():
 def test_every_method_has_a_column_or_a_reason(found, scene):
     for one in (
         found,
-        gf.compare(scene, phases=4, refine=0.5),
-        gf.compare("planetary_pitting", "planet_ring", phases=4, refine=0.5),
+        gf.compare(scene, phases=4, refine=0.35),
+        gf.compare("planetary_pitting", "planet_ring", phases=4, refine=0.35),
     ):
         assert one.curves.keys() | one.left_out.keys() == set(METHODS)
         assert not one.curves.keys() & one.left_out.keys()
@@ -192,10 +192,11 @@ def test_what_shafts_and_springs_take_is_told(scene, tmp_path, capsys):
     assert not told_supports(rigid)
 
 
+@pytest.mark.slow
 def test_each_of_several_damaged_teeth_is_compared_over_its_own_cycle(pair):
     """As a pair with that tooth alone, up to what a crack five teeth away softens the body."""
     cracks = [gf.Crack(level=0.3), gf.Crack(level=0.1, tooth=5)]
-    run = {"force": 1000.0, "material": gf.Material(), "phases": 8, "refine": 0.5}
+    run = {"force": 1000.0, "material": gf.Material(), "phases": 8, "refine": 0.35}
     both = gf.compare(pair, damage={"pinion": cracks}, **run)
     alone = [gf.compare(pair, damage={"pinion": [crack]}, **run) for crack in cracks]
     for one, other in zip(both.by_tooth(), alone, strict=True):

@@ -29,7 +29,7 @@ def solved(pair, crack, method, phases, **options):
         ((45, 78), gf.Crack(level=0.95, turning=True, side="unloaded")),
         pytest.param((45, 78), gf.Crack(level=0.9, turning=True, side="unloaded"), marks=pytest.mark.slow),
         pytest.param((45, 78), gf.Crack(level=0.84, turning=True, side="unloaded"), marks=pytest.mark.slow),
-        ((19, 46), gf.Crack(level=0.54, turning=True, side="unloaded", start="middle")),
+        pytest.param((19, 46), gf.Crack(level=0.54, turning=True, side="unloaded", start="middle"), marks=pytest.mark.slow),
     ],
 )
 def test_a_crack_pressed_shut_is_that_of_the_section(teeth, crack):

@@ -58,6 +58,7 @@ def test_contact_lines_are_straight_with_one_normal(face):
             assert_allclose(np.linalg.norm(ahead, axis=0), 1 / math.cos(gear.beta_b), rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_mirrored_pair_is_as_stiff():
     run = {"order": 2, "axial": 6}
     pits = [gf.Pit(radius=18.7, z=3.0, axes=(1.0, 1.5), depth=0.1, angle=0.3)]
@@ -68,6 +69,7 @@ def test_mirrored_pair_is_as_stiff():
     assert_allclose(one.cells[1].z, 12.0 - two.cells[1].z, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_no_helix_is_the_limit_of_a_small_one():
     run = {"order": 2, "axial": 6, "phases": np.array([0.1, 0.25, 0.7, 0.9])}
     spur = solid_contact(pair_of(beta=0.0), 1500.0, STEEL, face="spur", **run)
@@ -75,7 +77,9 @@ def test_no_helix_is_the_limit_of_a_small_one():
     assert_allclose(slight.k, spur.k, rtol=1e-4)
 
 
-@pytest.mark.parametrize("line_load", [20.0, 150.0, 600.0])
+@pytest.mark.parametrize(
+    "line_load", [pytest.param(20.0, marks=pytest.mark.slow), 150.0, pytest.param(600.0, marks=pytest.mark.slow)]
+)
 def test_corner_contact_of_a_wide_spur_pair_is_that_of_the_plane(line_load):
     """At the ends of the path and beyond them, where a tip corner carries up to all of the load; elsewhere, too."""
     pair = pair_of(400.0, 0.0)
@@ -130,6 +134,7 @@ def test_gears_of_another_size_are_alike():
     assert_allclose(per_width(0.5), per_width(2.0), rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_herringbone_is_twice_a_half():
     run = {"order": 2, "axial": 6, "phases": 4}
     half = solid_contact(pair_of(), 1500.0, STEEL, **run)
@@ -204,6 +209,7 @@ def test_verdict_on_how_much_plane_strain_is_too_stiff(ratio, printed, found):
     assert_allclose(ours, found, atol=0.001)
 
 
+@pytest.mark.slow
 def test_a_corner_that_meets_its_mate_late_is_cut_into_cells_from_there():
     """The flank of an undercut mate ends before the path: up to there nothing touches, and k hung on one cell (0.7 % off)."""
     rack = {"m_n": 1.0, "alpha_n": math.radians(17.5), "b": 4.5, "tip_radius": 0.2}

@@ -21,7 +21,7 @@ def pair_of(z, width, degrees=0.0):
     return gf.GearPair(gf.Gear(z=z, r_bore=3.0, beta=beta, **rack), gf.Gear(z=30, r_bore=12.0, beta=-beta, **rack))
 
 
-@pytest.mark.parametrize(("z", "line_load"), [(9, 10.0), (12, 800.0)])
+@pytest.mark.parametrize(("z", "line_load"), [(9, 10.0), pytest.param(12, 800.0, marks=pytest.mark.slow)])
 def test_wide_undercut_spur_pair_is_that_of_the_plane(z, line_load):
     pair, phases = pair_of(z, 100.0), np.append(np.arange(8) / 8, [-0.02, 0.02])
     assert pair.path[0] == pair.gear_1.roll_f, "else the pinion is not undercut"
@@ -44,6 +44,7 @@ def test_the_edge_that_undercut_leaves_touches_from_the_start_of_the_path_on():
     assert_allclose(lines3d.beyond(pair, gap[2])[0], away[2], rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_loads_lighter_than_resolved_see_the_same_wedge_from_nearer():
     """Beyond the path's end the law of a load, asked for far less, gives what the law of a sixteenth, with finer hats, has."""
     pair = pair_of(18, 10.0)

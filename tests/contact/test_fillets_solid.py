@@ -32,7 +32,7 @@ def test_the_tip_cuts_into_the_fillet_at_the_start_of_the_path():
     assert_allclose(after, (found.nominal[on] - pair.path[0]).max(), atol=pair.p_bt / 48)
 
 
-@pytest.mark.parametrize("line_load", [10.0, 600.0])
+@pytest.mark.parametrize("line_load", [pytest.param(10.0, marks=pytest.mark.slow), 600.0])
 def test_a_wide_spur_pair_whose_tips_cut_into_fillets_is_that_of_the_plane(line_load):
     pair, phases = pair_of(100.0), np.arange(12) / 24
     plane = gf.mesh_stiffness(pair, 100.0 * line_load, STEEL, phases=phases, method="ritz")

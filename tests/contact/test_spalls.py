@@ -93,6 +93,7 @@ def test_the_smaller_the_spall_the_nearer_to_health(method):
     assert_allclose(solved(replace(SPALL, side="unloaded")).k, solved().k, rtol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 def test_mirror_images_are_as_stiff(method):
     """Spur: the other end of the face. Helical: the other hand as well. Both gears alike: the wheel instead of the pinion."""

@@ -83,7 +83,10 @@ def displaced(part, order):
 @needs_ccx
 @pytest.mark.parametrize(
     ("damage", "options", "order"),  # degree of the quadrature: 2 x 2 x 2 points in C3D20R, 4 in C3D10
-    [([gf.Crack(level=0.5, width=(0.0, 3.0))], {"refine": 0.4}, 3), ([PIT], {"teeth": 1, "refine": 0.5}, 2)],
+    [
+        pytest.param([gf.Crack(level=0.5, width=(0.0, 3.0))], {"refine": 0.4}, 3, marks=pytest.mark.slow),
+        ([PIT], {"teeth": 1, "refine": 0.5}, 2),
+    ],
     ids=["hexahedra", "tetrahedra"],
 )
 def test_calculix_solves_the_mesh(tmp_path, damage, options, order):

@@ -194,7 +194,7 @@ def plane_reference(gear, found, steel, cracks=()):
 @pytest.mark.quick
 @pytest.mark.parametrize(
     ("gear", "cracks"),
-    [(GEAR, ()), (RING, ()), (GEAR, (gf.Crack(level=0.6),))],
+    [(GEAR, ()), pytest.param(RING, (), marks=pytest.mark.slow), (GEAR, (gf.Crack(level=0.6),))],
     ids=["gear", "ring", "deep crack"],
 )
 def test_plane_strain_is_the_two_dimensional_fe(gear, cracks, steel):

@@ -186,6 +186,7 @@ def test_degrees_the_layers_do_not_carry_are_dropped(steel):
     assert cracked.near[0].shape == whole.near[0].shape
 
 
+@pytest.mark.slow
 def test_zones_of_crack_faces_keep_them_apart(steel):
     """Loads open a crack on their side and close the one behind; with closed faces the tooth is nearly a healthy one."""
     patches, size = fe3d.Patches((0,), hats(SMALL)[:, 5:6], 1), {"refine": 0.3, "per_hat": 2, "layer": 0.4}

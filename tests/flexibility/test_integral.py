@@ -62,6 +62,7 @@ def test_a_rigid_gear_on_elastic_stubs_is_a_rigid_piece_of_a_beam(mesh, side):
     assert_allclose(found, by_beam(rigid), rtol=1e-3, atol=1e-4 * by_beam(rigid)[0, 0])
 
 
+@pytest.mark.slow
 def test_a_rigid_stub_is_a_held_face(mesh):
     """Of an overhung gear: both bearings are on the thick stub beside z = 0, and z = b is free."""
     parts = {"bearings": (0.0, 10.0), "gear": 10.0 + B / 2, "material": STEEL, "torque": 10.0, "integral": True}
@@ -71,6 +72,7 @@ def test_a_rigid_stub_is_a_held_face(mesh):
     assert_allclose(integral_influence(mesh, STEEL, PATCHES, thick).matrix, expected, rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_a_shaft_seen_from_its_other_end(mesh):
     one, two = (integral_influence(mesh, STEEL, PATCHES, held).matrix.reshape(2, 2) for held in (shaft(), shaft().turned()))
     assert_allclose(one * [[1, -1], [-1, 1]], two, rtol=1e-5, atol=1e-9 * one.max())

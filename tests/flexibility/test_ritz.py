@@ -175,6 +175,7 @@ def against_fe(seeds, count):
     return away, everywhere, inside.astype(bool)
 
 
+@pytest.mark.slow
 def test_random_pairs_against_refined_fe():
     away, everywhere, _ = against_fe([6], 1)
     assert away.max() < 2e-3

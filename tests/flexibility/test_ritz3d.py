@@ -54,6 +54,7 @@ def test_loads_act_at_right_angles_to_the_helicoid(gear):
         assert_allclose(force[:, i], -(normal @ share_of), atol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_order_of_elimination_changes_nothing():
     """Nested halves against halves in the order of the triangles' numbers, and against all triangles at once."""
     made = sector(GEAR, (gf.Crack(level=0.3),), refine=0.3, sizes=ritz3d.SIZES)

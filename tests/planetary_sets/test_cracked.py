@@ -81,6 +81,7 @@ def with_faces(gear, healthy, faces, teeth):
     return free, in_contact(free, opened[touch], ease[np.ix_(touch, touch)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gear", GEARS, ids=["sun", "ring"])
 def test_other_teeth_of_a_cracked_gear_yield_as_by_direct_finite_elements(gear, monkeypatch):
     """From the cracked tooth and past it; a crack on either side, its faces free and in contact."""
@@ -125,6 +126,7 @@ def test_a_cracked_ring_on_pads_is_that_of_direct_finite_elements(rim, level, mo
         assert_allclose(own[clear], beside[clear], atol=6e-3 * abs(beside).max())
 
 
+@pytest.mark.slow
 def test_faces_of_rings_on_any_support_resist_and_a_stiff_bed_holds():
     whole = whole_gear(RING, STEEL)
     cracked = cracked_teeth(whole, BOTH, 1.0)
@@ -138,7 +140,10 @@ def test_faces_of_rings_on_any_support_resist_and_a_stiff_bed_holds():
     assert stiff < 1e-6 * soft
 
 
-@pytest.mark.parametrize("ring", [RimSupports(6, 4.8), RimSupports(6, 4.8, radial=0, tangential=1e5, pushes=True)])
+@pytest.mark.parametrize(
+    "ring",
+    [pytest.param(RimSupports(6, 4.8), marks=pytest.mark.slow), RimSupports(6, 4.8, radial=0, tangential=1e5, pushes=True)],
+)
 def test_sets_with_a_cracked_ring(ring):
     """The mesh that loads the cracked tooth gives way more, all is in balance, and the other planets take what it leaves."""
     plain, hurt = (

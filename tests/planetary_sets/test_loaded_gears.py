@@ -65,7 +65,11 @@ def apart(nodes, segments):
 
 
 @pytest.mark.parametrize(
-    "given", [pytest.param(case(), id="equal", marks=pytest.mark.slow), pytest.param(unequal(0, 30, 71, ring=PADS), id="unequal")]
+    "given",
+    [
+        pytest.param(case(), id="equal", marks=pytest.mark.slow),
+        pytest.param(unequal(0, 30, 71, ring=PADS), id="unequal", marks=pytest.mark.slow),
+    ],
 )
 def test_flanks_of_the_deck_touch(given, tmp_path):
     """Flanks that are to touch do so in the deck, before it is loaded: in each mesh one pair within 0.1 um."""

@@ -114,6 +114,7 @@ def test_files_hold_the_curves(tmp_path):
     assert data["units"]["k"] == "N/m"
 
 
+@pytest.mark.slow
 def test_frames_are_the_pictures_of_their_positions(tmp_path, monkeypatch):
     """Gears meshed once for all frames move as those meshed for one position; a file has a frame for each of them."""
     found = gf.planetary_stiffness(case(ring=gf.RimSupports(6, 4.8, first=0.2)), [0.1, 0.6])

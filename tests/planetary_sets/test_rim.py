@@ -109,6 +109,7 @@ def test_pads_carry_what_the_teeth_are_given():
     assert_allclose(rest, 0, atol=1e-10 * abs(given).max())
 
 
+@pytest.mark.slow
 def test_stiff_springs_hold():
     """Beds and springs of pads so stiff that they are rigid; pads that leave no gap hold the rim."""
     whole = whole_gear(ring(), STEEL)

@@ -25,7 +25,11 @@ def isolated(pair, phase, force=FORCE, **options):
 
 @pytest.mark.parametrize(
     "given",
-    [case(), unequal(0, 25, 53), case(flanks={"sun": gf.Flank(tip_relief=0.01, tip_start_diameter=44.5)})],
+    [
+        pytest.param(case(), marks=pytest.mark.slow),
+        unequal(0, 25, 53),
+        case(flanks={"sun": gf.Flank(tip_relief=0.01, tip_start_diameter=44.5)}),
+    ],
     ids=["equal", "unequal", "relief"],
 )
 def test_meshes_that_do_not_feel_each_other_are_isolated_pairs(given):
@@ -133,6 +137,7 @@ def test_stiff_pins_and_beds_are_rigid():
         assert_allclose(planetary_stiffness(given, [0.2, 0.7]).k, plain.k, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_lugs_that_all_push_are_pads_without_radial_force(monkeypatch):
     """The torque presses all of them; what is a contact of its own there is taken into the ring's flexibility here."""
     monkeypatch.setattr("gearfe.planetary_sets.pads.TERMS", 1)

@@ -14,6 +14,7 @@ from gearfe.planetary_sets.solve import planetary_stiffness
 from validation.make.sets_cracks import beside_whole_bodies
 
 
+@pytest.mark.slow
 def test_a_ring_on_pads_whose_crack_bending_presses_shut_is_that_of_whole_bodies():
     """k of planet and ring, load and turn of the sun over 28 mesh cycles, within 0.5 % and within their estimates."""
     found, own, want, error = beside_whole_bodies()

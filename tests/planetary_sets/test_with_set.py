@@ -58,9 +58,9 @@ def at_rest(made, t):
     [
         (case(), 1, "in k"),
         (unequal(0, 30, 71, errors=ERRORS, pin=3e5, floating=True, flanks=RELIEF), 1, "in k"),
-        (unequal(0, 30, 71, errors=ERRORS, ring=BED), 1, "in k"),
+        pytest.param(unequal(0, 30, 71, errors=ERRORS, ring=BED), 1, "in k", marks=pytest.mark.slow),
         (unequal(0, 30, 71, errors=ERRORS, ring=BED), 1, "body"),
-        (unequal(0, 30, 71, errors=ERRORS, ring=SOFT, pin=3e5), 14, "in k"),
+        pytest.param(unequal(0, 30, 71, errors=ERRORS, ring=SOFT, pin=3e5), 14, "in k", marks=pytest.mark.slow),
         (unequal(0, 30, 71, errors=ERRORS, ring=SOFT, pin=3e5), 14, "body"),
         (unequal(0, 30, 71, ring=PADS), 14, "in k"),
     ],

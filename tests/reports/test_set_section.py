@@ -30,14 +30,14 @@ def test_health_and_damage(tmp_path, monkeypatch):
     """The page has the set as it is solved alone, healthy and cracked; of cracked gears there is no picture, and why is said."""
     monkeypatch.setattr(page, "_pictures", lambda found: [])
     monkeypatch.setattr(findings, "_tooth", lambda found: None)
-    monkeypatch.setattr(findings, "compare", partial(gf.compare, refine=0.5))  # pairs are no part of this section
-    monkeypatch.setattr(whole_set, "POSITIONS", 8)
+    monkeypatch.setattr(findings, "compare", partial(gf.compare, refine=0.35))  # pairs are no part of this section
+    monkeypatch.setattr(whole_set, "POSITIONS", 4)
     monkeypatch.setattr(whole_set, "DPI", {"loads": 40, "bent": 40})
     scene = loaded(tmp_path, SCENE)
     text = gf.report(scene, tmp_path / "page.html", phases=2, duration=0).read_text(encoding="utf-8")
     text = text[text.index('<section id="set">') :]
     text = text[: text.index("</section>")]
-    at = 2 * np.arange(9) / 9  # 8 positions in the two cycles of the damaged tooth, one more so that no phase repeats
+    at = 2 * np.arange(5) / 5  # 4 positions in the two cycles of the damaged tooth, one more so that no phase repeats
     healthy, cracked = (gf.planetary_stiffness(gf.build_set(scene, case), at) for case in (None, "cracked"))
     assert re.findall("<h3>(.*?)</h3>", text) == ["healthy", "cracked"]
     first, second = text.split("<h3>cracked</h3>")

@@ -237,7 +237,7 @@ def test_a_killed_writer_and_two_at_once_leave_no_broken_file(tmp_path):
     assert read_flexibility(file, "key", None)["a"].size == 200_000
 
 
-@pytest.mark.parametrize("method", ["ritz", "ritz3d", "coupled", "fe"])
+@pytest.mark.parametrize("method", ["ritz", pytest.param("ritz3d", marks=pytest.mark.slow), "coupled", "fe"])
 def test_without_the_cache_nothing_is_used_kept_or_displaced(method, tmp_path):
     run = {"method": method, "phases": 2} | ({"order": 2, "refine": 0.5} if method.startswith("ritz") else {})
     run |= {"refine": 0.4} if method == "fe" else {}

@@ -105,6 +105,7 @@ def test_sums_of_pairs_keep_their_digits():
     assert_allclose(light.k, heavier.k, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_crowned_widths_touch_in_hertzs_ellipse():
     """One tooth pair, so light that the tooth gives nothing: K. L. Johnson, Contact Mechanics, 4.26-4.28."""
     loads, crowning = 10.0 ** np.array([-6.0, -4.5, -3.0]), 0.01

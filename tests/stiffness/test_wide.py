@@ -215,6 +215,7 @@ def test_the_error_mesh_is_the_coarsest_that_can_be_made(monkeypatch):
         wide._coarser(None, None, {}, gf.Solve("fe3d", refine=0.5, cache=False))
 
 
+@pytest.mark.slow
 def test_overlap_carries_pairs_whose_section_loses_contact(steel):
     """Contact ratio 0.999 at 45 degrees: solved as steadily as one of 1.001, refused where nothing knows of the width."""
 

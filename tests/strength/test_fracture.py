@@ -81,7 +81,13 @@ def test_tooth_crack_opens_and_grows_with_depth():
 
 
 @pytest.mark.parametrize(
-    ("start", "level", "known"), [("30deg", 0.3, 104.74), ("30deg", 0.5, 94.90), ("60deg", 0.3, 90.05), ("60deg", 0.5, 72.35)]
+    ("start", "level", "known"),
+    [
+        ("30deg", 0.3, 104.74),
+        pytest.param("30deg", 0.5, 94.90, marks=pytest.mark.slow),
+        pytest.param("60deg", 0.3, 90.05, marks=pytest.mark.slow),
+        ("60deg", 0.5, 72.35),
+    ],
 )
 def test_crack_of_a_ring(start, level, known):
     """Truth: 13 ring teeth between polygons cut by a polygon of the cutter, Delaunay triangles of second order, a slit of
@@ -99,7 +105,7 @@ def compliance(flexible, roll):
     return glued + (opening @ flexible.seam.stiffness @ opening.T)[0, 0]
 
 
-@pytest.mark.parametrize("method", ["fe", "ritz"])
+@pytest.mark.parametrize("method", [pytest.param("fe", marks=pytest.mark.slow), "ritz"])
 def test_stress_intensity_is_the_energy_released(method):
     """dC/da = 2 (K_I**2 + K_II**2) (1 - nu**2) / E for a unit load (Irwin), by differences of the tooth's compliance."""
     from gearfe.flexibility.energy.ritz import plane as ritz

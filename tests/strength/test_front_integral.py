@@ -120,6 +120,7 @@ def embedded(a, c, phi):
     return math.sqrt(math.pi * a) / ellipe(1 - (a / c) ** 2) * (np.sin(phi) ** 2 + (a / c * np.cos(phi)) ** 2) ** 0.25
 
 
+@pytest.mark.slow
 def test_a_penny_in_a_large_body():
     """Sneddon's 2 / pi sqrt(pi a); by symmetry there are no other modes."""
     body = Quarter(1.0, 1.0, 10.0, 10.0, 10.0, pieces=4)

@@ -154,6 +154,7 @@ def test_pressure_is_hertz(undercut, answer):
     assert_allclose(2 * spread, half, rtol=0.02)
 
 
+@pytest.mark.slow
 def test_a_form_points_corner_carries(undercut, answer):
     """An independent solver found 18.95 N/um at phase 0.9; away from the corner `ritz` agrees."""
     assert_allclose(answer.k[1] / 1e3, 18.95, rtol=1.5e-3, err_msg="whole outlines pressed together, another solver")

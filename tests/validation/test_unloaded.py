@@ -66,6 +66,7 @@ def ring_pairs(count):
             return
 
 
+@pytest.mark.slow
 def test_tips_of_rings_meet_those_of_pinions_on_both_sides_of_the_path():
     """Truth: outlines cut by brute force and pressed together; a ring's tip corner may touch after the end of the path, too."""
     for pair in ring_pairs(12):

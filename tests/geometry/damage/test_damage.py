@@ -38,7 +38,13 @@ def reduction(crack, side="pinion", **options):
 
 
 @pytest.mark.parametrize("method", ["fe", "ritz"])
-@pytest.mark.parametrize("row", TABLE["rows"], ids=lambda r: f"{r['z']} {r['level']}")
+@pytest.mark.parametrize(
+    "row",
+    [
+        pytest.param(row, id=f"{row['z']} {row['level']}", marks=pytest.mark.slow if i else ())
+        for i, row in enumerate(TABLE["rows"])
+    ],
+)
 def test_reductions_of_an_earlier_study(row, method):
     assert_allclose(100 * reference.crack_reduction(row, method), row["value"], atol=TABLE["tolerance"], err_msg=TABLE["source"])
 

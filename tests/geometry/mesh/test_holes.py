@@ -106,7 +106,11 @@ LAYOUTS = {
 @pytest.mark.parametrize(
     ("name", "beta"),
     [
-        pytest.param(name, -0.2 if name == "both sides" else 0.4, marks=pytest.mark.slow if name in ("turned", "nested") else ())
+        pytest.param(
+            name,
+            -0.2 if name == "both sides" else 0.4,
+            marks=pytest.mark.slow if name in ("turned", "nested", "overlapping") else (),
+        )
         for name in LAYOUTS
     ],
 )
