@@ -25,14 +25,14 @@ FINE = 1024  # samples per cycle that curves on uneven phases are brought to
 class Samples(NamedTuple):
     """Stiffness `k` [N/m^power] at phases, of what is no `StiffnessCurve`: contact coefficients, or curves of other programs."""
 
-    phase: NDArray[np.float64]
-    k: NDArray[np.float64]
+    phase: NDArray
+    k: NDArray
 
 
 Curve = StiffnessCurve | Samples  # stiffness over the phase
 
 
-Stiffness = float | NDArray[np.float64] | Curve | ForceLaw | Table  # what `GearMesh` takes
+Stiffness = float | NDArray | Curve | ForceLaw | Table  # what `GearMesh` takes
 Change = tuple[float, float, Table]  # cycles until it returns, the first of them, and the change over the phase from there on
 NOWHERE = 1e-12  # m: smaller shifts of a tooth are rounding
 ALIKE = 1e-6  # of a mesh cycle, of a cell: how far samples of two curves are apart that count as the same
@@ -40,7 +40,7 @@ ALIKE = 1e-6  # of a mesh cycle, of a cell: how far samples of two curves are ap
 
 def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[Table, Any], Any] = Table.__call__) -> Any:
     """Sum of all changes at running phases, or of another `value` of their tables."""
-    running: NDArray[np.float64] = np.asarray(phase, dtype=float)
+    running: NDArray = np.asarray(phase, dtype=float)
     out = np.zeros(running.shape)
     for z, first, change in changes:
         tooth_phase = running - first - change.start
@@ -49,7 +49,7 @@ def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[Table,
     return out
 
 
-def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> NDArray[np.float64] | None:
+def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> NDArray | None:
     """Coefficients ``(count, 4)`` of the sum of changes in cells from a running phase on; None if their cells are others."""
     out = np.zeros((count, 4))
     for z, first, change in changes:
@@ -182,7 +182,7 @@ class GearMesh:
     """
 
     name: str
-    row: NDArray[np.float64]
+    row: NDArray
     stiffness: Stiffness
     frequency: float = 0.0
     phase: float = 0.0
@@ -198,7 +198,7 @@ class GearMesh:
     push: bool = False
     backlash: float = 0.0
     film: float = 1.0
-    friction: tuple[tuple[NDArray[np.float64], Table], ...] = ()
+    friction: tuple[tuple[NDArray, Table], ...] = ()
     gap: float = 0.0
     law: Law | None = None
     contact: Law = field(init=False)
@@ -292,16 +292,16 @@ class GearMesh:
         """Its errors, and its gap as one that stays."""
         return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
 
-    def k(self, t: ArrayLike) -> NDArray[np.float64]:
+    def k(self, t: ArrayLike) -> NDArray:
         """Stiffness at times `t` [N/m^power], never below zero."""
         return self.at_phase(self.phase + self.frequency * np.asarray(t, dtype=float))
 
-    def at_phase(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at_phase(self, phase: NDArray) -> NDArray:
         """Stiffness at running phases."""
         out = self.cycle(phase - np.floor(phase)) + changed(self.changes, phase)
         return np.maximum(out, 0.0) if self.changes else out
 
-    def e(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def e(self, t: ArrayLike) -> tuple[NDArray, NDArray]:
         """Mesh error with the gap, and its rate, at times `t` [m], [m/s]."""
         out, rate = np.zeros(np.shape(t)), np.zeros(np.shape(t))
         for amplitude, frequency, angle in self.openings:
@@ -315,7 +315,7 @@ class GearMesh:
         """Mesh cycles after which the stiffness repeats: 1, or the common multiple of the damaged bodies' tooth numbers."""
         return math.lcm(1, *(int(z) for z, _, _ in self.changes))
 
-    def entries(self, duration: float) -> list[NDArray[np.float64]]:
+    def entries(self, duration: float) -> list[NDArray]:
         """Times [s] up to `duration` at which each damaged tooth is at phase 0 of this mesh (list of arrays, one per damage)."""
         out = []
         for z, first, _ in self.changes:

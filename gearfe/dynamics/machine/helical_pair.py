@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
 from numpy.typing import NDArray
 
 from ...core.material import Material
@@ -44,9 +43,7 @@ def pitted_helical(
     pair: GearPair,
     materials: tuple[Material, Material],
     *,
-    pits: Sequence[
-        tuple[int, Sequence[tuple[float, float, float, float]] | Callable[[NDArray[np.float64]], NDArray[np.float64]]]
-    ] = (),
+    pits: Sequence[tuple[int, Sequence[tuple[float, float, float, float]] | Callable[[NDArray], NDArray]]] = (),
     speed: float = 2500 * math.pi / 30,
     torque: float = 250.0,
     damping: float = 1e3,

@@ -68,13 +68,13 @@ class Layout:
         sizes = {"theta": "inertia", "tilt_x": "across", "tilt_y": "across"}
         self.mass = np.array([getattr(body, sizes.get(dof, "mass")) for body in bodies for dof in body.dofs.split()])
 
-    def unit(self, name: str, dof: str) -> NDArray[np.float64]:
+    def unit(self, name: str, dof: str) -> NDArray:
         """Row of one degree of freedom."""
         row = np.zeros(len(self.dofs))
         row[self.place[f"{name}.{dof}"]] = 1.0
         return row
 
-    def point(self, name: str, direction: ArrayLike, arm: ArrayLike = (0.0, 0.0, 0.0)) -> NDArray[np.float64]:
+    def point(self, name: str, direction: ArrayLike, arm: ArrayLike = (0.0, 0.0, 0.0)) -> NDArray:
         """Row of the displacement along `direction` of the point at `arm` [m] from a body's centre; missing dofs do not move."""
         direction, arm = np.append(direction, np.zeros(3))[:3], np.append(arm, np.zeros(3))[:3]
         parts = dict(zip(SPACE.split(), (*direction, *np.cross(arm, direction)), strict=True))
@@ -115,7 +115,7 @@ class Layout:
         sense: int = 1,
         helix: float = 0.0,
         internal: bool = False,
-    ) -> NDArray[np.float64]:
+    ) -> NDArray:
         """Row of the mesh in which body `one` pushes body `two`.
 
         The transverse line of action leaves the pitch point at ``sense t cos(alpha) + e sin(alpha)``: e points from the centre of
@@ -145,7 +145,7 @@ class Layout:
 
     def rubbing(
         self, one: str, two: str, *, angle: float, alpha: float, sense: int = 1, internal: bool = False
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    ) -> tuple[NDArray, NDArray, NDArray]:
         """Rows of friction of such a mesh: across the line of action, and the turning of either body per lever arm [m].
 
         The first pulls body `one` back where its flank slides forward, towards the line of action turned by +90 degrees.

@@ -47,11 +47,11 @@ class Response:
     """
 
     machine: Machine
-    time: NDArray[np.float64]
-    states: NDArray[np.float64]
-    basis: NDArray[np.float64]
+    time: NDArray
+    states: NDArray
+    basis: NDArray
     stats: dict[str, Any] = field(default_factory=dict)
-    filtered: NDArray[np.float64] | None = None
+    filtered: NDArray | None = None
 
     def __post_init__(self) -> None:
         """Raise ValueError for times, states and filtered channels of different lengths."""
@@ -99,7 +99,7 @@ class Response:
         self._dof(head, name)
         return ("rad" if head.endswith((".theta", ".tilt_x", ".tilt_y")) else "m") + KINDS.get(tail, "")
 
-    def __getitem__(self, name: str) -> NDArray[np.float64]:
+    def __getitem__(self, name: str) -> NDArray:
         """Channel `name` ``(t,)``."""
         head, _, tail = name.partition(" ")
         if head in MESH and tail in self._meshes:
@@ -111,16 +111,16 @@ class Response:
         return states @ self.basis[dof + (n if tail == "velocity" else 0)]
 
     @property
-    def q(self) -> NDArray[np.float64]:
+    def q(self) -> NDArray:
         """Displacements ``(t, n)``."""
         return self.states @ self.basis[: len(self.machine.dofs)].T
 
     @property
-    def v(self) -> NDArray[np.float64]:
+    def v(self) -> NDArray:
         """Velocities ``(t, n)``."""
         return self.states @ self.basis[len(self.machine.dofs) :].T
 
-    def mesh(self, kind: str = "force") -> NDArray[np.float64]:
+    def mesh(self, kind: str = "force") -> NDArray:
         """Compression [m], stiffness [N/m^power] or force [N] of all meshes ``(t, m)``."""
         if kind not in MESH:
             raise ValueError(f"kind = {kind!r}, but it must be one of {', '.join(MESH)}")
@@ -130,7 +130,7 @@ class Response:
         flat = excitation.flatten(self.machine, self.time)
         return mesh_channels(self.machine, flat, self.time, self.q, self.v)[which]
 
-    def accelerations(self) -> NDArray[np.float64]:
+    def accelerations(self) -> NDArray:
         """Accelerations ``(t, n)``, from the equations of motion."""
         if self.filtered is not None:
             n = len(self.machine.dofs)
