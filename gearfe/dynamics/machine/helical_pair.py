@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 
 from numpy.typing import NDArray
 
@@ -14,7 +13,7 @@ from .gear_mesh import ToothDamage
 from .gear_pair import gear_pair
 from .layout import Body
 from .member import disc
-from .scene_curves import Meshed, scene_curves, speed_of
+from .scene_curves import Meshed, scene_machine
 from .tables import Machine
 
 BODIES = ("pinion", "wheel")
@@ -26,12 +25,12 @@ SHAFT = 1e4  # N m/rad, to the motor, assumed
 def scene_pair(scene, case, **options):
     """Machine of a scene with linear contact: the stiffness curves of its pair."""
     name, pair = next(iter(scene.pairs)), scene.pair().pair
-    found = scene_curves(scene, case, options, {"mesh": Meshed(name, BODIES)}, {name: BODIES})
-    made = gear_pair(
-        pair, _bodies(pair, DENSITY), found.healthy[name], speed=speed_of(scene), torque=scene.machine["torque_Nm"],
-        support=BEARING, torsion=(SHAFT, 0.0), damage=found.damage["mesh"],
-    )  # fmt: skip
-    return replace(made, faults=found.faults(made))
+
+    def build(healthy, damage, **drive):
+        ends = {"support": BEARING, "torsion": (SHAFT, 0.0), "damage": damage["mesh"]}
+        return gear_pair(pair, _bodies(pair, DENSITY), healthy[name], **ends, **drive)
+
+    return scene_machine(scene, case, options, {"mesh": Meshed(name, BODIES)}, {name: BODIES}, build)
 
 
 def _bodies(pair, density):
