@@ -43,10 +43,17 @@ def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[Table,
     running: NDArray = np.asarray(phase, dtype=float)
     out = np.zeros(running.shape)
     for z, first, change in changes:
-        tooth_phase = running - first - change.start
-        tooth_phase = tooth_phase - z * np.floor(tooth_phase / z) + change.start
-        out = out + np.where(tooth_phase < change.end, value(change, np.minimum(tooth_phase, change.end)), 0.0)
+        tooth_phase = _tooth_phase(running, z, first, change.start)
+        inside = tooth_phase < change.end
+        if inside.any():
+            out = out + np.where(inside, value(change, np.minimum(tooth_phase, change.end)), 0.0)
     return out
+
+
+def _tooth_phase(running, z, first, start):
+    """Phases from `start` on of what returns after z mesh cycles, first at the running phase `first`."""
+    on = running - first - start
+    return on - z * np.floor(on / z) + start
 
 
 def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> NDArray | None:
@@ -301,15 +308,30 @@ class GearMesh:
         out = self.cycle(phase - np.floor(phase)) + changed(self.changes, phase)
         return np.maximum(out, 0.0) if self.changes else out
 
+    def pressed(self, phase: NDArray, deep: NDArray) -> tuple[NDArray, ArrayLike]:
+        """Stiffness at running phases and depths [m], and its derivative by the depth [N/m2], 0 without a `ForceLaw`."""
+        if not self.secants:
+            return self.at_phase(phase), 0.0
+        k, bend = self.secants[0](phase % 1.0, deep)
+        for (z, first, _), change in zip(self.changes, self.secants[1:], strict=True):
+            tooth_phase = _tooth_phase(phase, z, first, change.start + change.width)
+            inside = tooth_phase < change.end - change.width
+            more, rise = change(tooth_phase, deep)
+            k, bend = k + np.where(inside, more, 0.0), bend + np.where(inside, rise, 0.0)
+        return np.maximum(k, 0.0), np.where(k > 0, bend, 0.0)
+
     def e(self, t: ArrayLike) -> tuple[NDArray, NDArray]:
         """Mesh error with the gap, and its rate, at times `t` [m], [m/s]."""
-        out, rate = np.zeros(np.shape(t)), np.zeros(np.shape(t))
+        t = np.asarray(t, dtype=float)
+        phase, out, rate = self.phase + self.frequency * t, np.zeros(t.shape), np.zeros(t.shape)
         for amplitude, frequency, angle in self.openings:
-            turn = 2 * math.pi * frequency * np.asarray(t) + angle
-            out = out + amplitude * np.sin(turn)
-            rate = rate + amplitude * 2 * math.pi * frequency * np.cos(turn)
-        phase = self.phase + self.frequency * np.asarray(t)
-        return out + changed(self.shifts, phase), rate + self.frequency * changed(self.shifts, phase, Table.slope)
+            omega = 2 * math.pi * frequency
+            turn = omega * t + angle
+            out, rate = out + amplitude * np.sin(turn), rate + amplitude * omega * np.cos(turn)
+        if self.shifts:
+            out = out + changed(self.shifts, phase)
+            rate = rate + self.frequency * changed(self.shifts, phase, Table.slope)
+        return out, rate
 
     def cycles(self) -> int:
         """Mesh cycles after which the stiffness repeats: 1, or the common multiple of the damaged bodies' tooth numbers."""

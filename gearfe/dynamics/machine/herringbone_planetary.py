@@ -98,7 +98,7 @@ def herringbone_planetary(
     springs = _supports(layout, stage, (bearing, tilt, housing, drive, zeta))
     for name, gear in (("sun", sun), *((f"planet{i + 1}", stage.planet) for i in range(n))):
         springs += _neck(layout, name, gear, (groove, shear_modulus, apart, zeta))
-    phases = stage_phases(tuple(pairs.values()), n, frequency=carrier_and_mesh(stage, speed)[1])
+    phases = stage_phases((stage.sun_planet, stage.planet_ring), n, frequency=carrier_and_mesh(stage, speed)[1])
     meshed, meshes, helix = stage_meshes(phases), [], math.tan(abs(sun.beta_b))
     hurt = teeth_damaged(damage, meshed)
     for (name, fields), angle in zip(phases.items(), np.repeat(2 * math.pi * np.arange(n) / n, 2), strict=True):

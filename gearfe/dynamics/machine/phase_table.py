@@ -29,20 +29,21 @@ class Table:
         """Phase at which the last cell ends."""
         return self.start + self.width * len(self.cells)
 
+    def _cubic(self, phase):
+        """Coefficients of the cubics at phases, and places in their cells."""
+        place = (np.asarray(phase) - self.start) / self.width
+        cell = np.minimum(np.maximum(place.astype(np.int64), 0), len(self.cells) - 1)
+        return self.cells[cell].T, (place - cell).T
+
     def __call__(self, phase: ArrayLike) -> NDArray:
         """Value at phases from `start` to `end` (beyond them, of the end cells)."""
-        place = (np.asarray(phase) - self.start) / self.width
-        cell = np.clip(place.astype(np.int64), 0, len(self.cells) - 1)
-        u = place - cell
-        c = self.cells[cell]
-        return c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
+        (a, b, c, d), u = self._cubic(phase)
+        return (a + u * (b + u * (c + u * d))).T
 
     def slope(self, phase: ArrayLike) -> NDArray:
         """Derivative by the phase, at phases as of a call."""
-        place = (np.asarray(phase) - self.start) / self.width
-        cell = np.clip(place.astype(np.int64), 0, len(self.cells) - 1)
-        u, c = place - cell, self.cells[cell]
-        return (c[..., 1] + u * (2 * c[..., 2] + 3 * u * c[..., 3])) / self.width
+        (_, b, c, d), u = self._cubic(phase)
+        return ((b + u * (2 * c + 3 * u * d)) / self.width).T
 
     @property
     def mean(self) -> float:
