@@ -26,7 +26,8 @@ GROUPS = {
     "outlines_calculix flanks flanks_three holes hard sets",
     "How large are the errors of closed forms?": "map speed speed_stages sweeps",
     "Are the articles reproduced?": "two_minutes printed joint assumptions planetary_pitting "
-    "compound_planetary helical_pitting herringbone herringbone_machine herringbone_layouts herringbone_readings sideband_centroid",
+    "compound_planetary helical_pitting herringbone herringbone_machine herringbone_layouts herringbone_readings "
+    "sideband_centroid",
     "Are vibration and diagnosis right?": "dynamics dynamics_chatter rig measured detection",
 }
 
