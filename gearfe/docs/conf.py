@@ -1,5 +1,6 @@
 """How the documentation is built: ``python -m sphinx gearfe/docs .site`` from the top of the repository."""
 
+import logging
 import os
 import shutil
 import sys
@@ -20,12 +21,38 @@ matplotlib.rcParams.update(STYLE)
 PAGES = MADE / "validation"
 shutil.rmtree(PAGES, ignore_errors=True)
 shutil.copytree(TOP / "validation" / "pages", PAGES)
-(PAGES / "index.md").write_text(
-    "# All pages of the validation\n\nThese pages are made by `python -m validation`, and kept in the repository.\n\n"
-    "```{toctree}\n:glob:\n\n*\n```\n",
-    encoding="utf-8",
-)
+GROUPS = {
+    "Is the model solved correctly?": "outlines sample truth three pairs_three "
+    "outlines_calculix flanks flanks_three holes hard sets",
+    "How large are the errors of closed forms?": "map speed speed_stages sweeps",
+    "Are the articles reproduced?": "two_minutes printed joint assumptions planetary_pitting "
+    "compound_planetary helical_pitting herringbone herringbone_machine herringbone_layouts herringbone_readings "
+    "sideband_centroid",
+    "Are vibration and diagnosis right?": "dynamics dynamics_chatter rig measured detection",
+}
 
+
+def row(name):
+    """Row of a page in the index: its title, and its first paragraph, which is the answer."""
+    title, answer = (PAGES / f"{name}.md").read_text(encoding="utf-8").split("\n\n")[:2]
+    return f"| {{doc}}`{title.removeprefix('# ')} <{name}>` | {' '.join(answer.split())} |"
+
+
+def index():
+    """Source of the index of the validation pages."""
+    names = {path.stem for path in PAGES.glob("*.md")}
+    groups = {title: [name for name in text.split() if name in names] for title, text in GROUPS.items()}
+    rest = sorted(names - {name for found in groups.values() for name in found})
+    groups |= {"Further pages": rest} if rest else {}
+    parts = ["# Validation pages", "`python -m validation` computes these pages. The repository contains them."]
+    for title, found in groups.items():
+        parts += [f"## {title}", "\n".join(["| question | answer |", "|---|---|", *map(row, found)])]
+        parts.append("\n".join(["```{toctree}", ":hidden:", "", *found, "```"]))
+    return "\n\n".join(parts) + "\n"
+
+
+(PAGES / "index.md").write_text(index(), encoding="utf-8")
+logging.getLogger("skfem").setLevel(logging.WARNING)  # Sphinx sets the level of all loggers to INFO
 
 project = "gearfe"
 author = copyright = "The gearfe developers"

@@ -66,7 +66,9 @@ def middle(pair, count=64):
     return (ceil((pair.eps_alpha - 1) / 2 * count) + np.arange(count)) / count
 
 
-@pytest.mark.parametrize("page", ["index.md", pytest.param("howto/design.md", marks=pytest.mark.slow), "howto/scene.md"])
+@pytest.mark.parametrize(
+    "page", ["index.md", pytest.param("howto/design.md", marks=pytest.mark.slow), "howto/scene.md", "life_of_a_number.md"]
+)
 def test_programs_print_what_the_page_shows(page):
     text = (SITE / page).read_text(encoding="utf-8")
     if page == "howto/design.md":  # its programs go on from each other, and from the scene that `gearfe new` writes

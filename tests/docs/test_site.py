@@ -34,7 +34,9 @@ def test_pages_name_what_exists(page):
         assert source.exists(), f"{page.name} names {place}"
 
 
-@pytest.mark.parametrize("page", [SITE / "where.md", ROOT / "README.md"], ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "page", [SITE / "where.md", SITE / "life_of_a_number.md", ROOT / "README.md"], ids=lambda path: path.name
+)
 def test_map_names_files_that_exist(page):
     for name in re.findall(r"`((?:gearfe|geometry|tests|validation)/[\w/.]*)`", page.read_text(encoding="utf-8")):
         assert (ROOT / name).exists(), name

@@ -22,8 +22,14 @@ def kept(function):
         dispatcher = njit(cache=True, error_model="numpy")(function)
     except RuntimeError:  # no such folder: it is compiled by each process
         return compiled(function)
+    if dispatcher is function:
+        return _not_compiled
     dispatcher._cache._cache_file._source_stamp = _stamp()  # numba itself looks at the function's own file alone
     return dispatcher
+
+
+def _not_compiled(*_):
+    raise RuntimeError("NUMBA_DISABLE_JIT is set, but the integrator needs compiled code: unset it")
 
 
 @cache
