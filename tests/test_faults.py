@@ -153,3 +153,54 @@ def test_a_folder_that_may_not_be_written_is_refused_first(tmp_path, capsys):
     tmp_path.chmod(0o500)
     assert main(["stiffness", "planetary_pitting", "-o", str(closed / "k.csv")]) == 1
     assert "writable folder" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("gigabytes", [1.0, pytest.param(1.5, marks=pytest.mark.slow)])
+def test_too_little_memory_for_a_picture_is_said_and_leaves_no_file(gigabytes, tmp_path):
+    """CHOLMOD and VTK end the process where memory is refused to them."""
+    code = f"""
+import resource
+from gearfe.app.cli import main
+resource.setrlimit(resource.RLIMIT_AS, ({int(gigabytes * 1e9)},) * 2)
+raise SystemExit(main(["render", "planetary_pitting", "-o", "x.png"]))
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert "GB are free" in done.stderr or "not enough memory" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_file_name_outside_utf_8_is_drawn(tmp_path):
+    from matplotlib.figure import Figure
+
+    from gearfe.core.files import save_figure
+
+    figure = Figure()
+    figure.suptitle("\udcff $x")
+    assert save_figure(figure, tmp_path / "x.png", 20).get_suptitle() == "? $x"
+
+
+def test_switched_off_compilation_is_said(tmp_path):
+    code = "import gearfe as gf; m = gf.single_mesh(1.0, 1e8, 500.0, force=100.0); gf.simulate(m, 0.01)"
+    environment = ENVIRONMENT | {"NUMBA_DISABLE_JIT": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+    )
+    assert "NUMBA_DISABLE_JIT is set" in done.stderr.splitlines()[-1]
+
+
+def test_a_terminated_command_leaves_no_file(tmp_path):
+    code = """
+import os, signal
+from gearfe.app.cli.shell import run
+from gearfe.core.files import written
+def work():
+    with written("x.csv") as name:
+        os.kill(os.getpid(), signal.SIGTERM)
+run(work)
+"""
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=ENVIRONMENT, check=False)
+    assert done.returncode == 128 + signal.SIGTERM
+    assert not list(tmp_path.iterdir())

@@ -135,8 +135,12 @@ def save_figure(figure, path, dpi):
     """Draw a matplotlib figure into a file, unless `path` is None; gives the figure back."""
     if path is not None:
         suffix_of(path, "picture")
-        for text in figure.findobj(lambda artist: hasattr(artist, "set_parse_math") and "$" in artist.get_text()):
-            text.set_parse_math("\\mathdefault" in text.get_text())  # a name of a file is no formula; a number of an axis may be
+        for text in figure.findobj(lambda artist: hasattr(artist, "set_parse_math")):
+            words = text.get_text().encode(errors="replace").decode()  # the name of a file may not be UTF-8
+            if words != text.get_text():
+                text.set_text(words)
+            if "$" in words:
+                text.set_parse_math("\\mathdefault" in words)  # a name of a file is no formula; a number of an axis may be
         with _drawing, written(path) as name:  # the fonts of matplotlib are shared by all threads
             figure.savefig(name, dpi=dpi)
     return figure

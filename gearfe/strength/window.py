@@ -6,6 +6,9 @@ import os
 import sys
 import threading
 
+from ..core.memory import free_memory
+
+ADDRESSES = 0.8e9  # bytes that VTK and its software renderer map for a picture of 1400 x 1050 pixels, measured
 RENDERER_HELP = (
     "rendering needs pyvista and, without a screen, EGL or OSMesa: "
     "'pip install pyvista' and, on Debian, 'apt-get install libgl1 libegl1'"
@@ -29,6 +32,12 @@ def drawing_library():
 @contextlib.contextmanager
 def plotting(**options):
     """A plotter without a screen, closed whatever happens; that of another thread waits until then."""
+    free = free_memory()
+    if free < ADDRESSES:
+        raise RuntimeError(
+            f"VTK needs about {ADDRESSES / 1e9:.1f} GB to draw, but {free / 1e9:.1f} GB are free: raise the limit of memory "
+            "(`ulimit -v`)"
+        )
     with _turn:
         plotter = drawing_library().Plotter(off_screen=True, **options)
         try:

@@ -4,7 +4,7 @@ Texts of files (titles, names of cases and columns, paths) are printed by every 
 that would steer the terminal are spelled out.
 
 0: done. 1: an input is impossible, or a file cannot be written; standard error says which. 2: wrong options (argparse). 130:
-interrupted. 141: the program that read the output has ended (as after SIGPIPE).
+interrupted. 143: terminated. 141: the program that read the output has ended (as after SIGPIPE).
 """
 
 import codecs
@@ -12,6 +12,7 @@ import contextlib
 import errno
 import os
 import re
+import signal
 import sys
 import warnings
 
@@ -62,8 +63,15 @@ def as_options(error, options):
     return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda match: f"--{match[1]}", text)
 
 
+def _end_tidily(number, _):
+    """Leave by an exception, so that temporary files are removed."""
+    raise SystemExit(128 + number)
+
+
 def run(work, options=()):
     """Do `work`, a function without arguments; returns the exit code. `options`: names of the verb's options."""
+    with contextlib.suppress(ValueError):  # not the main thread
+        signal.signal(signal.SIGTERM, _end_tidily)
     codecs.register_error("spelled", spelled)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):

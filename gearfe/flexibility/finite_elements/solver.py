@@ -18,6 +18,7 @@ A, L, P = 0, 4, 7  # what CHOLMOD solves with: all of it, the lower factor, the 
 # and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
 BLOCK = 2**27
 MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] of n and n**(4/3), with and without METIS, see `plan`
+PLANE = 8000.0  # bytes for each unknown of a plane body that is factored, 7300 measured
 SECONDS = {True: (5e-5, 1.9e-10, 5e-9), False: (5e-5, 3.2e-10, 6e-9)}  # of n, n**2 and n**(4/3) for each right-hand side
 
 
@@ -113,8 +114,13 @@ def factor(matrix, plan_=None, *, node=3):
     from cvxopt import cholmod, sparse, spmatrix
     from cvxopt import matrix as dense
 
-    if node == 3:  # the memory of a plane body never matters
+    if node == 3:
         reached(f"solving {plan_ or plan(matrix.shape[0])}", 0.0)
+    elif (free := free_memory()) < PLANE * matrix.shape[0]:  # CHOLMOD would end the process
+        raise RuntimeError(
+            f"{matrix.shape[0]} unknowns need about {PLANE * matrix.shape[0] / 1e9:.2g} GB, but {free / 1e9:.2g} GB are free: "
+            "raise the limit of memory (`ulimit -v`), or give a smaller refine"
+        )
     lower = csc_array(tril(matrix, format="csc"), dtype=float)
     lower.sum_duplicates()
     if not (lower.diagonal() > 0).all():
