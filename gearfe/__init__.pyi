@@ -100,7 +100,7 @@ from .runs.sweeps.effects import curve_bands as curve_bands
 from .runs.sweeps.effects import main_effects as main_effects
 from .runs.sweeps.effects import sobol_indices as sobol_indices
 from .runs.sweeps.effects import told_apart as told_apart
-from .runs.sweeps.plan import plan_sweep as plan_sweep
+from .runs.sweeps.run import plan_sweep as plan_sweep
 from .runs.sweeps.run import sweep as sweep
 from .runs.sweeps.runs import Runs as Runs
 from .runs.sweeps.runs import open_runs as open_runs
@@ -113,7 +113,6 @@ from .signal.gear_indicators import gear_indicator_table as gear_indicator_table
 from .signal.gear_indicators import gear_indicators as gear_indicators
 from .signal.indicator_table import indicator_table as indicator_table
 from .signal.kurtogram import fast_kurtogram as fast_kurtogram
-from .signal.kurtogram import spectral_kurtosis as spectral_kurtosis
 from .signal.mesh_modulation import mesh_modulation as mesh_modulation
 from .signal.orders import order_spectrum as order_spectrum
 from .signal.orders import residual_signal as residual_signal
