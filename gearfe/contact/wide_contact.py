@@ -40,19 +40,19 @@ class Contact3D:
     of the hubs give way [mm], the mean over the loads. `error` contains what is unsure of `Carried`.
     """
 
-    phase: NDArray[np.float64]
-    k: NDArray[np.float64]
-    approach: NDArray[np.float64]
+    phase: NDArray
+    k: NDArray
+    approach: NDArray
     order: NDArray[np.int64]
-    load: NDArray[np.float64]
+    load: NDArray
     cells: tuple[Cells, ...]
     dofs: tuple[int, int]
     closed: tuple[int, ...] = ()
     fillet: tuple[int, ...] = ()
-    error: NDArray[np.float64] | None = None
-    unloaded: NDArray[np.float64] | None = None
-    k_tangent: NDArray[np.float64] | None = None
-    supports: NDArray[np.float64] | None = None
+    error: NDArray | None = None
+    unloaded: NDArray | None = None
+    k_tangent: NDArray | None = None
+    supports: NDArray | None = None
 
 
 def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, error=False, cache=True):

@@ -24,13 +24,11 @@ from .step_control import (
     beginning,
     chosen_step,
     default_step,
-    difference,
-    differences,
+    deviation,
     estimate,
     estimate_along,
     is_rough,
     longest_seen,
-    seen,
     unseen,
 )
 from .thinned import stages, thinned
@@ -258,9 +256,8 @@ class _Runs:
             return out
         length = float(self.duration)
         if error:
-            finer = self(2 * every)
-            *moved, shaken = differences(seen(out), seen(finer), self.machine)
-            found = Estimate(max(moved), False, length, 0.0, shaken)
+            moved, shaken = deviation(out, self(2 * every))
+            found = Estimate(moved, False, length, 0.0, shaken)
         else:
             try:
                 place, span = beginning(self.machine, self.duration, self.own, self.start)
@@ -297,8 +294,7 @@ class _Runs:
         for _ in range(FINER):
             every *= 2
             finer = self(every, adapt=True)
-            *moved, shaken = differences(seen(out), seen(finer), self.machine)
-            out, doubt = finer, max(moved)
+            (doubt, shaken), out = deviation(out, finer), finer
             if doubt <= (ALLOWED if out.stats["losses"] else WHOLE):
                 break
         if doubt <= ALLOWED or not out.stats["losses"]:
@@ -306,14 +302,14 @@ class _Runs:
         h = out.stats["dt"]
         why = f"contact is lost and two runs of the fast path, with steps of {2 * h:.3g} s and half of it, differ by {doubt:.2g}"
         rest = np.concatenate([self.machine.rest(self.start), np.zeros(len(self.machine.dofs))])
-        grown = max(difference(self(every, self.state + NUDGE * (self.state + rest), adapt=True), out))
+        grown, _ = deviation(self(every, self.state + NUDGE * (self.state + rest), adapt=True), out)
         if grown > GROWN:
             why += f" of the range, and two whose start differs by {NUDGE:g} by {grown:.2g}: no integration can follow the motion"
             why += " for so long; trust its averages and spectra, or shorten the run"
             return told(out, chaotic=why, error=doubt, error_seconds=length)
         start = self.start
         want = _reference(self.machine, self.duration, self.count, self.state, "DOP853", 1e-10, start, self.filtered)
-        return told(want, switched=f"{why} of the range", error=max(difference(out, want)), error_seconds=length)
+        return told(want, switched=f"{why} of the range", error=deviation(out, want)[0], error_seconds=length)
 
 
 def _check(machine, duration, method, rate, step, dt, start, every):
