@@ -5,9 +5,10 @@ import math
 import numpy as np
 
 import gearfe as gf
-from gearfe.dynamics.machine.gear_mesh import GearMesh, Samples, cycle_table
+from gearfe.dynamics.machine.gear_mesh import GearMesh
 from gearfe.dynamics.machine.herringbone_planetary import herringbone_planetary
 from gearfe.dynamics.machine.loads import Load
+from gearfe.dynamics.machine.mesh_curves import Samples, cycle_table
 from gearfe.dynamics.machine.springs import Spring
 from gearfe.dynamics.machine.tables import Machine
 from gearfe.dynamics.motion.step_control import differences, seen

@@ -20,6 +20,7 @@ from .cells import Cells
 from .corner import in_fillet
 from .phase_contact import PhaseContact
 from .thinned import unmodelled
+from .unloaded import least_gap
 
 STEP = 0.2  # longest cell along the width [m_n]
 LONGER = 2  # cells that become one in the coarser solution that the error estimate compares with
@@ -158,7 +159,7 @@ def _solved(contact, phase, bodies):
     fillet = tuple(
         i for i, loaded in enumerate(cells) if (in_fillet(contact.pair, loaded.roll_1, loaded.roll_2) & (loaded.load > 0)).any()
     )
-    unloaded = contact.unloaded(cells)
+    unloaded = least_gap(contact, cells)
     k = 1e3 * contact.force / (approach - unloaded)
     supports = None if contact.hubs is None else np.array([loaded.given for loaded in carried])
     unsure = k * np.array([loaded.unsure for loaded in carried])

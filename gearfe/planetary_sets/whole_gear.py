@@ -72,24 +72,24 @@ class WholeGear:
         """`between` loads with the edge held."""
         return self.between(self.held_inverse())
 
-    def moved(self, inverse: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    def moved(self, inverse: NDArray[np.complex128]) -> NDArray:
         """Displacements of the edge by harmonic ``(h, r, 2 PLACES + r)``, under the loads and under forces on itself."""
         edge = inverse[:, : self.edge]
         return np.concatenate([edge @ self.push, edge[:, :, : self.edge]], axis=2)
 
-    def held_inverse(self) -> NDArray[np.complex128]:
+    def held_inverse(self) -> NDArray:
         """Inverses ``(h, n, n)`` of the stiffness with the edge held: 0 there."""
         out, inner = np.zeros_like(self.stiffness), slice(self.edge, None)
         out[:, inner, inner] = np.linalg.inv(self.stiffness[:, inner, inner])
         return out
 
-    def bedded_inverse(self, stiffness: NDArray) -> NDArray[np.complex128]:
+    def bedded_inverse(self, stiffness: NDArray) -> NDArray:
         """Inverses if springs hold the edge: radial and tangential [N/mm per mm of edge, per mm of width]."""
         springs = self.stiffness.copy()
         springs[:, : self.edge, : self.edge] += self.bed * np.tile(stiffness, self.edge // 2)
         return np.linalg.inv(springs)
 
-    def loose_inverse(self) -> NDArray[np.complex128]:
+    def loose_inverse(self) -> NDArray:
         """Inverses if nothing holds the edge, without the motions of the whole gear.
 
         Forces on the edge are to be in balance with those on the teeth.

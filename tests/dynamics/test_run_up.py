@@ -8,8 +8,8 @@ from machines import difference, two_masses
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.dynamics.machine.gear_mesh import ToothDamage
 from gearfe.dynamics.machine.speed import Speed
+from gearfe.dynamics.machine.tooth_damage import ToothDamage
 from gearfe.dynamics.motion.simulate import simulate
 from gearfe.dynamics.motion.step_control import stretch
 

@@ -9,9 +9,9 @@ from numpy.testing import assert_allclose
 from scipy.linalg import expm
 
 import gearfe as gf
-from gearfe.dynamics.machine.gear_mesh import ToothDamage
 from gearfe.dynamics.machine.pitted_planetary import pitted_planetary
 from gearfe.dynamics.machine.springs import Spring
+from gearfe.dynamics.machine.tooth_damage import ToothDamage
 from gearfe.dynamics.motion import simulate as dynamics
 from gearfe.dynamics.motion import step_control
 from gearfe.dynamics.motion.fixed_step import fixed_steps

@@ -11,9 +11,9 @@ import numpy as np
 from ...core.record import ranged
 from ...geometry.pair.planetary import PlanetarySet
 from .contact_cycle import friction_weights
-from .gear_mesh import Stiffness
 from .loads import History
 from .member import Member, disc
+from .mesh_curves import Stiffness
 from .planetary import (
     HOMES,
     carrier_and_mesh,
