@@ -24,9 +24,9 @@ class Bodies(NamedTuple):
     `faces` are the cracks, by the gear's name as of `PlanetaryCase`.
     """
 
-    sun: NDArray[np.float64]
-    planet: NDArray[np.float64]
-    ring: NDArray[np.float64]
+    sun: NDArray
+    planet: NDArray
+    ring: NDArray
     rim: Rim
     faces: dict[Any, Faces]
 
@@ -42,17 +42,17 @@ class Position(NamedTuple):
     of its cracks. `shut`: whether faces of a crack touch.
     """
 
-    loads: NDArray[np.float64]
-    closing: NDArray[np.float64]
-    rim: NDArray[np.float64]
-    gap: NDArray[np.float64]
+    loads: NDArray
+    closing: NDArray
+    rim: NDArray
+    gap: NDArray
     turn: float
-    orbit: NDArray[np.float64]
+    orbit: NDArray
     pairs: list[tuple[int, int, int, int, float]]
-    on_ring: NDArray[np.float64]
-    lugs: NDArray[np.float64]
-    whole: NDArray[np.float64]
-    opened: NDArray[np.float64]
+    on_ring: NDArray
+    lugs: NDArray
+    whole: NDArray
+    opened: NDArray
     shut: bool
 
 
@@ -64,7 +64,7 @@ class _Block(NamedTuple):
     planet: int
     at: slice
     teeth: tuple[NDArray[np.int64], NDArray[np.int64]]
-    spread: tuple[NDArray[np.float64], NDArray[np.float64]]
+    spread: tuple[NDArray, NDArray]
 
 
 class Set:

@@ -30,16 +30,16 @@ class Problem(NamedTuple):
     `gap`, `coefficient`, `radius`, `modulus` and `tilt` ``(n,)`` as of `gearfe.contact.sharing.line_contact`.
     """
 
-    flexibility: NDArray[np.float64]
-    gap: NDArray[np.float64]
-    coefficient: NDArray[np.float64]
-    radius: NDArray[np.float64]
-    modulus: NDArray[np.float64]
-    tilt: NDArray[np.float64]
-    closing: NDArray[np.float64]
-    load: NDArray[np.float64]
+    flexibility: NDArray
+    gap: NDArray
+    coefficient: NDArray
+    radius: NDArray
+    modulus: NDArray
+    tilt: NDArray
+    closing: NDArray
+    load: NDArray
 
-    def with_more(self, flexibility: NDArray[np.float64], closing: NDArray[np.float64]) -> "Problem":
+    def with_more(self, flexibility: NDArray, closing: NDArray) -> "Problem":
         """The same with m more contacts, without gaps and logarithms: `flexibility` ``(n + m, n + m)`` is all that they yield.
 
         `closing` ``(n + m, motions)``.
@@ -50,7 +50,7 @@ class Problem(NamedTuple):
         return self._replace(flexibility=flexibility, closing=closing, **values)
 
 
-def balance(problem: Problem) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def balance(problem: Problem) -> tuple[NDArray, NDArray]:
     """Forces ``(n,)`` [N/mm] and motions of a `Problem`.
 
     Contacts that would pull are left out and those that would overlap are taken in, all at once; where that does not settle, one

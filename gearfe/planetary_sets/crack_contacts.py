@@ -19,13 +19,13 @@ class CrackContacts(NamedTuple):
     those of the ring.
     """
 
-    more: NDArray[np.float64]
-    by_loads: NDArray[np.float64]
-    ease: NDArray[np.float64]
+    more: NDArray
+    by_loads: NDArray
+    ease: NDArray
     touch: NDArray[np.bool_]
     ring: slice
 
-    def overlap(self, opened: NDArray[np.float64]) -> bool:
+    def overlap(self, opened: NDArray) -> bool:
         """Whether faces that may touch overlap."""
         return bool(opened[self.touch].min() < -OVERLAP * np.abs(opened).max())
 

@@ -30,9 +30,9 @@ class CrackedTooth(NamedTuple):
 
     tooth: int
     side: NDArray[np.int64]
-    sides: NDArray[np.float64]
-    faces: NDArray[np.float64]
-    loads: NDArray[np.float64]
+    sides: NDArray
+    faces: NDArray
+    loads: NDArray
     touch: NDArray[np.bool_]
 
 
@@ -44,12 +44,12 @@ class Faces(NamedTuple):
     `released` ``(e, z, PLACES)`` is what its support adds to Q.
     """
 
-    stiffness: NDArray[np.float64]
-    by_teeth: NDArray[np.float64]
+    stiffness: NDArray
+    by_teeth: NDArray
     touch: NDArray[np.bool_]
-    edge: NDArray[np.float64]
-    pads: NDArray[np.float64]
-    released: NDArray[np.float64]
+    edge: NDArray
+    pads: NDArray
+    released: NDArray
 
 
 def cracked_teeth(whole: WholeGear, cracks: Any, refine: float) -> tuple[CrackedTooth, ...]:

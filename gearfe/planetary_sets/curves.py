@@ -59,19 +59,19 @@ class SetCurves:
         positions at which faces of a crack touch. ``"seconds_flexibility"``, ``"seconds_contact"``: time taken [s].
     """
 
-    position: NDArray[np.float64]
-    force: NDArray[np.float64]
-    k: NDArray[np.float64]
-    k_alone: NDArray[np.float64]
-    rim: NDArray[np.float64]
-    gap: NDArray[np.float64]
-    te: NDArray[np.float64]
-    orbit: NDArray[np.float64]
-    pair_force: NDArray[np.float64]
+    position: NDArray
+    force: NDArray
+    k: NDArray
+    k_alone: NDArray
+    rim: NDArray
+    gap: NDArray
+    te: NDArray
+    orbit: NDArray
+    pair_force: NDArray
     tooth: NDArray[np.int64]
     order: NDArray[np.int64]
-    ring_angle: NDArray[np.float64]
-    ring_moved: NDArray[np.float64]
+    ring_angle: NDArray
+    ring_moved: NDArray
     meta: dict[str, Any] = field(default_factory=dict)
 
     def __repr__(self):
@@ -81,7 +81,7 @@ class SetCurves:
         return f"<SetCurves: {self.force.shape[2]} planets, {self.position.size} positions, {told}, K_gamma {self.K_gamma:.4g}>"
 
     @property
-    def share(self) -> NDArray[np.float64]:
+    def share(self) -> NDArray:
         """Load of each mesh over the mean load of its kind ``(2, p, planets)``: 1 where all planets carry the same."""
         return self.force / self.force.mean(axis=2, keepdims=True)
 
@@ -91,7 +91,7 @@ class SetCurves:
         return float(self.share.max())
 
     @property
-    def k_without_rim(self) -> NDArray[np.float64]:
+    def k_without_rim(self) -> NDArray:
         """`k` without the share of `rim` [N/m]: for machines in which the ring is a body on springs of its own."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(self.k > 0, self.force / (self.force / self.k - self.rim), 0.0)
@@ -105,7 +105,7 @@ class SetCurves:
         return draw_curves(self, path, dpi=dpi)
 
     @classmethod
-    def of(cls, of: Any, meshes: Any, position: NDArray[np.float64], found: list[Any], meta: dict[str, Any]) -> "SetCurves":
+    def of(cls, of: Any, meshes: Any, position: NDArray, found: list[Any], meta: dict[str, Any]) -> "SetCurves":
         """From solved positions, `gearfe.planetary_sets.assembly.Position`."""
         case, p = of.case, len(found)
         width, n = case.width, case.planets

@@ -37,9 +37,9 @@ class SetDeck:
 
     case: PlanetaryCase
     held: list[NDArray[np.int64]]
-    place: list[NDArray[np.float64]]
+    place: list[NDArray]
     rim: NDArray[np.int64]
-    around: NDArray[np.float64]
+    around: NDArray
     angle: float
 
     def forces(self, path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -69,7 +69,7 @@ class SetDeck:
             "inner": loads[1],
         }
 
-    def moved(self, path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def moved(self, path: str | os.PathLike[str]) -> tuple[NDArray, NDArray]:
         """Angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad]; how they move outwards, clockwise ``(n, 2)`` [mm]."""
         displacements = read_rows(path, "displacements")
         u = np.array([displacements[n] for n in self.rim.tolist()])[:, :2]

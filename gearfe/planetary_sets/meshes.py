@@ -33,15 +33,15 @@ class Contacts(NamedTuple):
     up to `reach` beyond it may close.
     """
 
-    flexibility: NDArray[np.float64]
-    gap: NDArray[np.float64]
-    coefficient: NDArray[np.float64]
-    radius: NDArray[np.float64]
-    tilt: NDArray[np.float64]
-    roll_1: NDArray[np.float64]
-    roll_2: NDArray[np.float64]
-    turn_1: NDArray[np.float64]
-    turn_2: NDArray[np.float64]
+    flexibility: NDArray
+    gap: NDArray
+    coefficient: NDArray
+    radius: NDArray
+    tilt: NDArray
+    roll_1: NDArray
+    roll_2: NDArray
+    turn_1: NDArray
+    turn_2: NDArray
     order: NDArray[np.int64]
     least: float
     reach: float
@@ -91,7 +91,7 @@ class Meshes:
         differs = faults(self.case, bool(inner), planet, int(self._firsts[inner][planet]))[2]
         return inner, planet, differs, None if differs else self.case.flanks.get(("planet", planet))
 
-    def at(self, i: int, loads: NDArray[np.float64], reach: NDArray[np.float64]) -> list[list[Met]]:
+    def at(self, i: int, loads: NDArray, reach: NDArray) -> list[list[Met]]:
         """`Met` of all meshes at position i by ``[inner][planet]``, for loads [N/mm] and approaches [mm] ``(2, planets)``."""
         return [[self._met(i, k, p, float(loads[k, p]), float(reach[k, p])) for p in range(self.case.planets)] for k in (0, 1)]
 

@@ -28,10 +28,10 @@ class Pads:
     `moved` are the edge's displacements by harmonic, as of `WholeGear.loose`.
     """
 
-    load: NDArray[np.float64]
-    close: NDArray[np.float64]
-    turns: NDArray[np.float64]
-    compliance: NDArray[np.float64]
+    load: NDArray
+    close: NDArray
+    turns: NDArray
+    compliance: NDArray
     moved: NDArray[np.complex128]
 
 

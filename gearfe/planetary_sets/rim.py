@@ -40,15 +40,15 @@ class Rim:
     """
 
     whole: WholeGear
-    more: NDArray[np.float64]
+    more: NDArray
     pads: Pads | None = None
-    reaction: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    moves: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    lug: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
-    across: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    turns: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
-    gives: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    grip: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
+    reaction: NDArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    moves: NDArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    lug: NDArray = field(default_factory=lambda: np.zeros((0, 0)))
+    across: NDArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    turns: NDArray = field(default_factory=lambda: np.zeros((0, 0)))
+    gives: NDArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    grip: NDArray = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: float) -> Rim:
@@ -118,7 +118,7 @@ def _moves(gear):
     return np.array([cos * x + sin * y, cos * y - sin * x, np.broadcast_to(turn, (gear.z, PLACES))])
 
 
-def rim_moved(rim: Rim, loads: NDArray[np.float64], tractions: NDArray, whole: NDArray) -> NDArray[np.float64]:
+def rim_moved(rim: Rim, loads: NDArray, tractions: NDArray, whole: NDArray) -> NDArray:
     """Displacement ``(nodes, 2)`` of the rim's nodes, outwards and clockwise [mm]; their angles are those of `rim_angles`.
 
     Of a ring on pads under `loads` ``(z, PLACES)`` on the teeth and `tractions` ``(p,)`` of the pads [N/mm], moved as a `whole`
@@ -135,7 +135,7 @@ def rim_moved(rim: Rim, loads: NDArray[np.float64], tractions: NDArray, whole: N
     return moved + np.column_stack([sin * x + cos * y, cos * x - sin * y + gear.held * turn])
 
 
-def rim_angles(whole: WholeGear) -> NDArray[np.float64]:
+def rim_angles(whole: WholeGear) -> NDArray:
     """Angles of all nodes of the rim, clockwise from the centre-line of tooth 0 [rad]."""
     sectors = 2 * math.pi / whole.gear.z * np.arange(whole.gear.z)
     return (sectors[:, None] + whole.angle).ravel()

@@ -33,10 +33,10 @@ class Shape(NamedTuple):
     stress at the nodes [MPa].
     """
 
-    place: NDArray[np.float64]
-    moved: NDArray[np.float64]
+    place: NDArray
+    moved: NDArray
     triangles: NDArray[np.int64]
-    stress: NDArray[np.float64]
+    stress: NDArray
 
 
 def plot_planetary_set(
@@ -76,7 +76,7 @@ def plot_planetary_set(
     return draw_set(shapes, supports, path, magnified=magnified, dpi=dpi)
 
 
-def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[list[Shape], NDArray[np.float64] | None]]:
+def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[list[Shape], NDArray | None]]:
     """At each of these positions, by their numbers: `Shape` of every gear, and where the ring is held ``(2, n)`` [mm].
 
     The latter is None if it is held all around; pads turn with the ring, since the carrier stands still. Each gear is meshed and
@@ -90,7 +90,7 @@ def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[lis
     made = []
     for k, same in enumerate(steps(list(zip(*bodies, strict=True)))):
         made.append(_shapes(case, same, [[side for side in one if side["body"] == k] for one in sides]))
-    pads: list[NDArray[np.float64] | None] = [None] * len(bodies)
+    pads: list[NDArray | None] = [None] * len(bodies)
     if case.ring != "held":
         pads = [cartesian(1.03 * case.ring_gear.r_rim, case.ring.middles + there[-1][3]) for there in bodies]
     return [(list(one), held) for one, held in zip(zip(*made, strict=True), pads, strict=True)]

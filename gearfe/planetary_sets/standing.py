@@ -33,13 +33,13 @@ class Standing:
     planet's tooth 0.
     """
 
-    outer: NDArray[np.float64]
-    inner: NDArray[np.float64]
+    outer: NDArray
+    inner: NDArray
     planet: NDArray[np.int64]
     ring: NDArray[np.int64]
 
 
-def assembled(set_: "PlanetarySet", angles: ArrayLike) -> NDArray[np.float64]:
+def assembled(set_: "PlanetarySet", angles: ArrayLike) -> NDArray:
     """Planets' angles, checked [rad].
 
     ValueError if teeth do not fit there, or neighbours touch; the message gives the nearest angles that fit.
@@ -63,7 +63,7 @@ def assembled(set_: "PlanetarySet", angles: ArrayLike) -> NDArray[np.float64]:
     return places
 
 
-def standing(set_: "PlanetarySet", angles: NDArray[np.float64], position: ArrayLike) -> Standing:
+def standing(set_: "PlanetarySet", angles: NDArray, position: ArrayLike) -> Standing:
     """`Standing` of a set whose sun is turned by `position` ``(n,)`` of its pitches.
 
     At position 0 planet 0 and the sun are at mesh phase 0, with tooth 0 of both; ring tooth 0 is that of the newest pair of
@@ -99,7 +99,7 @@ def _turn_2(pair, nominal):
     return pair.turn(middle)[1] - pair.outward * (nominal - middle) / pair.gear_2.r_b
 
 
-def tooth_angles(set_: "PlanetarySet", angles: NDArray[np.float64], stand: Standing) -> tuple[float, NDArray[np.float64], float]:
+def tooth_angles(set_: "PlanetarySet", angles: NDArray, stand: Standing) -> tuple[float, NDArray, float]:
     """Clockwise angles of tooth 0 of sun, planets ``(planets,)`` and ring [rad] at the first position of `stand`."""
     sun_planet, planet_ring = set_.sun_planet, set_.planet_ring
     sun = angles[0] + _turn_1(sun_planet, sun_planet.path[0] + stand.outer[0, 0] * sun_planet.p_bt)
@@ -108,7 +108,7 @@ def tooth_angles(set_: "PlanetarySet", angles: NDArray[np.float64], stand: Stand
     return float(sun), planets, float(at_ring - 2 * math.pi / set_.ring.z * stand.ring[0])
 
 
-def directions(set_: "PlanetarySet", angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def directions(set_: "PlanetarySet", angles: NDArray) -> tuple[NDArray, NDArray]:
     """Unit forces ``(2, planets)`` on the planets, along x and y: of the sun, and of the ring."""
     cos, sin = np.cos(angles), np.sin(angles)
 

@@ -53,14 +53,14 @@ class WholeGear:
     stiffness: NDArray[np.complex128]
     push: NDArray[np.complex128]
     bed: NDArray[np.complex128]
-    angle: NDArray[np.float64]
+    angle: NDArray
 
     @property
     def edge(self) -> int:
         """Unknowns of the held edge of a sector."""
         return 2 * self.angle.size
 
-    def held(self) -> NDArray[np.float64]:
+    def held(self) -> NDArray:
         """Displacement ``(z, 2 PLACES, 2 PLACES)`` [mm per N/mm] of the loads of tooth d by those of tooth 0, its edge held.
 
         Of tooth 0 itself only what passes through the sides of its sector.
@@ -68,11 +68,11 @@ class WholeGear:
         inner = slice(self.edge, None)
         return self._turned(self._yields(self.stiffness[:, inner, inner], self.push[:, inner], self.push[:, inner]))
 
-    def bedded(self, stiffness: NDArray[np.float64]) -> NDArray[np.float64]:
+    def bedded(self, stiffness: NDArray) -> NDArray:
         """What is added to `held` if springs hold the edge: radial and tangential [N/mm per mm of edge, per mm of width]."""
         return self._turned(self._yields(self._springs(stiffness), self.push, self.push)) - self.held()
 
-    def loose(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+    def loose(self) -> tuple[NDArray, NDArray[np.complex128]]:
         """What is added to `held` if nothing holds the edge, and how forces on the edge move the loads and the edge.
 
         Forces are to be in balance with those on the teeth; the motion of the whole gear is left out. Given are ``(z, 2 PLACES, 2
@@ -91,7 +91,7 @@ class WholeGear:
         out[:, inner, inner] = np.linalg.inv(self.stiffness[:, inner, inner])
         return out
 
-    def bedded_inverse(self, stiffness: NDArray[np.float64]) -> NDArray[np.complex128]:
+    def bedded_inverse(self, stiffness: NDArray) -> NDArray[np.complex128]:
         """Inverses with the springs of `bedded` on the edge."""
         return np.linalg.inv(self._springs(stiffness))
 

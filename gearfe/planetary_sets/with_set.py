@@ -166,7 +166,7 @@ def _still(machine):
     )
 
 
-def ring_springs(case: Any) -> NDArray[np.float64]:
+def ring_springs(case: Any) -> NDArray:
     """Stiffness of a rigid ring on the bed or the pads of a `PlanetaryCase` in x, y and its turn [N/m, N m/rad]; inf: rigid.
 
     Of n pads, radial k_r and tangential k_t: ``n (k_r + k_t) / 2`` and ``n k_t R**2``; of a bed the same with its length for n.

@@ -38,8 +38,8 @@ class Campbell:
         By rising speed.
     """
 
-    speed: NDArray[np.float64]
-    natural: NDArray[np.float64]
+    speed: NDArray
+    natural: NDArray
     orders: dict[str, float]
     crossings: tuple[Crossing, ...]
 

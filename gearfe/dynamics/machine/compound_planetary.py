@@ -2,8 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from .gear_mesh import GearMesh, Stiffness
 from .layout import Body, Layout, around, through
 from .member import disc
 from .planetary import teeth_damaged
-from .scene_curves import Meshed, scene_curves, speed_of
+from .scene_curves import Meshed, scene_machine
 from .tables import Load, Machine, Stage
 
 SCENE_PAIRS = {  # by kind of mesh (b inner, c outer planet of stage 2), the pair of a scene
@@ -34,17 +33,23 @@ HOMES = {  # by pair of a scene, the bodies whose teeth damage is in unless it n
 def scene_compound(scene, case, **options):
     """Machine of a scene: the stiffness curves of its pairs."""
     pairs, n = scene_pairs(scene), scene.machine["n_planets"]
-    meshes = {name: mesh._replace(pair=SCENE_PAIRS[mesh.pair]) for name, mesh in _meshes(compound_table(pairs, n)).items()}
-    found = scene_curves(scene, case, options, meshes, HOMES)
-    healthy = {kind: found.healthy[name] for kind, name in SCENE_PAIRS.items()}
-    settings = {"speed": speed_of(scene), "torque": scene.machine["torque_Nm"], "n_planets": n}
-    made = compound_planetary(healthy, pairs=pairs, damage=found.damage, **settings)
-    return replace(made, faults=found.faults(made))
+    meshes = {name: mesh.of._replace(pair=SCENE_PAIRS[mesh.of.pair]) for name, mesh in compound_table(pairs, n).items()}
+
+    def build(healthy, **options):
+        stiffness = {kind: healthy[name] for kind, name in SCENE_PAIRS.items()}
+        return compound_planetary(stiffness, pairs=pairs, n_planets=n, **options)
+
+    return scene_machine(scene, case, options, meshes, HOMES, build)
 
 
-def _meshes(table):
-    """`Meshed` of the meshes of a `compound_table`; planets are called ``p1``, ``b1``, ``c1`` and so on."""
-    return {name: Meshed(kind, bodies, fields["first"]) for name, (kind, bodies, _, fields) in table.items()}
+class _Mesh(NamedTuple):
+    """A mesh of the gearbox: what meshes, its angle [rad] and sense as of `Layout.mesh`, phase at t = 0 and frequency [Hz]."""
+
+    of: Meshed
+    angle: float
+    sense: int
+    phase: float
+    rate: float
 
 
 def scene_pairs(scene):
@@ -74,34 +79,20 @@ def branch(pairs):
 
 
 def compound_table(pairs, n_planets, rates=(1.0, 1.0)):
-    """All meshes as rows ``name: (bodies, geometry, mesh)``.
+    """All meshes by name; `rates` are the signed mesh frequencies of both stages [Hz], negative where gear 2 drives.
 
-    Parameters
-    ----------
-    pairs : dict of GearPair
-    n_planets : int
-    rates : (float, float)
-        Signed mesh frequencies of both stages [Hz]; negative where gear 2 drives.
-
-    Returns
-    -------
-    dict
-        `geometry` are arguments of `machine.layout.Layout.mesh` and `mesh` fields of `machine.gear_mesh.GearMesh`:
-        phases by `gearfe.dynamics.machine.layout.around` and `through`, 0 for the first mesh of each sun at t = 0.
+    Phases are those of `gearfe.dynamics.machine.layout.around` and `through`, 0 for the first mesh of each sun at t = 0.
     """
     inner, outer, ahead = branch(pairs)
-    out = {}
+    out: dict[str, _Mesh] = {}
 
     def add(kind, bodies, angle, sense, phase, rate):
-        pair, first = pairs[kind], (0, 0)
+        first = (0, 0)
         if bodies[1] == "ring":  # its teeth are numbered as branch 1 meets them
-            base = next((row[3]["phase"] for row in out.values() if row[0] == kind), phase)
-            first = (0, _whole(around(base, pair.gear_2.z, sense, 2 * math.pi * i / n_planets) - phase, kind))
-        gear_1, gear_2 = pair.gear_1, pair.gear_2
-        radii = 1e-3 * gear_1.r_b, 1e-3 * gear_2.r_b
-        place = {"angle": angle, "alpha": pair.alpha_w, "radii": radii, "sense": sense, "internal": gear_2.internal}
-        fields = {"frequency": rate, "phase": float(phase), "teeth": (gear_1.z, gear_2.z), "first": first}
-        out["_".join(bodies)] = (kind, bodies, place, fields)
+            base = next((row.phase for row in out.values() if row.of.pair == kind), phase)
+            z = pairs[kind].gear_2.z
+            first = (0, _whole(around(base, z, sense, 2 * math.pi * i / n_planets) - phase, kind))
+        out["_".join(bodies)] = _Mesh(Meshed(kind, bodies, first), angle, sense, float(phase), rate)
 
     for i, angle in enumerate(2 * math.pi * np.arange(n_planets) / n_planets):
         p, b, c = (f"{name}{i + 1}" for name in "pbc")
@@ -196,53 +187,54 @@ def compound_planetary(
     rates = -turn * suns[0].z / (2 * math.pi), (speed - turn) * suns[1].z / (2 * math.pi)
     table = compound_table(pairs, n_planets, rates)
     layout, springs = _bodies(pairs, n_planets, (density, bearing, zeta, hold, drive))
-    meshes, hurt = [], teeth_damaged(damage, _meshes(table))
-    for name, (kind, bodies, place, fields) in table.items():
-        row = layout.mesh(*bodies, **place)
-        meshes.append(GearMesh(name, row, stiffness[kind], damage=hurt[name], **({"beta": beta} | fields | mesh)))
+    meshes, hurt = [], teeth_damaged(damage, {name: row.of for name, row in table.items()})
+    for name, ((kind, bodies, first), angle, sense, phase, rate) in table.items():
+        row = layout.pair_mesh(*bodies, pairs[kind], angle, sense=sense)
+        fields = {"frequency": rate, "phase": phase, "teeth": _teeth(pairs[kind]), "first": first, "damage": hurt[name]}
+        meshes.append(GearMesh(name, row, stiffness[kind], **{"beta": beta} | fields | mesh))
     arms = [1e-3 * g.r_b for g in suns]
     rings = pairs["c_ring"].gear_2.r_b / pairs["p_ring"].gear_2.r_b  # force in stage 1 over that in stage 2
     driven = torque * arms[1] / (arms[1] + rings * arms[0])
     loads = Load("drive", layout.unit("sun2", "theta"), driven), Load("load", layout.unit("carrier", "theta"), -torque)
-    phases = {name: fields["phase"] for name, (_, _, _, fields) in table.items()}
+    carrier, stages = turn / (2 * math.pi), []
+    for i, (planet, rate, gear, returns) in enumerate(zip(("p1", "b1"), rates, suns, _returns(table, pairs), strict=True)):
+        turning = abs(rate) / gear.z
+        ends = (f"sun{i + 1}",), (planet,)
+        stages.append(Stage(f"stage {i + 1}", *ends, abs(rate), turning, n_planets * turning, carrier, returns))
     notes = {
-        "mesh frequencies [Hz]": tuple(abs(r) for r in rates),
-        "fault frequencies of sun teeth [Hz]": tuple(n_planets * abs(r) / g.z for r, g in zip(rates, suns, strict=True)),
-        "carrier frequency [Hz]": turn / (2 * math.pi),
-        "phases": phases,
+        "mesh frequencies [Hz]": tuple(stage.mesh for stage in stages),
+        "fault frequencies of sun teeth [Hz]": tuple(stage.fault for stage in stages),
+        "carrier frequency [Hz]": carrier,
+        "phases": {name: row.phase for name, row in table.items()},
         "relative phases": relative_phases(table),
     }
-    stages = tuple(
-        Stage(
-            f"stage {i + 1}", (f"sun{i + 1}",), (planet,), abs(rate), abs(rate) / gear.z, n_planets * abs(rate) / gear.z,
-            turn / (2 * math.pi), returns,
-        )
-        for i, (planet, rate, gear, returns) in enumerate(zip(("p1", "b1"), rates, suns, _returns(table, rates), strict=True))
-    )  # fmt: skip
-    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), loads, notes, stages)
+    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), loads, notes, tuple(stages))
 
 
-def _returns(table, rates):
+def _teeth(pair):
+    return pair.gear_1.z, pair.gear_2.z
+
+
+def _returns(table, pairs):
     """How often a tooth meshes [Hz], by body of both stages; a ring that both have is of the driven one."""
     out = [{}, {}]
-    for kind, bodies, _, fields in table.values():
-        stage = 0 if kind in KINDS[:2] else 1
-        for body, z in zip(bodies, fields["teeth"], strict=True):
+    for (kind, bodies, _), *_, rate in table.values():
+        for body, z in zip(bodies, _teeth(pairs[kind]), strict=True):
             central = body.startswith(("sun", "ring"))
-            many = sum(body in row[1] and row[0] == kind for row in table.values()) if central else 1
-            out[stage][body] = many * abs(rates[stage]) / z
+            many = sum(body in row.of.bodies and row.of.pair == kind for row in table.values()) if central else 1
+            out[kind not in KINDS[:2]][body] = many * abs(rate) / z
     return out
 
 
 def relative_phases(table):
     """Phases less whole cycles, each relative to the first mesh of its kind and to the sun's mesh of its branch, in cycles."""
+    by_kind = {kind: [(name, row.phase) for name, row in table.items() if row.of.pair == kind] for kind in KINDS}
     out = {}
-    for name, (kind, _, _, fields) in table.items():
-        first = next(f["phase"] for k, _, _, f in table.values() if k == kind)
-        stage = "sun1_p" if kind in KINDS[:2] else "sun2_b"
-        phases = [f["phase"] for k, _, _, f in table.values() if k == stage]
-        mate = phases[[n for n, row in table.items() if row[0] == kind].index(name)]
-        out[name] = tuple(round(float(fields["phase"] - other) % 1.0, 9) % 1.0 for other in (first, mate))
+    for name, (of, *_, phase, _) in table.items():
+        (_, first), *_ = by_kind[of.pair]
+        branch = by_kind[of.pair].index((name, phase))
+        mate = by_kind["sun1_p" if of.pair in KINDS[:2] else "sun2_b"][branch][1]
+        out[name] = tuple(round(float(phase - other) % 1.0, 9) % 1.0 for other in (first, mate))
     return out
 
 
@@ -250,15 +242,12 @@ def _bodies(pairs, n_planets, options):
     """Layout and springs of all bodies."""
     density, bearing, zeta, hold, drive = options
     inner, outer, ahead = branch(pairs)
-    discs = {kind: (disc(p.gear_1, density, bearing), disc(p.gear_2, density, bearing)) for kind, p in pairs.items()}
-    members = {
-        "sun1": discs["sun1_p"][0],
-        "sun2": discs["sun2_b"][0],
-        "p": discs["p_ring"][0],
-        "b": discs["b_c"][0],
-        "c": discs["c_ring"][0],
-    }
-    rings = discs["p_ring"][1], discs["c_ring"][1]
+    gears = {
+        "sun1": pairs["sun1_p"].gear_1, "sun2": pairs["sun2_b"].gear_1, "p": pairs["p_ring"].gear_1,
+        "b": pairs["b_c"].gear_1, "c": pairs["c_ring"].gear_1,
+    }  # fmt: skip
+    members = {name: disc(gear, density, bearing) for name, gear in gears.items()}
+    rings = [disc(pairs[kind].gear_2, density, bearing) for kind in ("p_ring", "c_ring")]
     radii = {"p": 1e-3 * pairs["sun1_p"].a, "b": 1e-3 * inner, "c": 1e-3 * outer}
     bodies = [Body(name, members[name].mass, members[name].inertia) for name in ("sun1", "sun2")]
     bodies.append(Body("ring", sum(r.mass for r in rings), sum(r.inertia for r in rings)))

@@ -44,14 +44,14 @@ class Secant:
     start: float
     width: float
     deepest: float
-    k: NDArray[np.float64]
+    k: NDArray
 
     @property
     def end(self) -> float:
         """Phase of the last row."""
         return self.start + self.width * (len(self.k) - 1)
 
-    def __call__(self, phase: ArrayLike, depth: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def __call__(self, phase: ArrayLike, depth: ArrayLike) -> tuple[NDArray, NDArray]:
         """Secant stiffness [N/m] at phases from `start` to `end` and depths [m], and its derivative by the depth [N/m2]."""
         row = np.clip((np.asarray(phase, dtype=float) - self.start) / self.width, 0.0, len(self.k) - 1)
         last, deep = self.k.shape[1] - 1, np.maximum(np.asarray(depth, dtype=float), 0.0)
@@ -76,7 +76,7 @@ class Secant:
         return Secant(-1.0, 1.0, self.deepest, np.tile(self.k[1:-2].mean(axis=0), (3, 1)))
 
     @property
-    def depths(self) -> NDArray[np.float64]:
+    def depths(self) -> NDArray:
         """Depth of each column [m]."""
         return self.deepest * np.linspace(0.0, 1.0, self.k.shape[1]) ** 2
 
@@ -121,13 +121,13 @@ class ForceLaw:
         The law as the table that integrators look up.
     """
 
-    phase: NDArray[np.float64]
-    load: NDArray[np.float64]
-    depth: NDArray[np.float64]
-    tangent: NDArray[np.float64]
+    phase: NDArray
+    load: NDArray
+    depth: NDArray
+    tangent: NDArray
     pairs: NDArray[np.int64]
     force: float
-    unloaded: NDArray[np.float64] | None = None
+    unloaded: NDArray | None = None
     secant: Secant = field(init=False)
 
     def __post_init__(self) -> None:
@@ -190,7 +190,7 @@ class ForceLaw:
             None if unloaded is None else unloaded[order],
         )
 
-    def __call__(self, depth: ArrayLike, phase: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, depth: ArrayLike, phase: ArrayLike) -> NDArray:
         """Force [N] at depths [m] and phases, 0 where flanks are apart (depth below 0). A cycle goes on periodically."""
         phase = np.asarray(phase, dtype=float)
         return self.secant(phase % 1.0 if self.periodic else phase, depth)[0] * np.maximum(depth, 0.0)
@@ -201,7 +201,7 @@ class ForceLaw:
         ends = self.phase[0] + 1 - self.phase[-1]
         return bool(0 < ends <= 1.5 * np.diff(self.phase).max() and self.phase[0] >= 0)
 
-    def at(self, force: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def at(self, force: float) -> tuple[NDArray, NDArray]:
         """Phases of the table, and the secant stiffness [N/m] under a constant `force` [N] there."""
         k, depths = self.secant.k, self.secant.depths
         depth = np.array([np.interp(force, row * depths, depths) for row in k])
@@ -241,7 +241,7 @@ def _secant(deep, tangent, pairs, load, depth):
 
 def force_law(
     pair: GearPair | Case,
-    forces: Sequence[float] | NDArray[np.float64],
+    forces: Sequence[float] | NDArray,
     material: Material | tuple[Material, Material] | None = None,
     *,
     force: float | None = None,

@@ -25,14 +25,14 @@ FINE = 1024  # samples per cycle that curves on uneven phases are brought to
 class Samples(NamedTuple):
     """Stiffness `k` [N/m^power] at phases, of what is no `StiffnessCurve`: contact coefficients, or curves of other programs."""
 
-    phase: NDArray[np.float64]
-    k: NDArray[np.float64]
+    phase: NDArray
+    k: NDArray
 
 
 Curve = StiffnessCurve | Samples  # stiffness over the phase
 
 
-Stiffness = float | NDArray[np.float64] | Curve | ForceLaw | Table  # what `GearMesh` takes
+Stiffness = float | NDArray | Curve | ForceLaw | Table  # what `GearMesh` takes
 Change = tuple[float, float, Table]  # cycles until it returns, the first of them, and the change over the phase from there on
 NOWHERE = 1e-12  # m: smaller shifts of a tooth are rounding
 ALIKE = 1e-6  # of a mesh cycle, of a cell: how far samples of two curves are apart that count as the same
@@ -40,16 +40,23 @@ ALIKE = 1e-6  # of a mesh cycle, of a cell: how far samples of two curves are ap
 
 def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[Table, Any], Any] = Table.__call__) -> Any:
     """Sum of all changes at running phases, or of another `value` of their tables."""
-    running: NDArray[np.float64] = np.asarray(phase, dtype=float)
+    running: NDArray = np.asarray(phase, dtype=float)
     out = np.zeros(running.shape)
     for z, first, change in changes:
-        tooth_phase = running - first - change.start
-        tooth_phase = tooth_phase - z * np.floor(tooth_phase / z) + change.start
-        out = out + np.where(tooth_phase < change.end, value(change, np.minimum(tooth_phase, change.end)), 0.0)
+        tooth_phase = _tooth_phase(running, z, first, change.start)
+        inside = tooth_phase < change.end
+        if inside.any():
+            out = out + np.where(inside, value(change, np.minimum(tooth_phase, change.end)), 0.0)
     return out
 
 
-def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> NDArray[np.float64] | None:
+def _tooth_phase(running, z, first, start):
+    """Phases from `start` on of what returns after z mesh cycles, first at the running phase `first`."""
+    on = running - first - start
+    return on - z * np.floor(on / z) + start
+
+
+def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> NDArray | None:
     """Coefficients ``(count, 4)`` of the sum of changes in cells from a running phase on; None if their cells are others."""
     out = np.zeros((count, 4))
     for z, first, change in changes:
@@ -182,7 +189,7 @@ class GearMesh:
     """
 
     name: str
-    row: NDArray[np.float64]
+    row: NDArray
     stiffness: Stiffness
     frequency: float = 0.0
     phase: float = 0.0
@@ -198,7 +205,7 @@ class GearMesh:
     push: bool = False
     backlash: float = 0.0
     film: float = 1.0
-    friction: tuple[tuple[NDArray[np.float64], Table], ...] = ()
+    friction: tuple[tuple[NDArray, Table], ...] = ()
     gap: float = 0.0
     law: Law | None = None
     contact: Law = field(init=False)
@@ -292,30 +299,45 @@ class GearMesh:
         """Its errors, and its gap as one that stays."""
         return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
 
-    def k(self, t: ArrayLike) -> NDArray[np.float64]:
+    def k(self, t: ArrayLike) -> NDArray:
         """Stiffness at times `t` [N/m^power], never below zero."""
         return self.at_phase(self.phase + self.frequency * np.asarray(t, dtype=float))
 
-    def at_phase(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at_phase(self, phase: NDArray) -> NDArray:
         """Stiffness at running phases."""
         out = self.cycle(phase - np.floor(phase)) + changed(self.changes, phase)
         return np.maximum(out, 0.0) if self.changes else out
 
-    def e(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def pressed(self, phase: NDArray, deep: NDArray) -> tuple[NDArray, ArrayLike]:
+        """Stiffness at running phases and depths [m], and its derivative by the depth [N/m2], 0 without a `ForceLaw`."""
+        if not self.secants:
+            return self.at_phase(phase), 0.0
+        k, bend = self.secants[0](phase % 1.0, deep)
+        for (z, first, _), change in zip(self.changes, self.secants[1:], strict=True):
+            tooth_phase = _tooth_phase(phase, z, first, change.start + change.width)
+            inside = tooth_phase < change.end - change.width
+            more, rise = change(tooth_phase, deep)
+            k, bend = k + np.where(inside, more, 0.0), bend + np.where(inside, rise, 0.0)
+        return np.maximum(k, 0.0), np.where(k > 0, bend, 0.0)
+
+    def e(self, t: ArrayLike) -> tuple[NDArray, NDArray]:
         """Mesh error with the gap, and its rate, at times `t` [m], [m/s]."""
-        out, rate = np.zeros(np.shape(t)), np.zeros(np.shape(t))
+        t = np.asarray(t, dtype=float)
+        phase, out, rate = self.phase + self.frequency * t, np.zeros(t.shape), np.zeros(t.shape)
         for amplitude, frequency, angle in self.openings:
-            turn = 2 * math.pi * frequency * np.asarray(t) + angle
-            out = out + amplitude * np.sin(turn)
-            rate = rate + amplitude * 2 * math.pi * frequency * np.cos(turn)
-        phase = self.phase + self.frequency * np.asarray(t)
-        return out + changed(self.shifts, phase), rate + self.frequency * changed(self.shifts, phase, Table.slope)
+            omega = 2 * math.pi * frequency
+            turn = omega * t + angle
+            out, rate = out + amplitude * np.sin(turn), rate + amplitude * omega * np.cos(turn)
+        if self.shifts:
+            out = out + changed(self.shifts, phase)
+            rate = rate + self.frequency * changed(self.shifts, phase, Table.slope)
+        return out, rate
 
     def cycles(self) -> int:
         """Mesh cycles after which the stiffness repeats: 1, or the common multiple of the damaged bodies' tooth numbers."""
         return math.lcm(1, *(int(z) for z, _, _ in self.changes))
 
-    def entries(self, duration: float) -> list[NDArray[np.float64]]:
+    def entries(self, duration: float) -> list[NDArray]:
         """Times [s] up to `duration` at which each damaged tooth is at phase 0 of this mesh (list of arrays, one per damage)."""
         out = []
         for z, first, _ in self.changes:

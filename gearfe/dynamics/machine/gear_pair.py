@@ -66,22 +66,19 @@ def gear_pair(
         `GearMesh` is out of range.
     """
     layout, (body_1, body_2) = Layout(bodies), bodies
-    radii = 1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b
-    place: dict[str, Any] = {"angle": 0.0, "alpha": pair.alpha_w, "radii": radii, "internal": pair.gear_2.internal}
-    row = layout.mesh(body_1.name, body_2.name, helix=math.tan(abs(pair.gear_1.beta_b)) if helix is None else helix, **place)
-    frequency = abs(speed) * pair.gear_1.z / (2 * math.pi)
-    springs = [s for body in bodies for s in layout.springs(body.name, None, support, zeta)]
+    gears = pair.gear_1, pair.gear_2
+    helix = math.tan(abs(gears[0].beta_b)) if helix is None else helix
+    row = layout.pair_mesh(body_1.name, body_2.name, pair, helix=helix)
+    frequency, springs = abs(speed) * gears[0].z / (2 * math.pi), []
     for body, k in zip(bodies, torsion, strict=True):
-        springs += layout.springs(body.name, None, {"theta": k}, zeta)
-    gear_mesh = GearMesh("mesh", row, stiffness, frequency, teeth=(pair.gear_1.z, pair.gear_2.z), damage=damage, **mesh)
+        springs += layout.springs(body.name, None, support, zeta) + layout.springs(body.name, None, {"theta": k}, zeta)
+    gear_mesh = GearMesh("mesh", row, stiffness, frequency, teeth=(gears[0].z, gears[1].z), damage=damage, **mesh)
+    ratio = row[layout.place[f"{body_2.name}.theta"]] / (1e-3 * gears[0].r_b)
     loads = (
         Load("drive", layout.unit(body_1.name, "theta"), torque),
-        Load("load", row[layout.place[f"{body_2.name}.theta"]] / radii[0] * layout.unit(body_2.name, "theta"), torque),
+        Load("load", ratio * layout.unit(body_2.name, "theta"), torque),
     )
-    notes = {
-        "mesh frequency [Hz]": frequency,
-        "turning frequencies [Hz]": tuple(frequency / g.z for g in (pair.gear_1, pair.gear_2)),
-    }
-    returns = {body.name: frequency / gear.z for body, gear in zip(bodies, (pair.gear_1, pair.gear_2), strict=True)}
-    stage = Stage("pair", (body_1.name,), (body_2.name,), frequency, frequency / pair.gear_1.z, returns=returns)
+    returns = {body.name: frequency / gear.z for body, gear in zip(bodies, gears, strict=True)}
+    notes = {"mesh frequency [Hz]": frequency, "turning frequencies [Hz]": tuple(returns.values())}
+    stage = Stage("pair", (body_1.name,), (body_2.name,), frequency, frequency / gears[0].z, returns=returns)
     return Machine(layout.dofs, layout.mass, tuple(springs), (gear_mesh,), loads, notes, (stage,))

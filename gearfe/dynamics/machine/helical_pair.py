@@ -2,9 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 
-import numpy as np
 from numpy.typing import NDArray
 
 from ...core.material import Material
@@ -15,7 +13,7 @@ from .gear_mesh import ToothDamage
 from .gear_pair import gear_pair
 from .layout import Body
 from .member import disc
-from .scene_curves import Meshed, scene_curves, speed_of
+from .scene_curves import Meshed, scene_machine
 from .tables import Machine
 
 BODIES = ("pinion", "wheel")
@@ -27,12 +25,12 @@ SHAFT = 1e4  # N m/rad, to the motor, assumed
 def scene_pair(scene, case, **options):
     """Machine of a scene with linear contact: the stiffness curves of its pair."""
     name, pair = next(iter(scene.pairs)), scene.pair().pair
-    found = scene_curves(scene, case, options, {"mesh": Meshed(name, BODIES)}, {name: BODIES})
-    made = gear_pair(
-        pair, _bodies(pair, DENSITY), found.healthy[name], speed=speed_of(scene), torque=scene.machine["torque_Nm"],
-        support=BEARING, torsion=(SHAFT, 0.0), damage=found.damage["mesh"],
-    )  # fmt: skip
-    return replace(made, faults=found.faults(made))
+
+    def build(healthy, damage, **drive):
+        ends = {"support": BEARING, "torsion": (SHAFT, 0.0), "damage": damage["mesh"]}
+        return gear_pair(pair, _bodies(pair, DENSITY), healthy[name], **ends, **drive)
+
+    return scene_machine(scene, case, options, {"mesh": Meshed(name, BODIES)}, {name: BODIES}, build)
 
 
 def _bodies(pair, density):
@@ -44,9 +42,7 @@ def pitted_helical(
     pair: GearPair,
     materials: tuple[Material, Material],
     *,
-    pits: Sequence[
-        tuple[int, Sequence[tuple[float, float, float, float]] | Callable[[NDArray[np.float64]], NDArray[np.float64]]]
-    ] = (),
+    pits: Sequence[tuple[int, Sequence[tuple[float, float, float, float]] | Callable[[NDArray], NDArray]]] = (),
     speed: float = 2500 * math.pi / 30,
     torque: float = 250.0,
     damping: float = 1e3,

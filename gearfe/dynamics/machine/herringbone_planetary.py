@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,11 +11,11 @@ import numpy as np
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
 from .gear_mesh import GearMesh, Stiffness
-from .layout import SPACE, Body, Layout
+from .layout import AXES, SPACE, Body, Layout
 from .member import disc
-from .planetary import HOMES, stage_meshes, stage_phases, teeth_damaged
-from .scene_curves import scene_curves, speed_of, stage_of
-from .tables import Load, Machine, Spring, Stage
+from .planetary import HOMES, carrier_and_mesh, simple_meshes, stage_meshes, stage_phases, teeth_damaged, with_stage
+from .scene_curves import scene_machine, stage_of
+from .tables import Load, Machine, Spring
 
 HALVES = {"L": -1, "R": 1}
 
@@ -91,46 +92,30 @@ def herringbone_planetary(
         finite, `speed` or `torque` is not finite, the phases of a damaged tooth's curve do not rise, or a field of `GearMesh` is
         out of range.
     """
-    outer, inner, n = stage.sun_planet, stage.planet_ring, stage.n_planets
-    sun, planet, ring = outer.gear_1, outer.gear_2, inner.gear_2
-    frequency = speed * ring.z / (sun.z + ring.z) * sun.z / (2 * math.pi)
+    pairs, n = {"sun_planet": stage.sun_planet, "planet_ring": stage.planet_ring}, stage.n_planets
+    sun = pairs["sun_planet"].gear_1
     layout, apart = _halves(stage, members or _solid(stage, density)), 5e-4 * (sun.b + groove)
     springs = _supports(layout, stage, (bearing, tilt, housing, drive, zeta))
-    for name, gear in (("sun", sun), *((f"planet{i + 1}", planet) for i in range(n))):
+    for name, gear in (("sun", sun), *((f"planet{i + 1}", stage.planet) for i in range(n))):
         springs += _neck(layout, name, gear, (groove, shear_modulus, apart, zeta))
-    meshes, helix = [], math.tan(abs(sun.beta_b))
-    angles = dict(zip(range(1, n + 1), 2 * math.pi * np.arange(n) / n, strict=True))
-    phases = stage_phases((outer, inner), n, frequency=frequency)
-    hurt = teeth_damaged(damage, stage_meshes(phases))
-    for name, fields in phases.items():
-        kind, i = name[:-1] if n < 10 else name.rstrip("0123456789"), int(name.rpartition(name.rstrip("0123456789"))[2])
-        inside = kind == "planet_ring"
-        pair = inner if inside else outer
+    phases = stage_phases((stage.sun_planet, stage.planet_ring), n, frequency=carrier_and_mesh(stage, speed)[1])
+    meshed, meshes, helix = stage_meshes(phases), [], math.tan(abs(sun.beta_b))
+    hurt = teeth_damaged(damage, meshed)
+    for (name, fields), angle in zip(phases.items(), np.repeat(2 * math.pi * np.arange(n) / n, 2), strict=True):
+        kind, bodies, _ = meshed[name]
+        # a planet's flanks are parallel: what pushes it along the axis in one mesh it passes on in the other
+        sense, height = (1, 0.0) if kind == "sun_planet" else (-1, apart)
         for half, hand in HALVES.items():
-            body_1, body_2 = (f"planet{i}{half}", "ring") if inside else (f"sun{half}", f"planet{i}{half}")
-            place = {"angle": angles[i], "alpha": pair.alpha_w, "radii": (1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b)}
-            # a planet's flanks are parallel: what pushes it along the axis in one mesh it passes on in the other
-            place |= {"sense": -1 if inside else 1, "internal": inside, "helix": hand * helix}
-            row = layout.mesh(body_1, body_2, **place)
-            if inside:
-                row = row + _offset(layout, row, hand * apart, "ring")
+            one, two = (body if body == "ring" else f"{body}{half}" for body in bodies)
+            row = layout.pair_mesh(one, two, pairs[kind], angle, sense=sense, helix=hand * helix, height=hand * height)
             options = {"zeta": mesh_zeta} | fields | {"damage": hurt[name]} | mesh
             meshes.append(GearMesh(f"{name}{half}", row, stiffness[kind], **options))
     loads = [Load(f"sun{half} torque", layout.unit(f"sun{half}", "theta"), torque / 2) for half in HALVES]
-    loads.append(Load("carrier torque", layout.unit("carrier", "theta"), -torque * (1 + ring.z / sun.z)))
-    notes: dict[str, Any] = {
-        "mesh frequency [Hz]": frequency,
-        "fault frequency of a sun tooth [Hz]": n * frequency / sun.z,
-        "carrier frequency [Hz]": speed / (1 + ring.z / sun.z) / (2 * math.pi),
-        "phases": {mesh.name: mesh.phase for mesh in meshes},
-        "overlap ratio of one half": outer.eps_beta_of(sun.b),
-    }
-    driver, first = tuple(f"sun{half}" for half in HALVES), tuple(f"planet1{half}" for half in HALVES)
-    returns = {"sun": n * frequency / sun.z, "planet": frequency / planet.z, "ring": n * frequency / ring.z}
-    carrier = notes["carrier frequency [Hz]"]
-    whole = Stage("stage", driver, first, frequency, frequency / sun.z, returns["sun"], carrier, returns)
+    loads.append(Load("carrier torque", layout.unit("carrier", "theta"), -torque * (1 + stage.ring.z / sun.z)))
     rotors = _rotors(layout, stage, speed) if gyroscopic else {}
-    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, (whole,), rotors=rotors)
+    machine = Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), rotors=rotors)
+    overlap = {"overlap ratio of one half": pairs["sun_planet"].eps_beta_of(sun.b)}
+    return with_stage(machine, stage, speed, tuple(HALVES), **overlap)
 
 
 def _rotors(layout, stage, speed):
@@ -139,7 +124,7 @@ def _rotors(layout, stage, speed):
     A frame that turns at W takes ``2 J_t W`` from the ``J_p w`` of a body that turns at w against the ground, and ``J_p`` is
     ``2 J_t`` here: what is left is ``J_p (w - W)``.
     """
-    turn = speed / (1 + stage.ring.z / stage.sun.z)
+    turn, _ = carrier_and_mesh(stage, speed)
     speeds = {"sun": speed - turn, "planet": -(speed - turn) * stage.sun.z / stage.planet.z, "ring": -turn}
     return {body: speeds[body.rstrip("LR0123456789")] for body in layout.bodies if body != "carrier"}
 
@@ -155,11 +140,8 @@ def scene_herringbone(scene, case, **options):
         )
     half = replace(scene, pairs=halves)
     stage = stage_of(half)
-    meshes = stage_meshes(stage_phases((stage.sun_planet, stage.planet_ring), stage.n_planets))
-    found = scene_curves(half, case, options, meshes, HOMES)
-    settings = {"speed": speed_of(scene), "torque": scene.machine["torque_Nm"], "members": scene.machine.get("bodies") or None}
-    made = herringbone_planetary(stage, found.healthy, damage=found.damage, **settings)
-    return replace(made, faults=found.faults(made))
+    build = partial(herringbone_planetary, stage, members=scene.machine.get("bodies") or None)
+    return scene_machine(half, case, options, simple_meshes(stage), HOMES, build)
 
 
 def _solid(stage, density):
@@ -206,19 +188,11 @@ def _neck(layout, name, gear, options):
     bend = 2.6 * G * second / length
     sizes = {"x": 0.9 * G * area / length, "z": 2.6 * G * area / length, "tilt_x": bend, "theta": 2 * G * second / length}
     sizes |= {"y": sizes["x"], "tilt_y": bend}
-    axes, out = dict(zip("xyz", np.eye(3), strict=True)), []
+    out = []
     for dof, k in sizes.items():
-        if dof in axes:
-            row = layout.point(f"{name}L", axes[dof], (0, 0, apart)) - layout.point(f"{name}R", axes[dof], (0, 0, -apart))
+        if dof in AXES:
+            row = layout.point(f"{name}L", AXES[dof], (0, 0, apart)) - layout.point(f"{name}R", AXES[dof], (0, 0, -apart))
         else:
             row = layout.unit(f"{name}L", dof) - layout.unit(f"{name}R", dof)
         out.append(Spring(f"{name} groove {dof}", row, k, 2 * zeta * math.sqrt(k / (row**2 / layout.mass).sum())))
-    return out
-
-
-def _offset(layout, row, z, name):
-    """What a row gains if its forces act on body `name` at height `z` [m] over its centre."""
-    out = np.zeros_like(row)
-    out[layout.place[f"{name}.tilt_x"]] = -z * row[layout.place[f"{name}.y"]]
-    out[layout.place[f"{name}.tilt_y"]] = z * row[layout.place[f"{name}.x"]]
     return out

@@ -137,7 +137,7 @@ def _part(law, phases, loads):
     return ForceLaw(law.phase[phases], law.load[loads], law.depth[at], law.tangent[at], law.pairs[at], law.force, unloaded)
 
 
-def _off(fewer: ForceLaw, law: ForceLaw, phases: NDArray[np.int64], loads: NDArray[np.int64]) -> NDArray[np.float64]:
+def _off(fewer: ForceLaw, law: ForceLaw, phases: NDArray[np.int64], loads: NDArray[np.int64]) -> NDArray:
     """How far the force of a law of fewer loads or phases is off at some of those of the whole one, over the force."""
     exact = law.load[loads]
     return np.asarray(np.abs(fewer(law.depth[np.ix_(phases, loads)], law.phase[phases, None]) / exact - 1))

@@ -7,14 +7,17 @@ their carrier; what its rotation adds, centripetal and gyroscopic terms, a `Mach
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...geometry.pair.gear_pair import GearPair
 from .tables import Spring
 
 PLANE = "x y theta"
 SPACE = "x y z tilt_x tilt_y theta"
+AXES = dict(zip("xyz", np.eye(3), strict=True))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,13 +71,13 @@ class Layout:
         sizes = {"theta": "inertia", "tilt_x": "across", "tilt_y": "across"}
         self.mass = np.array([getattr(body, sizes.get(dof, "mass")) for body in bodies for dof in body.dofs.split()])
 
-    def unit(self, name: str, dof: str) -> NDArray[np.float64]:
+    def unit(self, name: str, dof: str) -> NDArray:
         """Row of one degree of freedom."""
         row = np.zeros(len(self.dofs))
         row[self.place[f"{name}.{dof}"]] = 1.0
         return row
 
-    def point(self, name: str, direction: ArrayLike, arm: ArrayLike = (0.0, 0.0, 0.0)) -> NDArray[np.float64]:
+    def point(self, name: str, direction: ArrayLike, arm: ArrayLike = (0.0, 0.0, 0.0)) -> NDArray:
         """Row of the displacement along `direction` of the point at `arm` [m] from a body's centre; missing dofs do not move."""
         direction, arm = np.append(direction, np.zeros(3))[:3], np.append(arm, np.zeros(3))[:3]
         parts = dict(zip(SPACE.split(), (*direction, *np.cross(arm, direction)), strict=True))
@@ -84,20 +87,19 @@ class Layout:
         return row
 
     def springs(
-        self, one: str, two: str | None, stiffness: Mapping[str, float], zeta: float, arm: ArrayLike | None = None
+        self, one: str, two: str | None, stiffness: Mapping[str, float], zeta: float, arm: ArrayLike = (0.0, 0.0, 0.0)
     ) -> list[Spring]:
         """Springs between two bodies (`two` None: the ground) by direction ``{dof: k}``.
 
         Those of translations act where `arm` [m] from the centre of body `two` is the centre of body `one`. Dampers are
         ``2 zeta sqrt(k m)``, m the mass or inertia of body `one` (a reduced mass would depend on the direction of the axes).
         """
-        axes = dict(zip(SPACE.split()[:3], np.eye(3), strict=True))
         out = []
         for dof, k in stiffness.items():
-            row = self.point(one, axes[dof]) if dof in axes else self.unit(one, dof)
-            if two is not None and dof in axes:
-                row = row - self.point(two, axes[dof], (0.0, 0.0, 0.0) if arm is None else arm)
-            elif two is not None and dof in self.bodies[two].dofs.split():
+            row = self.point(one, AXES[dof]) if dof in AXES else self.unit(one, dof)
+            if two is not None and dof in AXES:
+                row = row - self.point(two, AXES[dof], arm)
+            elif two is not None and f"{two}.{dof}" in self.place:
                 row = row - self.unit(two, dof)
             if k > 0 and row.any():
                 name = f"{one}-{two or 'ground'} {dof}"
@@ -115,7 +117,8 @@ class Layout:
         sense: int = 1,
         helix: float = 0.0,
         internal: bool = False,
-    ) -> NDArray[np.float64]:
+        height: float = 0.0,
+    ) -> NDArray:
         """Row of the mesh in which body `one` pushes body `two`.
 
         The transverse line of action leaves the pitch point at ``sense t cos(alpha) + e sin(alpha)``: e points from the centre of
@@ -136,26 +139,38 @@ class Layout:
             ``tan(beta_b)`` with the sign of the axial force on body `two`.
         internal : bool
             Body `two` is a ring.
+        height : float
+            Height of the mesh over the centre of body `two` [m].
         """
-        e = np.array([math.cos(angle), math.sin(angle), 0.0])
-        t = np.array([-e[1], e[0], 0.0])
-        along = sense * math.cos(alpha) * t + math.sin(alpha) * e + np.array([0.0, 0.0, helix])
+        e, along = _line_of_action(angle, alpha, sense)
+        along[2] = helix
         first, second = (r / math.cos(alpha) for r in radii)
-        return self.point(one, along, first * e) - self.point(two, along, (second if internal else -second) * e)
+        arm = (second if internal else -second) * e + np.array([0.0, 0.0, height])
+        return self.point(one, along, first * e) - self.point(two, along, arm)
+
+    def pair_mesh(self, one: str, two: str, pair: GearPair, angle: float = 0.0, **options: Any) -> NDArray:
+        """Row of the mesh of a `GearPair` at `angle` [rad], with the `options` of `mesh`."""
+        radii = 1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b
+        return self.mesh(one, two, angle=angle, alpha=pair.alpha_w, radii=radii, internal=pair.gear_2.internal, **options)
 
     def rubbing(
         self, one: str, two: str, *, angle: float, alpha: float, sense: int = 1, internal: bool = False
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    ) -> tuple[NDArray, NDArray, NDArray]:
         """Rows of friction of such a mesh: across the line of action, and the turning of either body per lever arm [m].
 
         The first pulls body `one` back where its flank slides forward, towards the line of action turned by +90 degrees.
         """
-        e = np.array([math.cos(angle), math.sin(angle)])
-        t = np.array([-e[1], e[0]])
-        along = sense * math.cos(alpha) * t + math.sin(alpha) * e
+        _, along = _line_of_action(angle, alpha, sense)
         across = (-along[1], along[0])
         turns = self.unit(one, "theta"), (-1 if internal else 1) * self.unit(two, "theta")
         return self.point(one, across) - self.point(two, across), *turns
+
+
+def _line_of_action(angle, alpha, sense):
+    """Unit vectors from the centre of the first body to the pitch point, and along the transverse line of action."""
+    e = np.array([math.cos(angle), math.sin(angle), 0.0])
+    t = np.array([-e[1], e[0], 0.0])
+    return e, sense * math.cos(alpha) * t + math.sin(alpha) * e
 
 
 def around(phase, z, sense, angle):

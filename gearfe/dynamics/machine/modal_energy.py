@@ -25,12 +25,12 @@ class ModalEnergy:
         Part of the kinetic energy by degree of freedom.
     """
 
-    frequencies: NDArray[np.float64]
-    modes: NDArray[np.float64]
-    strain: dict[str, NDArray[np.float64]]
-    kinetic: dict[str, NDArray[np.float64]]
+    frequencies: NDArray
+    modes: NDArray
+    strain: dict[str, NDArray]
+    kinetic: dict[str, NDArray]
 
-    def participation(self, row: ArrayLike) -> NDArray[np.float64]:
+    def participation(self, row: ArrayLike) -> NDArray:
         """Modal participation factors ``modes.T @ row`` of a load along a row ``(n,)``, such as that of a mesh.
 
         A harmonic force F along it moves mode j by ``F participation[j] / (w_j**2 - w**2)``.
@@ -80,7 +80,7 @@ def modal_energy(machine: Machine, *, x: ArrayLike | None = None) -> ModalEnergy
     members = [(s.name, s.row, s.k) for s in machine.springs] + list(
         zip((m.name for m in machine.meshes), machine.G, k, strict=True)
     )
-    energy: dict[str, NDArray[np.float64]] = {}
+    energy: dict[str, NDArray] = {}
     for name, row, stiffness in members:
         energy[name] = energy.get(name, np.zeros(len(frequencies))) + stiffness * np.abs(row @ modes) ** 2
     total = np.sum(list(energy.values()), axis=0)

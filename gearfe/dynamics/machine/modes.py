@@ -12,7 +12,7 @@ from .turning_frame import frame_terms
 RIGID = 1e-12  # of the largest squared frequency: below it a mode is a rigid-body mode
 
 
-def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tuple[NDArray, NDArray]:
     """Natural frequencies and modes without damping, meshes at their mean stiffness (of a `ForceLaw` the tangent one).
 
     Parameters
@@ -48,7 +48,7 @@ def _whirling(machine, K):
     return np.where(values.imag[order] < math.sqrt(RIGID) * top, 0.0, values.imag[order]) / (2 * math.pi), modes
 
 
-def modal(K: NDArray[np.float64], mass: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def modal(K: NDArray, mass: NDArray) -> tuple[NDArray, NDArray]:
     """Squared angular frequencies, exactly 0 for rigid-body modes, and modes of unit modal mass.
 
     Raises

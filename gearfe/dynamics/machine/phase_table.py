@@ -22,27 +22,28 @@ class Table:
 
     start: float
     width: float
-    cells: NDArray[np.float64]
+    cells: NDArray
 
     @property
     def end(self) -> float:
         """Phase at which the last cell ends."""
         return self.start + self.width * len(self.cells)
 
-    def __call__(self, phase: ArrayLike) -> NDArray[np.float64]:
-        """Value at phases from `start` to `end` (beyond them, of the end cells)."""
+    def _cubic(self, phase):
+        """Coefficients of the cubics at phases, and places in their cells."""
         place = (np.asarray(phase) - self.start) / self.width
-        cell = np.clip(place.astype(np.int64), 0, len(self.cells) - 1)
-        u = place - cell
-        c = self.cells[cell]
-        return c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
+        cell = np.minimum(np.maximum(place.astype(np.int64), 0), len(self.cells) - 1)
+        return self.cells[cell].T, (place - cell).T
 
-    def slope(self, phase: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, phase: ArrayLike) -> NDArray:
+        """Value at phases from `start` to `end` (beyond them, of the end cells)."""
+        (a, b, c, d), u = self._cubic(phase)
+        return (a + u * (b + u * (c + u * d))).T
+
+    def slope(self, phase: ArrayLike) -> NDArray:
         """Derivative by the phase, at phases as of a call."""
-        place = (np.asarray(phase) - self.start) / self.width
-        cell = np.clip(place.astype(np.int64), 0, len(self.cells) - 1)
-        u, c = place - cell, self.cells[cell]
-        return (c[..., 1] + u * (2 * c[..., 2] + 3 * u * c[..., 3])) / self.width
+        (_, b, c, d), u = self._cubic(phase)
+        return ((b + u * (2 * c + 3 * u * d)) / self.width).T
 
     @property
     def mean(self) -> float:
@@ -68,13 +69,13 @@ def _cubics(values, slope):
     return np.stack([values[:-1], left, 3 * rise - 2 * left - right, left + right - 2 * rise], axis=1)
 
 
-def smooth_table(values: NDArray[np.float64]) -> Table:
+def smooth_table(values: NDArray) -> Table:
     """`Table` of one cycle through equally spaced `values`, `SMOOTH` or more, with `smooth_slopes`."""
     slope = smooth_slopes(values)
     return Table(0.0, 1 / values.size, _cubics(np.append(values, values[0]), np.append(slope, slope[0])))
 
 
-def smooth_slopes(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def smooth_slopes(values: NDArray) -> NDArray:
     """Slopes, per cell, of cubics through equally spaced samples of one period.
 
     Those of the quartic through five samples, held within::

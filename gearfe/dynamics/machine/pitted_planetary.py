@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,11 +11,19 @@ import numpy as np
 from ...geometry.pair.planetary import PlanetarySet
 from .contact_cycle import friction_weights
 from .gear_mesh import Stiffness
-from .layout import Body, Layout
 from .member import Member, disc
-from .planetary import HOMES, planetary, stage_meshes, stage_phases, teeth_damaged
-from .scene_curves import scene_curves, speed_of, stage_of
-from .tables import History, Machine, Stage
+from .planetary import (
+    HOMES,
+    carrier_and_mesh,
+    planetary,
+    simple_meshes,
+    stage_meshes,
+    stage_phases,
+    teeth_damaged,
+    with_stage,
+)
+from .scene_curves import scene_machine, stage_of
+from .tables import History, Machine
 
 
 def pitted_planetary(
@@ -81,65 +90,38 @@ def pitted_planetary(
     """
     outer, inner, n = stage.sun_planet, stage.planet_ring, stage.n_planets
     sun, planet, ring = outer.gear_1, outer.gear_2, inner.gear_2
-    turn = speed * sun.z / (sun.z + ring.z)
-    frequency = (speed - turn) * sun.z / (2 * math.pi)
+    turn, frequency = carrier_and_mesh(stage, speed)
     phases = stage_phases((outer, inner), n, frequency=frequency)
     hurt = teeth_damaged(damage, stage_meshes(phases))
-    phases = {name: fields | {"damage": hurt[name]} for name, fields in phases.items()}
+    fields = {name: phases[name] | {"damage": hurt[name]} | mesh for name in phases}
+    if friction is not None:
+        weights = friction_weights(outer, (speed - turn, -(speed - turn) * sun.z / planet.z), **friction)
+        fields |= {name: own | {"rubbing": weights} for name, own in fields.items() if name.startswith("sun")}
     member = {name: disc(gear, density, bearing) for name, gear in (("sun", sun), ("planet", planet), ("ring", ring))}
     together, a = n * member["planet"].mass, 1e-3 * stage.a
     member["carrier"] = Member(together, together * a**2, bearing, a)
     member["sun"], member["ring"] = replace(member["sun"], torsion=drive), replace(member["ring"], torsion=100 * drive)
-    balance = torque * (1 + ring.z / sun.z)
-    load = balance if carrier_torque is None else carrier_torque
+    load = torque * (1 + ring.z / sun.z) if carrier_torque is None else carrier_torque
     machine = planetary(
         *(member[name] for name in ("sun", "planet", "ring", "carrier")),
         n_planets=n,
         alpha=(outer.alpha_w, inner.alpha_w),
         stiffness=stiffness,
-        mesh=lambda kind, i: phases[f"{kind}{i + 1}"] | mesh,
+        mesh=lambda kind, i: fields[f"{kind}{i + 1}"],
         loads={"sun": torque, "carrier": _against(load)},
         zeta=zeta,
         spin=turn if gyroscopic else 0.0,
     )
-    notes: dict[str, Any] = {
-        "mesh frequency [Hz]": frequency,
-        "fault frequency of a sun tooth [Hz]": n * frequency / sun.z,
-        "carrier frequency [Hz]": turn / (2 * math.pi),
-        "phases": {name: fields["phase"] for name, fields in phases.items()},
-    }
-    turning = frequency / sun.z
-    returns = {"sun": n * turning, "planet": frequency / planet.z, "ring": n * frequency / ring.z}
-    only = Stage("stage", ("sun",), ("planet1",), frequency, turning, n * turning, notes["carrier frequency [Hz]"], returns)
-    machine = replace(machine, notes=notes, stages=(only,))
-    return (
-        machine if friction is None else _rubbed(machine, outer, (speed - turn, -(speed - turn) * sun.z / planet.z), friction, n)
-    )
+    return with_stage(machine, stage, speed)
 
 
 def scene_planetary(scene, case, **options):
     """Machine of a scene with linear contact: the stiffness curves of its pairs."""
     stage = stage_of(scene)
-    meshes = stage_meshes(stage_phases((stage.sun_planet, stage.planet_ring), stage.n_planets))
-    found = scene_curves(scene, case, options, meshes, HOMES)
-    settings = {"speed": speed_of(scene), "torque": scene.machine["torque_Nm"]}
-    made = pitted_planetary(stage, found.healthy, damage=found.damage, **settings)
-    return replace(made, faults=found.faults(made))
+    return scene_machine(scene, case, options, simple_meshes(stage), HOMES, partial(pitted_planetary, stage))
 
 
 def _against(value):
     if callable(value):
         return lambda t: -value(t)
     return -value if np.ndim(value) == 0 else (value[0], -np.asarray(value[1]))
-
-
-def _rubbed(machine, pair, speeds, friction, n):
-    """The machine with Coulomb friction at its sun-planet meshes."""
-    layout = Layout([Body(name, 1.0, 1.0) for name in dict.fromkeys(dof.partition(".")[0] for dof in machine.dofs)])
-    weights = friction_weights(pair, speeds, **friction)
-    meshes = {mesh.name: mesh for mesh in machine.meshes}
-    for i in range(n):
-        rows = layout.rubbing("sun", f"planet{i + 1}", angle=2 * math.pi * i / n, alpha=pair.alpha_w)
-        name = f"sun_planet{i + 1}"
-        meshes[name] = replace(meshes[name], friction=tuple(zip(rows, weights, strict=True)))
-    return replace(machine, meshes=tuple(meshes.values()))

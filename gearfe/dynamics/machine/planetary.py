@@ -6,6 +6,7 @@ name as anything `gearfe.dynamics.machine.gear_mesh.GearMesh` takes; damage by m
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from difflib import get_close_matches
 from numbers import Integral
 from typing import Any
@@ -13,11 +14,12 @@ from typing import Any
 import numpy as np
 
 from ...geometry.pair.gear_pair import GearPair
+from ...geometry.pair.planetary import PlanetarySet
 from .gear_mesh import GearMesh, Stiffness, ToothDamage
 from .layout import Body, Layout, around, through
 from .member import Member
 from .scene_curves import Meshed
-from .tables import History, Load, Machine
+from .tables import History, Load, Machine, Stage
 
 
 def planetary(
@@ -51,7 +53,8 @@ def planetary(
     stiffness : dict
         ``{"sun_planet": ..., "planet_ring": ...}`` along the line of action [N/m].
     mesh : callable, optional
-        ``mesh(kind, i) -> dict`` of further fields of `GearMesh` for planet i.
+        ``mesh(kind, i) -> dict`` of further fields of `GearMesh` for planet i. ``rubbing``: weights of the rows of
+        `Layout.rubbing`, as `machine.contact_cycle.friction_weights` makes them.
     loads : dict, optional
         Torques ``{"sun": ..., "ring": ..., "carrier": ...}`` [N m]: numbers, histories or functions.
     zeta : float
@@ -93,8 +96,11 @@ def planetary(
             ("sun_planet", "sun", name, (sun.r_b, member.r_b), 1, False),
             ("planet_ring", name, "ring", (member.r_b, ring.r_b), -1, True),
         ):
-            row = layout.mesh(body_1, body_2, angle=angle, alpha=alpha[inside], radii=r, sense=sense, internal=inside)
-            meshes.append(GearMesh(f"{kind}{i + 1}", row, stiffness[kind], **({} if mesh is None else mesh(kind, i))))
+            place: dict[str, Any] = {"angle": angle, "alpha": alpha[inside], "sense": sense, "internal": inside}
+            fields = {} if mesh is None else dict(mesh(kind, i))
+            if weights := fields.pop("rubbing", None):
+                fields["friction"] = tuple(zip(layout.rubbing(body_1, body_2, **place), weights, strict=True))
+            meshes.append(GearMesh(f"{kind}{i + 1}", layout.mesh(body_1, body_2, radii=r, **place), stiffness[kind], **fields))
     torques = tuple(Load(f"{name} torque", layout.unit(name, "theta"), value) for name, value in (loads or {}).items())
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), torques, spin=spin)
 
@@ -149,6 +155,28 @@ def stage_phases(
     return {name: fields | {"frequency": frequency} for name, fields in out.items()}
 
 
+def carrier_and_mesh(stage: PlanetarySet, speed: float) -> tuple[float, float]:
+    """Speed of the carrier [rad/s] and mesh frequency [Hz] of a stage whose sun is driven at `speed` [rad/s], its ring held."""
+    turn = speed * stage.sun.z / (stage.sun.z + stage.ring.z)
+    return turn, (speed - turn) * stage.sun.z / (2 * math.pi)
+
+
+def with_stage(machine: Machine, stage: PlanetarySet, speed: float, halves: Sequence[str] = ("",), **notes: Any) -> Machine:
+    """The machine with the `Stage` and the notes of a stage whose sun is driven at `speed` [rad/s], its ring held."""
+    turn, frequency = carrier_and_mesh(stage, speed)
+    n, carrier, turning = stage.n_planets, turn / (2 * math.pi), frequency / stage.sun.z
+    returns = {"sun": n * turning, "planet": frequency / stage.planet.z, "ring": n * frequency / stage.ring.z}
+    driver, follower = (tuple(f"{body}{half}" for half in halves) for body in ("sun", "planet1"))
+    only = Stage("stage", driver, follower, frequency, turning, returns["sun"], carrier, returns)
+    stated = {
+        "mesh frequency [Hz]": frequency,
+        "fault frequency of a sun tooth [Hz]": returns["sun"],
+        "carrier frequency [Hz]": carrier,
+        "phases": {mesh.name: mesh.phase for mesh in machine.meshes},
+    }
+    return replace(machine, notes=stated | notes, stages=(only,))
+
+
 def stage_meshes(phases):
     """`Meshed` of the meshes of `stage_phases`, whose bodies are the sun, ``planet1`` and so on, and the ring."""
     out = {}
@@ -158,6 +186,11 @@ def stage_meshes(phases):
         bodies = ("sun", planet) if kind == "sun_planet" else (planet, "ring")
         out[name] = Meshed(kind, bodies, fields.get("first", (0, 0)))
     return out
+
+
+def simple_meshes(stage: PlanetarySet) -> dict[str, Meshed]:
+    """`stage_meshes` of a stage."""
+    return stage_meshes(stage_phases((stage.sun_planet, stage.planet_ring), stage.n_planets))
 
 
 HOMES = {"sun_planet": ("sun", "planet1"), "planet_ring": ("planet1", "ring")}

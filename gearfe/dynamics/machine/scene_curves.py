@@ -107,6 +107,25 @@ def scene_curves(scene, case, options, meshes, homes):
     return SceneCurves(healthy, damage, teeth)
 
 
+def scene_machine(scene, case, options, meshes, homes, build):
+    """Machine that ``build(healthy, damage=, speed=, torque=)`` makes of `scene_curves` and the drive of the scene, with faults.
+
+    Parameters
+    ----------
+    scene, case, options, meshes, homes
+        As of `scene_curves`.
+    build : callable
+        Gets the healthy stiffness by pair, `ToothDamage` by mesh, speed [rad/s] and torque [N m] of the driving gear.
+
+    Returns
+    -------
+    Machine
+    """
+    found = scene_curves(scene, case, options, meshes, homes)
+    made = build(found.healthy, damage=found.damage, speed=speed_of(scene), torque=scene.machine["torque_Nm"])
+    return replace(made, faults=found.faults(made))
+
+
 def _at(pair, case, bodies, homes):
     """Damage of a mesh by side: of its two bodies."""
     out = {}

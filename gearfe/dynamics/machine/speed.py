@@ -38,7 +38,7 @@ class Speed:
 
     times: Sequence[float]
     factors: Sequence[float]
-    knots: NDArray[np.float64] = field(init=False)
+    knots: NDArray = field(init=False)
 
     def __post_init__(self) -> None:
         """Integrate; ValueError if times do not rise, or factors are negative or all zero."""
@@ -54,11 +54,11 @@ class Speed:
         object.__setattr__(self, "knots", np.stack([times, factors, turned], axis=1))
         self.knots[:, 2] -= float(self.turned(0.0))
 
-    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, t: ArrayLike) -> NDArray:
         """Factor at times `t`."""
         return np.interp(np.asarray(t, dtype=float), self.knots[:, 0], self.knots[:, 1])
 
-    def turned(self, t: ArrayLike) -> NDArray[np.float64]:
+    def turned(self, t: ArrayLike) -> NDArray:
         """Time in which the nominal speed turns the gears as far as they have turned at times `t` [s]."""
         return turned(self.knots, np.asarray(t, dtype=float))
 

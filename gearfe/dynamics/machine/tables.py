@@ -15,7 +15,7 @@ from .speed import Speed
 from .turning_frame import frame_terms
 
 # of a load: a number, times and values, or a function of an array of times
-History = float | tuple[ArrayLike, ArrayLike] | Callable[[NDArray[np.float64]], ArrayLike]
+History = float | tuple[ArrayLike, ArrayLike] | Callable[[NDArray], ArrayLike]
 
 TOUCH = 1e-12  # compression at which the tangent of a law of force without load is taken [m]
 
@@ -25,7 +25,7 @@ class Spring:
     """A linear spring and damper along a row: force ``k row @ q + c row @ v`` against it [N/m, N s/m or per rad]."""
 
     name: str
-    row: NDArray[np.float64]
+    row: NDArray
     k: float
     c: float = 0.0
 
@@ -52,7 +52,7 @@ class Load:
     """
 
     name: str
-    row: NDArray[np.float64]
+    row: NDArray
     value: History
 
     def __post_init__(self) -> None:
@@ -73,7 +73,7 @@ class Load:
             at = int(np.argmax(np.diff(times) < 0)) + 1
             raise ValueError(f"load {self.name}: time {times[at]:g} s follows {times[at - 1]:g} s; sort the history by time")
 
-    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, t: ArrayLike) -> NDArray:
         """Value at times `t`."""
         value: Any = self.value
         if callable(value):
@@ -86,7 +86,7 @@ class Load:
         return np.interp(np.asarray(t, dtype=float), *value)
 
     @property
-    def breaks(self) -> NDArray[np.float64]:
+    def breaks(self) -> NDArray:
         """Times at which the history bends or jumps [s]."""
         value: Any = self.value
         return np.unique(value[0]) if not callable(value) and np.ndim(value) else np.empty(0)
@@ -94,7 +94,7 @@ class Load:
 
 def pulses(
     base: float, peak: float, period: float, width: float, count: int, *, start: float = 0.0, rise: float = 0.1
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[NDArray, NDArray]:
     """History of a load that rises from `base` to `peak` for `width` seconds every `period` seconds, `count` times.
 
     Each flank of a pulse takes the part `rise` of its width. For `Load`.
@@ -247,7 +247,7 @@ class Machine:
     """
 
     dofs: tuple[str, ...]
-    mass: NDArray[np.float64]
+    mass: NDArray
     springs: tuple[Spring, ...]
     meshes: tuple[GearMesh, ...]
     loads: tuple[Load, ...] = ()
@@ -257,11 +257,11 @@ class Machine:
     spin: float = 0.0
     rotors: dict[str, float] = field(default_factory=dict)
     faults: tuple[Fault, ...] = ()
-    K: NDArray[np.float64] = field(init=False)
-    C: NDArray[np.float64] = field(init=False)
-    G: NDArray[np.float64] = field(init=False)
+    K: NDArray = field(init=False)
+    C: NDArray = field(init=False)
+    G: NDArray = field(init=False)
     law: dict[str, NDArray[Any]] = field(init=False)
-    frame: NDArray[np.float64] = field(init=False)
+    frame: NDArray = field(init=False)
 
     def __post_init__(self) -> None:
         """Assemble; ValueError for masses that are not positive, springs that are negative, or rows of another length."""
@@ -304,7 +304,7 @@ class Machine:
         notes = "".join(f"<tr><td>{escape(str(k))}</td><td>{escape(str(v))}</td></tr>" for k, v in (rows | self.notes).items())
         return f"<table><caption>{escape(repr(self))}</caption>{notes}</table>"
 
-    def row(self, name: str) -> NDArray[np.float64]:
+    def row(self, name: str) -> NDArray:
         """Unit row of a degree of freedom.
 
         Raises
@@ -316,7 +316,7 @@ class Machine:
             raise ValueError(f"no degree of freedom {name!r}; there are {', '.join(self.dofs)}")
         return np.eye(len(self.dofs))[self.dofs.index(name)]
 
-    def turned(self, t: ArrayLike) -> NDArray[np.float64]:
+    def turned(self, t: ArrayLike) -> NDArray:
         """Time in which the nominal speed turns the gears as far as they have turned at times `t` [s]: what angles follow."""
         return np.asarray(t, dtype=float) if self.speed is None else self.speed.turned(t)
 
@@ -338,13 +338,11 @@ class Machine:
         stage = self.stages[-1]
         return stage, stage.fault or stage.turning, stage.turning
 
-    def mean_stiffness(self) -> NDArray[np.float64]:
+    def mean_stiffness(self) -> NDArray:
         """Mean of each mesh's stiffness over its healthy cycle ``(m,)`` [N/m^power]."""
         return np.array([m.cycle.mean for m in self.meshes])
 
-    def linear(
-        self, x: ArrayLike | None = None
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    def linear(self, x: ArrayLike | None = None) -> tuple[NDArray, NDArray, NDArray, NDArray]:
         """Stiffness and damping matrices with the meshes at their mean, and the mesh values used.
 
         `x` (m,): compressions [m] at which a law that is not linear is taken (`working`; needed for a power other than 1 and
@@ -361,7 +359,7 @@ class Machine:
         k, c = slopes(np.asarray(x), np.zeros(len(mean)), mean, self.law, bend)
         return self.K + self.G.T @ (k[:, None] * self.G), self.C + self.G.T @ (c[:, None] * self.G), k, c
 
-    def _mean_at(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _mean_at(self, x: NDArray) -> tuple[NDArray, NDArray]:
         """`mean_stiffness` at compressions `x` (m,), which matter to a `ForceLaw`, and its derivative by the depth."""
         mean, bend = self.mean_stiffness(), np.zeros(len(self.meshes))
         for i, mesh in enumerate(self.meshes):
@@ -374,7 +372,7 @@ class Machine:
         """Whether the force of a mesh is no straight line over its compression: a power, or a `ForceLaw`."""
         return bool((self.law["power"] != 1).any()) or any(mesh.secants for mesh in self.meshes)
 
-    def working(self) -> NDArray[np.float64] | None:
+    def working(self) -> NDArray | None:
         """Compressions of the meshes at rest ``(m,)`` [m], about which their forces are taken as straight; None if they are."""
         gaps = np.array([mesh.gap for mesh in self.meshes])
         if not self.curved and not gaps.any():
@@ -386,15 +384,15 @@ class Machine:
         touching = np.array([bool(mesh.secants) or not self.curved for mesh in self.meshes])
         return np.where(touching & ~free & (depth(x, self.law) == 0), TOUCH, x)
 
-    def compressions(self, q: NDArray[Any]) -> NDArray[np.float64]:
+    def compressions(self, q: NDArray[Any]) -> NDArray:
         """Compressions of the meshes ``(m,)`` [m] at displacements ``(n,)``, errors disregarded."""
         return self.G @ q - np.array([mesh.gap for mesh in self.meshes])
 
-    def load(self, t: float = 0.0) -> NDArray[np.float64]:
+    def load(self, t: float = 0.0) -> NDArray:
         """Sum of the loads at time `t` ``(n,)``."""
         return sum((load.row * float(load(t)) for load in self.loads), np.zeros(len(self.dofs)))
 
-    def rest(self, t: float | None = None) -> NDArray[np.float64]:
+    def rest(self, t: float | None = None) -> NDArray:
         """Displacements ``(n,)`` under the loads of time `t` (0 if None) at the mean mesh stiffnesses, errors disregarded.
 
         Rigid-body motions are left out (least squares).

@@ -1,4 +1,4 @@
-"""The fast path: one step of `gearfe.dynamics.motion.exponential` after the other, in scalar arithmetic that numba compiles.
+"""The fast path: one step of `gearfe.dynamics.motion.propagator` after the other, in scalar arithmetic that numba compiles.
 
 A step in which a mesh opens or closes, or a load bends, is halved up to `motion.propagator.LEVELS` times about it; under a
 law of contact that is not linear so is one whose estimate (`motion.propagator.Plan.told`) is above what is allowed: flanks
@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .excitation import changing
-from .exponential import UNSTABLE
-from .loop_forces import changed, forces, loads, losses, note, records
+from .excitation import changing, records
+from .loop_forces import changed, forces, loads, losses, note
 from .loop_parts import compiled, kept, lookup, stage
+from .propagator import UNSTABLE
 
 GROW = 0.05  # part of the allowed estimate below which the next step is twice as long (the estimate grows as its fourth power)
 TINY = 1e-300  # N: least scale of the estimate, for meshes that never carry anything
@@ -57,11 +57,11 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0, acting=None):
     matrices = _matrices(plan, *changing(machine, flat))
     bends = [flat.knots[low:high] for low, high in zip(flat.knot_place[:-1], flat.knot_place[1:], strict=True) if high > low + 1]
     flat = flat._replace(knots=np.concatenate(bends) if bends else np.zeros((1, 2)), knot_place=np.cumsum([0, *map(len, bends)]))
-    m, rubs = len(machine.meshes), len(flat.rub_mesh)
+    m, rubs = len(machine.meshes), len(flat.rub)
     extra = {"k_linear": plan.k, "c_linear": plan.c, "total": plan.k, "stiff": plan.k, "lawful": flat.shape[:m, 1] > 0}
     laws = records(**machine.law, **extra, affine=np.full(m, plan.affine), rubs=np.full(m, rubs))
     _, rows, columns, per_depth = np.insert(flat.shape, [m] * rubs, 0.0, axis=0).T
-    mesh = np.concatenate([np.arange(m), flat.rub_mesh, flat.change_mesh])
+    mesh = np.concatenate([np.arange(m), flat.rub["mesh"], flat.change["mesh"]])
     parts = records(mesh=mesh, rows=rows, columns=columns, per_depth=per_depth)
     edges = np.append(np.asarray(breaks, dtype=float), np.inf)
     states, counts = np.empty((1 + steps // every, z.size)), np.zeros(3, dtype=np.int64)
@@ -200,7 +200,7 @@ def _run(given, z, clock, states, counts, acting):
     matrices, laws, parts, flat, edges = given
     E, Y, S, T, PF, add, push, W, P = matrices
     start, h, every, allowed, scale = clock
-    m, p, f, n, last, rubs, table = laws.size, P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub_mesh.size, flat.secant
+    m, p, f, n, last, rubs, table = laws.size, P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub.size, flat.secant
     whole, opens, begin, held = 1 << last, last > 0, 2 * CHUNK + 1, allowed < np.inf  # `begin`: row of `now` for a part of a step
     now = np.zeros((begin + 3, 2 * m + f + (2 * len(flat.shape) if table.size > 0 else 0)))
     g, apart = np.zeros(5 * f), np.zeros(f)  # forces of the stages 1, 3, 4, 2, and at the end; these less those of stage 4

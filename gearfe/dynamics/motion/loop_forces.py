@@ -1,18 +1,7 @@
 """Forces of the meshes in `gearfe.dynamics.motion.loop`, by the contact laws of `machine.contact_law`, compiled."""
 
-import numpy as np
-
 from ..machine.contact_law import LAWS, mesh_force, touch
 from .loop_parts import compiled, secant
-
-
-def records(**columns):
-    """Arrays of one length by name as an array of records, ``records[i].name``."""
-    dtype = np.dtype([(name, values.dtype) for name, values in columns.items()], align=True)
-    out = np.empty(len(next(iter(columns.values()))), dtype)
-    for name, values in columns.items():
-        out[name] = values
-    return out
 
 
 def _chain(first):

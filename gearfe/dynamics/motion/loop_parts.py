@@ -63,18 +63,25 @@ def announced(tell=None):
 
 
 @compiled
-def _cubic(cells, place, count, at):
-    cell = min(int(at), count - 1)
-    u, row = at - cell, place + cell
+def _place(table, phase):
+    """Place in the cells of a table at a running phase; `size` or more where its tooth is out of mesh."""
+    on = phase - table.first - table.start
+    return (on - table.period * np.floor(on / table.period)) / table.width
+
+
+@compiled
+def _cubic(cells, table, at):
+    cell = min(int(at), table.size - 1)
+    u, row = at - cell, table.place + cell
     return cells[row, 0] + u * (cells[row, 1] + u * (cells[row, 2] + u * cells[row, 3]))
 
 
 @compiled
-def _slope(cells, place, count, at):
-    """Derivative of `_cubic` by the place in the cells."""
-    cell = min(int(at), count - 1)
-    u, row = at - cell, place + cell
-    return cells[row, 1] + u * (2 * cells[row, 2] + 3 * u * cells[row, 3])
+def _slope(cells, table, at):
+    """Derivative of `_cubic` by the phase."""
+    cell = min(int(at), table.size - 1)
+    u, row = at - cell, table.place + cell
+    return (cells[row, 1] + u * (2 * cells[row, 2] + 3 * u * cells[row, 3])) / table.width
 
 
 @compiled
@@ -145,18 +152,20 @@ def secant(table, one, place, u, depth):
 
 
 @compiled
-def _shifted(flat, now, row, turned, fast):
-    """Add what teeth off their places open, and its rate, to the errors in a row of `now`."""
-    m = flat.frequency.size
-    for j in range(flat.shift_mesh.size):
-        i, z, first = flat.shift_mesh[j], flat.shift[j, 0], flat.shift[j, 1]
-        start, width = flat.shift[j, 2], flat.shift[j, 3]
-        place = flat.phase[i] + flat.frequency[i] * turned - first - start
-        place = (place - z * np.floor(place / z)) / width
-        if place < flat.shift_count[j]:
-            now[row, m + i] += _cubic(flat.cells, flat.shift_place[j], flat.shift_count[j], place)
-            steep = _slope(flat.cells, flat.shift_place[j], flat.shift_count[j], place) / width
-            now[row, 2 * m + i] += steep * flat.frequency[i] * fast
+def _errors(flat, now, row, turned, fast):
+    """Add the errors of meshes, and what teeth off their places open, with their rates, in a row of `now`."""
+    m, error, shift = flat.frequency.size, flat.error, flat.shift
+    for j in range(error.size):
+        one = error[j]
+        turn = one.omega * turned + one.angle
+        now[row, m + one.mesh] += one.amplitude * np.sin(turn)
+        now[row, 2 * m + one.mesh] += one.amplitude * one.omega * fast * np.cos(turn)
+    for j in range(shift.size):
+        i = shift[j].mesh
+        place = _place(shift[j], flat.phase[i] + flat.frequency[i] * turned)
+        if place < shift[j].size:
+            now[row, m + i] += _cubic(flat.cells, shift[j], place)
+            now[row, 2 * m + i] += _slope(flat.cells, shift[j], place) * flat.frequency[i] * fast
 
 
 @compiled
@@ -167,12 +176,10 @@ def lookup(flat, now, first, last, origin, h, low, share):
     loads, then, of machines with laws of force, the places in the meshes' and damaged teeth's tables by `_row`, -1 where there is
     none or the tooth is out of mesh. Many times at once, for a compiled function takes its time to find the tables.
     """
-    cells, frequency, phases, place, count = flat.cells, flat.frequency, flat.phase, flat.place, flat.count
-    change_mesh, change, change_place, change_count = flat.change_mesh, flat.change, flat.change_place, flat.change_count
-    error_mesh, error, twin, knots, knot_place = flat.error_mesh, flat.error, flat.twin, flat.knots, flat.knot_place
-    rub_mesh, rub_place, rub_count, pace = flat.rub_mesh, flat.rub_place, flat.rub_count, flat.pace
-    m, rub, changes, loads = frequency.size, rub_mesh.size, change_mesh.size, knot_place.size - 1
-    shape, lawful, at = flat.shape, flat.secant.size > 0, 3 * frequency.size + rub_mesh.size + knot_place.size - 1
+    cells, frequency, phases, cycle, change, rub = flat.cells, flat.frequency, flat.phase, flat.cycle, flat.change, flat.rub
+    twin, knots, knot_place, pace, shape = flat.twin, flat.knots, flat.knot_place, flat.pace, flat.shape
+    m, loads, lawful = frequency.size, knot_place.size - 1, flat.secant.size > 0
+    at = 3 * m + rub.size + loads
     for row in range(first, last):
         t = origin + h * (low + share * (row - first))
         turned, fast = t, 1.0
@@ -181,35 +188,29 @@ def lookup(flat, now, first, last, origin, h, low, share):
         for i in range(m):
             now[row, m + i] = now[row, 2 * m + i] = 0.0
             if twin[i] == i:
-                phase = phases[i] + frequency[i] * turned
-                now[row, i] = _cubic(cells, place[i], count[i], (phase - np.floor(phase)) * count[i])
+                place = _place(cycle[i], phases[i] + frequency[i] * turned)
+                now[row, i] = _cubic(cells, cycle[i], place)
                 if lawful:
-                    _row(now, row, at + 2 * i, shape, i, 1 + (phase - np.floor(phase)) * (shape[i, 1] - 3), shape[i, 1] > 0)
-        for j in range(changes):
-            i = change_mesh[j]
-            z, tooth_phase = change[j, 0], phases[i] + frequency[i] * turned - change[j, 1] - change[j, 2]
-            tooth_phase = (tooth_phase - z * np.floor(tooth_phase / z)) / change[j, 3]
-            if twin[i] == i and tooth_phase < change_count[j]:
-                now[row, i] += _cubic(cells, change_place[j], change_count[j], tooth_phase)
+                    _row(now, row, at + 2 * i, shape, i, 1 + place * cycle[i].width * (shape[i, 1] - 3), shape[i, 1] > 0)
+        for j in range(change.size):
+            i = change[j].mesh
+            place = _place(change[j], phases[i] + frequency[i] * turned)
+            if twin[i] == i and place < change[j].size:
+                now[row, i] += _cubic(cells, change[j], place)
             if lawful:
-                _row(now, row, at + 2 * (m + j), shape, m + j, tooth_phase + 1, tooth_phase < shape[m + j, 1] - 3)
+                _row(now, row, at + 2 * (m + j), shape, m + j, place + 1, place < shape[m + j, 1] - 3)
         for i in range(m):
             now[row, i] = now[row, twin[i]]
             if lawful:
                 now[row, at + 2 * i], now[row, at + 2 * i + 1] = now[row, at + 2 * twin[i]], now[row, at + 2 * twin[i] + 1]
-            if changes:
+            if change.size:
                 now[row, i] = max(now[row, i], 0.0)
-        for j in range(error_mesh.size):
-            i, turn = error_mesh[j], error[j, 1] * turned + error[j, 2]
-            now[row, m + i] += error[j, 0] * np.sin(turn)
-            now[row, 2 * m + i] += error[j, 0] * error[j, 1] * fast * np.cos(turn)
-        _shifted(flat, now, row, turned, fast)
-        for j in range(rub):
-            i = rub_mesh[j]
-            phase = phases[i] + frequency[i] * turned
-            now[row, 3 * m + j] = _cubic(cells, rub_place[j], rub_count[j], (phase - np.floor(phase)) * rub_count[j])
+        _errors(flat, now, row, turned, fast)
+        for j in range(rub.size):
+            i = rub[j].mesh
+            now[row, 3 * m + j] = _cubic(cells, rub[j], _place(rub[j], phases[i] + frequency[i] * turned))
         for j in range(loads):
-            now[row, 3 * m + rub + j] = _load(knots, knot_place[j], knot_place[j + 1], t)
+            now[row, 3 * m + rub.size + j] = _load(knots, knot_place[j], knot_place[j + 1], t)
 
 
 @compiled

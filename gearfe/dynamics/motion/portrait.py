@@ -9,7 +9,7 @@ from scipy.interpolate import make_interp_spline
 from ...signal.series import Signal
 
 
-def phase_portrait(signal: Signal, velocity: Signal | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def phase_portrait(signal: Signal, velocity: Signal | None = None) -> tuple[NDArray, NDArray]:
     """Displacement and velocity at every sample, for a plot of one over the other.
 
     Parameters
@@ -29,9 +29,7 @@ def phase_portrait(signal: Signal, velocity: Signal | None = None) -> tuple[NDAr
     return x(signal.time), v(signal.time)
 
 
-def poincare_section(
-    signal: Signal, frequency: float, velocity: Signal | None = None, *, start: float = 0.0
-) -> NDArray[np.float64]:
+def poincare_section(signal: Signal, frequency: float, velocity: Signal | None = None, *, start: float = 0.0) -> NDArray:
     """Points of the phase portrait once a period: one point repeated if the motion has that period.
 
     Parameters

@@ -1,4 +1,21 @@
-"""The exact linear part of a machine and the matrices of exponential steps: what `motion.exponential` steps with."""
+"""The exact linear part of a machine and the matrices of the exponential step of order four that the fast path takes.
+
+``u = (q, v)`` is brought to coordinates z in which the linear part - springs, and meshes at their mean stiffness - is exact,
+``z' = A z + B f(t, P z)``: f are the deviations of the mesh forces from the linear part and the loads, P z what they depend on,
+the compressions of the meshes. The step is that of Cox and Matthews; its stages are only needed as P z, so that small matrices
+carry them:
+
+    y = P exp(A h/2) z,  w = P exp(A h) z
+    f1 = f(t, P z), f2 = f(t + h/2, y + S f1), f3 = f(t + h/2, y + S f2), f4 = f(t + h, w + R f1 + S (2 f3 - f1))
+    z+ = exp(A h) z + F1 f1 + F2 (f2 + f3) + F3 f4
+
+`gearfe.dynamics.motion.loop` takes these steps one after the other.
+
+References
+----------
+S. M. Cox, P. C. Matthews, J. Comput. Phys. 176 (2002) 430-455, eqs. 26-29; A.-K. Kassam, L. N. Trefethen, SIAM J. Sci. Comput.
+26 (2005) 1214-1233.
+"""
 
 import math
 from dataclasses import dataclass
@@ -9,6 +26,7 @@ from scipy.linalg import eig
 from ..machine.contact_law import closed
 from ..machine.modes import modal, natural_frequencies
 
+UNSTABLE = "the machine is unstable (a parametric resonance without enough damping), or the step is too long"
 LEVELS, DEEPER = 6, 8  # most halvings of a step: about changes of contact; where the step is adapted
 LOCAL = 1e-5  # `Plan.allowed` at the default step, as a part of the largest mesh force
 STEPS = 80  # per mesh cycle, at first
@@ -144,14 +162,6 @@ def _blocks(A, squared, D):
     if np.linalg.cond(turn) > CONDITION:
         return np.eye(2 * n), 2 * n
     return turn, 2
-
-
-def dense(blocks):
-    """Matrix ``(2n, 2n)`` of blocks along its diagonal."""
-    count, size, _ = blocks.shape
-    out = np.zeros((count, size, count, size))
-    out[np.arange(count), :, np.arange(count)] = blocks
-    return out.reshape(count * size, count * size)
 
 
 def _matrices(A, B, P, h):

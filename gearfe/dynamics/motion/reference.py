@@ -64,7 +64,6 @@ class _Run:
 
     def __init__(self, machine, duration, count, state, method, rtol, start):
         self.machine, self.n, self.law = machine, len(machine.dofs), machine.law
-        self.flat = excitation.flatten(machine, start + np.linspace(0.0, duration, 20 * count + 1))
         highest = machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0)
         unit = max(2 * math.pi * highest, 1.0)  # velocities of the size of the displacements
         self.scale = scale = np.concatenate([np.sqrt(machine.mass) * unit, np.sqrt(machine.mass)])
@@ -78,11 +77,11 @@ class _Run:
 
     def compression(self, t, y):
         """Compressions of all meshes ``(m,)`` [m], or at many times ``(m, t)``."""
-        return self.machine.G @ (y.T / self.scale).T[: self.n] - excitation.errors(self.flat, np.asarray(t))[0].T
+        return self.machine.G @ (y.T / self.scale).T[: self.n] - excitation.errors(self.machine, t)[0].T
 
     def rate(self, t, y):
         u = y / self.scale
-        a = acceleration(self.machine, self.flat, np.asarray(t), u[: self.n], u[self.n :], self.side)
+        a = acceleration(self.machine, t, u[: self.n], u[self.n :], self.side)
         return self.scale * np.concatenate([u[self.n :], a])
 
     def between(self, low, high, y, inside):
@@ -162,7 +161,7 @@ class _Run:
                 f"contact changed {EVENTS} times up to t = {t:.4g} s: flanks rest on the edge of touching; give a shorter run"
             )
         x, u = self.compression(t, y), y / self.scale
-        speed = self.machine.G @ u[self.n :] - excitation.errors(self.flat, np.asarray(t))[1]
+        speed = self.machine.G @ u[self.n :] - excitation.errors(self.machine, t)[1]
         for i in self.opens:
             near = [
                 side

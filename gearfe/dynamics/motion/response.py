@@ -47,11 +47,11 @@ class Response:
     """
 
     machine: Machine
-    time: NDArray[np.float64]
-    states: NDArray[np.float64]
-    basis: NDArray[np.float64]
+    time: NDArray
+    states: NDArray
+    basis: NDArray
     stats: dict[str, Any] = field(default_factory=dict)
-    filtered: NDArray[np.float64] | None = None
+    filtered: NDArray | None = None
 
     def __post_init__(self) -> None:
         """Raise ValueError for times, states and filtered channels of different lengths."""
@@ -99,7 +99,7 @@ class Response:
         self._dof(head, name)
         return ("rad" if head.endswith((".theta", ".tilt_x", ".tilt_y")) else "m") + KINDS.get(tail, "")
 
-    def __getitem__(self, name: str) -> NDArray[np.float64]:
+    def __getitem__(self, name: str) -> NDArray:
         """Channel `name` ``(t,)``."""
         head, _, tail = name.partition(" ")
         if head in MESH and tail in self._meshes:
@@ -111,31 +111,30 @@ class Response:
         return states @ self.basis[dof + (n if tail == "velocity" else 0)]
 
     @property
-    def q(self) -> NDArray[np.float64]:
+    def q(self) -> NDArray:
         """Displacements ``(t, n)``."""
         return self.states @ self.basis[: len(self.machine.dofs)].T
 
     @property
-    def v(self) -> NDArray[np.float64]:
+    def v(self) -> NDArray:
         """Velocities ``(t, n)``."""
         return self.states @ self.basis[len(self.machine.dofs) :].T
 
-    def mesh(self, kind: str = "force") -> NDArray[np.float64]:
+    def mesh(self, kind: str = "force") -> NDArray:
         """Compression [m], stiffness [N/m^power] or force [N] of all meshes ``(t, m)``."""
         if kind not in MESH:
             raise ValueError(f"kind = {kind!r}, but it must be one of {', '.join(MESH)}")
         which = list(MESH).index(kind)
         if self.filtered is not None:
             return np.split(self.filtered[:, 3 * len(self.machine.dofs) :], 3, axis=1)[which]
-        flat = excitation.flatten(self.machine, self.time)
-        return mesh_channels(self.machine, flat, self.time, self.q, self.v)[which]
+        return mesh_channels(self.machine, self.time, self.q, self.v)[which]
 
-    def accelerations(self) -> NDArray[np.float64]:
+    def accelerations(self) -> NDArray:
         """Accelerations ``(t, n)``, from the equations of motion."""
         if self.filtered is not None:
             n = len(self.machine.dofs)
             return self.filtered[:, 2 * n : 3 * n]
-        return acceleration(self.machine, excitation.flatten(self.machine, self.time), self.time, self.q, self.v)
+        return acceleration(self.machine, self.time, self.q, self.v)
 
     def signal(self, name: str, turning: float | None = None) -> Signal:
         """Channel `name` as a `gearfe.Signal`.
@@ -150,18 +149,6 @@ class Response:
         """Write channels `names` (default: displacements and mesh forces); the suffix decides: .csv, .npz or .mat."""
         suffix = suffix_of(path, "response")
         save_as(suffix, path, self._content(names))
-
-    def to_csv(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
-        """Write a table of numbers with all their digits under comment lines with the solver's statistics (JSON)."""
-        save_as(".csv", path, self._content(names))
-
-    def to_npz(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
-        """Write a numpy archive: ``time``, ``values`` (t, channels), ``names``, ``units``, ``meta`` (JSON)."""
-        save_as(".npz", path, self._content(names))
-
-    def to_mat(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
-        """Write a MATLAB 5 file with the variables of `to_npz`."""
-        save_as(".mat", path, self._content(names))
 
     def _content(self, names):
         channels = self._columns(names)
@@ -188,29 +175,29 @@ class Response:
         return self.machine.dofs.index(head)
 
 
-def mesh_channels(machine, flat, t, q, v, side=None):
+def mesh_channels(machine, t, q, v, side=None):
     """Compressions, stiffnesses and forces of the meshes ``(..., m)``, running phases; of meshes held on a `side` if given."""
-    e, rate = excitation.errors(flat, t)
+    e, rate = excitation.errors(machine, t)
     x, speed = q @ machine.G.T - e, v @ machine.G.T - rate
-    k, _, phase = excitation.stiffness_at(machine, flat, t, x)
+    k, _, phase = excitation.stiffness(machine, t, x)
     total = force(x, speed, k, machine.law) if side is None else sided_force(x, speed, k, machine.law, side)
     return x, k, total, phase
 
 
-def acceleration(machine, flat, t, q, v, side=None, meshes=None):
+def acceleration(machine, t, q, v, side=None, meshes=None):
     """Accelerations at times `t` from displacements and velocities ``(..., n)``; `meshes`: their `mesh_channels`, if known."""
-    _, _, total, phase = mesh_channels(machine, flat, t, q, v, side) if meshes is None else meshes
+    _, _, total, phase = mesh_channels(machine, t, q, v, side) if meshes is None else meshes
     out = -q @ machine.K.T - v @ machine.C.T - total @ machine.G
-    rub = [row for mesh in machine.meshes for row, _ in mesh.friction]
-    if rub:
-        out = out - (excitation.rubbing(flat, phase) * total[..., flat.rub_mesh]) @ np.array(rub)
-    if machine.loads:
-        out = out + excitation.loads(flat, t) @ np.array([load.row for load in machine.loads])
+    if any(mesh.friction for mesh in machine.meshes):
+        rows, rubbed, weights = excitation.rubbing(machine, phase)
+        out = out - (weights * total[..., rubbed]) @ rows
+    for load in machine.loads:
+        out = out + load(t)[..., None] * load.row
     return out / machine.mass
 
 
-def all_channels(response, flat):
+def all_channels(response):
     """`Response.filtered` of a response before it is filtered ``(t, 3n + 3m)``."""
     machine, t, q, v = response.machine, response.time, response.q, response.v
-    meshes = mesh_channels(machine, flat, t, q, v)
-    return np.concatenate([response.states, acceleration(machine, flat, t, q, v, meshes=meshes), *meshes[:3]], axis=1)
+    meshes = mesh_channels(machine, t, q, v)
+    return np.concatenate([response.states, acceleration(machine, t, q, v, meshes=meshes), *meshes[:3]], axis=1)

@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 from ...core.memory import free_memory
 from ...core.threads import single
 from ..machine.tables import Machine
-from . import excitation
 from .fixed_step import fixed_steps
 from .law_range import compared
 from .reference import SOLVERS, reference
@@ -76,7 +75,7 @@ def simulate(
     duration : float
         [s]
     method : str
-        ``"fast"``: `motion.exponential`, fixed steps that are halved about changes of contact, and under a law of contact
+        ``"fast"``: `motion.propagator`, fixed steps that are halved about changes of contact, and under a law of contact
         that is not linear also where flanks come into contact. Or a method of
         `scipy.integrate.solve_ivp`, the reference (``"DOP853"`` with ``rtol=1e-10``), between located changes of contact.
     rate : float, optional
@@ -192,8 +191,7 @@ def _reference(machine, duration, count, state, method, rtol, start, filtered):
     counts = stages(FINE * math.ceil(duration / count / default_step(machine) * (1 - 1e-9)))
     every = math.prod(counts)
     whole = reference(machine, duration, count * every, state, method, rtol, start)
-    flat = excitation.flatten(machine, whole.time)
-    return replace(whole.part(slice(None, None, every)), filtered=thinned([all_channels(whole, flat)], counts))
+    return replace(whole.part(slice(None, None, every)), filtered=thinned([all_channels(whole)], counts))
 
 
 def _check_memory(machine, duration, count, filtered):

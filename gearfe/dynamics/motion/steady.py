@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.threads import single
-from ..machine.contact_law import closed, slopes
+from ..machine.contact_law import closed
 from ..machine.tables import Machine
 from . import excitation, propagator
-from .exponential import Step
 from .response import Response
 from .step_control import chosen_step
 
+DISTURBED = 1e-5  # of the size of the motion: disturbances of its start, where it is not linear
 STABLE = 1e-6  # above 1: a multiplier this large still counts as 1 (rigid-body motion, no damping)
 
 
@@ -136,66 +136,30 @@ def steady_state(
     )
 
 
-def floquet(machine, *, period=None, dt=None):
-    """Floquet multipliers of a machine with closed meshes, the largest first ``(2n,)``; loads and errors do not matter."""
-    flow = _Flow(machine, common_period(machine) if period is None else period, dt)
-    if not flow.linear:
-        raise ValueError("the meshes of this machine can open: its multipliers depend on its motion; use steady_state")
-    values = np.linalg.eigvals(flow.monodromy(None))
-    return values[np.argsort(-np.abs(values))]
-
-
 class _Flow:
-    """The motion over a period in steps of h/2, and its derivative by the start in steps of h."""
+    """The motion over a period, and its derivative by the start."""
 
     def __init__(self, machine, period, dt):
         steps = math.ceil(period / (dt or chosen_step(machine, period)[0]) * (1 - 1e-12))
-        h = period / steps
-        x = machine.working()
-        self.machine, self.steps, self.times = machine, steps, np.linspace(0.0, period, 2 * steps + 1)
-        self.plan, self.coarse = propagator.plan(machine, h / 2, x), propagator.plan(machine, h, x)
+        self.machine, self.times = machine, np.linspace(0.0, period, 2 * steps + 1)
+        self.plan = propagator.plan(machine, period / steps / 2, machine.working())
         self.flat = excitation.flatten(machine, np.linspace(0.0, period, 16 * steps + 1))
         self.breaks = np.unique(np.concatenate([np.empty(0), *(load.breaks for load in machine.loads)]))
         self.linear = closed(machine.law) and not machine.curved  # even with friction
-        # both plans must speak of the same coordinates
-        self.turn = self.coarse.inverse @ self.plan.basis
 
     def __call__(self, z):
         from .loop import run  # loads the compiler
         from .loop_parts import announced
 
         with announced():
-            return run(self.plan, self.machine, self.flat, z, 2 * self.steps, 1, self.breaks)
+            return run(self.plan, self.machine, self.flat, z, self.times.size - 1, 1, self.breaks)
 
     def monodromy(self, states):
-        """Derivative of the state after the period by that before, along `states` (None: they do not matter)."""
-        machine, n, m = self.machine, len(self.machine.dofs), len(self.machine.meshes)
-        if states is None:
-            x = np.ones((self.times.size, m))
-            v = np.zeros_like(x)
-        else:
-            e, rate = excitation.errors(self.flat, self.times)
-            x = states @ (machine.G @ self.plan.basis[:n]).T - e
-            v = states @ (machine.G @ self.plan.basis[n:]).T - rate
-        k, bend, phase = excitation.stiffness_at(machine, self.flat, self.times, x)
-        by_x, by_v = slopes(x, v, k, machine.law, bend)
-        rub = len(self.flat.rub_mesh)
-        weight = excitation.rubbing(self.flat, phase) if rub else None
-        X, step = np.eye(2 * n), Step(self.coarse, (2 * n,))
-
-        def forces(y, out, j):
-            if self.coarse.affine:
-                out[:m] = (k[j] - self.coarse.k)[:, None] * y[:m]
-                return
-            total = by_x[j][:, None] * y[:m]
-            out[:m] = total - self.coarse.k[:, None] * y[:m]
-            if len(y) > m:
-                total = total + by_v[j][:, None] * y[m:]
-                out[:m] += (by_v[j] - self.coarse.c)[:, None] * y[m:]
-            if rub:
-                out[m : m + rub] = weight[j][:, None] * total[self.flat.rub_mesh]
-
-        for j in range(0, 2 * self.steps, 2):
-            X = step(X, 0, forces, j)
-        back = np.linalg.inv(self.turn)
-        return back @ X @ self.turn
+        """Derivative of the state after the period by that before: differences of motions, exact where the motion is linear."""
+        part = 1.0 if self.linear else DISTURBED
+        size = part * (np.abs(states).max() or 1.0)
+        columns = []
+        for step in size * np.eye(len(states[0])):
+            before = states if self.linear else self(states[0] - step)[0]
+            columns.append((self(states[0] + step)[0][-1] - before[-1]) / (size if self.linear else 2 * size))
+        return np.array(columns).T

@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import excitation
 from .fixed_step import fixed_steps
 from .propagator import default_step, is_bent, plan
 from .response import acceleration, mesh_channels
@@ -46,9 +45,8 @@ class Seen(NamedTuple):
 def seen(response):
     """`Seen` of a response."""
     machine, t, q, v = response.machine, response.time, response.q, response.v
-    flat = excitation.flatten(machine, t)
-    meshes = mesh_channels(machine, flat, t, q, v)
-    return Seen(q, meshes[2], acceleration(machine, flat, t, q, v, meshes=meshes))
+    meshes = mesh_channels(machine, t, q, v)
+    return Seen(q, meshes[2], acceleration(machine, t, q, v, meshes=meshes))
 
 
 def differences(one, two, machine):
