@@ -173,6 +173,11 @@ class Case:
         """Whether there is any damage."""
         return any(map(any, (self.cracks, self.pits, self.missing)))
 
+    def without_missing(self, what: str) -> None:
+        """ValueError if a tooth is missing, because `what` does not model it."""
+        if any(self.missing):
+            raise ValueError(f"a missing tooth in {what}, which has whole teeth only: use mesh_stiffness, compare or render")
+
     @property
     def runs(self) -> str:
         """How the teeth run: `face`, or as their helix angle says."""

@@ -134,8 +134,8 @@ ROWS = (
     ),
     Method(
         "fe", "finite elements of the transverse section, the independent reference", "section",
-        "gearfe.stiffness.cache:solved_gear", "seconds", converged=True, cracks="through", missing=True, teeth=True, error=True, extended=True,
-        flanks=True, kept="disk",
+        "gearfe.stiffness.cache:solved_gear", "seconds", converged=True, cracks="through", missing=True, teeth=True, error=True,
+        extended=True, flanks=True, kept="disk",
     ),
     Method(
         "fe3d", "finite elements of whole gears of finite width, the independent reference", "solid",

@@ -1,6 +1,5 @@
 """Stiffness curves of plane contact: from the flexibilities of two sections, or from a plain sum of tooth pairs."""
 
-import math
 import time
 from dataclasses import asdict, replace
 
@@ -9,7 +8,7 @@ import numpy as np
 from ..contact.pair_contact import PairContact
 from ..core.steps import part, steps
 from ..flexibility.energy.closed.plain_sum import plain_sum
-from ..geometry.pair.contacts import near_pitches
+from ..geometry.pair.contacts import neighbours_of
 from .curve import StiffnessCurve
 from .estimate import MODEL, estimate, fixed_phases, other_solves
 from .own_flexibility import flexibility_of
@@ -48,7 +47,7 @@ def section_solver(row, case, how, phase, hats=1.0, **coarser):
     started = time.perf_counter()
     model, pair, numeric = row.own, case.pair, _numeric(row, how) | coarser
     extended = how.extended and (model or row).extended
-    neighbours = math.ceil(pair.eps_alpha) + sum(near_pitches(pair)) - 2
+    neighbours = neighbours_of(pair)
 
     def named(row, gear, material, cracks=(), missing=()):
         options = {"neighbours": neighbours, "state": how.state, **numeric}

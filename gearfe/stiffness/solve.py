@@ -217,7 +217,10 @@ def _curves(row, case, how):
     phase = phase_array(how.phases, how.span, pair, overlap, case.damaged_pairs or (0,))
     if how.span not in LONG:
         return posed(phase)
-    differs = [bool(case.cracks[i] or case.pits[i] or case.missing[i]) or (case.forms is not None and case.forms[i].differs) for i in (0, 1)]
+    differs = [
+        bool(case.cracks[i] or case.pits[i] or case.missing[i]) or (case.forms is not None and case.forms[i].differs)
+        for i in (0, 1)
+    ]
     return over_turns(posed, phase, pair, how.span, differs)
 
 

@@ -119,7 +119,16 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), 
     fine = stations(gear, min(edge["flank"], longest), tip=edge["tip"], low=edge["low"], **even)
     coarse = stations(gear, min(edge["read"], longest), tip=0.025 * gear.m_n / refine, **even)
     rolls = dict.fromkeys(loaded, fine) | dict.fromkeys(read, coarse)
-    return section(gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], teeth=teeth, cracks=cracks, missing=missing)
+    return section(
+        gear,
+        rolls,
+        fillet_size=edge["fillet"],
+        size=edge["near"],
+        far_size=edge["far"],
+        teeth=teeth,
+        cracks=cracks,
+        missing=missing,
+    )
 
 
 def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):

@@ -26,9 +26,7 @@ HATS = 2  # how many times shorter the hats at corners are than those of `fe`
 KNOTS = 48  # of the splines that carry their polynomial
 
 
-def flexibility(
-    gear, material, cracks=(), *, missing=(), neighbours=1, state="plane strain", order=4, refine=1.0, cache=True
-):
+def flexibility(gear, material, cracks=(), *, missing=(), neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
     """`Flexibility` of a gear by the energy model.
 
     Parameters
@@ -105,7 +103,10 @@ def _damaged(model, cracks, missing, neighbours, cache):
 
 
 def loaded_sector(model, cracks, cache=True, *, missing=False):
-    """`Panel` of a sector with `cracks` (of a `missing` tooth: without loads) under the loads at `_places`, and under eight tilted ones: at `_leans`, both ways."""
+    """`Panel` of a sector with `cracks` under the loads at `_places`, and under eight tilted ones: at `_leans`, both ways.
+
+    A `missing` tooth has no loads.
+    """
     gear = model.gear
 
     def solve():
