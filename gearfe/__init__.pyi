@@ -34,6 +34,8 @@ from .dynamics.machine.law_error import law_error as law_error
 from .dynamics.machine.law_error import law_within as law_within
 from .dynamics.machine.layout import Body as Body
 from .dynamics.machine.layout import Layout as Layout
+from .dynamics.machine.loads import Load as Load
+from .dynamics.machine.loads import pulses as pulses
 from .dynamics.machine.member import Member as Member
 from .dynamics.machine.member import disc as disc
 from .dynamics.machine.mesh_errors import with_errors as with_errors
@@ -47,12 +49,10 @@ from .dynamics.machine.planetary import stage_phases as stage_phases
 from .dynamics.machine.run_up import with_speed as with_speed
 from .dynamics.machine.single_mesh import single_mesh as single_mesh
 from .dynamics.machine.speed import Speed as Speed
-from .dynamics.machine.tables import Fault as Fault
-from .dynamics.machine.tables import Load as Load
+from .dynamics.machine.springs import Spring as Spring
+from .dynamics.machine.stages import Fault as Fault
+from .dynamics.machine.stages import Stage as Stage
 from .dynamics.machine.tables import Machine as Machine
-from .dynamics.machine.tables import Spring as Spring
-from .dynamics.machine.tables import Stage as Stage
-from .dynamics.machine.tables import pulses as pulses
 from .dynamics.motion.dynamic_factor import dynamic_factors as dynamic_factors
 from .dynamics.motion.housing import housing_signal as housing_signal
 from .dynamics.motion.housing import ring_window as ring_window
@@ -101,7 +101,7 @@ from .runs.sweeps.effects import curve_bands as curve_bands
 from .runs.sweeps.effects import main_effects as main_effects
 from .runs.sweeps.effects import sobol_indices as sobol_indices
 from .runs.sweeps.effects import told_apart as told_apart
-from .runs.sweeps.plan import plan_sweep as plan_sweep
+from .runs.sweeps.run import plan_sweep as plan_sweep
 from .runs.sweeps.run import sweep as sweep
 from .runs.sweeps.runs import Runs as Runs
 from .runs.sweeps.runs import open_runs as open_runs
@@ -114,7 +114,6 @@ from .signal.gear_indicators import gear_indicator_table as gear_indicator_table
 from .signal.gear_indicators import gear_indicators as gear_indicators
 from .signal.indicator_table import indicator_table as indicator_table
 from .signal.kurtogram import fast_kurtogram as fast_kurtogram
-from .signal.kurtogram import spectral_kurtosis as spectral_kurtosis
 from .signal.mesh_modulation import mesh_modulation as mesh_modulation
 from .signal.orders import order_spectrum as order_spectrum
 from .signal.orders import residual_signal as residual_signal

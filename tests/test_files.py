@@ -30,7 +30,7 @@ def test_the_table_can_write_and_read_what_it_says():
         assert row.write is not None or not {"curve", "response"} & set(row.writes), f"{suffix} has no writer"
     assert suffixes("curve") == [".csv", ".npz", ".mat", ".json"]
     assert suffixes("response") == [".csv", ".npz", ".mat"]
-    assert set(suffixes("signal", reading=True)) == {".csv", ".txt", *READERS}
+    assert set(suffixes("signal", reading=True)) == {".csv", ".txt", ".lvm", *READERS}
     with pytest.raises(ValueError, match="kind = 'sound'"):
         suffixes("sound")
 
@@ -103,7 +103,7 @@ def test_a_file_system_that_refuses_is_found_out(tmp_path, monkeypatch):
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("gearfe.core.files.os.open", full)
+    monkeypatch.setattr("gearfe.core.files.open", full, raising=False)
     with pytest.raises(ValueError, match="No space left on device"):
         check_output(tmp_path / "k.csv", "curve")
 

@@ -200,8 +200,7 @@ def test_files_take_the_rights_of_new_files_and_the_mask_is_not_touched(tmp_path
     monkeypatch.setattr(os, "umask", None)
     with written(tmp_path / "a.csv") as name:
         Path(name).touch()
-    with durable(tmp_path / "b"):
-        pass
+    durable(tmp_path / "b", b"")
     assert len({(tmp_path / name).stat().st_mode for name in ("plain", "a.csv", "b")}) == 1
 
 

@@ -7,8 +7,8 @@ from dataclasses import KW_ONLY, dataclass, field, fields, replace
 from typing import Any, Self, TypedDict
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..geometry.aliases import Floats
 from ..geometry.damage.crack import Crack, check_apart
 from ..geometry.damage.hollow import doubts_together
 from ..geometry.damage.kinds import Damage, by_side, split, why_wide
@@ -95,10 +95,10 @@ class Case:
     """
 
     pair: GearPair
-    force: float | Sequence[float] | NDArray[np.float64] | None = None
+    force: float | Sequence[float] | Floats | None = None
     material: Material | tuple[Material, Material] | None = field(default=None, compare=False)
     _: KW_ONLY
-    torque: float | Sequence[float] | NDArray[np.float64] | None = None
+    torque: float | Sequence[float] | Floats | None = None
     damage: Mapping[str, Sequence[Damage]] | None = None
     flanks: Mapping[str, Flank] | None = None
     misalignment: Misalignment | None = None

@@ -31,6 +31,7 @@ from .matlab_file import MOST_PACKED, variables
 NO_ARCHIVE: tuple[type[Exception], ...] = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, RuntimeError)
 NO_ARCHIVE += (MemoryError, KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError)
 _drawing = threading.Lock()
+PART = ".part-"  # beginning of the names of temporary files
 
 CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # what no table in text holds
 
@@ -52,7 +53,7 @@ def written(path):
 
     ValueError if the folder does not exist or cannot be written.
     """
-    name = _beside(path)
+    name = new_file(path)
     try:
         yield name
         os.replace(name, path)
@@ -63,27 +64,21 @@ def written(path):
             os.unlink(name)
 
 
-def _beside(path):
-    """Name of a new empty file in the folder of `path`, its suffix in small letters: some libraries know no others."""
+def new_file(path):
+    """Name of a new empty file in the folder of `path`, its suffix in small letters: some libraries know no others.
+
+    Its rights are those of any new file of this process. (`tempfile.mkstemp` gives fewer, and what they should be can be asked
+    only by changing them, for all threads.)
+    """
     path = Path(path)
     try:
-        handle, name = new_file(path.parent, f".{path.stem}-", path.suffix.lower())
+        while True:
+            name = path.parent / f"{PART}{secrets.token_hex(6)}-{path.stem}{path.suffix.lower()}"
+            with contextlib.suppress(FileExistsError), open(name, "xb"):
+                return str(name)
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
         reason = getattr(error, "strerror", None) or error
         raise ValueError(f"cannot write {path}: {reason}; give an existing, writable folder") from error
-    os.close(handle)
-    return name
-
-
-def new_file(folder, prefix, suffix=""):
-    """Open a file that was not there before: its number, and its name; the rights are those of any new file of this process.
-
-    (`tempfile.mkstemp` gives fewer, and what they should be can be asked only by changing them, for all threads.)
-    """
-    while True:
-        name = os.path.join(folder, f"{prefix}{secrets.token_hex(6)}{suffix}")
-        with contextlib.suppress(FileExistsError):
-            return os.open(name, os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666), name
 
 
 def check_output(path, kind):
@@ -98,7 +93,7 @@ def check_output(path, kind):
     suffix_of(path, kind)
     if os.path.isdir(path):  # unlike pathlib's, false for names that no file can have
         raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
-    os.unlink(_beside(path))
+    os.unlink(new_file(path))
 
 
 def suffixes(kind, *, reading=False):
@@ -120,6 +115,8 @@ def suffix_of(path, kind, *, reading=False):
     suffix = Path(path).suffix.lower()
     if suffix not in known:
         raise ValueError(f"{path}: no format for {suffix or 'a file without a suffix'!r}; use one of {', '.join(known)}")
+    if reading and os.path.exists(path) and not os.path.isfile(path):  # a pipe or a device may never end
+        raise ValueError(f"cannot read {path}: it is no regular file")
     return suffix
 
 
@@ -280,9 +277,8 @@ FORMATS = {
     ".txt": Format((), ("signal",), None, read_text),
     ".npz": Format(("curve", "response", "surrogate"), ("signal", "surrogate"), write_npz, read_npz),
     ".mat": Format(("curve", "response"), ("signal",), write_mat, read_mat),
-    **{
-        suffix: Format((), ("signal",)) for suffix in (".h5", ".hdf5", ".wav", ".uff", ".unv", ".uf", ".tdms", ".parquet", ".lvm")
-    },
+    **{suffix: Format((), ("signal",)) for suffix in (".h5", ".hdf5", ".wav", ".uff", ".unv", ".uf", ".tdms", ".parquet")},
+    ".lvm": Format((), ("signal",), None, read_text),
     ".json": Format(("curve",), (), write_json, None),
     ".png": Format(("picture", "stress")),
     **{suffix: Format(("picture",)) for suffix in (".svg", ".pdf", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".eps")},

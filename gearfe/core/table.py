@@ -3,13 +3,13 @@
 import csv
 import io
 import math
-import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from html import escape
 from typing import Any, NamedTuple
 
+from ..geometry.aliases import StrPath
 from .files import suffix_of, written
 from .units import significant
 
@@ -168,7 +168,7 @@ class Table:
             file.writerow("" if cell is None or cell != cell else cell for cell in plain)
         return out.getvalue()
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: StrPath) -> None:
         """Write to `path`; its suffix decides: ``.csv``, ``.md`` or ``.tex``. ValueError if it cannot be written."""
         text = {".csv": self.csv, ".md": self.markdown, ".tex": self.latex}[suffix_of(path, "table")]()
         with written(path) as name, open(name, "w", encoding="utf-8") as file:

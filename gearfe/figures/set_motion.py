@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.files import _beside, written
+from ..core.files import new_file, written
 from ..core.steps import steps
 from .set_plot import BRIGHT, LARGEST, draw_set
 
@@ -22,7 +22,7 @@ def check_moving(path: Any) -> None:
         raise ValueError(f"{path!r} is no moving picture: give the name of a file that ends in {SUFFIX}")
     if os.path.isdir(path):
         raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
-    os.unlink(_beside(path))  # a file can be made there
+    os.unlink(new_file(path))  # a file can be made there
 
 
 def draw_motion(

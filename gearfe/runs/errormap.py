@@ -2,7 +2,6 @@
 
 import csv
 import math
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -16,6 +15,7 @@ from ..core.case import Case
 from ..core.files import written
 from ..core.material import Material
 from ..core.threads import own_warnings
+from ..geometry.aliases import Floats, StrPath
 from ..geometry.damage.crack import Crack, crack_path
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.tooth.gear import Gear
@@ -55,9 +55,9 @@ class ErrorMap:
     are their names; `seconds` (cases,), `elapsed` and `workers` the cost.
     """
 
-    columns: dict[str, NDArray[np.float64]]
+    columns: dict[str, Floats]
     formulations: tuple[str, ...]
-    seconds: NDArray[np.float64]
+    seconds: Floats
     elapsed: float
     workers: int
 
@@ -78,7 +78,7 @@ class ErrorMap:
             return (math.nan,) * 4 + (0,)
         return *np.percentile(error, [5, 50, 95]).tolist(), float((np.abs(error) < 0.03).mean()), error.size
 
-    def to_csv(self, path: str | os.PathLike[str]) -> None:
+    def to_csv(self, path: StrPath) -> None:
         """Write all columns, with a header."""
         with written(path) as name, open(name, "w", newline="", encoding="utf-8") as file:
             table = csv.writer(file)
@@ -87,7 +87,7 @@ class ErrorMap:
 
     def plot(
         self,
-        path: str | os.PathLike[str] | None,
+        path: StrPath | None,
         formulations: Sequence[str] | None = None,
         x: str = "load",
         y: str = "bore_1",

@@ -1,6 +1,5 @@
 """Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units stand in the key names."""
 
-import os
 from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
@@ -10,6 +9,7 @@ from ..core.case import Case
 from ..core.material import Material
 from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
+from ..geometry.aliases import StrPath
 from ..geometry.damage.kinds import Damage
 from ..geometry.pair.flanks import Misalignment
 from ..geometry.pair.gear_pair import GearPair
@@ -94,7 +94,7 @@ def scene_names() -> list[str]:
     )
 
 
-def load_scene(name_or_path: str | os.PathLike[str]) -> Scene:
+def load_scene(name_or_path: StrPath) -> Scene:
     """Read a built-in scene by name, or a scene file by path.
 
     Raises
@@ -105,7 +105,7 @@ def load_scene(name_or_path: str | os.PathLike[str]) -> Scene:
     return scene_of(*read_tables(name_or_path))
 
 
-def read_tables(name_or_path: str | os.PathLike[str]) -> tuple[str, dict[str, Any]]:
+def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
     """Name and unchecked tables of a scene's file, as `scene_of` takes them."""
     if isinstance(name_or_path, str) and name_or_path in scene_names():
         file = resources.files("gearfe.scene.scenes") / f"{name_or_path}.toml"

@@ -1,13 +1,14 @@
 """TOML files as tables and back, and what may be given instead of one: a dictionary of the same structure."""
 
 import json
-import os
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from ..geometry.aliases import StrPath
 
 
 def read_toml(file: Any) -> dict[str, Any]:
@@ -18,7 +19,7 @@ def read_toml(file: Any) -> dict[str, Any]:
         raise ValueError(f"{file.name}: not readable as TOML: {error}") from error
 
 
-def given_tables(given: str | os.PathLike[str] | Mapping[str, Any], what: str) -> tuple[str, Path, dict[str, Any]]:
+def given_tables(given: StrPath | Mapping[str, Any], what: str) -> tuple[str, Path, dict[str, Any]]:
     """Name of a file, its folder and its tables; of a dictionary `what` it is, the present folder, and plain values.
 
     ValueError if there is no such file, or it is not TOML.

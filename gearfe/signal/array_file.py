@@ -1,14 +1,13 @@
 """Channels of files that hold arrays by name: numpy archives, MATLAB files of every version, HDF5. Nothing is unpickled."""
 
-import os
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.extras import needing
 from ..core.files import read
 from ..core.matlab_file import MOST_PACKED, Unread
+from ..geometry.aliases import StrPath
 from .found import ANGLES, TIMES, Found, numeric, plain
 
 PARTS = 64  # entries of a cell array or a struct array, and columns of a matrix, that are taken for channels
@@ -17,17 +16,18 @@ MATLAB_CLASS = "MATLAB_class"
 HDF = b"\x89HDF\r\n\x1a\n"
 
 
-def array_file(path: str | os.PathLike[str]) -> Found:
+def array_file(path: StrPath) -> Found:
     """Channels of a ``.npz`` or ``.mat`` file (of version 7.3 too).
 
     Vectors are channels by name; a matrix that is at least twice as long as wide holds one in each column (or row), ``name 1``,
     ``name 2``...; structs and cell arrays are opened, ``run.acc``, ``run{2}``. Scalars and texts state rate, unit and shaft
     frequency.
     """
-    if is_hdf(path):
+    with open(path, "rb") as file:  # HDF5's mark stands at 0, or behind the header that MATLAB writes
+        start = file.read(512 + len(HDF))
+    if HDF in (start[: len(HDF)], start[512:]):
         return hdf_file(path)
-    arrays = read(path, "signal")
-    arrays, units = _response(arrays)
+    arrays, units = _response(read(path, "signal"))
     recording = Found({}, units, nested="." if any(_opens(value) for value in arrays.values()) else "")
     for name, value in arrays.items():
         _take(recording, name, value)
@@ -35,31 +35,22 @@ def array_file(path: str | os.PathLike[str]) -> Found:
     return recording
 
 
-def is_hdf(path: str | os.PathLike[str]) -> bool:
-    """Whether a file has HDF5's mark at 0, or behind the header that MATLAB writes."""
-    try:
-        with open(path, "rb") as file:
-            start = file.read(512 + len(HDF))
-    except OSError:
-        return False
-    return HDF in (start[: len(HDF)], start[512:])
-
-
-def hdf_file(path: str | os.PathLike[str]) -> Found:
+def hdf_file(path: StrPath) -> Found:
     """Channels of an HDF5 file, MATLAB's version 7.3 among them; attributes ``unit`` and ``rate`` are read."""
     with needing("h5py"):
         import h5py
     recording = Found({})
     try:
         with h5py.File(path, "r") as file:
-            _check_links(file, h5py)
+            if wrong := file.visititems_links(_wrong_link):
+                raise ValueError(wrong)
             if None in file.values():
                 raise OSError("a part of it cannot be opened")
             matlab = any(MATLAB_CLASS in entry.attrs for entry in file.values())
             recording.nested = "." if matlab else "/"
             for key, value in file.attrs.items():
                 recording.state(str(key), _text(value))
-            file.visititems(lambda name, item: _hdf_item(recording, name, item, h5py, matlab))
+            file.visititems(lambda name, item: _hdf_item(recording, name, item, h5py.Dataset, matlab))
     except (OSError, RuntimeError, KeyError, ValueError, TypeError, MemoryError, OverflowError) as error:
         reason = str(getattr(error, "strerror", None) or error).splitlines()[0]
         raise ValueError(f"{path} is not a whole HDF5 file: {reason}") from error
@@ -67,15 +58,11 @@ def hdf_file(path: str | os.PathLike[str]) -> Found:
     return recording
 
 
-def _check_links(file, h5py):
-    """ValueError if a name is a link to another file."""
-
-    def first(name, link):
-        return f"{name!r} is a link to another file, {link.filename}" if isinstance(link, h5py.ExternalLink) else None
-
-    external = file.visititems_links(first)
-    if external:
-        raise ValueError(f"{external}; copy what it means into this one")
+def _wrong_link(name, link):
+    """What is wrong if a name is a link to another file, or stands too deep in groups."""
+    if hasattr(link, "filename"):
+        return f"{name!r} is a link to another file, {link.filename}; copy what it means into this one"
+    return f"groups stand in each other more than {PARTS} deep" if name.count("/") > PARTS else None
 
 
 def _hdf_values(item):
@@ -92,43 +79,40 @@ def _hdf_values(item):
     return item[()]
 
 
-def _hdf_item(found, name, item, h5py, matlab):
-    """Take a dataset, or what a group states in attributes."""
+def _hdf_item(found, name, item, dataset, matlab):
+    """Take a `dataset`, or what a group states in attributes."""
     if name.startswith("#"):  # what MATLAB's cells refer to, taken by their own names
         return
     name = name.replace("/", ".") if matlab else name
-    attributes = {str(key): _text(value) for key, value in item.attrs.items()}
-    for key, value in attributes.items():
-        if plain(key) in ("unit", "units") and isinstance(item, h5py.Dataset):
-            found.units[name] = str(value)
+    values = isinstance(item, dataset)
+    for key, value in item.attrs.items():
+        if values and plain(key) in ("unit", "units"):
+            found.units[name] = str(_text(value))
         elif found.nested not in key:
-            found.state(key, value)
-    if not isinstance(item, h5py.Dataset):
-        return
-    if attributes.get(MATLAB_CLASS) == "cell":
+            found.state(key, _text(value))
+    if values and _text(item.attrs.get(MATLAB_CLASS)) == "cell":
         whole = [item.file[cell] for cell in np.ravel(_hdf_values(item))[:PARTS] if cell]
         for i, cell in enumerate(whole, 1):
-            if isinstance(cell, h5py.Dataset):
+            if isinstance(cell, dataset):
                 _take(found, f"{name}{{{i}}}", _matlab(cell))
-        return
-    _take(found, name, _matlab(item) if matlab else _hdf_values(item))
+    elif values:
+        _take(found, name, _matlab(item) if matlab else _hdf_values(item))
 
 
 def _matlab(item):
     """Array of a dataset as MATLAB shows it: axes turned round, characters as text."""
     values = np.asarray(_hdf_values(item))
-    if _text(item.attrs.get(MATLAB_CLASS, "")) == "char":
+    if _text(item.attrs.get(MATLAB_CLASS)) == "char":
         return np.array("".join(map(chr, np.ravel(values))))
     return np.empty(0) if "MATLAB_empty" in item.attrs else values.T
 
 
 def _text(value):
     """An attribute as text or a number."""
+    value = value.reshape(-1)[0] if isinstance(value, np.ndarray) and value.size == 1 else value
     if isinstance(value, bytes):
         return value.decode("utf-8", "replace")
-    if isinstance(value, np.ndarray) and value.size == 1:
-        return _text(value.reshape(-1)[0])
-    return value.item() if isinstance(value, np.generic) and not isinstance(value, bytes) else value
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def _opens(value):
@@ -139,33 +123,33 @@ def _take(found: Found, name: str, value: Any) -> None:
     """Add what an array holds to the channels, or to what is stated."""
     if isinstance(value, Unread):
         found.other.append(f"{name!r} ({value.why})")
-    elif _opens(value):
+        return
+    if _opens(value):
         _open(found, name, value)
-    elif np.size(value) == 1 and np.asarray(value).dtype.kind in "US":
-        found.state(name, _text(np.asarray(value).reshape(-1)[0]))
-    elif np.size(value) == 1 and np.asarray(value).dtype.kind in "fiu":
-        found.state(name, float(np.asarray(value).reshape(-1)[0]))
+        return
+    array = np.asarray(value)
+    if array.size == 1 and array.dtype.kind in "USfiu":
+        found.state(name, _text(array) if array.dtype.kind in "US" else float(array.reshape(-1)[0]))
     elif numeric(value) and value.size > 1:
         _columns(found, name, value)
     else:
-        dtype = getattr(value, "dtype", type(value).__name__)
-        found.other.append(f"{name!r} ({dtype}{list(np.shape(value))})")
+        found.other.append(f"{name!r} ({getattr(value, 'dtype', type(value).__name__)}{list(np.shape(value))})")
 
 
-def _columns(found: Found, name: str, value: NDArray[Any]) -> None:
+def _columns(found, name, value):
     """A vector, or the columns of a matrix."""
     if value.size == max(value.shape):
         found.vectors[name] = value.reshape(-1)
     elif value.ndim == 2 and max(value.shape) >= LONGER * min(value.shape) and min(value.shape) <= PARTS:
-        long = value if value.shape[0] > value.shape[1] else value.T
-        found.vectors |= {f"{name} {i}": column for i, column in enumerate(long.T, 1)}
-        if name in found.units:
-            found.units |= dict.fromkeys([f"{name} {i}" for i in range(1, long.shape[1] + 1)], found.units[name])
+        unit = found.units.get(name)
+        for i, column in enumerate(value.T if value.shape[0] > value.shape[1] else value, 1):
+            found.vectors[f"{name} {i}"] = column
+            found.units |= {f"{name} {i}": unit} if unit else {}
     else:
         found.other.append(f"{name!r} ({value.dtype}{list(value.shape)}: which side is time?)")
 
 
-def _open(found: Found, name: str, value: NDArray[Any]) -> None:
+def _open(found, name, value):
     """Fields of structs, entries of cell arrays."""
     names = value.dtype.names
     if value.size > PARTS:
@@ -177,7 +161,7 @@ def _open(found: Found, name: str, value: NDArray[Any]) -> None:
             _take(found, key, part)
 
 
-def _axes(found: Found) -> None:
+def _axes(found):
     """Times are in s and angles in rad where the file states no other unit."""
     for kind, unit in ((TIMES, "s"), (ANGLES, "rad")):
         found.units |= {name: found.units.get(name) or unit for name in found.axes(kind)}
@@ -185,11 +169,9 @@ def _axes(found: Found) -> None:
 
 def _response(arrays):
     """Columns of ``values`` as vectors by ``names``, and their ``units``: a response as `gearfe.Response.save` writes it."""
-    if not {"values", "names", "units"} <= arrays.keys() or np.ndim(arrays["values"]) != 2:
+    values, *texts = (np.asarray(arrays.get(key, ())) for key in ("values", "names", "units"))
+    if values.ndim != 2 or {values.shape[1]} != {text.size for text in texts}:
         return arrays, {}
-    names, units = ([str(np.ravel(text)[0]).strip() for text in arrays[key].reshape(-1)] for key in ("names", "units"))
-    if not len(names) == len(units) == arrays["values"].shape[1]:
-        return arrays, {}
-    columns = dict(zip(names, arrays["values"].T, strict=True))
+    names, units = ([str(np.ravel(text)[0]).strip() for text in part.reshape(-1)] for part in texts)
     rest = {key: value for key, value in arrays.items() if key not in ("values", "names", "units")}
-    return rest | columns, dict(zip(names, units, strict=True))
+    return rest | dict(zip(names, values.T, strict=True)), dict(zip(names, units, strict=True))

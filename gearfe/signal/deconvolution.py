@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, solve_toeplitz
 from scipy.signal import correlate, lfilter
 
 from ..core.checks import whole
+from ..geometry.aliases import Floats
 from .given import hertz
 from .series import Signal
 
@@ -16,7 +16,7 @@ RIDGE = 1e-9  # of the signal's power, added to it: keeps the normal equations r
 
 def deconvolve(
     signal: Signal, frequency: float | None = None, *, length: int = 100, shifts: int = 1, iterations: int = 30
-) -> tuple[Signal, NDArray[np.float64]]:
+) -> tuple[Signal, Floats]:
     """The signal through that filter of a given length which makes it most impulsive.
 
     Without a `frequency` the filter is the one whose output y has the largest kurtosis (minimum entropy deconvolution),

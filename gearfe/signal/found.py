@@ -1,5 +1,6 @@
 """`Found`: the channels that a file of measured signals holds, whatever its format, and what it states about them."""
 
+import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -24,6 +25,23 @@ class Found:
     other: list[str] = field(default_factory=list)  # what else the file holds, named in messages
     hint: str = ""  # what to do about a file whose columns have no names
     parts: bool = False  # whether the values are parts of a full scale that the file does not say
+
+    def add(self, name: str, values: NDArray[Any], unit: Any = "", step: Any = 0, start: Any = 0.0) -> None:
+        """Add a channel; its name gets a number if it is already used. A `step` [s] above 0 states rate and `start` [s]."""
+        same = [other for other in self.vectors if other == name or other.startswith(f"{name} (")]
+        name = f"{name} ({len(same) + 1})" if same else name
+        self.vectors[name], self.units[name] = values, str(unit).strip()
+        if isinstance(step, (int, float)) and step > 0:
+            self.rates[name], self.starts[name] = 1 / float(step), float(start)
+
+    def take_clock(self, path: Any, name: str, kind: Any, seconds: NDArray[Any], depth: int) -> None:
+        """Take times of a clock or dates as the time [s] from the first on, whatever the column is called, and warn of that."""
+        if self.axes(TIMES):
+            self.other.append(f"{name!r} (of a clock, beside {self.axes(TIMES)[0]!r})")
+            return
+        taken = name if plain(name) in TIMES else "time"
+        self.vectors[taken], self.units[taken] = seconds, "s"
+        warnings.warn(f"{path}: {name!r} ({kind}) is taken for the time, in seconds from its first row on", stacklevel=depth + 1)
 
     def state(self, name: str, value: Any) -> None:
         """Note a value, if `KEYS` has its name."""
@@ -57,7 +75,7 @@ class Found:
 
     def channels(self) -> list[str]:
         """Names of all other vectors."""
-        axes = {*self.axes(TIMES), *self.axes(ANGLES)}
+        axes = self.axes(TIMES + ANGLES)
         return [name for name in self.vectors if name not in axes]
 
     def told(self) -> str:

@@ -10,10 +10,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.fft import fft, ifft, rfft
 
 from ..core.table import Column, Table
+from ..geometry.aliases import Floats
 from .given import oscillation, samples
 from .orders import residual_signal, synchronous_average
 from .series import Signal
@@ -146,7 +147,7 @@ def gear_indicator_table(
     if len({record.size for record in averages.values()}) > 1:
         most = max(record.size for record in averages.values())
         averages = {name: synchronous_average(record, most)[0] for name, record in signals.items()}
-    done: list[NDArray[np.float64]] = []
+    done: list[Floats] = []
     out = {}
     for name, average in averages.items():
         out[name] = gear_indicators(average, teeth, before=done)
@@ -160,7 +161,7 @@ def tabulate_gear_indicators(found: Mapping[str, Mapping[str, float]]) -> Table:
     return Table(columns, [[name, *(row[name] for row in found.values())] for name in GEAR_SOURCES])
 
 
-def _turn(average: Any) -> NDArray[np.float64]:
+def _turn(average: Any) -> Floats:
     return oscillation(samples("average", average), "a constant average has no indicators")
 
 

@@ -3,19 +3,21 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.checks import is_number
+from ..geometry.aliases import Floats
 
 SMALLEST, LARGEST = 1e-30, 1e30  # of the largest value of a record, in any unit: eighth powers neither vanish nor overflow
 HERTZ = (1e-12, 1e15)  # frequencies that clocks have
 
 
-def samples(name: str, values: Any) -> NDArray[np.float64]:
+def samples(name: str, values: Any) -> Floats:
     """A row of real, finite numbers, copied.
 
     ValueError if they are not a row of two or more finite numbers, or the largest is not between `SMALLEST` and `LARGEST`.
     """
+    if np.ma.is_masked(values):
+        raise ValueError(f"{name} has masked values: give numbers without holes")
     try:
         values = np.array(values)
     except ValueError as error:  # rows of different lengths
@@ -34,7 +36,7 @@ def samples(name: str, values: Any) -> NDArray[np.float64]:
     return values
 
 
-def oscillation(values: NDArray[np.float64], told: str) -> NDArray[np.float64]:
+def oscillation(values: Floats, told: str) -> Floats:
     """Values without their mean; ValueError, with what is `told`, if they are constant."""
     x = values - values.mean()
     if not np.abs(x).max() > 1e-12 * np.abs(values).max():

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any, TypedDict, Unpack
 
 from ..core.table import Column, Table
@@ -78,21 +77,13 @@ def indicator_table(
                 f"{case}: {signal.rate:g} Hz in {signal.unit}, but {healthy} has {first.rate:g} Hz in {first.unit}: "
                 "compare records of the same rate and unit"
             )
-    alike = _of_one_length(signals)
-    indicators = {case: signal.indicators(mesh_frequency, fault_frequency, **options) for case, signal in alike.items()}
+    count = min(signal.values.size for signal in signals.values())
+    at = mesh_frequency, fault_frequency
+    indicators = {case: signal.part(0, count).indicators(*at, **options) for case, signal in signals.items()}
     reference = indicators[healthy]
     return {
         case: {name: (value, increment(value, reference[name]) if reference[name] else math.nan) for name, value in row.items()}
         for case, row in indicators.items()
-    }
-
-
-def _of_one_length(signals):
-    """The beginning of each record, as long as the shortest."""
-    count = min(signal.values.size for signal in signals.values())
-    return {
-        case: replace(signal, values=signal.values[:count], angle=None if signal.angle is None else signal.angle[:count])
-        for case, signal in signals.items()
     }
 
 

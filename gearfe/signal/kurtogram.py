@@ -1,69 +1,20 @@
-"""Where in the spectrum the impulses are: spectral kurtosis and Antoni's fast kurtogram."""
+"""Where in the spectrum the impulses are: Antoni's fast kurtogram."""
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import fftconvolve, firwin, upfirdn
 
+from ..geometry.aliases import Floats
 from .given import oscillation
 from .series import Signal
-from .spectrum import Spectrum
-from .time_frequency import whole_frames
 
 HALF_TAPS, THIRD_TAPS = 33, 49  # of the filters that halve a band and cut it in three; both lose 16 samples at their ends
 ANALYTIC_TAPS = 1025  # at most, and at most an eighth of the record: what the filter loses at its ends
 WIDER = 1.3  # width of a filter at half amplitude over that of its band; at the edge of the band it still passes 0.96
 EMPTY = 1e-14  # part of the power of the signal below which a band holds only rounding
 FEWEST = 128  # samples at the deepest level, before the ends are cut
-
-
-def spectral_kurtosis(signal: Signal, size: int, *, window: str | tuple[Any, ...] = "hann") -> Spectrum:
-    """Kurtosis over time of every bin of a short-time Fourier transform.
-
-    ::
-
-        SK(f) = <|X(t, f)|**4> / <|X(t, f)|**2>**2 - 2
-
-    0 for stationary Gaussian noise (3 is subtracted at 0 Hz and Nyquist's frequency, where X is real), -1 for a sine, large
-    where impulses are; without unit ("1"). Over K separate frames noise scatters by ``2 / sqrt(K)``. Bins 140 dB below the
-    largest get 0.
-
-    Parameters
-    ----------
-    signal : Signal
-    size : int
-        Samples in a frame, fewer than between two impulses; frames overlap by three quarters.
-    window : str or tuple
-        A window that `scipy.signal.get_window` knows.
-
-    Returns
-    -------
-    Spectrum
-        Over frequency from 0 to half of the rate [Hz].
-
-    Raises
-    ------
-    ValueError
-        If the signal is constant, `size` is no whole number from 8 to a quarter of the samples, or scipy does not know the
-        window.
-
-    References
-    ----------
-    J. Antoni, Mech. Syst. Signal Process. 20(2) (2006) 282-307.
-    """
-    frequency, _, frames, weights = whole_frames(signal, _oscillation(signal), window, size, signal.values.size // 4)
-    real = np.isin(np.arange(frequency.size), [0] if size % 2 else [0, size // 2])
-    power = np.abs(frames) ** 2
-    mean = power.mean(axis=1)
-    full = mean > EMPTY * mean.max()
-    values = np.zeros(mean.size)
-    values[full] = (power[full] ** 2).mean(axis=1) / mean[full] ** 2 - np.where(real[full], 3, 2)
-    step = signal.rate / size
-    bandwidth = step * size * float(weights @ weights) / float(weights.sum()) ** 2
-    return Spectrum(frequency, values, "1", step, bandwidth, f"spectral kurtosis of {signal.name}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,10 +31,10 @@ class Kurtogram:
         Excess over Gaussian noise.
     """
 
-    level: NDArray[np.float64]
-    centre: NDArray[np.float64]
-    bandwidth: NDArray[np.float64]
-    kurtosis: NDArray[np.float64]
+    level: Floats
+    centre: Floats
+    bandwidth: Floats
+    kurtosis: Floats
 
     @property
     def best(self) -> int:

@@ -3,10 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.fft import fft, ifft
 
 from ..core.checks import whole
+from ..geometry.aliases import Floats
 from .given import samples
 
 EMPTY = 1e-9  # part of the average below which a mesh line is rounding
@@ -23,8 +24,8 @@ class Modulation(NamedTuple):
         Its phase beyond that of the undisturbed mesh [rad], of mean 0; rising where the teeth come early.
     """
 
-    amplitude: NDArray[np.float64]
-    phase: NDArray[np.float64]
+    amplitude: Floats
+    phase: Floats
 
 
 def mesh_modulation(average: ArrayLike, teeth: int, *, harmonic: int = 1, sidebands: int | None = None) -> Modulation:

@@ -4,11 +4,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.fft import irfft, rfft
 from scipy.interpolate import make_interp_spline
 
 from ..core.checks import whole
+from ..geometry.aliases import Floats
 from .given import samples
 from .series import Signal
 from .spectrum import Spectrum, amplitudes
@@ -17,7 +18,7 @@ MOST = 10**8  # samples per turn
 SLOWEST = 1 / 16  # of the mean speed: below it resampling by angle would multiply the samples
 
 
-def by_turn(signal: Signal, samples_per_turn: int | None = None) -> NDArray[np.float64]:
+def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
     """Values at equal steps of the shaft's angle, one row for each whole turn: ``(turns, samples_per_turn)``.
 
     Interpolated by splines of degree 5, whose amplitude at frequency f is off by ``(f / (rate - f))**6``: 2e-6 at a tenth of
@@ -80,9 +81,7 @@ def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, windo
     return amplitudes(turns.ravel(), float(turns.shape[1]), window, signal.unit, signal.name, "order")
 
 
-def synchronous_average(
-    signal: Signal, samples_per_turn: int | None = None, *, turns_per_period: int = 1
-) -> tuple[NDArray[np.float64], int]:
+def synchronous_average(signal: Signal, samples_per_turn: int | None = None, *, turns_per_period: int = 1) -> tuple[Floats, int]:
     """Mean over the turns of a shaft: what does not repeat with it falls with ``1 / sqrt(periods)``.
 
     Parameters
@@ -121,7 +120,7 @@ def synchronous_average(
     return rows.mean(axis=0), periods
 
 
-def residual_signal(average: ArrayLike, teeth: int, *, sidebands: int = 0, shaft_orders: int = 2) -> NDArray[np.float64]:
+def residual_signal(average: ArrayLike, teeth: int, *, sidebands: int = 0, shaft_orders: int = 2) -> Floats:
     """Synchronous average of one turn without the orders of a healthy gear: a local fault is what stands out of it.
 
     Taken out are the mean, the shaft orders 1 to `shaft_orders`, the mesh orders n `teeth`, and with ``sidebands=1`` also

@@ -1,16 +1,16 @@
 """`Signal`: a quantity sampled in time, measured or computed; at a lower rate, and its integral over time."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.signal import resample_poly
 
 from ..core.checks import whole
+from ..geometry.aliases import Floats
 from .given import hertz, samples
 from .indicators import both_given, of_lines, of_values
 from .spectrum import amplitudes
@@ -35,11 +35,11 @@ class Signal:
         Turns per second [Hz] of a shaft at constant speed; instead of `angle`.
     """
 
-    values: NDArray[np.float64]
+    values: Floats
     rate: float
     unit: str
     name: str = "signal"
-    angle: NDArray[np.float64] | None = None
+    angle: Floats | None = None
     shaft_frequency: float | None = None
 
     def __post_init__(self) -> None:
@@ -71,7 +71,7 @@ class Signal:
         object.__setattr__(self, "angle", angle)
 
     @property
-    def time(self) -> NDArray[np.float64]:
+    def time(self) -> Floats:
         """Time of every sample [s], from 0."""
         return np.arange(self.values.size) / self.rate
 
@@ -81,13 +81,18 @@ class Signal:
         return self.values.size / self.rate
 
     @property
-    def shaft_angle(self) -> NDArray[np.float64]:
+    def shaft_angle(self) -> Floats:
         """Angle of the shaft at every sample [rad]."""
         if self.angle is not None:
             return self.angle
         if self.shaft_frequency is None:
             raise ValueError(f"{self.name} has no shaft: give angle (rad, for every sample) or shaft_frequency (Hz)")
         return 2 * math.pi * self.shaft_frequency * self.time
+
+    def part(self, start: int, stop: int) -> "Signal":
+        """The samples from `start` to before `stop`, with their angles."""
+        inside = slice(start, stop)
+        return replace(self, values=self.values[inside], angle=None if self.angle is None else self.angle[inside])
 
     def indicators(
         self,

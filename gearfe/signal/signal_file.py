@@ -1,48 +1,30 @@
 """Measured signals from files of many formats. Rate and unit are stated, in the file or by the caller, never guessed."""
 
-import math
-import os
-import re
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.files import read, suffix_of
+from ..geometry.aliases import StrPath
 from .array_file import array_file, hdf_file
-from .found import ANGLES, RATES, SHAFTS, TIMES, Found
+from .channel import signal_of
+from .found import Found
 from .recorder_file import labview_file, parquet_file, tdms_file, uff_file, wav_file
 from .series import Signal
 from .tachometer import SPEEDS, with_speed_record, with_tachometer
 from .text_table import text_table
-from .time_axis import step_of
 
-TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
-TURN = {"rad": 1.0, "deg": math.pi / 180}
-HERTZ = {"": 1.0, "hz": 1.0, "khz": 1e3}
 LONGEST = 60  # characters of a unit
-AGREE = 1e-3  # largest relative difference between a stated rate and the time column
-SAME = {
-    "m/s²": "m/s^2",
-    "m/s2": "m/s^2",
-    "m/s**2": "m/s^2",
-    "m/s/s": "m/s^2",
-    "µm": "um",
-    "μm": "um",
-    "Newtons": "N",
-}  # spellings of a unit
 READERS = {
     ".npz": array_file, ".mat": array_file, ".h5": hdf_file, ".hdf5": hdf_file, ".wav": wav_file, ".uff": uff_file,
-    ".unv": uff_file, ".uf": uff_file, ".tdms": tdms_file, ".parquet": parquet_file, ".lvm": labview_file,
+    ".unv": uff_file, ".uf": uff_file, ".tdms": tdms_file, ".parquet": parquet_file,
 }  # fmt: skip
 
 
 def read_signal(
-    path: str | os.PathLike[str],
+    path: StrPath,
     *,
     column: str | None = None,
     rate: float | None = None,
@@ -100,11 +82,11 @@ def read_signal(
     """
     recording = channels(path, header)
     name = _choose(path, recording, column)
-    return _signal(path, recording, name, rate=rate, unit=unit, shaft_frequency=shaft_frequency, scale=scale)
+    return signal_of(path, recording, name, rate=rate, unit=unit, shaft_frequency=shaft_frequency, scale=scale)
 
 
 def read_signals(
-    path: str | os.PathLike[str],
+    path: StrPath,
     columns: Sequence[str] | None = None,
     *,
     units: str | Mapping[str, str] | None = None,
@@ -156,20 +138,18 @@ def read_signals(
     units = stated.pop("unit", units)
     recording = channels(path, stated.pop("header", None))
     pulse = None if tachometer is None else _choose(path, recording, tachometer)
-    names = [channel for channel in recording.channels() if channel != pulse]
-    if columns is not None:
+    if columns is None:
+        names = [channel for channel in recording.channels() if channel != pulse]
+    else:
         names = [_choose(path, recording, column) for column in columns]
     if not names:
         _choose(path, recording, None)
-    channel_units: Mapping[str, str | None]
-    if isinstance(units, Mapping):
-        channel_units = units
-    else:  # one text is for the channels without a unit; of a single channel, `_signal` compares it with that of the file
-        channel_units = {name: None if recording.units.get(name) and len(names) > 1 else units for name in names}
-    unknown = [name for name in channel_units if name not in recording.vectors and channel_units[name] is not None]
+    if not isinstance(units, Mapping):  # for the channels without a unit; of a single one it is compared with that of the file
+        units = {name: units for name in names if units and (len(names) == 1 or not recording.units.get(name))}
+    unknown = [name for name, unit in units.items() if name not in recording.vectors and unit is not None]
     if unknown:
         raise ValueError(f"{path}: units for {', '.join(map(repr, unknown))}, but it has {recording.told()}")
-    out = {name: _signal(path, recording, name, unit=channel_units.get(name), **stated) for name in names}
+    out = {name: signal_of(path, recording, name, unit=units.get(name), **stated) for name in names}
     if pulse is None:
         return _aligned(path, recording, out)
     times = recording.vectors[pulse]
@@ -178,7 +158,7 @@ def read_signals(
             name: with_tachometer(channel, times - recording.starts.get(name, 0.0), pulses, ratio=ratio)
             for name, channel in out.items()
         }
-    clock = _signal(path, recording, pulse, unit=None if recording.units.get(pulse) else "1", rate=stated.get("rate"))
+    clock = signal_of(path, recording, pulse, unit=None if recording.units.get(pulse) else "1", rate=stated.get("rate"))
     out = _aligned(path, recording, {**out, pulse: clock})
     clock = out.pop(pulse)
     if clock.unit in SPEEDS:
@@ -201,25 +181,24 @@ def _aligned(path, found, signals):
         if count < 2:
             told = ", ".join(f"{name!r} at {start:g} s" for name, start in starts.items())
             raise ValueError(f"{path}: the channels share no time, they begin with {told}: name those that do as columns=")
-        part = slice(skip, skip + count)
-        out[name] = replace(signal, values=signal.values[part], angle=None if signal.angle is None else signal.angle[part])
+        out[name] = signal.part(skip, skip + count)
     return out
 
 
-def channels(path: str | os.PathLike[str], header: str | None = None) -> Found:
+def channels(path: StrPath, header: str | None = None) -> Found:
     """What a file holds: its channels, their units and rates.
 
     ValueError if its suffix is unknown, or if it cannot be read, is damaged, or holds no channel.
     """
     suffix = suffix_of(path, "signal", reading=True)
-    if header is not None and suffix in READERS:
-        raise ValueError(f"{path}: header = {header!r}, but only text tables can lack names; leave it out")
     try:
+        lines = [] if suffix in READERS else read(path, "signal")
+        labview = suffix == ".lvm" or "".join(lines[:1]).startswith("LabVIEW Measurement")
+        if header is not None and (labview or suffix in READERS):
+            raise ValueError(f"{path}: header = {header!r}, but only text tables can lack names; leave it out")
         if suffix in READERS:
             recording = READERS[suffix](path)
         else:
-            lines = read(path, "signal")
-            labview = bool(lines) and lines[0].startswith("LabVIEW Measurement")
             recording = labview_file(path, lines) if labview else text_table(path, lines, header)
     except OSError as error:
         raise ValueError(f"cannot read {path}: {error.strerror or error}") from error
@@ -229,56 +208,6 @@ def channels(path: str | os.PathLike[str], header: str | None = None) -> Found:
     if strange:
         raise ValueError(f"{path}: the unit of {strange[0]!r} is no text one can read: the file is damaged")
     return recording
-
-
-def _signal(path, found, name, *, rate=None, unit=None, shaft_frequency=None, scale=1.0):
-    """A channel with its rate, unit and angle."""
-    if not (isinstance(scale, (int, float)) and math.isfinite(scale) and scale):
-        raise ValueError(f"scale = {scale!r}, but give a finite factor other than 0")
-    time, angle = (_axis(path, found, name, names, factors) for names, factors in ((TIMES, TIME), (ANGLES, TURN)))
-    turning = _one(path, "shaft_frequency", [shaft_frequency, *found.nearest(found.stated, name, SHAFTS)], found.named(SHAFTS))
-    values = found.vectors[name]
-    _whole(path, name, values)
-    if found.parts and scale == 1 and unit and unit != "1":
-        meaning = f"full scale is taken for 1 {unit}; give what it is as scale="
-        warnings.warn(f"{path}: the values are parts of full scale, and {meaning}", stacklevel=4)
-    values = values if scale == 1 else scale * np.asarray(values, dtype=float)
-    stated = {"rate": _rate(path, found, name, rate, time), "unit": _unit(path, found, name, unit, scale)}
-    return Signal(values, **stated, name=f"{Path(path).stem} {name}", angle=angle, shaft_frequency=turning)
-
-
-def _unit(path, found, name, given, scale):
-    spellings = [found.units.get(name, ""), *map(str, found.nearest(found.stated, name, ("unit",)))]
-    stated = {SAME.get(text.strip(), text.strip()) for text in spellings if text.strip()}
-    asked = SAME.get((given or "").strip(), (given or "").strip())
-    if asked and scale != 1:
-        return asked
-    stated |= {asked} if asked else set()
-    if len(stated) != 1:
-        text = f"units {', '.join(sorted(stated))}" if stated else "no unit"
-        if found.parts:
-            raise ValueError(
-                f"{path}: {text} for {name!r}, whose values are parts of full scale: give what that is as scale= and unit="
-            )
-        raise ValueError(f"{path}: {text} for {name!r}; give one, in the file ('{name} [m/s^2]', 'unit = m/s^2') or as unit=")
-    return stated.pop()
-
-
-def _axis(path: Any, found: Found, channel: str, names: tuple[str, ...], factors: dict[str, float]) -> NDArray[Any] | None:
-    """Time [s] or angle [rad] of a channel: of its own group, else of the whole file; None if there is none."""
-    chosen = found.nearest({name: name for name in found.vectors}, channel, names)
-    if not chosen:
-        return None
-    if len(chosen) > 1:
-        raise ValueError(f"{path}: {' and '.join(map(repr, chosen))}; keep one of them")
-    unit = found.units.get(chosen[0], "")
-    if unit not in factors:
-        raise ValueError(
-            f"{path}: column {chosen[0]!r} has {f'unit {unit!r}' if unit else 'no unit'}, but must state one of "
-            f"{', '.join(factors)}: '{chosen[0]} [{next(iter(factors))}]' in the file, or for a text table in header=, "
-            "the names of all its columns"
-        )
-    return factors[unit] * found.vectors[chosen[0]]
 
 
 def _choose(path, found, column):
@@ -297,65 +226,3 @@ def _choose(path, found, column):
         raise ValueError(f"{path}: no column of values, only {' and '.join(map(repr, found.vectors))}; name one otherwise")
     asked = f"no column {column!r}" if column is not None else f"{len(names)} columns of values"
     raise ValueError(f"{path}: {asked}; it has {found.told()}: give one as column=")
-
-
-def _one(path, name, values, where=""):
-    """The one finite positive number among `values` [Hz], the first of which may be None; None if there is none.
-
-    `where` says what states them.
-    """
-    numbers = [_hertz(path, name, value) for value in values if value is not None]
-    if not numbers:
-        return None
-    if values[0] is not None and any(abs(number / numbers[0] - 1) < 1e-9 for number in numbers[1:]):
-        return numbers[0]
-    if max(numbers) > min(numbers) * (1 + 1e-9):
-        listed = f"{' and '.join(f'{number:g}' for number in numbers)} Hz{f' ({where})' if where else ''}"
-        raise ValueError(f"{path}: {name} is given as {listed}; say which holds by {name}=")
-    return numbers[0]
-
-
-def _hertz(path, name, value):
-    match = re.fullmatch(r"\s*([-+.\d]+(?:e[-+]?\d+)?)\s*(\w*)\s*", str(value), re.IGNORECASE)
-    try:
-        number = float(match[1]) * HERTZ[match[2].lower()]
-    except (TypeError, ValueError, KeyError):
-        number = math.nan
-    if not 0 < number < math.inf:
-        raise ValueError(f"{path}: {name} = {str(value).strip()!r}, but give a positive number of Hz")
-    return number
-
-
-def _rate(path, found, name, given, time):
-    stated = found.nearest(found.stated, name, RATES) + ([found.rates[name]] if name in found.rates else [])
-    rate = _one(path, "rate", [given, *stated], found.named(RATES))
-    samples = found.vectors[name].size
-    if time is None:
-        if rate is None:
-            others = found.channels() if len(found.channels()) > 1 else []
-            rising = [other for other in others if np.all(np.diff(found.vectors[other]) > 0)]
-            clock = f"; if {rising[0]!r}, which rises all along, is the time, name it so by header=" if rising else ""
-            remedy = "add a column 'time [s]', write 'rate = ... Hz' into it, or give rate="
-            raise ValueError(f"{path} states no sampling rate: {remedy}{clock}")
-        return rate
-    if time.size != samples or samples < 2:
-        raise ValueError(f"{path}: {time.size} times for {samples} samples")
-    step = step_of(path, np.asarray(time, dtype=float), rate)
-    if rate is not None and abs(rate * step - 1) > AGREE:
-        remedy = "leave rate= out, or mend the times" if given is not None else "mend one of them in the file"
-        raise ValueError(f"{path}: rate = {rate:g} Hz, but its times are {1 / step:g} Hz; {remedy}")
-    return 1 / step if rate is None else rate
-
-
-def _whole(path, name, values):
-    """Raise ValueError if samples are missing: how many, and the longest stretch without."""
-    bad = np.flatnonzero(~np.isfinite(values))
-    if not bad.size:
-        return
-    edges = np.concatenate([[-1], bad, [values.size]])
-    most = int(np.argmax(np.diff(edges)))
-    first, last = edges[most] + 1, edges[most + 1] - 1
-    raise ValueError(
-        f"{path}: {name!r}: sample {bad[0]} is {values[bad[0]]}, the first of {bad.size} that are missing; cut the file to "
-        f"samples {first} to {last}, its longest whole stretch, or fill the gaps: nothing is filled unasked"
-    )

@@ -4,8 +4,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import get_window, periodogram
+
+from ..geometry.aliases import Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,15 +28,15 @@ class Spectrum:
         `axis` is ``Hz``, ``order``, or ``s`` of a cepstrum.
     """
 
-    frequency: NDArray[np.float64]
-    values: NDArray[np.float64]
+    frequency: Floats
+    values: Floats
     unit: str
     resolution: float
     bandwidth: float
     name: str = "spectrum"
     axis: str = "Hz"
 
-    def within(self, low: float, high: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def within(self, low: float, high: float) -> tuple[Floats, Floats]:
         """Frequencies and values of the bins from `low` to `high`, both included."""
         slack = 1e-6 * self.resolution
         rows = (self.frequency >= low - slack) & (self.frequency <= high + slack)

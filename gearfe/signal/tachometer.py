@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from ..core.checks import whole
+from ..geometry.aliases import Floats
 from .given import samples
 from .series import Signal
 
@@ -18,7 +19,7 @@ QUIET = 0.25  # of the height of the pulses: how far below the level a signal mu
 MISSED = 1.7  # an interval this many times those before and after it hides a lost pulse
 
 
-def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool = False) -> NDArray[np.float64]:
+def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool = False) -> Floats:
     """Times at which a tachometer's signal rises (falls) through a level [s], between samples by a straight line.
 
     `level` and `falling` are as of `with_tachometer`. ValueError if the signal has no pulses or only few.
@@ -42,8 +43,8 @@ def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool
 
 
 def tachometer_angle(
-    times: NDArray[np.float64], signal: Signal, pulses: int = 1, *, ratio: float = 1.0, name: str = "tachometer"
-) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    times: Floats, signal: Signal, pulses: int = 1, *, ratio: float = 1.0, name: str = "tachometer"
+) -> tuple[Floats, NDArray[np.intp]]:
     """Angle of a shaft [rad] ``(m,)`` at the samples of a signal between the first and last pulse, and their numbers.
 
     The angle is 0 at the first pulse, and ``2 pi ratio / pulses`` larger at each further one. A cubic spline through the times of

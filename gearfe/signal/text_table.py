@@ -1,22 +1,36 @@
 """Channels of text tables as people export them: title rows, comments, units below the names, decimal commas, no names at all."""
 
-import os
+import contextlib
+import csv
+import math
 import re
 import warnings
 from collections import Counter
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
-from .found import KEYS, TIMES, Found, plain
-from .text_cells import CLOCK, DATE, GROUPS, cells_of, is_number, numbers, plain_number, since_start, value
+from ..geometry.aliases import StrPath
+from .found import KEYS, Found, plain
 
 SEPARATORS = (";", "\t", ",", None)  # of cells; None: blanks
 LOOKED = 200  # rows at the end of a table from which its way of writing numbers is found
+LONGEST = 300  # characters of a title that states a value
 UNITS = re.compile(
     r"-|%|V|mV|pC|g|s|ms|us|rad|deg|°|k?Hz|rpm|1/min|[munkM]?(m|N|Nm|Pa|W|A)|[mu]?m/s(\^?2|²|\*\*2)?|°C|K|bar|hh:mm:ss\S*|\[.*\]|\(.*\)"
 )
 STATEMENT = re.compile(r"([\w ]+?)\s*(?:[\[(](\w+)[\])])?\s*[:=;,\t]+\s*([^;,\t]+(?:,\d+)?)[;,\t\s]*(\w*)[;,\t\s]*")
+SPACE = "[ \xa0\u2009\u202f]"  # blanks, also those that do not break
+GROUPS = {  # by decimal mark, what stands between thousands (a regular expression), and numbers that have it
+    mark: {one: re.compile(rf"[-+]?\d{{1,3}}({one}\d{{3}})+({re.escape(mark)}\d*)?(e[-+]?\d+)?", re.IGNORECASE) for one in groups}
+    for mark, groups in {".": (",", "'", SPACE), ",": (r"\.", "'", SPACE)}.items()
+}
+DATE = re.compile(r"\d{4}([-/.])\d{1,2}\1\d{1,2}|\d{1,2}([-/.])\d{1,2}\2\d{2,4}")
+CLOCK = re.compile(
+    rf"(?:(?:{DATE.pattern})[T ]\s*)?(?P<h>\d{{1,2}}):(?P<m>\d{{2}}):(?P<s>\d{{2}}(?:[.,]\d+)?)\s*(?:Z|[-+]\d{{2}}:?\d{{2}})?"
+)
+DAY = 86400.0  # s
 
 
 class Way(NamedTuple):
@@ -27,12 +41,51 @@ class Way(NamedTuple):
 
     separator: str | None
     mark: str
-    columns: int
-    above: int
     group: str = ""
+    columns: int = 0
+    above: int = 0
+
+    def cells(self, line: str, count: int | None = None) -> list[str]:
+        """Cells of a row: with a known `count` also the empty ones at its end, otherwise separators at the end are dropped."""
+        whole = line if self.separator is None else line.rstrip(f"{self.separator} ")
+        if self.separator is not None and '"' in line:  # a separator between quotes ends no cell
+            cells = [cell.strip() for cell in next(csv.reader([whole], delimiter=self.separator))]
+        else:
+            cells = [cell.strip().strip('"').strip() for cell in whole.split(self.separator)]
+        empty = 0 if count is None or self.separator is None else line[len(whole) :].count(self.separator)
+        return cells + [""] * min((count or 0) - len(cells), empty)
+
+    def number(self, cell: str) -> float | None:
+        """Number of a cell; None if it is none."""
+        if self.group and GROUPS[self.mark][self.group].fullmatch(cell):
+            cell = re.sub(self.group, "", cell)
+        elif self.mark == "," and "." in cell:
+            return None
+        try:
+            return float(cell.replace(self.mark, "."))
+        except ValueError:
+            return None
+
+    def numbers(self, line: str) -> int:
+        """Count of the cells of a row if they are numbers, or numbers beside dates and times of a clock; else 0."""
+        cells = self.cells(line)
+        rest = [cell for cell in cells if self.number(cell) is None]
+        clocks = all(CLOCK.fullmatch(cell) or DATE.fullmatch(cell) for cell in rest)
+        return len(cells) if len(rest) < len(cells) and clocks else 0
+
+    def value(self, cell: str) -> float | None:
+        r"""Value of a cell: its number, the seconds of the day of a clock time, nan if it is empty or a date, else None.
+
+        >>> Way(";", ",", r"\.").value("1.234,5"), Way(";", ",").value("10:00:01,5")
+        (1234.5, 36001.5)
+        """
+        number, clock = self.number(cell), CLOCK.fullmatch(cell)
+        if clock:
+            return 3600 * float(clock["h"]) + 60 * float(clock["m"]) + float(clock["s"].replace(",", "."))
+        return math.nan if not cell or DATE.fullmatch(cell) else number
 
 
-def text_table(path: str | os.PathLike[str], lines: list[str], header: str | None = None) -> Found:
+def text_table(path: StrPath, lines: list[str], header: str | None = None) -> Found:
     """Channels of a text table: the `lines` of a file, whose `path` is for the messages.
 
     `header` has the names and units of the columns, ``"time [s], housing [m/s^2]"``, if the file has none, or others. ValueError
@@ -48,13 +101,13 @@ def text_table(path: str | os.PathLike[str], lines: list[str], header: str | Non
         raise ValueError(f"{path}: no rows of numbers{first}")
     titles = [line for _, line in rows[: way.above]]
     recording = Found({})
-    names = columns or _names(titles, comments, way, recording)
-    pairs = [named(cell) for cell in names]
-    if len({name for name, _ in pairs}) < len(pairs):
+    pairs = [named(cell) for cell in columns or _names(titles, comments, way, recording)]
+    recording.units = dict(pairs)
+    if len(recording.units) < len(pairs):
         raise ValueError(f"{path}: two columns have the same name ({', '.join(name for name, _ in pairs)})")
-    table = _table(path, rows[way.above :], way, len(names))
-    recording.vectors, recording.units = dict(zip([name for name, _ in pairs], table.T, strict=True)), dict(pairs)
-    _clocks(path, recording, cells_of(rows[way.above][1], way.separator, len(names)))
+    table = _table(path, rows[way.above :], way, len(pairs))
+    recording.vectors = dict(zip(recording.units, table.T, strict=True))
+    _clocks(path, recording, way.cells(rows[way.above][1], len(pairs)))
     for line in (*titles, *comments):
         _state(path, recording, line, way.mark)
     return recording
@@ -62,42 +115,32 @@ def text_table(path: str | os.PathLike[str], lines: list[str], header: str | Non
 
 def named(cell: str) -> tuple[str, str]:
     """Name and unit of ``housing [m/s^2]`` or ``housing (m/s^2)``."""
-    match = re.fullmatch(r"(.*?)\s*(?:\[([^\[]*)\]|\(([^(]*)\))?", cell.strip().strip('"').strip(), re.DOTALL)
-    return (match[1], (match[2] or match[3] or "").strip()) if match else (cell.strip(), "")
+    text = cell.strip().strip('"').strip()
+    start = text.rfind({"]": "[", ")": "("}.get(text[-1:], "\0"))
+    return (text, "") if start < 0 else (text[:start].rstrip(), text[start + 1 : -1].strip())
 
 
 def _way(rows, given):
-    """`Way` in which the most rows are numbers; of several, one that fits the names of the columns. None if no row is numbers."""
-    best, most = _ways(rows, [(mark, "") for mark in ".,"], 0)
-    fitting = _fitting(rows, best, given)
-    if most < len(rows[-LOOKED:]) or not fitting:  # some rows are no numbers, unless they have marks between thousands
-        grouped, grouped_most = _ways(rows, [(mark, group) for mark in GROUPS for group in GROUPS[mark]], most)
-        grouped_fitting = _fitting(rows, grouped, given)
-        if grouped_most > most:
-            best, fitting = grouped, grouped_fitting
-        fitting = fitting or grouped_fitting
-    return next(iter(fitting or best), None)
+    """`Way` in which the most rows are numbers; of several, the first that fits the names of the columns.
 
-
-def _fitting(rows, ways, given):
-    """Those of several ways that fit the names of the columns."""
-    return [way for way in ways if (len(given) == way.columns if given else _fits(rows, way))]
-
-
-def _ways(rows, marks, most):
-    """Ways of writing in which the most rows, and at least `most`, are numbers; and how many rows that is."""
-    best = []
-    for mark, group in marks:
-        for separator in SEPARATORS:
-            if group and separator in (None, mark):  # a mark between thousands that is the separator ends a cell
-                continue
-            counts = Counter(n for _, line in rows[-LOOKED:] if (n := numbers(line, separator, mark, group)))
-            score, count = sum(counts.values()), counts.most_common(1)[0][0] if counts else 0
-            if score and score >= most:
-                above = next((i for i, (_, line) in enumerate(rows) if numbers(line, separator, mark, group) == count), 0)
-                way = Way(separator, mark, count, above, group)
-                best, most = [*best, way] if score == most else [way], score
-    return best, most
+    Thousands are parted only if more rows are numbers then, or none fits otherwise. None if no row is numbers.
+    """
+    best, most, looked = None, (0, False), rows[-LOOKED:]
+    marks = [(mark, "") for mark in GROUPS] + [(mark, group) for mark, groups in GROUPS.items() for group in groups]
+    for (mark, group), separator in product(marks, SEPARATORS):
+        if group and separator in (None, mark):  # a mark between thousands that is the separator ends a cell
+            continue
+        way = Way(separator, mark, group)
+        counts = Counter(n for _, line in looked if (n := way.numbers(line)))
+        count = max(counts, key=counts.__getitem__, default=0)
+        above = next((i for i, (_, line) in enumerate(rows) if count and way.numbers(line) == count), 0)
+        way = way._replace(columns=count, above=above)
+        score = counts.total(), len(given) == count if given else _fits(rows, way)
+        if score > most and score[0]:
+            best, most = way, score
+        if most == (len(looked), True):
+            break
+    return best
 
 
 def _fits(rows, way):
@@ -105,22 +148,20 @@ def _fits(rows, way):
     if not way.above:
         return False
     line = rows[way.above - 1][1]
-    return len(cells_of(line, way.separator)) == way.columns and not any(numbers(line, way.separator, mark) for mark in ".,")
+    return len(way.cells(line)) == way.columns and not any(Way(way.separator, mark).numbers(line) for mark in GROUPS)
 
 
 def _names(titles, comments, way, found):
     """Names of the columns with their units, from the rows above the numbers, or the comments."""
-    rows = [cells for line in titles if len(cells := cells_of(line, way.separator)) == way.columns]
+    rows, said = ([cells for line in lines if len(cells := way.cells(line)) == way.columns] for lines in (titles, comments))
     if len(rows) > 1 and all(UNITS.fullmatch(cell) for cell in rows[-1]):
         return [f"{name} [{unit.strip('[]()')}]" for name, unit in zip(*rows[-2:], strict=True)]
-    if titles and len(cells_of(titles[-1], way.separator)) == way.columns:
-        return rows[-1]
-    if titles and not rows and len(cells := cells_of(titles[-1], way.separator)) > 1:
-        return cells  # a header whose count does not fit is reported with the first row
-    rows = [cells for line in comments if len(cells := cells_of(line, way.separator)) == way.columns]
-    rows = [cells for cells in rows if len(cells) > 1 or re.fullmatch(r"[^:=]+\[.+\]", cells[0])] or rows[:0]
-    if rows:
-        return rows[-1]
+    last = way.cells(titles[-1]) if titles else []
+    if last and (len(last) == way.columns or (not rows and len(last) > 1)):
+        return last  # a header whose count does not fit is reported with the first row
+    said = [cells for cells in said if len(cells) > 1 or (cells[0].endswith("]") and not {":", "="} & {*cells[0]})]
+    if said:
+        return said[-1]
     if way.columns == 1:
         return ["signal"]
     found.hint = f"{way.columns} columns without names; give header=, 'time [s], acceleration [m/s^2]'"
@@ -129,33 +170,28 @@ def _names(titles, comments, way, found):
 
 def _table(path, rows, way, count):
     """Values, nan where a cell is empty."""
-    last = cells_of(rows[-1][1], way.separator)
-    if way.group or way.mark == way.separator or not all(is_number(cell, way.mark) for cell in last):
-        return _by_cell(path, rows, way, count)
     lines = [line if way.separator is None else line.rstrip(f"{way.separator} ") for _, line in rows]
-    if way.mark == "," and any("." in line for line in lines):  # 1.5 among decimal commas, or 1.234,5
-        return _by_cell(path, rows, way, count)
-    try:
-        plain = [line.replace(",", ".") for line in lines] if way.mark == "," else lines
-        table = np.loadtxt(plain, delimiter=way.separator, ndmin=2, quotechar='"', comments=None)
-    except ValueError:  # a cell is empty, or wrong
-        return _by_cell(path, rows, way, count)
-    return table if table.shape[1] == count else _by_cell(path, rows, way, count)
+    comma = way.mark == ","
+    if not (way.group or way.mark == way.separator or (comma and any("." in line for line in lines))):
+        plain_lines = [line.replace(",", ".") for line in lines] if comma else lines
+        with contextlib.suppress(ValueError):  # a cell is empty, a time of a clock, or wrong
+            table = np.loadtxt(plain_lines, delimiter=way.separator, ndmin=2, quotechar='"', comments=None)
+            if table.shape[1] == count:
+                return table
+    return _by_cell(path, rows, way, count)
 
 
 def _by_cell(path, rows, way, count):
     """As `_table`, cell by cell: with marks between thousands, commas between quotes and empty cells, of which it warns."""
-    cells = [cells_of(line, way.separator, count) for _, line in rows]
-    table = [[value(cell, way.mark, way.group) for cell in row] for row in cells]
-    wrong = next((i for i, row in enumerate(table) if len(row) != count or None in row), None)
-    if wrong is not None:
-        line = rows[wrong][1]
-        shown = line if len(line) <= 80 else f"{line[:80]}..."
-        raise ValueError(f"{path}, line {rows[wrong][0]}: {shown!r} is not a row of {count} numbers")
+    cells = [way.cells(line, count) for _, line in rows]
+    table = [[way.value(cell) for cell in row] for row in cells]
+    for (i, line), row in zip(rows, table, strict=True):
+        if len(row) != count or None in row:
+            shown = line if len(line) <= 80 else f"{line[:80]}..."
+            raise ValueError(f"{path}, line {i}: {shown!r} is not a row of {count} numbers")
     if way.group:
         example = next((cell for row in cells for cell in row if GROUPS[way.mark][way.group].fullmatch(cell)), cells[0][0])
-        meaning = f"thousands are taken to be parted: {example!r} is {plain_number(example, way.mark, way.group)}"
-        warnings.warn(f"{path}: {meaning}", stacklevel=6)
+        warnings.warn(f"{path}: thousands are taken to be parted: {example!r} is {way.number(example):.12g}", stacklevel=6)
     empty = [i for (i, _), row in zip(rows, cells, strict=True) if "" in row]
     if empty:
         warnings.warn(f"{path}: {len(empty)} rows have empty cells, the first in line {empty[0]}: read as missing", stacklevel=6)
@@ -169,20 +205,15 @@ def _clocks(path, found, first):
             found.other.append(f"{name!r} (dates)")
             del found.vectors[name]
         elif CLOCK.fullmatch(cell):
-            seconds = since_start(found.vectors.pop(name))
-            if found.axes(TIMES):
-                found.other.append(f"{name!r} (of a clock, beside {found.axes(TIMES)[0]!r})")
-                continue
-            taken = name if plain(name) in TIMES else "time"
-            found.vectors[taken], found.units[taken] = seconds, "s"
-            warnings.warn(f"{path}: {name!r} ({cell}) is taken for the time, in seconds from its first row on", stacklevel=5)
+            rising = np.unwrap(found.vectors.pop(name), period=DAY)  # past midnight too
+            found.take_clock(path, name, cell, rising - rising[0], 5)
 
 
 def _state(path, found, line, mark):
     """Note what a title row or a comment states: ``rate = 5120 Hz``, ``Sample rate [Hz];5120``."""
-    match = re.fullmatch(r"([\w ]+?)\s*[:=]\s*(.+)", line) or STATEMENT.fullmatch(line)
+    match = len(line) <= LONGEST and (re.fullmatch(r"([\w ]+?)\s*[:=]\s*(.+)", line) or STATEMENT.fullmatch(line))
     key = plain(match[1]) if match else ""
-    if not match or key not in KEYS:
+    if key not in KEYS:
         return
     value = match[2] if match.re.groups == 2 else " ".join(part for part in (match[3].strip(), match[2] or match[4]) if part)
     value = value.strip().replace(mark, ".") if key != "unit" else value.strip()

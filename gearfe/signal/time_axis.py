@@ -4,17 +4,17 @@ import warnings
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import linprog
+from scipy.optimize import minimize_scalar
+
+from ..geometry.aliases import Floats
 
 UNEVEN = 0.1  # part of a step by which clocks may wander; a lost sample is more
 DECIMALS, DIGITS = range(-3, 13), range(3, 10)  # of printed times
-CLOSE = 1e-2  # part of a rounding: tolerance for binary numbers and the linear program
-ROUNDS = 60  # of the fit, each of which adds the time it misses most
+CLOSE = 1e-2  # part of a rounding: tolerance for binary numbers and the fit
 BLURRED = 1e-3  # part of the whole record: times rounded more coarsely determine no rate
 
 
-def step_of(path: Any, time: NDArray[np.float64], rate: float | None = None) -> float:
+def step_of(path: Any, time: Floats, rate: float | None = None) -> float:
     """Step [s] of times that rise in equal steps.
 
     Times that are off by more than a tenth of a step because they were printed with few digits are fitted by a line that is
@@ -37,7 +37,7 @@ def step_of(path: Any, time: NDArray[np.float64], rate: float | None = None) -> 
         raise ValueError(f"{path}: {gap}" if gap else f"{problem}a gap, or a varying rate; resample first")
     if rate is None and coarse > BLURRED * (time[-1] - time[0]):
         raise ValueError(f"{problem}they are rounded to {coarse:g} s; print them with more digits, or give rate= too")
-    fitted, miss = _fitted(time, step, printed / 2) if rate is None else (1 / rate, _missed(time, 1 / rate, printed / 2))
+    fitted, miss = _fitted(time, step if rate is None else 1 / rate, printed / 2, known=rate is not None)
     if miss > 1 + CLOSE:
         other_rate = "" if rate is None else f", or another rate than {rate:g} Hz"
         raise ValueError(
@@ -65,7 +65,7 @@ def _gap(time):
     return f"{lost} samples are missing {between}{widest}; cut the file there, or fill the gap"
 
 
-def rounding(time: NDArray[np.float64]) -> NDArray[np.float64]:
+def rounding(time: Floats) -> Floats:
     """Last printed digit of each time [s], by decimals or by significant digits, whichever is coarser; 0 if not rounded."""
     fixed = next((10.0**-k for k in DECIMALS if _multiples(time, 10.0**-k)), 0.0)
     size = np.abs(time)
@@ -79,31 +79,17 @@ def _multiples(time, unit):
     return bool((np.abs(count - np.round(count)) < 1e-4).all())
 
 
-def _missed(time, step, half):
-    """How far the times are from the nearest line of a known step, over `half`: more than 1 if none passes within it."""
-    y = time - time[0] - step * np.arange(time.size)
-    low, high = float((y - half).max()), float((y + half).min())
-    return 1.0 if low <= high else 1 + (low - high) / (2 * float(half.max()))
+def _fitted(time, step, half, *, known):
+    """Step of a line and how far the times are from it, over the largest `half`: more than 1 if it does not pass within it.
 
-
-def _fitted(time, step, half):
-    """Step of the line that is nearest to the times, its distances taken over `half`, and the largest of them.
-
-    A linear program over a few times, to which the one that its line misses most is added until none is missed by more.
+    A line of slope s passes all times within `half` if ``max(y - half) <= min(y + half)`` of what it leaves, ``y = time - s i``.
+    The difference of both sides is convex in s; its minimum is sought unless the step is `known`.
     """
-    unit, x = half.max(), np.linspace(0.0, 1.0, time.size)
-    y, h = (time - time[0] - step * np.arange(time.size)) / unit, np.maximum(half / unit, 1e-9)
-    chosen = [0, time.size // 2, time.size - 1]
-    miss = slope = 0.0
-    for _ in range(ROUNDS):
-        near = h[chosen]
-        rows, right = np.column_stack([1 / near, x[chosen] / near]), y[chosen] / near
-        sides = np.vstack([np.column_stack([sign * rows, -np.ones(near.size)]) for sign in (1, -1)])
-        solved = linprog([0, 0, 1], sides, np.concatenate([right, -right]), bounds=[(None, None), (None, None), (0, None)])
-        place, slope, least = solved.x
-        away = np.abs(y - place - slope * x) / h
-        miss = float(away.max())
-        if miss <= max(least, 1.0) + CLOSE / 2 or least > 1 + CLOSE:
-            break
-        chosen.append(int(np.argmax(away)))
-    return step + slope * unit / (time.size - 1), miss
+    place, wide = np.arange(time.size), 2 * float(half.max())
+
+    def excess(more):
+        left = time - time[0] - (step + more * wide / time.size) * place
+        return float((left - half).max() - (left + half).min())
+
+    more = 0.0 if known else float(minimize_scalar(excess, bounds=(-2, 2), method="bounded", options={"xatol": 1e-9}).x)
+    return step + more * wide / time.size, 1 + excess(more) / wide

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 from scipy.signal import ShortTimeFFT, get_window
 
+from ..geometry.aliases import Floats
 from .given import oscillation
 from .series import Signal
 from .spectrum import Spectrum
@@ -30,9 +30,9 @@ class Spectrogram:
     unit, name : str
     """
 
-    frequency: NDArray[np.float64]
-    time: NDArray[np.float64]
-    values: NDArray[np.float64]
+    frequency: Floats
+    time: Floats
+    values: Floats
     unit: str
     name: str = "spectrogram"
 
@@ -62,25 +62,12 @@ def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[
     """
     n = signal.values.size
     size = 2 ** round(np.log2(8 * n) / 2) if size is None else size
-    frequency, time, frames, weights = whole_frames(signal, signal.values - signal.values.mean(), window, size, n // 2)
-    values = np.abs(frames) * (2 / weights.sum())
-    values[0] /= 2
-    if size % 2 == 0:
-        values[-1] /= 2  # 0 Hz and Nyquist's frequency have no twin
-    return Spectrogram(frequency, time, values, signal.unit, f"spectrogram of {signal.name}")
-
-
-def whole_frames(signal, x, window, size, most):
-    """Frequencies [Hz], middles [s] and short-time Fourier transform of `x`, of whole frames that overlap by three quarters.
-
-    Returned last are the weights of the window. ValueError if a frame is shorter than 8 samples or longer than `most`.
-    """
-    if not 8 <= size <= most:
-        raise ValueError(f"size = {size} samples, but {signal.name} has {x.size}: give 8 to {most}")
-    weights = get_window(window, size)
-    transform = ShortTimeFFT(weights, size // 4, signal.rate)
-    inside = {"p0": transform.lower_border_end[1], "p1": transform.upper_border_begin(x.size)[1]}
-    return transform.f, transform.t(x.size, **inside), transform.stft(x, **inside), weights
+    if not 8 <= size <= n // 2:
+        raise ValueError(f"size = {size} samples, but {signal.name} has {n}: give 8 to {n // 2}")
+    transform = ShortTimeFFT(get_window(window, size), size // 4, signal.rate, fft_mode="onesided2X", scale_to="magnitude")
+    whole = {"p0": transform.lower_border_end[1], "p1": transform.upper_border_begin(n)[1]}
+    values = np.abs(transform.stft(signal.values - signal.values.mean(), **whole))
+    return Spectrogram(transform.f, transform.t(n, **whole), values, signal.unit, f"spectrogram of {signal.name}")
 
 
 def cepstrum(signal: Signal) -> Spectrum:

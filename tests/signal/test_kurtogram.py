@@ -117,28 +117,13 @@ def test_kurtogram_refuses_levels_the_record_is_too_short_for(levels):
 
 
 def test_a_constant_has_no_kurtogram():
-    for make in (gf.fast_kurtogram, lambda signal: gf.spectral_kurtosis(signal, 64)):
-        with pytest.raises(ValueError, match="is constant"):
-            make(gf.Signal(np.full(1024, 9.81), RATE, "N"))
+    with pytest.raises(ValueError, match="is constant"):
+        gf.fast_kurtogram(gf.Signal(np.full(1024, 9.81), RATE, "N"))
 
 
 def test_best_band_is_the_row_of_the_largest_kurtosis():
     table = Kurtogram(np.array([0.0, 1, 1]), np.array([50.0, 25, 75]), np.array([100.0, 50, 50]), np.array([0.1, 0.2, 4.0]))
     assert (table.best, table.band) == (2, (50.0, 100.0))
-
-
-def test_spectral_kurtosis_of_noise_sine_and_impulses():
-    n = 2**16
-    plain = gf.spectral_kurtosis(gf.Signal(noise(n), RATE, "N"), 64)
-    assert plain.unit == "1"
-    assert np.abs(plain.values).max() < 0.3, "2 / sqrt(1024) = 0.06 for separate frames; real bins included"
-    with_sine = gf.spectral_kurtosis(gf.Signal(noise(n) + sine(20.0, 800.0, n), RATE, "N"), 64)
-    assert_allclose(with_sine.values[10], -1.0, atol=0.05)
-    x = impulses(n, every=512, ringing=1600.0, decay=400.0) + 0.02 * noise(n)
-    found = gf.spectral_kurtosis(gf.Signal(x, RATE, "N"), 64)
-    assert abs(found.frequency[np.argmax(found.values)] - 1600.0) <= 3 * found.resolution
-    with pytest.raises(ValueError, match="size = 300 samples, but signal has 1000: give 8 to 250"):
-        gf.spectral_kurtosis(gf.Signal(noise(1000), RATE, "N"), 300)
 
 
 def test_antonis_filters_give_what_an_independent_package_gives():

@@ -5,7 +5,7 @@ from .progress import working
 
 def sweep(arguments):
     """``gearfe sweep``."""
-    from ...runs.sweeps.plan import plan_sweep
+    from ...runs.sweeps.run import plan_sweep
     from ...runs.sweeps.run import sweep as run
 
     if arguments.dry_run:
@@ -34,12 +34,12 @@ def sweep(arguments):
 def dataset(arguments):
     """``gearfe dataset``."""
     from ...runs.datasets.make import dataset as run
-    from ...runs.datasets.size import size_of
+    from ...runs.datasets.make import plan_dataset
 
     if arguments.dry_run:
         with working("trying one condition"):
-            size = size_of(arguments.plan)
-        print(size.text(arguments.workers))
+            cost = plan_dataset(arguments.plan, arguments.output, arguments.workers)
+        print(cost.text())
         return
     with working("data set"):
         data_set = run(arguments.plan, arguments.output, also=arguments.also, workers=arguments.workers)

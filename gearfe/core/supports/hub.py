@@ -4,7 +4,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ...geometry.aliases import Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,13 +16,11 @@ class Hub:
     the axis; `torsion` the twist [rad] by a torque [N mm]; `axial` the shift by an axial force [mm/N].
     """
 
-    bending: NDArray[np.float64]
+    bending: Floats
     torsion: float
     axial: float
 
-    def given(
-        self, along: NDArray[np.float64], z: NDArray[np.float64], hand: NDArray[np.float64], r_b: float, beta_b: float
-    ) -> NDArray[np.float64]:
+    def given(self, along: Floats, z: Floats, hand: Floats, r_b: float, beta_b: float) -> Floats:
         """Approach at each contact by unit normal forces on the others, as the body follows its hub ``(n, n)`` [mm/N].
 
         A unit normal force has the part cos(beta_b) along the line of action, ``r_b`` away from the axis, and hand sin(beta_b)

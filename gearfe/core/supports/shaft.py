@@ -6,8 +6,8 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...geometry.aliases import Floats
 from ..checks import is_number
 from .beam import Section, bending_flexibility, twist_flexibility
 from .hub import Hub
@@ -144,7 +144,7 @@ class Shaft:
         """`Hub` of its gear."""
         return self.support().hub()
 
-    def bends(self) -> NDArray[np.float64]:
+    def bends(self) -> Floats:
         """Displacement and slope ``(2, 2)`` at the gear by a force and a moment there."""
         return bending_flexibility(self.segments, self.material, self.bearings, self.bearing_stiffness, np.array([self.gear]))
 

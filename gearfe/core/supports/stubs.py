@@ -3,15 +3,15 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...geometry.aliases import Floats
 from .beam import beam_element, pieces_between
 
 RIGID = 1e7  # of the largest stiffness: as good as rigid, and no trouble for the solve
 MOTIONS = 6  # of a face: displacements x, y, z [mm], turns about x, y, z [rad]
 
 
-def stub_stiffness(shaft: Any, width: float) -> NDArray[np.float64]:
+def stub_stiffness(shaft: Any, width: float) -> Floats:
     """Forces and moments that the stubs put on both end faces of the gear, by the faces' motions.
 
     A stub that reaches no bearing moves along freely; one that ends at its face, likewise. The shaft's first bearing holds it

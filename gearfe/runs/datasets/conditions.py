@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.aliases import Floats
 from ..sweeps.samples import quantiles
 from .faults import HEALTHY
 from .plan import SIDES, Plan, combinations, operations
@@ -87,7 +88,7 @@ def _sides(plan, rows):
     return [SIDES[i] for i in out]
 
 
-def _dealt(count: int, shares: NDArray[np.float64], rng: np.random.Generator, told: str) -> NDArray[np.int64]:
+def _dealt(count: int, shares: Floats, rng: np.random.Generator, told: str) -> NDArray[np.int64]:
     """Number of the side of each of `count`, in random order: the shares rounded, one at least for each side that has a share."""
     has_share = shares > 0
     if count < has_share.sum():

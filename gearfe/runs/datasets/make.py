@@ -1,18 +1,19 @@
-"""`dataset`: all conditions of a data set into a folder, going on where it was stopped."""
+"""`dataset`: all conditions of a data set into a folder, going on where it was stopped; `plan_dataset`: what that will take."""
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ...geometry.aliases import StrPath
 from ...stiffness.cache import program
+from ..cost import Cost, estimated
 from ..runner import Tally, check_workers, results
 from ..store.folder import begin, check_same, durable, locked
 from ..store.shards import arrow, encoded, unfinished, write_shard
 from .card import card
 from .conditions import Condition, conditions
-from .opened import FAILED, FORMAT, WINDOWS, Dataset, open_dataset
+from .opened import FAILED, FORMAT, SHAPE, WINDOWS, Dataset, open_dataset
 from .plan import Plan, read_plan
 from .windows import check_machine, rows_of, table_of
 
@@ -20,8 +21,8 @@ EXPORTS = ("mat", "hdf5")
 
 
 def dataset(
-    plan: str | os.PathLike[str] | Mapping[str, Any],
-    folder: str | os.PathLike[str],
+    plan: StrPath | Mapping[str, Any],
+    folder: StrPath,
     *,
     also: Sequence[str] = (),
     workers: int | None = None,
@@ -65,7 +66,7 @@ def dataset(
     every = conditions(checked)
     told = check_machine(checked)
     about = _about(checked, len(every), told)
-    stored = begin(folder, about)
+    stored = begin(folder, about, SHAPE)
     place = Path(folder)
     with locked(place):
         check_same(place, stored, about, "plan")
@@ -74,8 +75,7 @@ def dataset(
         with locked(place / WINDOWS):
             _fill(place, checked, every, workers, progress)
         made = open_dataset(folder)
-        with durable(place / "card.md") as file:
-            file.write(card(made, checked, every).encode())
+        durable(place / "card.md", card(made, checked, every).encode())
         for form in also:
             made.export(form)
     return made
@@ -108,8 +108,7 @@ def _fill(place, plan, every, workers, progress):
             )
         name, content, error = result
         if error:
-            with durable(place / FAILED / f"{name}.txt") as file:
-                file.write(error.encode())
+            durable(place / FAILED / f"{name}.txt", error.encode())
         else:
             write_shard(place / WINDOWS, name, content)
         tally.add(1)
@@ -122,3 +121,20 @@ def simulate_condition(plan: Plan, condition: Condition) -> tuple[str, bytes, st
     except (ValueError, RuntimeError) as error:
         return condition.name, b"", f"{type(error).__name__}: {error}"
     return condition.name, encoded(table), ""
+
+
+def plan_dataset(plan: StrPath | Mapping[str, Any], folder: StrPath = ".", workers: int | None = None) -> Cost:
+    """Say what a data set will take, without writing anything: its last condition is simulated.
+
+    ValueError if the plan cannot be, as `gearfe.dataset`.
+    """
+    checked = read_plan(plan)
+    every = conditions(checked)
+    check_machine(checked)
+    made = rows_of(checked, every[-1])  # imports, compiled loops and gears that are made once
+
+    def trial():
+        return encoded(table_of(checked, rows_of(checked, every[-1]))), 1, []
+
+    text = f"{len(every)} conditions, {len(every) * len(made)} windows"
+    return estimated(text, len(every), len(every), trial, folder, workers)

@@ -1,7 +1,6 @@
 """`Dataset`: windows and labels of a folder, as pandas and numpy, and one file for each side of the split."""
 
 import json
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...core.extras import needing
 from ...core.files import written
+from ...geometry.aliases import StrPath
 from ..store.folder import read_about
 from ..store.shards import arrow, fields_of, frame, opened, read, shard_names, where_of
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 FORMAT = "gearfe data set 1"
 WINDOWS = "windows"  # folder of the files
+SHAPE = {"title": str, "conditions": int, "plan": dict, "units": dict, "made": dict}  # of its note
 FAILED = "failed"  # folder of the errors of conditions that could not be simulated
 MOST_MAT = 2**31 - 2**20  # bytes of an array in a MATLAB 5 file
 
@@ -157,7 +158,7 @@ def _column(values):
 WRITERS = {"mat": (".mat", _mat), "hdf5": (".h5", _hdf5)}
 
 
-def open_dataset(folder: str | os.PathLike[str]) -> Dataset:
+def open_dataset(folder: StrPath) -> Dataset:
     """Open a data set, finished or not.
 
     Raises
@@ -168,4 +169,4 @@ def open_dataset(folder: str | os.PathLike[str]) -> Dataset:
         If pyarrow is missing; the message names what to install.
     """
     arrow()
-    return Dataset(Path(folder), read_about(folder, FORMAT))
+    return Dataset(Path(folder), read_about(folder, FORMAT, SHAPE))

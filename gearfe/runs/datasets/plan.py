@@ -41,13 +41,13 @@
 
 import json
 import math
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
 from ...dynamics.machine.of_scene import flat_machine
+from ...geometry.aliases import StrPath
 from ...scene.dotted_keys import check_key, set_values, tables_near
 from ...scene.load import Scene, scene_of
 from ...scene.parts import DAMAGE
@@ -98,7 +98,7 @@ class Plan:
         return scene_of(f"{self.scene} of {self.title!r}", tables)
 
 
-def read_plan(given: str | os.PathLike[str] | Mapping[str, Any]) -> Plan:
+def read_plan(given: StrPath | Mapping[str, Any]) -> Plan:
     """Check what is asked for, and build the scene of every fault once: gears and damage that cannot be are found now.
 
     Raises

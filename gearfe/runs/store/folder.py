@@ -9,116 +9,110 @@ import json
 import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
-from ...core.files import new_file
+from ...core.files import PART, written
+from ...geometry.aliases import StrPath
 
-ABOUT, LOCK, PART = "about.json", ".lock", ".part-"
+ABOUT, LOCK = "about.json", ".lock"
 
 
-@contextlib.contextmanager
-def durable(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
-    """File to write into that becomes `path` when the block ends without an error, and is on the disk then.
+def durable(path: StrPath, content: bytes) -> None:
+    """Write a file that is on the disk when the function returns.
 
     ValueError if it cannot be written: no such folder, no permission, no space left. What stood at `path` is untouched.
     """
-    path = Path(path)
-    name = None
+    with written(path) as name, open(name, "wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+    folder = os.open(Path(path).parent, os.O_RDONLY)
     try:
-        handle, name = new_file(path.parent, PART)
-        with os.fdopen(handle, "wb") as file:
-            yield file
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(name, path)
-        folder = os.open(path.parent, os.O_RDONLY)
-        try:
-            os.fsync(folder)  # its list of names
-        finally:
-            os.close(folder)
-    except OSError as error:
-        raise ValueError(f"cannot write {path}: {error.strerror or error}; nothing written before is lost") from error
+        os.fsync(folder)  # its list of names
     finally:
-        if name is not None:
-            with contextlib.suppress(OSError):
-                os.unlink(name)
+        os.close(folder)
 
 
 @contextlib.contextmanager
-def locked(folder: str | os.PathLike[str]) -> Iterator[None]:
+def locked(folder: StrPath) -> Iterator[None]:
     """Be the only one who writes into a folder, until the block ends or the process does; leftovers of killed ones are removed.
 
-    ValueError if another process writes into it, or the folder cannot be written.
+    ValueError if another process writes into it, or the folder cannot be written. RuntimeError on a system without ``fcntl``.
     """
-    folder = Path(folder)
-    try:
-        handle = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o666)
-    except OSError as error:
-        raise ValueError(f"cannot write into {folder}: {error.strerror or error}; give a writable folder") from error
-    try:
-        _take(handle, folder)
-        for left in folder.glob(f"{PART}*"):
-            left.unlink(missing_ok=True)
-        yield
-    finally:
-        os.close(handle)
-
-
-def _take(handle, folder):
-    """Lock an open file, or say that it is taken."""
     try:
         import fcntl
     except ImportError as error:
-        raise RuntimeError(
-            "a folder of shards is locked by fcntl, which this system has not: write it on Linux or macOS"
-        ) from error
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        raise ValueError(f"another process is writing into {folder}: wait for it, or give another folder") from error
+        raise RuntimeError(f"{folder} is locked by fcntl, which this system lacks: write it on Linux or macOS") from error
+    with contextlib.ExitStack() as stack:
+        try:
+            file = stack.enter_context(open(Path(folder) / LOCK, "ab"))
+        except OSError as error:
+            raise ValueError(f"cannot write into {folder}: {error.strerror or error}; give a writable folder") from error
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise ValueError(f"another process is writing into {folder}: wait for it, or give another folder") from error
+        for left in Path(folder).glob(f"{PART}*"):
+            left.unlink(missing_ok=True)
+        yield
 
 
-def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str, Any]:
+def begin(folder: StrPath, about: Mapping[str, Any], shape: Mapping[str, Any]) -> dict[str, Any]:
     """The note of an existing folder, to be compared with `about`; a new or empty folder is made and gets `about` as its note.
 
-    `about` is JSON, and its ``"format"`` a name such as ``"gearfe sweep 1"``. ValueError if the folder cannot be made or written,
-    or holds anything else.
+    `about` is JSON, and its ``"format"`` a name such as ``"gearfe sweep 1"``; `shape` is as of `read_about`. ValueError if the
+    folder cannot be made or written, or holds anything else.
     """
     if not os.fspath(folder):
         raise ValueError("an empty name of a folder: give one")
-    folder = Path(folder)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        inside = sorted(path.name for path in folder.iterdir() if path.name != LOCK and not path.name.startswith(PART))
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        empty = not _inside(folder)
     except OSError as error:
         raise ValueError(f"cannot make the folder {folder}: {error.strerror or error}") from error
-    if inside:
-        return read_about(folder, str(about["format"]))
-    with durable(folder / ABOUT) as file:
-        file.write(json.dumps(about, indent=1).encode())
-    return json.loads(json.dumps(about))
+    if empty:
+        durable(Path(folder) / ABOUT, json.dumps(about, indent=1).encode())
+    return read_about(folder, str(about["format"]), shape)
 
 
-def read_about(folder: str | os.PathLike[str], form: str) -> dict[str, Any]:
+def _inside(folder):
+    return sorted(path.name for path in Path(folder).iterdir() if path.name != LOCK and not path.name.startswith(PART))
+
+
+def read_about(folder: StrPath, form: str, shape: Mapping[str, Any]) -> dict[str, Any]:
     """The note of a folder of shards, of the format `form`.
 
-    ValueError if it is no such folder; nothing in it is touched.
+    `shape` has by key the type of its value, or the shape of a table in it. ValueError if it is no such folder, or its note
+    lacks a key or has one of another type; nothing in it is touched.
     """
+    if not isinstance(folder, (str, os.PathLike)):
+        raise TypeError(f"folder = {folder!r}, but give the name of a folder that holds a {form}")
     file = Path(folder) / ABOUT
     if not Path(folder).is_dir():
         raise ValueError(f"no folder {folder}")
     if not file.is_file():
-        inside = sorted(path.name for path in Path(folder).iterdir() if path.name != LOCK)
+        inside = _inside(folder)
         content = f"holds other files ({', '.join(inside[:3])}{', ...' if len(inside) > 3 else ''})" if inside else "is empty"
         raise ValueError(f"{folder} {content} and no {ABOUT}, so it is no {form}: give a new or empty folder, or one of these")
     try:
         about = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        _check_shape(about, {"format": str, **shape})
+    except (OSError, ValueError, RecursionError) as error:
         raise ValueError(f"{file} is damaged: {error}; nothing in the folder was touched") from error
-    if not isinstance(about, dict) or about.get("format") != form:
-        stated = about.get("format") if isinstance(about, dict) else about
+    if about["format"] != form:
+        stated = about["format"]
         raise ValueError(f"{file} says format = {stated!r}, not {form!r}: another program's or version's folder; give a new one")
     return about
+
+
+def _check_shape(note, shape, place=""):
+    if not isinstance(note, dict):
+        raise ValueError(f"{place or 'it'} is no table")
+    for name, kind in shape.items():
+        if isinstance(kind, Mapping):
+            _check_shape(note.get(name), kind, f"{place}{name}.")
+        elif type(note.get(name)) is not kind:
+            raise ValueError(f"{place}{name} = {_short(note.get(name))}, but expected {kind.__name__}")
 
 
 def check_same(folder: Any, stored: Mapping[str, Any], about: Mapping[str, Any], what: str, *, mixed: bool | None = None) -> None:
@@ -144,12 +138,11 @@ def check_same(folder: Any, stored: Mapping[str, Any], about: Mapping[str, Any],
 
 def _differences(there, here, path=""):
     """Texts that say which values differ."""
+    if isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
+        there, here = dict(enumerate(there)), dict(enumerate(here))
     if isinstance(there, dict) and isinstance(here, dict):
         for name in dict.fromkeys((*there, *here)):
             yield from _differences(there.get(name), here.get(name), f"{path}.{name}" if path else name)
-    elif isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
-        for i, (old, new) in enumerate(zip(there, here, strict=True)):
-            yield from _differences(old, new, f"{path}.{i}")
     elif there != here and not (there != there and here != here):  # nan is equal to nan
         yield f"{path} = {_short(there)}, not {_short(here)}"
 

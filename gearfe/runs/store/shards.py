@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from ...core.extras import needing
+from ...geometry.aliases import StrPath
+from ...scene.schema import shown
 from .folder import durable
 
 if TYPE_CHECKING:
@@ -28,7 +28,10 @@ class Field(NamedTuple):
     unit: str = "-"
 
 
-KINDS = ("number", "whole", "truth", "text", "list", "json")  # list: of numbers, of any length; json: any value, as JSON text
+KINDS = {  # what a column holds; list: of any length, json: as JSON text
+    "number": "numbers", "whole": "whole numbers of 64 bits", "truth": "True and False", "text": "texts",
+    "list": "lists of numbers", "json": "what JSON can say",
+}  # fmt: skip
 
 
 def arrow() -> Any:
@@ -80,11 +83,22 @@ def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, Field]) -> "py
     if extra:
         raise ValueError(f"rows have {', '.join(extra)}, but the columns are {', '.join(fields)}")
     schema = schema_of(fields)
-    columns = [
-        pa.array([_plain(row.get(name), name, field.kind) for row in rows], schema.field(name).type)
-        for name, field in fields.items()
-    ]
+    columns = [_column(name, kind, [row.get(name) for row in rows], schema) for name, (kind, _) in fields.items()]
     return pa.Table.from_arrays(columns, schema=schema)
+
+
+def _column(name, kind, values, schema):
+    """Array of pyarrow; ValueError that names the value that is not of its kind."""
+    pa = arrow()
+    try:
+        if kind == "whole" and any(int(value) != value for value in values if value is not None):
+            raise ValueError("a fraction")  # which pyarrow would cut off
+        plain = [json.dumps(value) if kind == "json" and value is not None else value for value in values]
+        return pa.array(plain, schema.field(name).type)
+    except (pa.ArrowException, TypeError, ValueError, OverflowError) as error:
+        for value in values if len(values) > 1 else ():
+            _column(name, kind, [value], schema)
+        raise ValueError(f"{name} = {shown(values[0])}, but the column holds {KINDS[kind]}") from error
 
 
 def schema_of(fields: Mapping[str, Field]) -> "pyarrow.Schema":
@@ -101,37 +115,6 @@ def fields_of(schema: "pyarrow.Schema") -> dict[str, Field]:
     return {name: Field(about.get("kind", "text"), about.get("unit", "-")) for name, about in metadata.items()}
 
 
-def _plain(value, name, kind):
-    """As pyarrow takes it; ValueError if it is not of its kind."""
-    if value is None:
-        return None
-    try:
-        if HELD[kind](value):
-            return TAKEN[kind](value)
-    except (TypeError, ValueError, OverflowError):
-        pass
-    text = repr(value)
-    raise ValueError(f"{name} = {text if len(text) < 60 else text[:56] + ' ...'}, but the column holds {TOLD[kind]}")
-
-
-TOLD = {
-    "number": "numbers", "whole": "whole numbers of 64 bits", "truth": "True and False", "text": "texts",
-    "list": "lists of numbers", "json": "what JSON can say",
-}  # fmt: skip
-HELD = {
-    "number": lambda value: isinstance(value, (int, float, np.integer, np.floating)),
-    "whole": lambda value: int(value) == value and not isinstance(value, str) and -(2**63) <= value < 2**63,
-    "truth": lambda value: isinstance(value, (bool, np.bool)),
-    "text": lambda value: isinstance(value, str) and value.encode() is not None,
-    "list": lambda value: np.ndim(value) == 1 and np.asarray(value).dtype.kind in "fiub",
-    "json": lambda value: True,
-}
-TAKEN = {
-    "number": float, "whole": int, "truth": bool, "text": str, "list": lambda value: np.asarray(value, dtype=float),
-    "json": json.dumps,
-}  # fmt: skip
-
-
 def encoded(table: "pyarrow.Table") -> bytes:
     """Table as the bytes of a Parquet file, compressed, with checksums; the same for the same table."""
     pa = arrow()
@@ -140,37 +123,49 @@ def encoded(table: "pyarrow.Table") -> bytes:
     return out.getvalue().to_pybytes()
 
 
-def write_shard(folder: str | os.PathLike[str], name: str, content: bytes) -> None:
+def write_shard(folder: StrPath, name: str, content: bytes) -> None:
     """Put an `encoded` table into a folder; one of the same name is replaced.
 
     ValueError if it cannot be written; all other shards stay as they are.
     """
-    with durable(Path(folder) / f"{name}{SUFFIX}") as file:
-        file.write(content)
+    durable(Path(folder) / f"{name}{SUFFIX}", content)
 
 
-def shard_names(folder: str | os.PathLike[str]) -> list[str]:
+def shard_names(folder: StrPath) -> list[str]:
     """Names of the shards in a folder, sorted."""
-    return sorted(path.name.removesuffix(SUFFIX) for path in Path(folder).glob(f"[!.]*{SUFFIX}"))
+    return sorted(path.name.removesuffix(SUFFIX) for path in Path(folder).glob(f"[!.]*{SUFFIX}") if path.is_file())
 
 
-def check_shards(folder: str | os.PathLike[str]) -> None:
-    """Raise ValueError if a shard is damaged, a copy, or has other columns than the rest: only their ends are read."""
+def _files(folder):
+    return [Path(folder) / f"{name}{SUFFIX}" for name in shard_names(folder)]
+
+
+def check_shards(folder: StrPath) -> None:
+    """Raise ValueError if a shard is damaged, a copy, or has other columns than the rest: only their ends are read.
+
+    The rows of a copy would count twice.
+    """
     pa = arrow()
-    first = None
-    _alike(folder)
-    for name in shard_names(folder):
-        file = Path(folder) / f"{name}{SUFFIX}"
+    first: dict[Any, Path] = {}
+    words: dict[bytes, Path] = {}
+    for file in _files(folder):
+        size, end = _end(file)
+        other = first.setdefault((size, hashlib.sha256(end).digest()), file)
+        if other is not file and filecmp.cmp(other, file, shallow=False):
+            raise ValueError(f"{folder} holds {other.name} and {file.name} with the same rows: one is a copy; take it out")
+        words.setdefault(end[end.rfind(b"ARROW:schema") :], file)
+    schema = None
+    for file in words.values():
         try:
-            schema = pa.parquet.read_schema(file)
-        except (OSError, pa.ArrowInvalid) as error:
+            found = pa.parquet.read_schema(file)
+        except (OSError, pa.ArrowException) as error:
             raise _damaged(file, error) from error
-        first = first or schema
-        if schema != first:
+        schema = schema or found
+        if found != schema:
             raise ValueError(f"{file} has other columns than the shards before it: it does not belong here; take it out")
 
 
-def unfinished(folder: str | os.PathLike[str], names: Sequence[str], what: str, failed: Sequence[str] = ()) -> list[str]:
+def unfinished(folder: StrPath, names: Sequence[str], what: str, failed: Sequence[str] = ()) -> list[str]:
     """Names, of all that the shards of a folder are to have, that are neither there nor among the `failed`.
 
     ValueError if a shard is damaged, or there is one that is none of this `what`.
@@ -184,23 +179,6 @@ def unfinished(folder: str | os.PathLike[str], names: Sequence[str], what: str, 
     return [name for name in names if name not in present]
 
 
-def _alike(folder):
-    """Whether all shards say in the same words which columns they have.
-
-    ValueError if a shard is another one, byte for byte: its rows would count twice.
-    """
-    first: dict[tuple[int, bytes], Path] = {}
-    columns = set()
-    for name in shard_names(folder):
-        file = Path(folder) / f"{name}{SUFFIX}"
-        size, end = _end(file)
-        other = first.setdefault((size, hashlib.sha256(end).digest()), file)
-        if other is not file and filecmp.cmp(other, file, shallow=False):
-            raise ValueError(f"{folder} holds {other.name} and {file.name} with the same rows: one is a copy; take it out")
-        columns.add(end[end.rfind(b"ARROW:schema") :])
-    return len(columns) < 2
-
-
 def _end(file):
     """Size of a shard, and what it says at its end of what it holds: columns, places and extremes of its parts."""
     with open(file, "rb") as data:
@@ -211,28 +189,25 @@ def _end(file):
         return size, data.read()
 
 
-def opened(folder: str | os.PathLike[str]) -> "dataset.Dataset":
+def opened(folder: StrPath) -> "dataset.Dataset":
     """All shards as one pyarrow dataset, which reads the columns and rows that are asked for.
 
     ValueError if there is no shard, one is damaged, has other columns than the first, or is a copy of another.
     """
     pa = arrow()
-    files = [str(Path(folder) / f"{name}{SUFFIX}") for name in shard_names(folder)]
+    files = [str(file) for file in _files(folder)]
     if not files:
         raise ValueError(f"{folder} holds no results yet")
+    check_shards(folder)
     try:
         checked = pa.dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
         form = pa.dataset.ParquetFileFormat(default_fragment_scan_options=checked)
-        shards = pa.dataset.dataset(files, format=form, schema=pa.parquet.read_schema(files[0]))
-        alike = _alike(folder)
+        return pa.dataset.dataset(files, format=form, schema=pa.parquet.read_schema(files[0]))
     except (OSError, pa.ArrowException) as error:
         raise _damaged(_first_damaged(folder), error) from error
-    if not alike:
-        check_shards(folder)
-    return shards
 
 
-def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":
+def read(folder: StrPath, columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":
     """Columns (None: all) of the rows of all shards that fulfil `where`, a pyarrow expression.
 
     ValueError if a shard is damaged or a copy, there is no such column, or `where` compares numbers with text.
@@ -271,9 +246,9 @@ def _damaged(file, error):
 def _first_damaged(folder):
     """First shard in a folder that cannot be read as a whole."""
     pa = arrow()
-    for name in shard_names(folder):
+    for file in _files(folder):
         try:
-            pa.parquet.read_table(Path(folder) / f"{name}{SUFFIX}", page_checksum_verification=True)
+            pa.parquet.read_table(file, page_checksum_verification=True)
         except (OSError, pa.ArrowInvalid):
-            return Path(folder) / f"{name}{SUFFIX}"
+            return file
     return f"a shard in {folder}"

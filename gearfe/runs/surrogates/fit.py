@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from ...core.case import two_materials
 from ...core.checks import is_number
 from ...core.material import Material
+from ...geometry.aliases import Floats
 from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.solve import Solve, solve
 from ..batches import batch
@@ -127,7 +127,7 @@ def solved(space: Space, materials: tuple[Material, Material], point: dict[str, 
 
 def held_back_error(
     surrogate: Surrogate, points: list[dict[str, float]], judged: list[dict[str, Any]]
-) -> tuple[dict[str, float], NDArray[np.float64]]:
+) -> tuple[dict[str, float], Floats]:
     """Differences of a surrogate from cases it was not fitted on: as `Surrogate.error` and `Surrogate.worst` have them."""
     worst = np.zeros(surrogate.worst.size)
     differences, means = [], []

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.case import Case
 from ...core.checks import is_number
+from ...geometry.aliases import Floats
 from ...geometry.damage.crack import Crack
 from ...geometry.pair.gear_pair import GearPair, free_centre_distance
 
@@ -36,8 +36,8 @@ class Space:
     ranges: dict[str, tuple[float, float]]  # ends of what varies
     held: dict[str, float]  # what is given as one number
     logarithmic: int | None = field(init=False, repr=False)  # the place of the force
-    middle: NDArray[np.float64] = field(init=False, repr=False, compare=False)
-    half: NDArray[np.float64] = field(init=False, repr=False, compare=False)
+    middle: Floats = field(init=False, repr=False, compare=False)
+    half: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Keep what `scaled` needs: it is asked thousands of times."""
@@ -79,14 +79,14 @@ class Space:
             out.append(float(value))
         return out
 
-    def scaled(self, points: Any) -> NDArray[np.float64]:
+    def scaled(self, points: Any) -> Floats:
         """Points ``(..., d)`` brought to -1 ... 1, forces by their logarithm."""
         values = np.array(points, dtype=float)
         if self.logarithmic is not None:
             values[..., self.logarithmic] = np.log(values[..., self.logarithmic])
         return (values - self.middle) / self.half
 
-    def at(self, unit: NDArray[np.float64]) -> dict[str, float]:
+    def at(self, unit: Floats) -> dict[str, float]:
         """Point of the ranges for numbers from 0 to 1: whole ones for teeth, forces on a logarithmic scale."""
         out: dict[str, float] = {}
         for (name, (low, high)), share in zip(self.ranges.items(), unit.tolist(), strict=True):

@@ -1,7 +1,6 @@
 """`Surrogate`: the stiffness curve of `ritz` from polynomials, within stated ranges, with the error it was found to have."""
 
 import json
-import os
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -10,6 +9,7 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.files import Content, check_output, read_npz, save_as
+from ...geometry.aliases import Floats, StrPath
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.tooth.gear import Gear
 from ...stiffness.curve import StiffnessCurve
@@ -51,9 +51,9 @@ class Surrogate:
 
     space: Space
     powers: NDArray[np.int64]
-    weights: NDArray[np.float64]
+    weights: Floats
     error: dict[str, float]
-    worst: NDArray[np.float64]
+    worst: Floats
     meta: dict[str, Any] = field(default_factory=dict)
 
     def __repr__(self):
@@ -63,7 +63,7 @@ class Surrogate:
         accuracy = f"on {self.error['cases']} fresh cases off by {mean:.2g} % in the mean, {worst:.2g} % at worst"
         return f"<Surrogate of ritz: {ranges}; {accuracy}>"
 
-    def k(self, phase: ArrayLike, **point: float) -> NDArray[np.float64]:
+    def k(self, phase: ArrayLike, **point: float) -> Floats:
         """Secant stiffness [N/m] at phases, of their shape, in a few microseconds each; for models of dynamics.
 
         Parameters
@@ -140,7 +140,7 @@ class Surrogate:
         count = phase_array(phases, "cycle", self.space.pair).size
         return np.arange(np.ceil(breaks[0] * count), np.floor(breaks[-1] * count) + 1) / count
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: StrPath) -> None:
         """Write to a numpy archive (``.npz``), plain arrays and JSON.
 
         Raises
@@ -156,7 +156,7 @@ class Surrogate:
         save_as(".npz", path, Content(TITLE, {}, arrays, meta, {"worst": "-"}))
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> "Surrogate":
+    def load(cls, path: StrPath) -> "Surrogate":
         """Read what `save` wrote; nothing is unpickled.
 
         Raises

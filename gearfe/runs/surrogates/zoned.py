@@ -12,6 +12,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from ...geometry.aliases import Floats
 from ...stiffness.curve import StiffnessCurve
 
 DEGREE = 8  # of the polynomial of a piece: written so, curves of 21/31 pairs are off by 0.005 % in the mean
@@ -21,12 +22,12 @@ SEARCH = 8  # phases a round in the search for a break
 ROUNDS = 3
 LESS = "give less load or another contact ratio"
 
-Solve = Callable[[NDArray[np.float64]], StiffnessCurve]
+Solve = Callable[[Floats], StiffnessCurve]
 _NODES = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, DEGREE))
 
 
-def breaks_of(eps_alpha: float, solve: Solve, *, cracked: bool) -> NDArray[np.float64]:
+def breaks_of(eps_alpha: float, solve: Solve, *, cracked: bool) -> Floats:
     """Rising phases ``(m,)`` between which k is smooth, both ends included; `solve` gives the curve at phases.
 
     Over a cycle, or, of `cracked` gears, over the engagement of tooth 0, from the middle of the zone of fewer pairs before it to
@@ -80,18 +81,18 @@ def _vanishing(touching, open_, before, force, force_before):
     return float(np.clip(place, *sorted((touching, open_))))
 
 
-def phases_of(breaks: NDArray[np.float64]) -> NDArray[np.float64]:
+def phases_of(breaks: Floats) -> Floats:
     """Phases ``(pieces * (DEGREE + 1),)`` at which k is needed: Chebyshev's nodes of each piece."""
     low, high = breaks[:-1, None], breaks[1:, None]
     return ((low + high) / 2 + (high - low) / 2 * _NODES).ravel()
 
 
-def series_of(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def series_of(values: Floats) -> Floats:
     """Chebyshev coefficients ``(pieces, DEGREE + 1)`` from values at `phases_of`."""
     return values.reshape(-1, DEGREE + 1) @ _TO_SERIES.T
 
 
-def at(phase: NDArray[np.float64], breaks: NDArray[np.float64], series: NDArray[np.float64]) -> NDArray[np.float64]:
+def at(phase: Floats, breaks: Floats, series: Floats) -> Floats:
     """Values at phases within the breaks."""
     piece = piece_of(phase, breaks)
     low, high = breaks[piece], breaks[piece + 1]
@@ -99,6 +100,6 @@ def at(phase: NDArray[np.float64], breaks: NDArray[np.float64], series: NDArray[
     return np.asarray(chebyshev.chebval(u, series[piece].T, tensor=False), dtype=float)
 
 
-def piece_of(phase: NDArray[np.float64], breaks: NDArray[np.float64]) -> NDArray[np.int64]:
+def piece_of(phase: Floats, breaks: Floats) -> NDArray[np.int64]:
     """Number of the piece each phase lies in."""
     return np.clip(np.searchsorted(breaks, phase, side="right") - 1, 0, breaks.size - 2)

@@ -1,23 +1,24 @@
-"""`sweep`: all cases of a study into a folder, going on where it was stopped."""
+"""`sweep`: all cases of a study into a folder, going on where it was stopped; `plan_sweep`: what that will take."""
 
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from ...geometry.aliases import StrPath
 from ...stiffness.cache import program
+from ..cost import Cost, estimated
 from ..runner import Tally, alone, check_workers, results
 from ..store.folder import begin, check_same, locked
-from ..store.shards import unfinished, write_shard
-from .blocks import blocks, compute, lost, rows, shard
-from .runs import FORMAT, Runs, open_runs
+from ..store.shards import encoded, table, unfinished, write_shard
+from .blocks import DONE, blocks, compute, lost, rows, shard
+from .runs import FORMAT, SHAPE, Runs, open_runs
 from .study import Study, read_study, slim
 
 
 def sweep(
-    study: str | os.PathLike[str] | Mapping[str, Any],
-    folder: str | os.PathLike[str],
+    study: StrPath | Mapping[str, Any],
+    folder: StrPath,
     *,
     workers: int | None = None,
     scheduler: str | None = None,
@@ -60,7 +61,7 @@ def sweep(
         raise ValueError("workers are processes of this machine, a scheduler has its own: give one of them")
     checked = read_study(study)
     every, fields = blocks(checked)
-    stored = begin(folder, _about(checked, sum(len(block.cases) for block in every)))
+    stored = begin(folder, _about(checked, sum(len(block.cases) for block in every)), SHAPE)
     with locked(folder):
         if stored["study"]["block"] != checked.block:  # how it is cut is no other study
             checked = replace(checked, block=stored["study"]["block"])
@@ -96,3 +97,42 @@ def _case_by_case(study, block):
 def _about(study: Study, cases: int) -> dict[str, Any]:
     """Note of a folder of results."""
     return {"format": FORMAT, "title": study.title, "cases": cases, "study": study.content(), "made": program()}
+
+
+def plan_sweep(study: StrPath | Mapping[str, Any], folder: StrPath = ".", *, workers: int | None = None) -> Cost:
+    """Say what a sweep will take, without writing anything: one block from the middle of it is computed.
+
+    Parameters
+    ----------
+    study : str or path or dict
+        As of `gearfe.sweep`.
+    folder : str or path
+        Where it would be written: how much is free there.
+    workers : int, optional
+        Processes; default one per core.
+
+    Raises
+    ------
+    ValueError
+        If the study cannot be.
+    RuntimeError
+        If pyarrow is missing.
+
+    Examples
+    --------
+    >>> study = {"scene": "planetary_pitting", "vary": {"gear.sun.r_bore_mm": [6.0, 7.0]}, "options": {"method": "coupled"}}
+    >>> plan_sweep(study).cases
+    2
+    """
+    checked = read_study(study)
+    every, fields = blocks(checked)
+    small, chosen = slim(checked), every[len(every) // 2]
+    rows(small, chosen.single(0))  # imports and tables that are made once
+
+    def trial():
+        made = rows(small, chosen)
+        return encoded(table(made, fields)), len(made), [row["error"] for row in made if row["status"] != DONE]
+
+    cases = sum(len(block.cases) for block in every)
+    text = f"{cases} cases in {len(every)} block{'s' * (len(every) > 1)}"
+    return estimated(text, cases, len(every), trial, folder, workers)

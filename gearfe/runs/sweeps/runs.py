@@ -1,6 +1,5 @@
 """`open_runs`: results of a sweep as pandas and xarray, reading only the columns and rows that are asked for."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...core.extras import needing
+from ...geometry.aliases import StrPath
 from ..store.folder import read_about
 from ..store.shards import Field, fields_of, frame, opened, read, shard_names, where_of
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     import xarray
 
 FORMAT = "gearfe sweep 1"
+STUDY = {"kind": str, "pair": str, "case": str, "options": dict, "axes": list, "sample": dict, "seed": int, "block": int}
+SHAPE = {"title": str, "cases": int, "study": STUDY, "made": dict}  # of its note
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +147,7 @@ def _longest(phase):
     return phase[np.argmax(np.isfinite(phase).sum(axis=1))] if phase.size else np.empty(0)
 
 
-def open_runs(folder: str | os.PathLike[str]) -> Runs:
+def open_runs(folder: StrPath) -> Runs:
     """Open the folder of a sweep, finished or not.
 
     Raises
@@ -155,6 +157,6 @@ def open_runs(folder: str | os.PathLike[str]) -> Runs:
     RuntimeError
         If pyarrow is missing; the message names what to install.
     """
-    about = read_about(folder, FORMAT)
+    about = read_about(folder, FORMAT, SHAPE)
     fields = fields_of(opened(folder).schema) if shard_names(folder) else {}
     return Runs(Path(folder), about, fields)

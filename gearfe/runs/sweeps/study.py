@@ -36,13 +36,13 @@ gives other keys the same value.
 
 import json
 import math
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from ...geometry.aliases import StrPath
 from ...scene.dotted_keys import check_key, tables_near, trimmed
 from ...scene.load import scene_of
 from ...scene.parts import DAMAGE
@@ -78,7 +78,7 @@ class Study:
         return json.loads(json.dumps({name: getattr(self, name) for name in names}, default=str))
 
 
-def read_study(study: str | os.PathLike[str] | Mapping[str, Any]) -> Study:
+def read_study(study: StrPath | Mapping[str, Any]) -> Study:
     """Check a study, a TOML file or a dictionary of the same structure.
 
     Raises

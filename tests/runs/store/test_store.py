@@ -1,12 +1,14 @@
 """Folders of shards: whole or not there, one writer, damage found."""
 
 import errno
+import json
 import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import gearfe as gf
 from gearfe.runs.store import folder as place
 from gearfe.runs.store import shards
 from gearfe.runs.store.shards import Field
@@ -14,6 +16,7 @@ from gearfe.runs.store.shards import Field
 pytestmark = pytest.mark.quick
 
 ABOUT = {"format": "test 1", "of": "x"}
+SHAPE = {"of": str}
 FIELDS = {
     "case": Field("whole"),
     "k": Field("list", "N/m"),
@@ -26,7 +29,7 @@ FIELDS = {
 @pytest.fixture
 def folder(tmp_path):
     """Three shards of two rows."""
-    place.begin(tmp_path / "runs", ABOUT)
+    place.begin(tmp_path / "runs", ABOUT, {"of": str})
     for i in range(3):
         rows = [{"case": 2 * i + j, "k": np.full(300, i + 0.1 * j), "mean": None if i == 0 else 1.5} for j in range(2)]
         shards.write_shard(tmp_path / "runs", f"s{i}", shards.encoded(shards.table(rows, FIELDS)))
@@ -39,7 +42,7 @@ def test_what_was_written_is_read(folder):
     assert sorted(found["case"].to_pylist()) == list(range(6))
     assert found["mean"].to_pylist() == [None, None, 1.5, 1.5, 1.5, 1.5]
     assert shards.fields_of(shards.opened(folder).schema) == FIELDS
-    assert place.begin(folder, {"format": "test 1", "of": "y"}) == ABOUT  # what stands there, for the caller to compare
+    assert place.begin(folder, ABOUT | {"of": "y"}, SHAPE) == ABOUT  # what stands there, for the caller to compare
     some = shards.read(folder, None, shards.arrow().dataset.field("case") == 3)
     np.testing.assert_allclose(some["k"][0].as_py(), np.full(300, 1.1))
 
@@ -96,16 +99,16 @@ def test_damage_is_found_and_named(folder, harm):
 def test_foreign_folders_are_refused_and_untouched(tmp_path):
     (tmp_path / "letter.txt").write_text("mine")
     with pytest.raises(ValueError, match=r"letter\.txt"):
-        place.begin(tmp_path, ABOUT)
+        place.begin(tmp_path, ABOUT, {})
     assert [one.name for one in tmp_path.iterdir()] == ["letter.txt"]
-    place.begin(tmp_path / "a", ABOUT)
+    place.begin(tmp_path / "a", ABOUT, {})
     with pytest.raises(ValueError, match="says format = 'test 1'"):
-        place.begin(tmp_path / "a", {"format": "other 1"})
+        place.begin(tmp_path / "a", {"format": "other 1"}, {})
     (tmp_path / "a" / place.ABOUT).write_text("{")
     with pytest.raises(ValueError, match="is damaged"):
-        place.begin(tmp_path / "a", ABOUT)
+        place.begin(tmp_path / "a", ABOUT, {})
     with pytest.raises(ValueError, match="cannot make the folder"):
-        place.begin(tmp_path / "letter.txt" / "x", ABOUT)
+        place.begin(tmp_path / "letter.txt" / "x", ABOUT, {})
     with pytest.raises(ValueError, match="cannot write"):
         shards.write_shard(tmp_path / "none", "s", b"")
 
@@ -121,7 +124,7 @@ def test_a_shard_with_other_columns_and_unknown_columns_are_refused(folder):
 
 
 def test_nothing_to_read(tmp_path):
-    place.begin(tmp_path / "new", ABOUT)
+    place.begin(tmp_path / "new", ABOUT, {})
     with pytest.raises(ValueError, match="no results yet"):
         shards.opened(Path(tmp_path / "new"))
 
@@ -156,7 +159,7 @@ def test_shards_of_one_size_with_other_numbers_are_no_copies(folder):
         ("case", "3", "holds whole numbers"),
         ("k", [[1.0], [2.0]], "holds lists of numbers"),
         ("k", ["1", "2"], "holds lists of numbers"),
-        ("k", "a" * 500, r"k = 'aaa.* \.\.\., but the column holds lists of numbers"),
+        ("k", "a" * 500, r"k = 'aaa.*\.\.\., but the column holds lists of numbers"),
         ("text", 5, "text = 5, but the column holds texts"),
         ("text", "\ud800", "holds texts"),
         ("any", object, "holds what JSON can say"),
@@ -188,3 +191,36 @@ def test_text_in_a_number_column_of_a_shard_is_refused_even_where_it_reads_as_a_
 def test_conditions_that_a_column_cannot_have_are_refused(folder, where, told):
     with pytest.raises(ValueError, match=told):
         shards.read(folder, None, shards.where_of(where, list(FIELDS)))
+
+
+def edited(**values):
+    return lambda about: about | values
+
+
+EDITS = {
+    "no study": lambda about: {name: value for name, value in about.items() if name != "study"},
+    "no versions": lambda about: {name: value for name, value in about.items() if name != "made"},
+    "text for a number": edited(cases="three"),
+    "another title": edited(title=5),
+    "study without axes": lambda about: about | {"study": {**about["study"], "axes": None}},
+    "no table": lambda about: [about],
+    "text for the block": lambda about: about | {"study": {**about["study"], "block": "x"}},
+}
+
+
+@pytest.mark.parametrize("edit", EDITS.values(), ids=list(EDITS))
+def test_a_note_that_was_edited_is_refused(edit, tmp_path):
+    study = {"scene": "planetary_pitting", "options": {"method": "textbook", "phases": 4}, "vary": {"gear.sun.r_bore_mm": [6.0]}}
+    gf.sweep(study, tmp_path, workers=1)
+    note = tmp_path / place.ABOUT
+    note.write_text(json.dumps(edit(json.loads(note.read_text()))))
+    for use in (gf.open_runs, lambda folder: gf.sweep(study, folder, workers=1)):
+        with pytest.raises(ValueError, match=r"about\.json is damaged"):
+            use(tmp_path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes on this system")
+def test_a_pipe_is_no_shard(folder):
+    os.mkfifo(folder / "s9.parquet")
+    assert shards.shard_names(folder) == ["s0", "s1", "s2"]
+    assert shards.read(folder, ["case"]).num_rows == 6

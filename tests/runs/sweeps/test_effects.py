@@ -9,17 +9,16 @@ import pytest
 import gearfe as gf
 from gearfe.runs.store import folder as place
 from gearfe.runs.store.shards import Field, encoded, table, write_shard
-from gearfe.runs.sweeps.runs import FORMAT
+from gearfe.runs.sweeps.runs import FORMAT, SHAPE
 from gearfe.runs.sweeps.samples import cube
 
 
 def stored(folder, points, outputs, sample, extra=None):
     """Runs of drawn inputs a, b, c with an output ``y`` and a curve."""
     names = ("a", "b", "c")
-    study = {"axes": [], "sample": sample}
-    place.begin(
-        folder, {"format": FORMAT, "title": "known", "cases": len(points), "study": json.loads(json.dumps(study)), "made": {}}
-    )
+    study = {"kind": "stiffness", "pair": "p", "case": "c", "options": {}, "axes": [], "sample": sample, "seed": 0, "block": 1}
+    about = {"format": FORMAT, "title": "known", "cases": len(points), "study": json.loads(json.dumps(study)), "made": {}}
+    place.begin(folder, about, SHAPE)
     fields = {"number": Field("whole"), "point": Field("whole"), "draw": Field("whole")}
     fields |= {name: Field("number") for name in names} | {
         "y": Field("number", "m"),

@@ -1,0 +1,67 @@
+"""What a sweep or a data set will take, from cases of it that are computed for that."""
+
+import os
+import resource
+import shutil
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """What a sweep or a data set will take."""
+
+    text_of_cases: str
+    cases: int  # in all
+    blocks: int  # files they make
+    seconds: float  # of processor, all cases together
+    workers: int  # processes that share it
+    memory: float  # of each process [bytes]: the largest of this one so far
+    disk: float  # the whole folder [bytes]
+    free: float  # there [bytes]
+    tried: int  # cases that were computed for this
+    failed: int  # of these
+    error: str  # of the first that cannot be; empty if there is none
+
+    def text(self) -> str:
+        """Lines for people."""
+        out = [
+            self.text_of_cases,
+            f"time: about {_time(self.seconds)} of processor, {_time(self.seconds / self.workers)} with {self.workers} processes",
+            f"memory: about {self.memory / 1e6:.0f} MB in each process",
+            f"disk: about {_size(self.disk)}, {_size(self.free)} are free",
+            f"from {self.tried} case{'s' * (self.tried > 1)} computed now, {self.failed} of them failed",
+        ]
+        return "\n".join([*out, *([f"the first that failed: {self.error}"] if self.error else [])])
+
+
+def estimated(
+    text: str, cases: int, blocks: int, trial: Callable[[], tuple[bytes, int, list[str]]], folder: object, workers: int | None
+) -> Cost:
+    """`Cost` of so many `cases`; `trial` computes some and returns their file, their number and the errors of those that failed.
+
+    `folder` is where they would be written.
+    """
+    started = time.process_time()
+    content, tried, wrong = trial()
+    seconds = (time.process_time() - started) / tried * cases
+    unit = 1 if sys.platform == "darwin" else 1024
+    memory = float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit)
+    place = Path(str(folder)).absolute()
+    free = shutil.disk_usage(next(one for one in (place, *place.parents) if one.exists())).free
+    disk = len(content) / tried * cases
+    processes = workers or os.cpu_count() or 1
+    return Cost(text, cases, blocks, seconds, processes, memory, disk, float(free), tried, len(wrong), next(iter(wrong), ""))
+
+
+def _time(seconds):
+    if seconds < 120:
+        return f"{seconds:.3g} s"
+    return f"{seconds / 60:.3g} min" if seconds < 7200 else f"{seconds / 3600:.3g} h"
+
+
+def _size(size):
+    return f"{size / 1e6:.3g} MB" if size < 1e9 else f"{size / 1e9:.3g} GB"

@@ -1,0 +1,10 @@
+"""Names of the types that many annotations use."""
+
+import os
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats: TypeAlias = NDArray[np.float64]
+StrPath: TypeAlias = str | os.PathLike[str]
