@@ -63,8 +63,8 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
                 with located(file, where, row):
                     made = make(row, pair, SIDES.index(side), rows["pair"][name])
                 if side != first:
-                    other = [replace(one, side="unloaded") for one in made if isinstance(one, Crack)]
-                    made = other + [one for one in made if isinstance(one, MissingTooth)]
+                    cracks = [replace(one, side="unloaded") for one in made if isinstance(one, Crack)]
+                    made = [*cracks, *(one for one in made if isinstance(one, MissingTooth))]
                 if made and not (name == home and side != first):
                     owner = Owner(row.get("body"), home, first)
                     out.setdefault(row["case"], {}).setdefault(side, {}).setdefault(owner, []).extend(made)
