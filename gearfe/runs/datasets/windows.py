@@ -8,7 +8,8 @@ import numpy as np
 from ...comparison.vibration import recorded
 from ...core.threads import own_warnings
 from ...dynamics.machine.of_scene import build_machine, flat_machine
-from ...dynamics.machine.tables import Machine, Stage
+from ...dynamics.machine.stages import Stage
+from ...dynamics.machine.tables import Machine
 from ...dynamics.motion.housing import housing_signal
 from ...dynamics.motion.response import Response
 from ...dynamics.motion.step_control import default_step
