@@ -195,7 +195,7 @@ def force_law(
         Per mesh cycle; between two of them `BETWEEN` more are solved where the number of pairs that carry changes, which
         depends on the load.
     span : {"cycle", "tooth"}
-        ``tooth`` for the law of a damaged tooth (`gearfe.dynamics.machine.gear_mesh.ToothDamage`).
+        ``tooth`` for the law of a damaged tooth (`gearfe.dynamics.machine.tooth_damage.ToothDamage`).
     **options
         As of `mesh_stiffness`: ``method``, ``damage``, ``flanks`` and so on.
 
