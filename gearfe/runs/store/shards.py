@@ -4,7 +4,10 @@ import filecmp
 import hashlib
 import json
 import os
+import tomllib
 from collections.abc import Mapping, Sequence
+from functools import cache
+from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -32,6 +35,19 @@ KINDS = {  # what a column holds; list: of any length, json: as JSON text
     "number": "numbers", "whole": "whole numbers of 64 bits", "truth": "True and False", "text": "texts",
     "list": "lists of numbers", "json": "what JSON can say",
 }  # fmt: skip
+
+
+@cache
+def columns(name: str) -> dict[str, tuple[Field, str]]:
+    """Columns of results, of a table of ``gearfe/runs/columns.toml``, with what they are in words."""
+    text = (resources.files("gearfe.runs") / "columns.toml").read_text(encoding="utf-8")
+    rows = tomllib.loads(text)[name].items()
+    return {key: (Field(row.get("kind", "number"), row.get("unit", "-")), row.get("text", "")) for key, row in rows}
+
+
+def fields(name: str) -> dict[str, Field]:
+    """Columns of results without their words."""
+    return {key: field for key, (field, _) in columns(name).items()}
 
 
 def arrow() -> Any:
