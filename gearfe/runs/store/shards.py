@@ -224,21 +224,28 @@ def opened(folder: StrPath) -> "dataset.Dataset":
 
 
 def read(folder: StrPath, columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":
-    """Columns (None: all) of the rows of all shards that fulfil `where`, a pyarrow expression.
+    """Columns (None: all) of the rows of all shards that fulfil `where`, as of `where_of`.
 
-    ValueError if a shard is damaged or a copy, there is no such column, or `where` compares numbers with text.
+    ValueError if a shard is damaged or a copy, there is no such column, or `where` compares numbers with text or asks for a text
+    that no row has.
     """
     pa = arrow()
     shards = opened(folder)
     unknown = [name for name in columns or () if name not in shards.schema.names]
     if unknown:
         raise ValueError(f"no column {unknown[0]!r} in {folder}; it has {', '.join(shards.schema.names)}")
+    condition = where_of(where, shards.schema.names)
     try:
-        return shards.to_table(columns=list(columns) if columns is not None else None, filter=where)
+        found = shards.to_table(columns=list(columns) if columns is not None else None, filter=condition)
     except (pa.ArrowNotImplementedError, pa.ArrowTypeError) as error:
-        raise ValueError(f"where = {where}: {_line(error)}; a column is compared with values of its own kind") from error
+        raise ValueError(f"where = {condition}: {_line(error)}; a column is compared with values of its own kind") from error
     except (OSError, pa.ArrowInvalid) as error:
         raise _damaged(_first_damaged(folder), error) from error
+    for name, value in where.items() if isinstance(where, Mapping) and not found.num_rows else ():
+        there = shards.to_table(columns=[name])[name].unique().to_pylist()
+        if isinstance(value, str) and value not in there:
+            raise ValueError(f"where: {name} = {value!r}, but no row has that; there is {', '.join(map(str, there))}")
+    return found
 
 
 def frame(found: "pyarrow.Table", fields: Mapping[str, Field], index: str | None = None) -> "pandas.DataFrame":

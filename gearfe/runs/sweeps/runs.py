@@ -12,7 +12,7 @@ import numpy as np
 from ...core.extras import needing
 from ...geometry.aliases import StrPath
 from ..store.folder import read_about
-from ..store.shards import Field, fields_of, frame, opened, read, shard_names, where_of
+from ..store.shards import Field, fields_of, frame, opened, read, shard_names
 from .study import inputs_of
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ class Runs:
         if columns is None:
             columns = [name for name, field in self.fields.items() if field.kind != "list"]
         wanted = ["number", *(name for name in columns if name != "number")]
-        return frame(read(self.folder, wanted, where_of(where, list(self.fields))), self.fields, "number")
+        return frame(read(self.folder, wanted, where), self.fields, "number")
 
     def curves(self, names: Sequence[str] | None = None, where: Any = None) -> "xarray.Dataset":
         """Curves and signals as arrays with named axes.
@@ -115,7 +115,7 @@ class Runs:
                 raise ValueError(f"{name!r} is no curve of this study; it has {', '.join(known)}")
         beside = ["number", *self.inputs, "status"]
         lists = dict.fromkeys([*names, *(["phase"] if "phase" in known else [])])
-        rows = read(self.folder, [*beside, *lists], where_of(where, list(self.fields))).sort_by("number")
+        rows = read(self.folder, [*beside, *lists], where).sort_by("number")
         values = {name: padded(rows[name]) for name in lists}
         coords: dict[str, Any] = {name: ("number", rows[name].to_pandas().to_numpy()) for name in beside}
         if "phase" in lists and "phase" not in names:
