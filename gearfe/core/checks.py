@@ -22,7 +22,7 @@ def number(name: str, value: Any) -> float:
     return float(value)
 
 
-def whole(name: str, value: Any, least: int) -> int:
+def whole(name: str, value: Any, least: float = -math.inf) -> int:
     """A whole number from `least` on.
 
     Raises
@@ -32,7 +32,7 @@ def whole(name: str, value: Any, least: int) -> int:
     """
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         close = is_number(value) and math.isfinite(value) and value == int(value) and value >= least
-        remedy = f": give {name} = {int(value)}" if close else f" from {least} on"
+        remedy = f": give {name} = {int(value)}" if close else "" if least == -math.inf else f" from {least} on"
         raise ValueError(f"{name} = {value!r}, but it is a whole number{remedy}")
     return int(value)
 
