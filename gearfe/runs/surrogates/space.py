@@ -97,13 +97,14 @@ class Space:
 
         ValueError if such gears or such a crack cannot be.
         """
-        values, gears = self.held | dict(point), []
+        values: dict[str, Any] = self.held | dict(point)
+        gears = []
         for number, gear in enumerate((self.pair.gear_1, self.pair.gear_2), 1):
             new: dict[str, Any] = {"z": int(values.get(f"z_{number}", gear.z)), "x": values.get(f"x_{number}", gear.x)}
             if bore := values.get(f"bore_{number}"):
                 new["r_bore"] = bore * replace(gear, **new, r_bore=0.1 * gear.m_n).r_f
             gears.append(replace(gear, **new))
-        pair = GearPair(*gears, None if values.keys() & {*SHAPE} else self.pair.a)
+        pair = GearPair(gears[0], gears[1]) if values.keys() & {*SHAPE} else replace(self.pair, gear_1=gears[0], gear_2=gears[1])
         crack = {name: values[name] for name in ("level", "angle") if name in values}
         return Case(pair, values["force"], material, damage={"pinion": [Crack(**crack)]} if crack else None)
 

@@ -28,8 +28,9 @@ class Kind(NamedTuple):
     """A kind of study.
 
     `options` is their table in ``gearfe/runs/keys.toml``. `work` is called with a `Case` and the options, and gives a row for
-    each of its loads, with the columns of ``gearfe/runs/columns.toml``. `block`: cases in a shard, which takes seconds. `whole`: it
-    needs all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the options.
+    each of its loads, with the columns of ``gearfe/runs/columns.toml``. `block`: cases in a shard, which takes seconds.
+    `whole`: it needs all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the
+    options.
     """
 
     options: str

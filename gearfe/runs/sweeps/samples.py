@@ -19,7 +19,7 @@ METHODS = ("sobol", "random", "latin", "saltelli")
 class Shape(NamedTuple):
     """A distribution: what its parameters are, how it is made of them, and what they must be, as a rule and in words."""
 
-    count: int
+    size: int
     meaning: str
     make: Callable[..., Any]
     rule: Callable[[list[float]], bool]
@@ -90,7 +90,7 @@ def check_shape(where, spec):
     (name,) = names
     values, within, shape = spec[name], spec.get("within"), SHAPES.get(name)
     meaning = shape.meaning if shape else "the values, each as likely"
-    if not isinstance(values, (list, tuple)) or not values or (shape and len(values) != shape.count):
+    if not isinstance(values, (list, tuple)) or not values or (shape and len(values) != shape.size):
         raise ValueError(f"{where}: {name} = {shown(values)}, but give a list: {meaning}")
     if shape is None:
         if within is not None:
