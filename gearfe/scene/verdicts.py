@@ -134,7 +134,7 @@ def _count(rows, noun):
 def _words(rows):
     verdicts = (REPRODUCED, CORRECTED, TREND, ASSUMED, DEPENDS, NOT, NEVER)
     many = {word: sum(row.verdict == word for row in rows) for word in verdicts}
-    return ", ".join(f"{n} {word}" for word, n in many.items() if n)
+    return ", ".join(f"{n} {'depend' if word == DEPENDS else word}" for word, n in many.items() if n)
 
 
 def text(references, rows, beside=None):
