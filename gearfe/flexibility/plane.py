@@ -13,6 +13,7 @@ from ..geometry.tooth.profile import arc_at
 
 NEAREST = 0.001  # added to distances from a tip corner before their logarithm is taken [m_n]
 TILT = 0.2  # of the two loads, at each of four places, from which it is found how a tooth yields across its normal [rad]
+FURTHER = 2  # how many teeth beyond those that can share load with a cracked one are solved with its crack
 BELOW = 0.1  # how far below the tip the third of these places is [m_n]
 
 
@@ -171,6 +172,29 @@ class Flexibility:
             here, there = on.nonzero()
             out[..., here, there] = out[..., there, here] = spline.ev(arc[..., here], arc[..., there])
         return out
+
+
+def teeth_at_cracks(gear: Gear, cracks: Sequence[Any], neighbours: int) -> list[int]:
+    """Teeth that can share load with a cracked one, and `FURTHER` on either side under whose load cracks open or slide."""
+    reach = max(1, neighbours - 1) + FURTHER
+    return sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
+
+
+def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.bool_], float]:
+    """Which `teeth` ``(n,)`` of a cracked gear its cracks were not solved for, and the most these can add there [mm per N/mm].
+
+    Cracks open less under loads further away: the bound is what they add to the outermost teeth that were solved.
+    """
+    none = np.zeros(teeth.size, dtype=bool), 0.0
+    if flexible.seam is None:
+        return none
+    z, faces = flexible.gear.z, flexible.seam
+    ends = [tooth for tooth in faces.opening if not {(tooth + 1) % z, (tooth - 1) % z} <= faces.opening.keys()]
+    if not ends:
+        return none
+    opening = np.concatenate([faces.opening[tooth](np.array(flexible.limits)) for tooth in ends])
+    most = np.einsum("nf,fg,ng->n", opening, faces.stiffness, opening).max()
+    return ~np.isin(teeth % z, list(faces.opening)), float(most)
 
 
 def singly(flexible: Any, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[int]) -> list[NDArray[np.float64]]:

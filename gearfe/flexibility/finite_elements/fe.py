@@ -26,7 +26,7 @@ from ...geometry.mesh.section_mesh import section
 from ...geometry.tooth.profile import arc_at, flank_normal
 from ..hats import SPAN, hat_knots, wider
 from ..hertz import half_plane, hat_logarithm
-from ..plane import BELOW, TILT, Flexibility, SeamFaces, leaning
+from ..plane import BELOW, TILT, Flexibility, SeamFaces, leaning, teeth_at_cracks
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
 
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
@@ -183,8 +183,7 @@ def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state=
     Their `tooth` counts to the loaded side of this gear; `healthy` is that of the same gear without cracks, for the teeth further
     away. The other arguments are as of `flexibility`.
     """
-    reach = max(1, neighbours - 1)
-    solved = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
+    solved = teeth_at_cracks(gear, cracks, neighbours)
     mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks)
     body = Body(mesh.mesh, material, state=state)
     on = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}

@@ -15,7 +15,7 @@ from ....geometry.damage.crack import check_through
 from ....geometry.kept import keeping
 from ....geometry.mesh.sector import sector
 from ....geometry.tooth.profile import arc_at, roll_at_arc
-from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning
+from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning, teeth_at_cracks
 from ...solved import solved_gears
 from .join import join
 from .panel import SectionModel, check_order, panel
@@ -75,9 +75,8 @@ def _healthy(model, _, neighbours, cache):
 
 def _cracked(model, cracks, neighbours, cache):
     """Flexibility with cracks; that without serves the teeth too far away to share load with a cracked one."""
-    gear, reach = model.gear, max(1, neighbours - 1)
-    healthy = _flexibility(model, (), neighbours, cache)
-    teeth = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
+    gear, healthy = model.gear, _flexibility(model, (), neighbours, cache)
+    teeth = teeth_at_cracks(gear, cracks, neighbours)
     by_tooth = {tooth: tuple(crack for crack in cracks if crack.tooth % gear.z == tooth) for tooth in teeth}
     panels = {tooth: loaded_sector(model, tooth_cracks, cache) for tooth, tooth_cracks in by_tooth.items()}
     influence, opening = join(gear, panels, loaded_sector(model, (), cache))
