@@ -34,6 +34,8 @@ from .dynamics.machine.law_error import law_error as law_error
 from .dynamics.machine.law_error import law_within as law_within
 from .dynamics.machine.layout import Body as Body
 from .dynamics.machine.layout import Layout as Layout
+from .dynamics.machine.loads import Load as Load
+from .dynamics.machine.loads import pulses as pulses
 from .dynamics.machine.member import Member as Member
 from .dynamics.machine.member import disc as disc
 from .dynamics.machine.mesh_errors import with_errors as with_errors
@@ -47,12 +49,10 @@ from .dynamics.machine.planetary import stage_phases as stage_phases
 from .dynamics.machine.run_up import with_speed as with_speed
 from .dynamics.machine.single_mesh import single_mesh as single_mesh
 from .dynamics.machine.speed import Speed as Speed
-from .dynamics.machine.tables import Fault as Fault
-from .dynamics.machine.tables import Load as Load
+from .dynamics.machine.springs import Spring as Spring
+from .dynamics.machine.stages import Fault as Fault
+from .dynamics.machine.stages import Stage as Stage
 from .dynamics.machine.tables import Machine as Machine
-from .dynamics.machine.tables import Spring as Spring
-from .dynamics.machine.tables import Stage as Stage
-from .dynamics.machine.tables import pulses as pulses
 from .dynamics.motion.dynamic_factor import dynamic_factors as dynamic_factors
 from .dynamics.motion.housing import housing_signal as housing_signal
 from .dynamics.motion.housing import ring_window as ring_window
@@ -69,6 +69,7 @@ from .figures.vibration_plots import plot_phase as plot_phase
 from .figures.vibration_plots import plot_spectra as plot_spectra
 from .figures.vibration_plots import plot_spectrogram as plot_spectrogram
 from .geometry.damage.crack import Crack as Crack
+from .geometry.damage.missing import MissingTooth as MissingTooth
 from .geometry.damage.pit import Pit as Pit
 from .geometry.damage.spall import Spall as Spall
 from .geometry.pair.flanks import Misalignment as Misalignment

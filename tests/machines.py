@@ -7,7 +7,9 @@ import numpy as np
 import gearfe as gf
 from gearfe.dynamics.machine.gear_mesh import GearMesh, Samples, cycle_table
 from gearfe.dynamics.machine.herringbone_planetary import herringbone_planetary
-from gearfe.dynamics.machine.tables import Load, Machine, Spring
+from gearfe.dynamics.machine.loads import Load
+from gearfe.dynamics.machine.springs import Spring
+from gearfe.dynamics.machine.tables import Machine
 
 WAVE = 1e8 * (1 + 0.2 * np.cos(2 * math.pi * np.arange(64) / 64))
 

@@ -15,13 +15,14 @@ FINEST = 64.0  # edges 64 times shorter: beyond, k changes by less than the erro
 
 
 def number(name: str, value: Any) -> float:
-    """The number as a float; ValueError if it is no number, nan or a truth value."""
+    """The number as a float; ValueError if it is no number, nan or a truth value. An array of one number and no axis is one."""
+    value = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 and not np.ma.is_masked(value) else value
     if not is_number(value) or math.isnan(value):
         raise ValueError(f"{name} = {value!r}, but it needs a number")
     return float(value)
 
 
-def whole(name: str, value: Any, least: int) -> int:
+def whole(name: str, value: Any, least: float = -math.inf) -> int:
     """A whole number from `least` on.
 
     Raises
@@ -31,7 +32,7 @@ def whole(name: str, value: Any, least: int) -> int:
     """
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         close = is_number(value) and math.isfinite(value) and value == int(value) and value >= least
-        remedy = f": give {name} = {int(value)}" if close else f" from {least} on"
+        remedy = f": give {name} = {int(value)}" if close else "" if least == -math.inf else f" from {least} on"
         raise ValueError(f"{name} = {value!r}, but it is a whole number{remedy}")
     return int(value)
 

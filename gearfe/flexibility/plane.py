@@ -1,7 +1,7 @@
 """`Flexibility`: what a gear gives to its contacts, wherever it came from."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,7 +13,7 @@ from ..geometry.tooth.profile import arc_at
 
 NEAREST = 0.001  # added to distances from a tip corner before their logarithm is taken [m_n]
 TILT = 0.2  # of the two loads, at each of four places, from which it is found how a tooth yields across its normal [rad]
-FURTHER = 2  # how many teeth beyond those that can share load with a cracked one are solved with its crack
+FURTHER = 1  # teeth beyond those that can share load with a damaged one that are solved with the damage, too
 BELOW = 0.1  # how far below the tip the third of these places is [m_n]
 
 
@@ -36,6 +36,12 @@ def _logarithmic(arc, places, least):
     middle, tip = places[-2:]
     left = np.maximum(tip - np.maximum(arc, middle), 0.0) + least
     return np.minimum(arc - middle, 0.0) + np.log((tip - middle + least) / left)
+
+
+def reached_teeth(gear: Gear, cracks: Iterable[Any], missing: Iterable[int], neighbours: int) -> list[int]:
+    """Numbers of the teeth that are solved with damage: `neighbours` and `FURTHER` to either side of a damaged tooth."""
+    damaged, reach = [*(crack.tooth for crack in cracks), *missing], neighbours + FURTHER
+    return sorted({(tooth + k) % gear.z for tooth in damaged for k in range(-reach, reach + 1)})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,6 +107,8 @@ class Flexibility:
     leans : dict of int to ndarray, shape (3, 4)
         Of each solved tooth what `leaning` gives: t is the tangent away from the gear's centre. Without it a tooth yields to
         loads off its normal by their torque.
+    missing : tuple of int
+        Missing teeth, which touch nothing.
     """
 
     gear: Gear
@@ -114,6 +122,7 @@ class Flexibility:
     seam: SeamFaces | None = None
     basis: Any = None
     leans: dict[int, NDArray[np.float64]] = field(default_factory=dict)
+    missing: tuple[int, ...] = ()
 
     def within(self, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[int]) -> list[NDArray[np.float64]]:
         """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth, for each of both."""
@@ -172,12 +181,6 @@ class Flexibility:
             here, there = on.nonzero()
             out[..., here, there] = out[..., there, here] = spline.ev(arc[..., here], arc[..., there])
         return out
-
-
-def teeth_at_cracks(gear: Gear, cracks: Sequence[Any], neighbours: int) -> list[int]:
-    """Teeth that can share load with a cracked one, and `FURTHER` on either side under whose load cracks open or slide."""
-    reach = max(1, neighbours - 1) + FURTHER
-    return sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
 
 
 def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.bool_], float]:

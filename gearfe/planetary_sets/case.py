@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from ..core.case import check_load
-from ..core.checks import is_number, numbers, truth
+from ..core.checks import numbers, truth
 from ..core.frozen import Frozen
 from ..core.material import Material
-from ..geometry.damage.crack import Crack, check_through
+from ..core.record import ranged, settle
+from ..geometry.damage.crack import Crack, check_apart, check_through
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.planetary import PlanetarySet
 from ..geometry.tooth.modified import Flank
@@ -79,33 +80,28 @@ class PlanetaryCase:
         """Bring all values into one form; raise ValueError for a set that is impossible."""
         if not isinstance(self.gears, PlanetarySet):
             raise ValueError(f"gears = {self.gears!r}, but give a PlanetarySet")
-        put = object.__setattr__
-        put(self, "pairs", (self.gears.sun_planet, self.gears.planet_ring))
+        settle(self, pairs=(self.gears.sun_planet, self.gears.planet_ring))
         if self.gears.sun.beta:
             raise ValueError(
                 f"beta = {math.degrees(self.gears.sun.beta):.4g} degrees, but a section knows spur gears only: give beta = 0"
             )
         n = self.gears.n_planets
         even = 2 * math.pi / n * np.arange(n)
-        put(self, "angles", tuple(assembled(self.gears, even if self.angles is None else self.angles).tolist()))
-        for name, most in (("force", math.inf), ("pin", math.nan)):
-            value = getattr(self, name)
-            if not is_number(value) or not 0 < float(value) != most:
-                raise ValueError(f"{name} = {value!r}, but give a number > 0{' [N]' if name == 'force' else ' [N/mm]'}")
-            put(self, name, float(value))
+        settle(self, angles=tuple(assembled(self.gears, even if self.angles is None else self.angles).tolist()))
+        settle(self, force=ranged("force", self.force, " N", above=0.0))
+        settle(self, pin=ranged("pin", self.pin, " N/mm", above=0.0, finite=False))
         materials = tuple(self.material) if isinstance(self.material, (tuple, list)) else (self.material,) * 3
         if len(materials) != 3 or not all(isinstance(material, Material) for material in materials):
             raise ValueError(f"material = {self.material!r}, but give one Material or three: of sun, planets and ring")
-        put(self, "material", materials)
+        settle(self, material=materials)
         for k, pair in enumerate(self.pairs):
             check_load(pair, self.force, materials[k : k + 2])
         check_support(self.ring, self.ring_gear)
-        put(self, "floating", truth("floating", self.floating))
+        settle(self, floating=truth("floating", self.floating))
         if self.floating and self.planets < 3:
             raise ValueError(f"{self.planets} planets do not hold a floating sun: give floating = False, or at least 3 planets")
-        put(self, "errors", self._errors())
-        put(self, "flanks", self._by_gear("flanks", self.flanks, Flank, single=True))
-        put(self, "damage", self._by_gear("damage", self.damage, Crack, single=False))
+        flanks = self._by_gear("flanks", self.flanks, Flank, single=True)
+        settle(self, errors=self._errors(), flanks=flanks, damage=self._by_gear("damage", self.damage, Crack, single=False))
         self._check_faults()
 
     @property
@@ -145,7 +141,8 @@ class PlanetaryCase:
         names = {"sun", "ring", *(("planet", i) for i in range(self.planets))}
         out: dict[Any, Any] = {}
         for name in sorted(given, key=lambda entry: entry != "planet"):
-            if name not in names and name != "planet":
+            counts = name in names and not (isinstance(name, tuple) and isinstance(name[1], bool))
+            if not counts and name != "planet":
                 raise ValueError(f"{what} of {name!r}, but give 'sun', 'planet', 'ring' or ('planet', 0 ... {self.planets - 1})")
             value = given[name]
             if not single:
@@ -165,13 +162,32 @@ class PlanetaryCase:
             if flank.eccentricity and name not in ("sun", "ring"):
                 raise ValueError(f"eccentricity of {name!r}: give that of a planet as pitch deviations")
             flank.on(self.gear_of(name))
-        for cracks in self.damage.values():
+        for name, cracks in self.damage.items():
             check_through(cracks, "the section of a planetary set")
+            check_apart(self.gear_of(name), cracks)
 
     def gear_of(self, name: Any) -> Any:
         """Gear by its name."""
         return {"sun": self.gears.sun, "ring": self.ring_gear}.get(name, self.gears.planet)
 
     def with_(self, **changed: Any) -> "PlanetaryCase":
-        """The same with other values; flanks and damage are given anew as a whole."""
-        return replace(self, **changed)
+        """The same with other values; flanks and damage are given anew as a whole.
+
+        Gears with another number of planets stand equally spaced unless `angles` are given.
+
+        Raises
+        ------
+        ValueError
+            If the number of planets changes, and errors, flanks or damage of planets are not given anew.
+        """
+        gears = changed.get("gears", self.gears)
+        if getattr(gears, "n_planets", None) != self.gears.n_planets:
+            changed = {"angles": None} | changed
+        angles = changed.get("angles", self.angles)
+        count = gears.n_planets if angles is None else np.size(angles)
+        planets = {name: any(name not in ("sun", "ring") for name in getattr(self, name)) for name in ("flanks", "damage")}
+        planets["errors"] = any(map(any, self.errors))
+        for name, has in planets.items():
+            if count != self.planets and has and name not in changed:
+                raise ValueError(f"{count} planets, but {name} are those of {self.planets}: give {name} anew")
+        return replace(self, **({"errors": None} if count != self.planets else {}) | changed)

@@ -2,14 +2,16 @@
 
 import math
 from dataclasses import dataclass
-from numbers import Integral
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import number, truth
+from ..core.checks import truth, whole
+from ..core.record import settle, settle_numbers
 from ..geometry.tooth.gear import Gear
+
+MANY, FURTHEST = 200, 1e4  # pads; angle of the first [rad]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,13 +34,8 @@ class RimBed:
 
     def __post_init__(self) -> None:
         """Refuse a bed on which a ring turns freely."""
-        for name in self.__slots__:
-            value = number(f"rim bed: {name}", getattr(self, name))
-            if not 0 < value < math.inf:
-                raise ValueError(
-                    f"rim bed: {name} = {value:g} N/mm^3, but give a stiffness > 0; for a rim that is held give ring = 'held'"
-                )
-            object.__setattr__(self, name, value)
+        remedy = "; for a rim that is held give ring = 'held'"
+        settle_numbers(self, "rim bed", "radial tangential", " N/mm^3", above=0.0, remedy=remedy)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,20 +74,19 @@ class RimSupports:
 
     def __post_init__(self) -> None:
         """Refuse pads of impossible sizes, and pads that do not hold the ring."""
-        if isinstance(self.count, bool) or not isinstance(self.count, Integral) or self.count < 1:
-            raise ValueError(f"rim supports: count = {self.count!r}, but a ring that nothing holds moves away: give at least 1")
-        for name in ("width", "first", "radial", "tangential"):
-            object.__setattr__(self, name, number(f"rim supports: {name}", getattr(self, name)))
-        if not 0 < self.width < math.inf:
-            raise ValueError(f"rim supports: width = {self.width:g} mm, but a pad needs one: give the arc of the rim it holds")
-        if not math.isfinite(self.first):
-            raise ValueError(f"rim supports: first = {self.first:g} rad, but give a finite angle")
-        for name in ("radial", "tangential"):
-            if not getattr(self, name) >= 0:
-                raise ValueError(f"rim supports: {name} = {getattr(self, name):g} N/mm, but give 0 or more")
+        if not 1 <= whole("rim supports: count", self.count) <= MANY:
+            raise ValueError(
+                f"rim supports: count = {self.count}, but give 1 to {MANY}: a ring that nothing holds moves away, and more pads "
+                "are an elastic bed"
+            )
+        settle_numbers(self, "rim supports", "width", " mm", above=0.0, remedy=": give the arc of the rim that a pad holds")
+        settle_numbers(self, "rim supports", "first", " rad")
+        settle_numbers(self, "rim supports", "radial tangential", " N/mm", least=0.0, finite=False)
+        if abs(self.first) > FURTHEST:
+            raise ValueError(f"rim supports: first = {self.first:g} rad, but give an angle within {FURTHEST:g} rad")
         if not self.tangential > 0:
             raise ValueError("rim supports: tangential = 0 N/mm, but then nothing takes the ring's torque: give more than 0")
-        object.__setattr__(self, "pushes", truth("rim supports: pushes", self.pushes))
+        settle(self, pushes=truth("rim supports: pushes", self.pushes))
         if self.pushes and self.radial:
             raise ValueError("rim supports: pads that only push have no radial force: give radial = 0")
         if self.count < (1 if self.radial and math.isinf(self.radial) else 2 if self.radial else 3):

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from ..core.checks import checked_refine, numbers, truth, whole
 from ..core.steps import steps
+from ..core.supports.held import REFUSE
 from ..flexibility.solved import solved_gears
 from ..stiffness.limits import FURTHEST
 from .assembly import Bodies, Position, Set
@@ -80,11 +81,28 @@ def planetary_stiffness(
     at, refine, options = _positions(positions, cycles), checked_refine(refine), {"cache": solved_gears(cache)}
     coupled, error = truth("coupled", coupled), truth("error", error)
     found = _curves(case, at, coupled, options | {"refine": refine})
+    _check_small(case, found)
     if error:
         some = np.unique(np.linspace(0, at.size - 1, CHECKED).round().astype(int))
         less = _curves(case, at[some], coupled, options | {"refine": COARSER * refine, "order": ORDER})
         found.meta["error"] = set_error(found, less, some)
     return found
+
+
+def _check_small(case, found):
+    """ValueError if a mesh, a pin or the sun moves by more than `REFUSE` modules, beyond small displacements."""
+    closed = np.divide(found.force, found.k, out=np.zeros_like(found.k), where=found.k > 0) - found.rim
+    ways = {
+        "a mesh closes": 1e3 * closed.max(),
+        "the sun moves": 1e3 * np.abs(found.orbit).max(),
+        "a pin yields": found.force.max() / case.pin,
+    }
+    way, limit = max(ways, key=lambda name: ways[name]), REFUSE * case.gears.sun.m_n
+    if ways[way] > limit:
+        raise ValueError(
+            f"force = {case.force:g} N, pin = {case.pin:g} N/mm: {way} by {ways[way]:.3g} mm, but more than {limit:g} mm, "
+            f"{100 * REFUSE:g} % of the module, are beyond small displacements: give a smaller force, or stiffer pins"
+        )
 
 
 def _curves(case, at, coupled, options):

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..dynamics.machine.mesh_excitation import harmonics
-from ..dynamics.machine.tables import Machine, Spring
+from ..dynamics.machine.springs import Spring
+from ..dynamics.machine.tables import Machine
 from .curves import SetCurves
 from .rim_supports import RimBed, RimSupports
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..core.case import SIDES, Case
 from ..flexibility.plane import FURTHER
+from ..geometry.pair.contacts import neighbours_of
 from .curve import StiffnessCurve, joined
 from .limits import check_count
 from .solve import Solve, solve
@@ -211,8 +212,7 @@ def _windows(case, side, n):
     if not teeth:
         return []
     span = case.pair.eps_alpha + case.overlap()
-    reach = max(1, math.ceil(case.pair.eps_alpha) - 1) + (FURTHER if case.cracks[side] else 0)
-    before = math.ceil((reach + MARGIN) * n)
+    before = math.ceil((neighbours_of(case.pair) + FURTHER + MARGIN) * n)  # damage reaches as many teeth
     length = before + math.ceil(span * n) + before
     entries = sorted(-tooth % z for tooth in teeth)
     breaks = [i for i, entry in enumerate(entries) if (entries[i - len(entries) + 1] - entry - 1) % z * n + n > length]

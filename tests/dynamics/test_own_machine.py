@@ -27,7 +27,7 @@ def test_an_own_machine_rests_where_its_torques_balance():
 @pytest.mark.parametrize(
     ("load", "told"),
     [
-        (float("nan"), "must be finite"),
+        (float("nan"), "load drive: value = nan, but it needs a number"),
         ((np.array([0.0, 1.0]), np.array([1.0, np.nan])), "not finite"),
         ((np.array([0.0, 2.0, 1.0]), np.ones(3)), "time 1 s follows 2 s"),
         ((np.array([0.0, 1.0]), np.ones(3)), "as many times as values"),

@@ -9,8 +9,10 @@ from numpy.testing import assert_allclose
 from scipy.io import loadmat
 
 from gearfe.dynamics.machine.gear_mesh import GearMesh
+from gearfe.dynamics.machine.loads import Load
 from gearfe.dynamics.machine.mesh_errors import with_errors
-from gearfe.dynamics.machine.tables import Load, Machine, Spring
+from gearfe.dynamics.machine.springs import Spring
+from gearfe.dynamics.machine.tables import Machine
 from gearfe.dynamics.motion.simulate import simulate
 
 pytestmark = pytest.mark.quick
@@ -77,5 +79,5 @@ def test_states_and_durations_that_cannot_be_are_refused():
     with pytest.raises(ValueError, match=r"duration = 1e\+15 s: .* outputs, .* need about .* GB"):
         simulate(machine, 1e15)
     for wrong in ("1", True, None):
-        with pytest.raises(ValueError, match="give a number of seconds"):
+        with pytest.raises(ValueError, match=r"duration = .*number"):
             simulate(machine, wrong)

@@ -81,7 +81,7 @@ def test_the_stretch_lies_where_it_turns_fastest():
 def test_what_is_no_profile_is_refused():
     machine = two_masses(teeth=(5, 7), damage=())
     for times, factors, message in (
-        ([0.0, 0.0], [1.0, 2.0], "times must rise"),
+        ([0.0, 0.0], [1.0, 2.0], "sort the history by time"),
         ([0.0, 1.0], [1.0, -2.0], "0 or more"),
         ([0.0, 1.0], [1.0], "as many times"),
         ([0.0, np.nan], [1.0, 1.0], "finite"),

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 import gearfe as gf
 from gearfe.dynamics.machine.gear_mesh import ToothDamage
 from gearfe.dynamics.machine.pitted_planetary import pitted_planetary
-from gearfe.dynamics.machine.tables import Spring
+from gearfe.dynamics.machine.springs import Spring
 from gearfe.dynamics.motion import simulate as dynamics
 from gearfe.dynamics.motion import step_control
 from gearfe.dynamics.motion.fixed_step import fixed_steps

@@ -12,8 +12,8 @@ import gearfe as gf
 from gearfe.dynamics.machine.contact_cycle import contact_line, ellipse_loss, impact_cycle, line_cycle
 from gearfe.dynamics.machine.contact_law import hertz_coefficient
 from gearfe.dynamics.machine.helical_pair import pitted_helical
+from gearfe.dynamics.machine.loads import pulses
 from gearfe.dynamics.machine.pitted_planetary import pitted_planetary
-from gearfe.dynamics.machine.tables import pulses
 from gearfe.dynamics.motion.simulate import simulate
 
 

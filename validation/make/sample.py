@@ -12,7 +12,6 @@ import gearfe as gf
 from ..shared import kept_rows, page
 from ..shared.places import TABLES
 from ..shared.table_rows import rows_of, write_table
-from . import sample_three
 
 TABLE = TABLES / "sample.csv"
 FIRST, COUNT = 72_000, 100  # seeds from here on; none was looked at while the methods were made
@@ -69,14 +68,10 @@ def row(seed):
 HOW = """
 What is asked of pairs that were drawn at random from seeds that nobody had looked at: do two methods differ by less than both
 estimates together, and each from a finer solution by less than its own? A pair is covered if all of its phases are; a solve that
-fails counts as not covered. `python -m validation sample` computes the rows of the section, `... sample --reference` those in
-three dimensions.
+fails counts as not covered. `python -m validation sample` computes the rows.
 """
 
-
-def reference():
-    """Compute the rows in three dimensions, each of which takes minutes."""
-    sample_three.rows(again=True)
+THREE = "Pairs in three dimensions: [sample_three.md](sample_three.md)."
 
 
 def run(again=True):
@@ -91,21 +86,13 @@ def run(again=True):
         if found is not None:
             rows.append(found)
             write_table(TABLE, FIELDS, [row.values() for row in rows])
-    solid = sample_three.rows()
-    page.write(
-        "sample",
-        answer(rows, solid),
-        HOW.strip().splitlines(),
-        section(rows),
-        sample_three.section(solid),
-    )
+    page.write("sample", answer(rows), HOW.strip().splitlines(), section(rows), [THREE])
 
 
-def answer(rows, solid):
+def answer(rows):
     """The first line."""
-    (three, brute), count = sample_three.covered(solid)
-    plane = " and ".join(f"{_count(rows, f'{name}_covered')} pairs for `{name}`" for name in ("ritz", "fe"))
-    return f"In the section in {plane}, in three dimensions in {three} of {count} for `ritz3d` and {brute} of {count} for `fe3d`."
+    covered = (f"{_count(rows, f'{name}_covered')} pairs for `{name}`" for name in ("ritz", "fe"))
+    return f"In the section in {' and '.join(covered)}."
 
 
 def section(rows):

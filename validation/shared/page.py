@@ -31,7 +31,6 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
     "printed": "What became of every number that the articles print?",
     "joint": "Which statements of the articles hold whatever the inputs that they do not print?",
-    "rig": "Do resonances and jumps of a single pair on a test rig come out?",
     "pictures": "What do the damaged teeth of the scenes look like under load?",
 }
 

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 import gearfe as gf
-from gearfe.dynamics.machine.tables import pulses
+from gearfe.dynamics.machine.loads import pulses
 from gearfe.dynamics.motion.step_control import default_step
 from gearfe.dynamics.motion.thinned import REACH
 

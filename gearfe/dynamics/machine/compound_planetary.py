@@ -6,13 +6,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...core.record import ranged
 from ...geometry.pair.gear_pair import GearPair
 from .gear_mesh import GearMesh, Stiffness
 from .layout import Body, Layout, around, through
+from .loads import Load
 from .member import disc
 from .planetary import teeth_damaged
 from .scene_curves import Meshed, scene_machine
-from .tables import Load, Machine, Stage
+from .stages import Stage
+from .tables import Machine
 
 SCENE_PAIRS = {  # by kind of mesh (b inner, c outer planet of stage 2), the pair of a scene
     "sun1_p": "sun_planet",
@@ -182,6 +185,7 @@ def compound_planetary(
         positive, a mesh stiffness, `beta` or `zeta` is negative or not finite, `speed` or `torque` is not finite, the phases of a
         damaged tooth's curve do not rise, or a field of `GearMesh` is out of range.
     """
+    speed, torque = ranged("speed", speed, " rad/s"), ranged("torque", torque, " N m")
     turn = carrier_speed(pairs, speed)
     suns = pairs["sun1_p"].gear_1, pairs["sun2_b"].gear_1
     rates = -turn * suns[0].z / (2 * math.pi), (speed - turn) * suns[1].z / (2 * math.pi)

@@ -27,6 +27,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.record import ranged
 from ...flexibility.hertz import contact_modulus
 from .laws.impact import Hertz, Impact
 from .laws.spring import Spring
@@ -147,8 +148,10 @@ def friction_coefficient(slip, *, static, dynamic, v_static, v_dynamic):
     v_static, v_dynamic : float
         Transition velocities [m/s].
     """
-    if not 0 < v_static < v_dynamic:
-        raise ValueError(f"v_static = {v_static}, v_dynamic = {v_dynamic} m/s, but they must rise from above 0")
+    for name, value in {"static": static, "dynamic": dynamic}.items():
+        ranged(f"friction: {name}", value, least=0.0)
+    if not 0 < ranged("friction: v_static", v_static) < ranged("friction: v_dynamic", v_dynamic):
+        raise ValueError(f"friction: v_static = {v_static}, v_dynamic = {v_dynamic} m/s, but they must rise from above 0")
     size = np.abs(slip)
     stick = step(size, -v_static, -static, v_static, static)
     return np.sign(slip) * np.where(size < v_static, stick, step(size, v_static, static, v_dynamic, dynamic))

@@ -15,6 +15,7 @@ from scipy.interpolate import PchipInterpolator
 
 from ...core.case import Case
 from ...core.material import Material
+from ...core.record import settle
 from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.curve import StiffnessCurve, joined
 from ...stiffness.solve import PairOptions, Solve, solve, split_arguments
@@ -143,7 +144,7 @@ class ForceLaw:
                 f"at phase {self.phase[i]:g} a load of {self.load[j]:g} N does not press the mesh deeper than a smaller one: "
                 "give curves of one pair, solved in the same way"
             )
-        object.__setattr__(self, "secant", _table(self))
+        settle(self, secant=_table(self))
 
     def __repr__(self):
         """One line: phases and loads."""

@@ -55,7 +55,7 @@ def frequency_response(
     --------
     A mass of 2 kg on a spring of 8e4 N/m, at rest and far above its 31.8 Hz:
 
-    >>> from gearfe.dynamics.machine.tables import Spring
+    >>> from gearfe.dynamics.machine.springs import Spring
     >>> disc = Machine(("disc.x",), [2.0], (Spring("bearing", np.array([1.0]), 8e4, 40.0),), ())
     >>> float(1 / frequency_response(disc, [0.0], "disc.x", "disc.x")[0].real)
     80000.0

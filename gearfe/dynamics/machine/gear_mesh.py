@@ -14,6 +14,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...core.checks import numbers, truth, whole
+from ...core.record import settle, settle_numbers, settle_row
+from ...geometry.checks import is_finite
 from ...stiffness.curve import StiffnessCurve
 from .contact_law import LAWS, Law, law_of
 from .force_law import ForceLaw, Secant
@@ -79,7 +82,7 @@ def cycle_table(stiffness: Stiffness) -> Table:
     if isinstance(stiffness, ForceLaw):
         stiffness = Samples(*stiffness.at(stiffness.force))
     if not isinstance(stiffness, (StiffnessCurve, Samples)):
-        values = np.atleast_1d(np.asarray(stiffness, dtype=float))
+        values = np.atleast_1d(numbers("stiffness", stiffness, ""))
     else:
         phase = np.asarray(stiffness.phase, dtype=float) % 1.0
         order = np.argsort(phase, kind="stable")
@@ -115,6 +118,14 @@ class ToothDamage:
     tooth: int
     curve: Curve | ForceLaw
     every: int | None = None
+
+    def __post_init__(self) -> None:
+        """Raise ValueError unless `body` is 0 or 1, and `tooth` and `every` are whole numbers."""
+        if self.body not in (0, 1) or isinstance(self.body, bool):
+            raise ValueError(f"damaged tooth: body = {self.body!r}, but give 0 or 1")
+        whole("damaged tooth: tooth", self.tooth)
+        if self.every is not None:
+            whole("damaged tooth: every", self.every, 1)
 
     def change(self, usual: Sequence[Change], first: float, cycles: int, name: str = "k") -> Table:
         """`Table` of the difference of `name` from the sum of what is `usual`, zero one cell beyond either end.
@@ -217,26 +228,33 @@ class GearMesh:
 
     def __post_init__(self) -> None:
         """Make the tables; raise ValueError for values that are out of range or do not go together."""
-        self._check()
-        object.__setattr__(self, "row", np.asarray(self.row, dtype=float))
-        object.__setattr__(self, "contact", self.law or law_of(self.power, self.depth))
+        settle_row(self, "mesh")
+        what = f"mesh {self.name}"
+        settle_numbers(self, what, "frequency phase")
+        settle_numbers(self, what, "damping beta zeta depth gap film", least=0.0)
+        settle_numbers(self, what, "power", least=1.0)
+        settle_numbers(self, what, "backlash", least=0.0, finite=False)
+        settle(self, push=truth(f"{what}: push", self.push), contact=self.law or law_of(self.power, self.depth))
+        self._check_teeth()
         self._check_contact()
-        object.__setattr__(self, "cycle", cycle_table(self.stiffness))
-        object.__setattr__(self, "changes", self._changes(self.cycle))
-        object.__setattr__(self, "shifts", self._shifts())
+        settle(self, cycle=cycle_table(self.stiffness))
+        settle(self, changes=self._changes(self.cycle))
+        settle(self, shifts=self._shifts())
         secants = self._secants()
-        object.__setattr__(self, "secants", secants)
-        object.__setattr__(self, "average", secants[0].mean if secants else None)
+        settle(self, secants=secants, average=secants[0].mean if secants else None)
 
-    def _check(self) -> None:
-        for name in ("frequency", "phase", "damping", "beta", "zeta", "depth", "gap"):
-            value = getattr(self, name)
-            if not math.isfinite(value) or (value < 0 and name not in ("phase", "frequency")):
-                raise ValueError(f"mesh {self.name}: {name} = {value}, but it must be finite and not negative")
-        if not self.backlash >= 0 or not 0 <= self.film <= 1 or not self.power >= 1:
-            raise ValueError(f"mesh {self.name}: needs backlash >= 0, 0 <= film <= 1 and power >= 1")
+    def _check_teeth(self) -> None:
+        for name, least in (("teeth", 1), ("first", -math.inf)):
+            numbers = getattr(self, name)
+            if not isinstance(numbers, (tuple, list)) or len(numbers) != 2:
+                raise ValueError(f"mesh {self.name}: {name} = {numbers!r}, but give two whole numbers, one for each body")
+            settle(self, **{name: tuple(whole(f"mesh {self.name}: {name}", number, least) for number in numbers)})
+        if not all(isinstance(hurt, ToothDamage) for hurt in self.damage):
+            raise ValueError(f"mesh {self.name}: damage = {self.damage!r}, but give a tuple of ToothDamage")
+        if self.film > 1:
+            raise ValueError(f"mesh {self.name}: film = {self.film:g}, but it is a part of the damping, 0 to 1")
         for sinusoid in self.error:
-            if len(sinusoid) != 3 or not all(map(math.isfinite, sinusoid)):
+            if len(sinusoid) != 3 or not all(map(is_finite, sinusoid)):
                 raise ValueError(
                     f"mesh {self.name}: error {sinusoid}, but give (amplitude [m], frequency [Hz], phase [rad]), finite"
                 )

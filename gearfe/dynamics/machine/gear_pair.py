@@ -7,7 +7,9 @@ from typing import Any
 from ...geometry.pair.gear_pair import GearPair
 from .gear_mesh import GearMesh, Stiffness, ToothDamage
 from .layout import Body, Layout
-from .tables import History, Load, Machine, Stage
+from .loads import History, Load
+from .stages import Stage
+from .tables import Machine
 
 
 def gear_pair(

@@ -8,14 +8,17 @@ from typing import Any
 
 import numpy as np
 
+from ...core.record import ranged
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
 from .gear_mesh import GearMesh, Stiffness
 from .layout import AXES, SPACE, Body, Layout
+from .loads import Load
 from .member import disc
 from .planetary import HOMES, carrier_and_mesh, simple_meshes, stage_meshes, stage_phases, teeth_damaged, with_stage
 from .scene_curves import scene_machine, stage_of
-from .tables import Load, Machine, Spring
+from .springs import Spring
+from .tables import Machine
 
 HALVES = {"L": -1, "R": 1}
 
@@ -93,7 +96,7 @@ def herringbone_planetary(
         out of range.
     """
     pairs, n = {"sun_planet": stage.sun_planet, "planet_ring": stage.planet_ring}, stage.n_planets
-    sun = pairs["sun_planet"].gear_1
+    sun, torque = pairs["sun_planet"].gear_1, ranged("torque", torque, " N m")
     layout, apart = _halves(stage, members or _solid(stage, density)), 5e-4 * (sun.b + groove)
     springs = _supports(layout, stage, (bearing, tilt, housing, drive, zeta))
     for name, gear in (("sun", sun), *((f"planet{i + 1}", stage.planet) for i in range(n))):

@@ -10,9 +10,9 @@ from ...scene.schema import scene_schema
 from .contact_cycle import impact_cycle
 from .contact_law import hertz_coefficient
 from .helical_pair import pitted_helical
+from .loads import pulses
 from .pitted_planetary import pitted_planetary
 from .scene_curves import speed_of, stage_of
-from .tables import pulses
 
 PULSED = 100.0  # s: how long the load on the carrier has pulses
 PLAY = 1e-4  # m

@@ -5,6 +5,7 @@ their carrier; what its rotation adds, centripetal and gyroscopic terms, a `Mach
 """
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,8 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...core.record import check_named, ranged, settle_numbers
 from ...geometry.pair.gear_pair import GearPair
-from .tables import Spring
+from .springs import Spring
 
 PLANE = "x y theta"
 SPACE = "x y z tilt_x tilt_y theta"
@@ -23,8 +25,6 @@ AXES = dict(zip("xyz", np.eye(3), strict=True))
 @dataclass(frozen=True, slots=True)
 class Body:
     """A rigid body: mass [kg], moments of inertia about its axis and across it [kg m2], and the directions it can move in.
-
-    Numbers are taken as they are; a `Machine` of the body refuses masses and moments of inertia that are not positive.
 
     Parameters
     ----------
@@ -44,6 +44,18 @@ class Body:
     inertia: float
     dofs: str = PLANE
     across: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for a name of other signs than letters, digits, _ and -, or for an impossible direction or mass."""
+        if not isinstance(self.name, str) or not re.fullmatch(r"[\w-]+", self.name):
+            raise ValueError(f"body: name = {self.name!r}, but give letters, digits, _ and - alone")
+        known, given = SPACE.split(), str(self.dofs).split()
+        if not given or set(given) - set(known) or len(set(given)) < len(given):
+            raise ValueError(f"body {self.name}: dofs = {self.dofs!r}, but give some of {SPACE!r}, each once")
+        sizes = {"mass": "x y z", "inertia": "theta", "across": "tilt_x tilt_y"}
+        needed = {size for size, moved in sizes.items() if set(moved.split()) & set(given)}
+        settle_numbers(self, f"body {self.name}", "mass inertia across", least=0.0)
+        settle_numbers(self, f"body {self.name}", " ".join(needed), above=0.0)
 
 
 class Layout:
@@ -66,6 +78,8 @@ class Layout:
 
     def __init__(self, bodies: Sequence[Body]) -> None:
         self.bodies = {body.name: body for body in bodies}
+        if len(self.bodies) < len(bodies):
+            raise ValueError(f"bodies {', '.join(body.name for body in bodies)}, but give each body a name of its own")
         self.dofs = tuple(f"{body.name}.{dof}" for body in bodies for dof in body.dofs.split())
         self.place = {name: i for i, name in enumerate(self.dofs)}
         sizes = {"theta": "inertia", "tilt_x": "across", "tilt_y": "across"}
@@ -73,12 +87,14 @@ class Layout:
 
     def unit(self, name: str, dof: str) -> NDArray:
         """Row of one degree of freedom."""
+        check_named("degree of freedom", f"{name}.{dof}", self.place)
         row = np.zeros(len(self.dofs))
         row[self.place[f"{name}.{dof}"]] = 1.0
         return row
 
     def point(self, name: str, direction: ArrayLike, arm: ArrayLike = (0.0, 0.0, 0.0)) -> NDArray:
         """Row of the displacement along `direction` of the point at `arm` [m] from a body's centre; missing dofs do not move."""
+        check_named("body", name, self.bodies)
         direction, arm = np.append(direction, np.zeros(3))[:3], np.append(arm, np.zeros(3))[:3]
         parts = dict(zip(SPACE.split(), (*direction, *np.cross(arm, direction)), strict=True))
         row = np.zeros(len(self.dofs))
@@ -94,8 +110,10 @@ class Layout:
         Those of translations act where `arm` [m] from the centre of body `two` is the centre of body `one`. Dampers are
         ``2 zeta sqrt(k m)``, m the mass or inertia of body `one` (a reduced mass would depend on the direction of the axes).
         """
-        out = []
+        out, zeta = [], ranged("zeta", zeta, least=0.0)
         for dof, k in stiffness.items():
+            check_named("direction", dof, SPACE.split())
+            k = ranged(f"stiffness of {one} {dof}", k, least=0.0)
             row = self.point(one, AXES[dof]) if dof in AXES else self.unit(one, dof)
             if two is not None and dof in AXES:
                 row = row - self.point(two, AXES[dof], arm)
@@ -103,7 +121,7 @@ class Layout:
                 row = row - self.unit(two, dof)
             if k > 0 and row.any():
                 name = f"{one}-{two or 'ground'} {dof}"
-                out.append(Spring(name, row, float(k), 2 * zeta * math.sqrt(k * self.mass[self.place[f"{one}.{dof}"]])))
+                out.append(Spring(name, row, k, 2 * zeta * math.sqrt(k * self.mass[self.place[f"{one}.{dof}"]])))
         return out
 
     def mesh(
@@ -142,8 +160,11 @@ class Layout:
         height : float
             Height of the mesh over the centre of body `two` [m].
         """
+        if one == two:
+            raise ValueError(f"mesh of {one!r} with itself: give two bodies")
+        radii = tuple(ranged("radii", radius, " m", above=0.0) for radius in radii)  # type: ignore[assignment]
         e, along = _line_of_action(angle, alpha, sense)
-        along[2] = helix
+        along[2] = ranged("helix", helix)
         first, second = (r / math.cos(alpha) for r in radii)
         arm = (second if internal else -second) * e + np.array([0.0, 0.0, height])
         return self.point(one, along, first * e) - self.point(two, along, arm)
@@ -168,6 +189,11 @@ class Layout:
 
 def _line_of_action(angle, alpha, sense):
     """Unit vectors from the centre of the first body to the pitch point, and along the transverse line of action."""
+    angle = ranged("angle", angle, " rad")
+    if not 0 < ranged("alpha", alpha, " rad") < math.pi / 2:
+        raise ValueError(f"alpha = {alpha:g} rad, but a pressure angle lies between 0 and pi / 2: give it in rad")
+    if sense not in (1, -1):
+        raise ValueError(f"sense = {sense!r}, but give 1 (counter-clockwise) or -1")
     e = np.array([math.cos(angle), math.sin(angle), 0.0])
     t = np.array([-e[1], e[0], 0.0])
     return e, sense * math.cos(alpha) * t + math.sin(alpha) * e

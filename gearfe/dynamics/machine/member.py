@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from ...core.record import ranged, settle_numbers
 from ...geometry.tooth.gear import Gear
 
 
@@ -28,11 +29,14 @@ class Member:
     r_b: float
     torsion: float = 0.0
 
+    def __post_init__(self) -> None:
+        """Raise ValueError unless mass, inertia and radius are positive, and no stiffness is negative; all finite."""
+        settle_numbers(self, "member", "mass inertia r_b", above=0.0)
+        settle_numbers(self, "member", "bearing torsion", least=0.0)
+
 
 def disc(gear: Gear, density: float, bearing: float, *, width: float | None = None) -> Member:
     """`Member` of a gear as a ring from its bore (or rim) to its reference circle.
-
-    Numbers are taken as they are; a `Machine` refuses masses that are not positive.
 
     Parameters
     ----------
@@ -48,7 +52,14 @@ def disc(gear: Gear, density: float, bearing: float, *, width: float | None = No
     -------
     Member
         Mass [kg], moment of inertia about its own axis [kg m2] and base radius [m]; without torsional stiffness.
+
+    Raises
+    ------
+    ValueError
+        If `density` or `width` is not positive, or `bearing` is negative.
     """
     low, high = sorted((gear.held, gear.z * gear.m_n / (2 * math.cos(gear.beta))))
-    mass = density * math.pi * (high**2 - low**2) * (width or gear.b) * 1e-9
+    density = ranged("density", density, " kg/m3", above=0.0)
+    width = ranged("width", gear.b if width is None else width, " mm", above=0.0)
+    mass = density * math.pi * (high**2 - low**2) * width * 1e-9
     return Member(mass, mass * (low**2 + high**2) / 2 * 1e-6, bearing, 1e-3 * gear.r_b)

@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from ...core.record import ranged
 from ...geometry.pair.planetary import PlanetarySet
 from .contact_cycle import friction_weights
 from .gear_mesh import Stiffness
+from .loads import History
 from .member import Member, disc
 from .planetary import (
     HOMES,
@@ -23,7 +25,7 @@ from .planetary import (
     with_stage,
 )
 from .scene_curves import scene_machine, stage_of
-from .tables import History, Machine
+from .tables import Machine
 
 
 def pitted_planetary(
@@ -101,6 +103,7 @@ def pitted_planetary(
     together, a = n * member["planet"].mass, 1e-3 * stage.a
     member["carrier"] = Member(together, together * a**2, bearing, a)
     member["sun"], member["ring"] = replace(member["sun"], torsion=drive), replace(member["ring"], torsion=100 * drive)
+    torque = ranged("torque", torque, " N m")
     load = torque * (1 + ring.z / sun.z) if carrier_torque is None else carrier_torque
     machine = planetary(
         *(member[name] for name in ("sun", "planet", "ring", "carrier")),

@@ -7,19 +7,23 @@ name as anything `gearfe.dynamics.machine.gear_mesh.GearMesh` takes; damage by m
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from difflib import get_close_matches
 from numbers import Integral
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ...core.checks import numbers, whole
+from ...core.record import check_named, ranged
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
 from .gear_mesh import GearMesh, Stiffness, ToothDamage
 from .layout import Body, Layout, around, through
+from .loads import History, Load
 from .member import Member
 from .scene_curves import Meshed
-from .tables import History, Load, Machine, Stage
+from .stages import Stage
+from .tables import Machine
 
 
 def planetary(
@@ -77,8 +81,8 @@ def planetary(
         mesh stiffness or `zeta` is negative or not finite, a load is not finite, the times of a history fall, or a field of
         `GearMesh` is out of range.
     """
+    angles = planet_angles(n_planets, places)
     names = [f"planet{i + 1}" for i in range(n_planets)]
-    angles = 2 * math.pi * np.arange(n_planets) / n_planets if places is None else np.asarray(places, dtype=float)
     planets = [planet] * n_planets if isinstance(planet, Member) else list(planet)
     if len(planets) != n_planets:
         raise ValueError(f"planet: {len(planets)} bodies, but n_planets = {n_planets}: give one for all, or one for each")
@@ -103,6 +107,26 @@ def planetary(
             meshes.append(GearMesh(f"{kind}{i + 1}", layout.mesh(body_1, body_2, radii=r, **place), stiffness[kind], **fields))
     torques = tuple(Load(f"{name} torque", layout.unit(name, "theta"), value) for name, value in (loads or {}).items())
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), torques, spin=spin)
+
+
+def planet_angles(n_planets: int, places: Sequence[float] | None = None) -> NDArray:
+    """Angles of the planets [rad], equally spaced from 0 unless `places` states them.
+
+    Raises
+    ------
+    ValueError
+        If `n_planets` is no whole number >= 1, or `places` are not as many finite angles, all of them different.
+    """
+    whole("n_planets", n_planets, 1)
+    if places is None:
+        return 2 * math.pi * np.arange(n_planets) / n_planets
+    angles = numbers("places", places, " [rad]")
+    if angles.shape != (n_planets,) or not np.isfinite(angles).all():
+        raise ValueError(f"places = {places!r}, but give {n_planets} finite angles [rad], one for each planet")
+    around = np.sort(angles % (2 * math.pi))
+    if n_planets > 1 and np.diff(around, append=around[0] + 2 * math.pi).min() < 1e-9:
+        raise ValueError(f"places = {places!r}, but two planets cannot stand at one angle")
+    return angles
 
 
 def stage_phases(
@@ -141,7 +165,8 @@ def stage_phases(
     """
     outer, inner = pairs
     sun, planet, ring = outer.gear_1, outer.gear_2, inner.gear_2
-    out, angles = {}, 2 * math.pi * np.arange(n_planets) / n_planets if places is None else places
+    out, angles = {}, planet_angles(n_planets, places).tolist()
+    ranged("start", start), ranged("frequency", frequency, " Hz")
     for i, angle in enumerate(angles):
         phase = around(start, sun.z, 1, angle)
         ahead = (sun.z + ring.z) * angle / (2 * math.pi)
@@ -157,6 +182,7 @@ def stage_phases(
 
 def carrier_and_mesh(stage: PlanetarySet, speed: float) -> tuple[float, float]:
     """Speed of the carrier [rad/s] and mesh frequency [Hz] of a stage whose sun is driven at `speed` [rad/s], its ring held."""
+    speed = ranged("speed", speed, " rad/s")
     turn = speed * stage.sun.z / (stage.sun.z + stage.ring.z)
     return turn, (speed - turn) * stage.sun.z / (2 * math.pi)
 
@@ -218,10 +244,3 @@ def teeth_damaged(damage, meshes):
                     if mesh.pair == kind and gear in mesh.bodies:
                         out[name] += (ToothDamage(mesh.bodies.index(gear), int(tooth), curve),)
     return out
-
-
-def check_named(what, name, known):
-    """ValueError, with the nearest name, if a name is not `known`."""
-    if name not in known:
-        near = get_close_matches(str(name), [str(one) for one in known], 1, 0.0)
-        raise ValueError(f"{what} {name!r}, but there is {', '.join(map(str, known))}; nearest: {', '.join(map(repr, near))}")

@@ -16,7 +16,7 @@ from ...stiffness.solve import Solve, solve
 from .contact_law import force
 from .force_law import law_of
 from .gear_mesh import ToothDamage
-from .tables import Fault
+from .stages import Fault
 
 IDLE = 1e-3  # of the load that a scene states for a pair: below it a mesh at rest counts as unloaded, and that load is taken
 

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from .gear_mesh import GearMesh, Stiffness
-from .tables import History, Load, Machine
+from .loads import History, Load
+from .tables import Machine
 
 
 def single_mesh(mass: float, stiffness: Stiffness, frequency: float, *, force: History = 0.0, **mesh: Any) -> Machine:

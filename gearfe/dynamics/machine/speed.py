@@ -6,6 +6,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...core.record import settle
+from .loads import rising
+
 
 @dataclass(frozen=True, slots=True)
 class Speed:
@@ -42,16 +45,11 @@ class Speed:
 
     def __post_init__(self) -> None:
         """Integrate; ValueError if times do not rise, or factors are negative or all zero."""
-        times, factors = np.asarray(self.times, dtype=float), np.asarray(self.factors, dtype=float)
-        if times.ndim != 1 or times.shape != factors.shape or not times.size:
-            raise ValueError(f"speed: give as many times as factors, got shapes {times.shape} and {factors.shape}")
-        if not (np.isfinite(times).all() and np.isfinite(factors).all() and (factors >= 0).all() and factors.any()):
-            raise ValueError("speed: times and factors must be finite, the factors 0 or more and one of them above 0")
-        if not (np.diff(times) > 0).all():
-            at = int(np.argmin(np.diff(times) > 0)) + 1
-            raise ValueError(f"speed: time {times[at]:g} s follows {times[at - 1]:g} s, but times must rise")
+        times, factors = rising("speed", self.times, self.factors, strict=True)
+        if not ((factors >= 0).all() and factors.any()):
+            raise ValueError("speed: the factors must be 0 or more and one of them above 0")
         turned = np.concatenate([[0.0], np.cumsum(np.diff(times) * (factors[1:] + factors[:-1]) / 2)])
-        object.__setattr__(self, "knots", np.stack([times, factors, turned], axis=1))
+        settle(self, knots=np.stack([times, factors, turned], axis=1))
         self.knots[:, 2] -= float(self.turned(0.0))
 
     def __call__(self, t: ArrayLike) -> NDArray:

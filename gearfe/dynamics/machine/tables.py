@@ -1,7 +1,6 @@
 """`Machine`: masses, linear springs, gear meshes and loads as tables; its matrices, modes and state of rest."""
 
 import math
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from html import escape
 from typing import Any
@@ -9,190 +8,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...core.checks import numbers
+from ...core.record import settle, settle_numbers
 from .contact_law import depth, force, parameters, slopes
 from .gear_mesh import GearMesh
+from .loads import Load
 from .speed import Speed
+from .springs import Spring
+from .stages import Fault, Stage
 from .turning_frame import frame_terms
 
-# of a load: a number, times and values, or a function of an array of times
-History = float | tuple[ArrayLike, ArrayLike] | Callable[[NDArray], ArrayLike]
-
 TOUCH = 1e-12  # compression at which the tangent of a law of force without load is taken [m]
-
-
-@dataclass(frozen=True, slots=True)
-class Spring:
-    """A linear spring and damper along a row: force ``k row @ q + c row @ v`` against it [N/m, N s/m or per rad]."""
-
-    name: str
-    row: NDArray
-    k: float
-    c: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Load:
-    """A load along a row: a number, a history ``(times, values)`` linear between its times, or a function of an array of times.
-
-    A history holds its first and last values outside; two equal times are a jump. A function must be smooth.
-
-    Parameters
-    ----------
-    name : str
-    row : ndarray, shape (n,)
-        The load acts on the n degrees of freedom of a machine as ``row`` times its value (`Layout.unit`, `Layout.point`).
-    value : float, (ndarray, ndarray) or callable
-        Along its row: a force [N] on displacements, a torque [N m] on rotations. Times are in s.
-
-    Raises
-    ------
-    ValueError
-        If a number or a history is not finite, if a history is empty or has not as many times as values, or if its times fall. A
-        function is looked at when the load is called: if it gives a value that is not finite.
-    """
-
-    name: str
-    row: NDArray
-    value: History
-
-    def __post_init__(self) -> None:
-        """Raise ValueError if the value is not finite, or the times of a history do not rise."""
-        value: Any = self.value
-        if callable(value):
-            return
-        if not isinstance(value, (tuple, list)) and np.ndim(value) == 0:
-            if not math.isfinite(value):
-                raise ValueError(f"load {self.name} = {value}, but it must be finite")
-            return
-        times, values = (np.asarray(part, dtype=float) for part in value)
-        if times.ndim != 1 or times.shape != values.shape or not times.size:
-            raise ValueError(f"load {self.name}: give as many times as values, got shapes {times.shape} and {values.shape}")
-        if not (np.isfinite(times).all() and np.isfinite(values).all()):
-            raise ValueError(f"load {self.name}: its history has a time or a value that is not finite (nan or inf)")
-        if (np.diff(times) < 0).any():
-            at = int(np.argmax(np.diff(times) < 0)) + 1
-            raise ValueError(f"load {self.name}: time {times[at]:g} s follows {times[at - 1]:g} s; sort the history by time")
-
-    def __call__(self, t: ArrayLike) -> NDArray:
-        """Value at times `t`."""
-        value: Any = self.value
-        if callable(value):
-            values = np.broadcast_to(np.asarray(value(t), dtype=float), np.shape(t))
-            if not np.isfinite(values).all():
-                raise ValueError(f"load {self.name}: its function gives a value that is not finite (nan or inf)")
-            return values
-        if np.ndim(value) == 0:
-            return np.full(np.shape(t), float(value))
-        return np.interp(np.asarray(t, dtype=float), *value)
-
-    @property
-    def breaks(self) -> NDArray:
-        """Times at which the history bends or jumps [s]."""
-        value: Any = self.value
-        return np.unique(value[0]) if not callable(value) and np.ndim(value) else np.empty(0)
-
-
-def pulses(
-    base: float, peak: float, period: float, width: float, count: int, *, start: float = 0.0, rise: float = 0.1
-) -> tuple[NDArray, NDArray]:
-    """History of a load that rises from `base` to `peak` for `width` seconds every `period` seconds, `count` times.
-
-    Each flank of a pulse takes the part `rise` of its width. For `Load`.
-
-    Parameters
-    ----------
-    base, peak : float
-        Values between the pulses and on top of them, in the unit of the load: [N] or, of a torque, [N m].
-    period, width : float
-        From the start of a pulse to that of the next, and from the start of a pulse to its end [s].
-    count : int
-        Number of pulses.
-    start : float
-        Start of the first pulse [s].
-    rise : float
-        Part of `width`, up to 0.5.
-
-    Returns
-    -------
-    times, values : ndarray, shape (4 count,)
-        Corners of the pulses: times [s], and values in the unit of the load.
-
-    Raises
-    ------
-    ValueError
-        Unless ``0 < width < period`` and ``0 < rise <= 0.5``.
-    """
-    if not 0 < width < period or not 0 < rise <= 0.5:
-        raise ValueError(f"width = {width} s, rise = {rise}: pulses need 0 < width < period and 0 < rise <= 0.5")
-    first = start + period * np.arange(count)[:, None]
-    times = first + width * np.array([0.0, rise, 1 - rise, 1.0])
-    return times.ravel(), np.tile([base, peak, peak, base], count).astype(float)
-
-
-@dataclass(frozen=True, slots=True)
-class Stage:
-    """One stage of a machine: which bodies drive which, and its frequencies.
-
-    Attributes
-    ----------
-    name : str
-    driver : tuple of str
-        Bodies of the driving gear (two of a herringbone gear).
-    follower : tuple of str
-        Bodies of the first gear that it drives.
-    mesh : float
-        Mesh frequency [Hz].
-    turning : float
-        Turning frequency of the driving gear [Hz], relative to the carrier if there is one.
-    fault : float, optional
-        How often a damaged tooth of the driving gear meshes, if that gear meets several others [Hz]; None: once a turn.
-    carrier : float, optional
-        Turning frequency of the carrier [Hz].
-    returns : dict of str to float
-        How often a tooth of each gear meshes with the same flank [Hz], by body; of planets without their number.
-    """
-
-    name: str
-    driver: tuple[str, ...]
-    follower: tuple[str, ...]
-    mesh: float
-    turning: float
-    fault: float | None = None
-    carrier: float | None = None
-    returns: Mapping[str, float] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """A tooth that differs from the others of its gear.
-
-    Attributes
-    ----------
-    gear : str
-        Body of the machine.
-    tooth : int
-    what : str
-        Its damage or deviation in words.
-    frequency : float
-        How often it meshes [Hz].
-    turning : float
-        Turning frequency of its gear [Hz], relative to the carrier if there is one.
-
-    Examples
-    --------
-    >>> print(Fault("wheel", 5, "3 mm crack at 60 degrees", 17.89, 17.89))
-    tooth 5 of the wheel: 3 mm crack at 60 degrees; it meshes at 17.89 Hz
-    """
-
-    gear: str
-    tooth: int
-    what: str
-    frequency: float
-    turning: float
-
-    def __str__(self) -> str:
-        gear = f"the {self.gear}" if self.gear.isalpha() else self.gear
-        return f"tooth {self.tooth} of {gear}: {self.what}; it meshes at {self.frequency:.4g} Hz"
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,30 +91,27 @@ class Machine:
 
     def __post_init__(self) -> None:
         """Assemble; ValueError for masses that are not positive, springs that are negative, or rows of another length."""
-        n, mass = len(self.dofs), np.asarray(self.mass, dtype=float)
+        n, mass = len(self.dofs), numbers("mass", self.mass, " [kg], moments of inertia [kg m2]")
         if mass.shape != (n,) or not (np.isfinite(mass).all() and (mass > 0).all()):
             raise ValueError(f"mass: give {n} positive numbers, one per degree of freedom ({', '.join(self.dofs[:4])}, ...)")
-        rows: tuple[Spring | GearMesh | Load, ...] = (*self.springs, *self.meshes, *self.loads)
-        for element in rows:
-            if np.shape(element.row) != (n,) or not np.isfinite(element.row).all():
+        if len(set(self.dofs)) < n:
+            raise ValueError(f"dofs: {', '.join(self.dofs)}, but give each degree of freedom once")
+        elements: tuple[Spring | GearMesh | Load, ...] = (*self.springs, *self.meshes, *self.loads)
+        for element in elements:
+            if element.row.shape != (n,):
                 raise ValueError(f"{element.name}: its row needs {n} finite numbers, one per degree of freedom")
-        for s in self.springs:
-            if not (math.isfinite(s.k) and math.isfinite(s.c) and s.k >= 0 and s.c >= 0):
-                raise ValueError(f"spring {s.name}: k = {s.k}, c = {s.c}, but they must be finite and not negative")
         R = np.array([s.row for s in self.springs]).reshape(-1, n)
-        object.__setattr__(self, "mass", mass)
         K, C = (R.T @ (np.array([getattr(s, key) for s in self.springs])[:, None] * R) for key in "kc")
         frame = np.zeros((n, n))
+        settle_numbers(self, "machine", "spin", " rad/s")
         if self.spin or self.rotors:
             gyroscopic, centripetal, circulatory = frame_terms(self.dofs, mass, self.springs, self.spin, self.rotors)
             frame, C = centripetal + circulatory, C + gyroscopic
-        object.__setattr__(self, "K", K + frame)
-        object.__setattr__(self, "C", C)
-        object.__setattr__(self, "frame", frame)
-        object.__setattr__(self, "G", np.array([m.row for m in self.meshes]).reshape(-1, n))
         law = parameters(self.meshes)
         extra = [2 * m.zeta * math.sqrt(m.cycle.mean / (m.row**2 / mass).sum()) if m.zeta else 0.0 for m in self.meshes]
-        object.__setattr__(self, "law", law | {"damping": law["damping"] + np.array(extra)})
+        law |= {"damping": law["damping"] + np.array(extra)}
+        G = np.array([m.row for m in self.meshes]).reshape(-1, n)
+        settle(self, mass=mass, K=K + frame, C=C, frame=frame, G=G, law=law)
 
     def __repr__(self):
         """One line: numbers of degrees of freedom, springs, meshes and loads."""

@@ -123,9 +123,7 @@ def _twins(one, two):
 def _knots(load, times):
     if callable(load.value):
         return np.stack([times, load(times)], axis=1)
-    if np.ndim(load.value) == 0:
-        return np.array([[0.0, float(load.value)]])
-    return np.stack([np.asarray(part, dtype=float) for part in load.value], axis=1)
+    return np.stack(load.value, axis=1) if isinstance(load.value, tuple) else np.array([[0.0, load.value]])
 
 
 def changing(machine, flat):

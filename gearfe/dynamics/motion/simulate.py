@@ -5,12 +5,13 @@ import time
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
-from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...core.checks import truth, whole
 from ...core.memory import free_memory
+from ...core.record import ranged
 from ...core.threads import single
 from ..machine.tables import Machine
 from .fixed_step import fixed_steps
@@ -41,6 +42,7 @@ ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
 WHOLE = 1e-3  # of the range, of a whole run whose error is asked for
 COARSE = 0.1  # of the range: an estimate of a given step above which is warned of
 SLOW, ENDLESS = 5.0, 7200.0  # s of computing expected of a whole run: above these it is told, and refused
+LONGEST, LATEST = 1e11, 1e9  # steps of a run; its start [s]
 NUDGE, GROWN = 1e-9, 1e-2  # a disturbance of the start, of the state; what it may grow to, of the range
 
 
@@ -144,6 +146,19 @@ def simulate(
     >>> print(f"{force.min():.0f} to {force.max():.0f} N are carried, {force.mean():.0f} N in the mean")
     913 to 1052 N are carried, 1000 N in the mean
     """
+    duration, start, rtol = (
+        ranged("duration", duration, " s", above=0.0),
+        ranged("start", start, " s"),
+        ranged("rtol", rtol, above=0.0),
+    )
+    rate, step, dt = (
+        None if value is None else ranged(name, value, unit, above=0.0)
+        for name, value, unit in (("rate", rate, " Hz"), ("step", step, " s"), ("dt", dt, " s"))
+    )
+    every = whole("every", every, 1)
+    error, filtered = (
+        None if value is None else truth(name, value) for name, value in (("error", error), ("filtered", filtered))
+    )
     _check(machine, duration, method, rate, step, dt, start, every)
     if initial is None:
         state = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
@@ -306,22 +321,22 @@ def _check(machine, duration, method, rate, step, dt, start, every):
         raise ValueError(
             f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
         )
-    if isinstance(duration, bool) or not isinstance(duration, Real):
-        raise ValueError(f"duration = {duration!r}, but give a number of seconds")
-    if not (math.isfinite(duration) and duration > 0):
-        raise ValueError(f"duration = {duration} s, but it must be positive")
     if method != "fast" and method not in SOLVERS:
         raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
     for name, value in {"dt": dt, "step": step}.items():
-        if value is not None and not (math.isfinite(value) and 0 < value <= duration):
+        if value is not None and not value <= duration:
             raise ValueError(f"{name} = {value} s, but it must be positive and no longer than the duration")
-    if rate is not None and not (math.isfinite(rate) and duration * rate * (1 + 1e-12) >= 1):
+    if rate is not None and not duration * rate * (1 + 1e-12) >= 1:
         raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
+    shortest = min(value for value in (dt, step, duration, rate and 1 / rate) if value)
+    if duration / shortest > LONGEST:
+        raise ValueError(
+            f"duration = {duration:g} s in steps of {shortest:.3g} s: {duration / shortest:.3g} of them, but at most "
+            f"{LONGEST:.0e} are computed: give a shorter duration, or a longer step"
+        )
     if dt is not None and (rate is not None or step is not None):
         raise ValueError("dt is both the step and the interval of the output: give rate and step instead, or one of them")
     if rate is not None and every != 1:
         raise ValueError(f"rate = {rate} Hz and every = {every}: both thin out the output; give a lower rate alone")
-    if not math.isfinite(start):
-        raise ValueError(f"start = {start} s, but it must be a time")
-    if isinstance(every, bool) or every != int(every) or every < 1:
-        raise ValueError(f"every = {every!r}, but give a whole number >= 1")
+    if abs(start) > LATEST:
+        raise ValueError(f"start = {start:g} s, but give a time within {LATEST:g} s: phases of later ones are rounding")

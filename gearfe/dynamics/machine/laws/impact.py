@@ -4,6 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ....core.record import settle
+
 
 @dataclass(frozen=True, slots=True)
 class Impact:
@@ -23,7 +25,7 @@ class Impact:
 
     def __post_init__(self) -> None:
         """Compute 1 / `full` once, for all steps."""
-        object.__setattr__(self, "per_full", 1 / self.full if self.full > 0 else 0.0)
+        settle(self, per_full=1 / self.full if self.full > 0 else 0.0)
 
     @staticmethod
     def force(depth, rate, k, c, law):
@@ -50,7 +52,7 @@ class Hertz:
 
     def __post_init__(self) -> None:
         """Compute 1 / `full`, as `Impact` does."""
-        object.__setattr__(self, "per_full", Impact(self.power, self.full).per_full)
+        settle(self, per_full=Impact(self.power, self.full).per_full)
 
     @staticmethod
     def force(depth, rate, k, c, law):

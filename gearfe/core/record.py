@@ -1,0 +1,82 @@
+"""Fields of frozen records, checked once where a record is made."""
+
+import math
+from collections.abc import Collection
+from difflib import get_close_matches
+from typing import Any
+
+import numpy as np
+
+from .checks import number, numbers
+
+
+def settle(record: Any, **values: Any) -> None:
+    """Set fields of a frozen record while it is made."""
+    for name, value in values.items():
+        object.__setattr__(record, name, value)
+
+
+def ranged(
+    name: str,
+    value: Any,
+    unit: str = "",
+    *,
+    least: float = -math.inf,
+    above: float = -math.inf,
+    finite: bool = True,
+    remedy: str = "",
+) -> float:
+    """The number as a float.
+
+    Parameters
+    ----------
+    name, value, unit
+        As the message states them.
+    least, above : float
+        The number is `least` or more, and larger than `above`.
+    finite : bool
+        Whether it must be finite.
+    remedy : str
+        End of the message.
+
+    Raises
+    ------
+    ValueError
+        If the value is no such number.
+    """
+    try:
+        out = number(name, value)
+    except OverflowError:
+        out = math.inf
+    if (finite and not math.isfinite(out)) or out < least or (above > -math.inf and out <= above):
+        limit = f" >= {least:g}" if least > -math.inf else f" > {above:g}" if above > -math.inf else ""
+        raise ValueError(f"{name} = {out:g}{unit}, but give a {'finite ' if finite else ''}number{limit}{remedy}")
+    return out
+
+
+def settle_numbers(record: Any, what: str, names: str, unit: str = "", **limits: Any) -> None:
+    """Set the fields `names`, with blanks between them, to floats in the `limits` of `ranged`; `what` begins its message."""
+    for name in names.split():
+        settle(record, **{name: ranged(f"{what}: {name}", getattr(record, name), unit, **limits)})
+
+
+def check_named(what: str, name: Any, known: Collection[Any]) -> None:
+    """ValueError, with the nearest name, if a name is not `known`."""
+    if name not in known:
+        near = get_close_matches(str(name), list(map(str, known)), 1, 0.0)
+        raise ValueError(f"{what} {name!r}, but there is {', '.join(map(str, known))}; nearest: {', '.join(map(repr, near))}")
+
+
+def check_text(what: str, name: Any) -> None:
+    """ValueError unless a name is text that is not empty."""
+    if not isinstance(name, str) or not name:
+        raise ValueError(f"{what}: name = {name!r}, but give a text that is not empty")
+
+
+def settle_row(record: Any, what: str) -> None:
+    """Check the name of an element of a machine, and bring its row into an array ``(n,)`` of finite numbers."""
+    check_text(what, record.name)
+    row = numbers(f"{what} {record.name}: row", record.row, "")
+    if row.ndim != 1 or not np.isfinite(row).all():
+        raise ValueError(f"{what} {record.name}: its row needs finite numbers, one per degree of freedom")
+    settle(record, row=row)

@@ -1,0 +1,122 @@
+"""`Load`: what acts on a machine from outside, constant or over time."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...core.checks import numbers, whole
+from ...core.record import ranged, settle, settle_numbers, settle_row
+
+# of a load: a number, times and values, or a function of an array of times
+History = float | tuple[ArrayLike, ArrayLike] | Callable[[NDArray], ArrayLike]
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """A load along a row: a number, a history ``(times, values)`` linear between its times, or a function of an array of times.
+
+    A history holds its first and last values outside; two equal times are a jump. A function must be smooth.
+
+    Parameters
+    ----------
+    name : str
+    row : ndarray, shape (n,)
+        The load acts on the n degrees of freedom of a machine as ``row`` times its value (`Layout.unit`, `Layout.point`).
+    value : float, (ndarray, ndarray) or callable
+        Along its row: a force [N] on displacements, a torque [N m] on rotations. Times are in s.
+
+    Raises
+    ------
+    ValueError
+        If a number or a history is not finite, if a history is empty or has not as many times as values, or if its times fall. A
+        function is looked at when the load is called: if it gives a value that is not finite.
+    """
+
+    name: str
+    row: NDArray
+    value: History
+
+    def __post_init__(self) -> None:
+        """Raise ValueError if the value is not finite, or the times of a history fall."""
+        settle_row(self, "load")
+        if np.ndim(self.value) if isinstance(self.value, np.ndarray) else isinstance(self.value, (tuple, list)):
+            settle(self, value=rising(f"load {self.name}", *self.value, strict=False))  # type: ignore[misc]
+        elif not callable(self.value):
+            settle_numbers(self, f"load {self.name}", "value")
+
+    def __call__(self, t: ArrayLike) -> NDArray:
+        """Value at times `t`."""
+        value: Any = self.value
+        if isinstance(value, tuple):
+            return np.asarray(np.interp(np.asarray(t, dtype=float), *value))
+        values = np.broadcast_to(np.asarray(value(t) if callable(value) else value, dtype=float), np.shape(t))
+        if not np.isfinite(values).all():
+            raise ValueError(f"load {self.name}: its function gives a value that is not finite (nan or inf)")
+        return values
+
+    @property
+    def breaks(self) -> NDArray:
+        """Times at which the history bends or jumps [s]."""
+        return np.unique(self.value[0]) if isinstance(self.value, tuple) else np.empty(0)
+
+
+def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
+    """Times [s] and values of a history; ValueError unless they are finite and as many, and the times rise.
+
+    With `strict` False two times may be equal.
+    """
+    if len(columns) != 2:
+        raise ValueError(f"{what}: give times and values, two rows of numbers")
+    times, values = (numbers(what, column, "") for column in columns)
+    if times.ndim != 1 or times.shape != values.shape or not times.size:
+        raise ValueError(f"{what}: give as many times as values, got shapes {times.shape} and {values.shape}")
+    if not (np.isfinite(times).all() and np.isfinite(values).all()):
+        raise ValueError(f"{what}: it has a time or a value that is not finite (nan or inf)")
+    wrong = np.diff(times) <= 0 if strict else np.diff(times) < 0
+    if wrong.any():
+        at = int(np.argmax(wrong)) + 1
+        raise ValueError(f"{what}: time {times[at]:g} s follows {times[at - 1]:g} s; sort the history by time")
+    return times, values
+
+
+def pulses(
+    base: float, peak: float, period: float, width: float, count: int, *, start: float = 0.0, rise: float = 0.1
+) -> tuple[NDArray, NDArray]:
+    """History of a load that rises from `base` to `peak` for `width` seconds every `period` seconds, `count` times.
+
+    Each flank of a pulse takes the part `rise` of its width. For `Load`.
+
+    Parameters
+    ----------
+    base, peak : float
+        Values between the pulses and on top of them, in the unit of the load: [N] or, of a torque, [N m].
+    period, width : float
+        From the start of a pulse to that of the next, and from the start of a pulse to its end [s].
+    count : int
+        Number of pulses.
+    start : float
+        Start of the first pulse [s].
+    rise : float
+        Part of `width`, up to 0.5.
+
+    Returns
+    -------
+    times, values : ndarray, shape (4 count,)
+        Corners of the pulses: times [s], and values in the unit of the load.
+
+    Raises
+    ------
+    ValueError
+        Unless all numbers are finite, ``0 < width < period`` and ``0 < rise <= 0.5``, and `count` is a whole number >= 1.
+    """
+    count = whole("count", count, 1)
+    for name, value in {"base": base, "peak": peak, "period": period, "width": width, "start": start, "rise": rise}.items():
+        ranged(name, value)
+    if not 0 < width < period or not 0 < rise <= 0.5:
+        raise ValueError(f"width = {width} s, rise = {rise}: pulses need 0 < width < period and 0 < rise <= 0.5")
+    first = start + period * np.arange(count)[:, None]
+    times = first + width * np.array([0.0, rise, 1 - rise, 1.0])
+    return times.ravel(), np.tile([base, peak, peak, base], count).astype(float)
