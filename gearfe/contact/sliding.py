@@ -102,7 +102,7 @@ def left_out(contact, line, closing, beyond):
 
 
 def _cracks_beyond(contact, line):
-    """How much more contacts may yield for cracks further away than those solved with their teeth ``(phases, pairs)`` [mm]."""
+    """Deflection ``(phases, pairs)`` [mm] that cracks further away than their solved teeth may add to contacts."""
     out, order = np.zeros(line.shape), contact.found.order
     for flexible, teeth in zip(contact.flexibility, (order, -order), strict=True):
         beyond, most = cracks_beyond(flexible, teeth)

@@ -186,7 +186,7 @@ class Flexibility:
 def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.bool_], float]:
     """Which `teeth` ``(n,)`` of a cracked gear its cracks were not solved for, and the most these can add there [mm per N/mm].
 
-    Cracks open less under loads further away: the bound is what they add to the outermost teeth that were solved.
+    Cracks open less under loads further away. The bound is the flexibility that open cracks add to the outermost solved teeth.
     """
     none = np.zeros(teeth.size, dtype=bool), 0.0
     if flexible.seam is None:
