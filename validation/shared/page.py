@@ -23,7 +23,6 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "three": "Is the stiffness in three dimensions right?",
     "sets": "What does a whole planetary set do to the stiffness of its meshes?",
     "flanks": "Are modified flanks right?",
-    "holes": "What do pits change beyond the contact they take away?",
     "map": "How wrong are closed forms, and where may they be used?",
     "assumptions": "What do values that articles leave out do to the stiffness?",
     "speed": "What does each method cost, and how wrong is it?",
