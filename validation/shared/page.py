@@ -42,15 +42,16 @@ MACHINES = {
 
 
 def text(name, answer, *sections):
-    """A page as Markdown; sections are lines."""
+    """A page as Markdown; a section is a text, or lines and texts of several lines, indented or not."""
     lines = [f"# {QUESTIONS[name]}", "", answer]
     for section in sections:
-        lines += ["", *filled(section)]
+        lines += ["", *filled([section] if isinstance(section, str) else section)]
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines).rstrip()) + "\n"
 
 
-def filled(lines):
-    """Lines with their paragraphs, which are neither tables, lists, headings nor pictures, broken anew."""
+def filled(parts):
+    """Lines of `parts` with their paragraphs, which are neither tables, lists, headings nor pictures, broken anew."""
+    lines = (line for part in parts for line in (textwrap.dedent(part).rstrip().splitlines() if "\n" in part else [part]))
     for prose, group in groupby(lines, lambda line: re.match(r"(?!\d+\. |- )[^|#!\s]", line) is not None):
         own = list(group)
         yield from textwrap.wrap(" ".join(own), 120, **WRAP) if prose else own
