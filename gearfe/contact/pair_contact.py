@@ -6,6 +6,7 @@ modified flank has a kink within the contact (`gearfe.contact.kinks`).
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -54,6 +55,22 @@ def _aligned(rows):
     return out | {"coefficient": zero, "tilt": zero, "radius": zero + 1}
 
 
+def without_missing(points, pair, flexibility):
+    """Contacts without those of missing teeth, whose gap is infinite; ValueError if at some phase none is left."""
+    gone = np.zeros(points.order.size, dtype=bool)
+    for gear, own, teeth in zip((pair.gear_1, pair.gear_2), flexibility, (points.order, -points.order), strict=True):
+        gone |= np.isin(teeth % gear.z, [tooth % gear.z for tooth in getattr(own, "missing", ())])
+    if not gone.any():
+        return points
+    gap = np.where(gone, np.inf, points.gap)
+    if not np.isfinite(gap).any(axis=1).all():
+        raise ValueError(
+            "at some phases no teeth but a missing one are near each other: leave contact off the path on (extended = True), or "
+            "take a pair with a larger contact ratio"
+        )
+    return replace(points, gap=gap, corner_gap=np.where(gone, np.inf, points.corner_gap))
+
+
 class PairContact:
     """Two gears' flexibilities and the contacts of a pair at some phases; solves for any load.
 
@@ -64,7 +81,7 @@ class PairContact:
         self.pair, self.flexibility, self.flanks = pair, flexibility, flanks
         self.coefficients = [half_plane(m, state) for m in materials]
         self.modulus = contact_modulus(materials, state)
-        self.found = points = flank_contacts(pair, phase, extended=extended, flanks=flanks)
+        self.found = points = without_missing(flank_contacts(pair, phase, extended=extended, flanks=flanks), pair, flexibility)
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
         matrices = [flexibility[0].matrix(points.roll_1, points.order), flexibility[1].matrix(points.roll_2, -points.order)]

@@ -67,6 +67,8 @@ def export_mesh(
     if not are(damage):
         raise ValueError(f"damage = {damage!r}, but give a list of {' and '.join(NAMES)} of this gear, [] for none")
     cracks, pits = split(damage)
+    if len(cracks) + len(pits) < len(damage):
+        raise ValueError("a missing tooth in an exported mesh, which has whole teeth only: leave it out")
     cells = cells or ("tetrahedra" if pits or teeth is not None else "hexahedra")
     if cells not in KINDS:
         raise ValueError(f"cells = {cells!r}, but they are one of {', '.join(KINDS)}")

@@ -1,7 +1,7 @@
 """`Flexibility`: what a gear gives to its contacts, wherever it came from."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -35,6 +35,12 @@ def _logarithmic(arc, places, least):
     middle, tip = places[-2:]
     left = np.maximum(tip - np.maximum(arc, middle), 0.0) + least
     return np.minimum(arc - middle, 0.0) + np.log((tip - middle + least) / left)
+
+
+def reached_teeth(gear: Gear, cracks: Iterable[Any], missing: Iterable[int], neighbours: int) -> list[int]:
+    """Numbers of the teeth whose flexibility damage changes noticeably: `neighbours` to either side of a damaged tooth."""
+    damaged = [*(crack.tooth for crack in cracks), *missing]
+    return sorted({(tooth + k) % gear.z for tooth in damaged for k in range(-neighbours, neighbours + 1)})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,6 +106,8 @@ class Flexibility:
     leans : dict of int to ndarray, shape (3, 4)
         Of each solved tooth what `leaning` gives: t is the tangent away from the gear's centre. Without it a tooth yields to
         loads off its normal by their torque.
+    missing : tuple of int
+        Missing teeth, which touch nothing.
     """
 
     gear: Gear
@@ -113,6 +121,7 @@ class Flexibility:
     seam: SeamFaces | None = None
     basis: Any = None
     leans: dict[int, NDArray[np.float64]] = field(default_factory=dict)
+    missing: tuple[int, ...] = ()
 
     def within(self, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[int]) -> list[NDArray[np.float64]]:
         """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth, for each of both."""

@@ -8,6 +8,7 @@ from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
 from ..geometry.damage.crack import Crack
 from ..geometry.damage.kinds import Damage
+from ..geometry.damage.missing import MissingTooth
 from ..geometry.damage.pit import pit_row
 from ..geometry.damage.spall import Spall
 from ..geometry.pair.flanks import Misalignment, tilt_of
@@ -28,11 +29,10 @@ def sides(file: str, where: str, row: Row, name: str, pairs: dict[str, Row]) -> 
     A planet meets the sun with one flank, the ring with the other.
     """
     keys = ("gear_1", "gear_2")
-    if row["pair"] is not None and row["gear"] not in (pairs[row["pair"]][key] for key in keys):
-        raise ValueError(f"{file} [{where}] pair = {row['pair']!r} has no gear {row['gear']!r}")
-    return [
-        side for side, key in zip(SIDES, keys, strict=True) if pairs[name][key] == row["gear"] and row["pair"] in (None, name)
-    ]
+    only = row.get("pair")
+    if only is not None and row["gear"] not in (pairs[only][key] for key in keys):
+        raise ValueError(f"{file} [{where}] pair = {only!r} has no gear {row['gear']!r}")
+    return [side for side, key in zip(SIDES, keys, strict=True) if pairs[name][key] == row["gear"] and only in (None, name)]
 
 
 class Owner(NamedTuple):
@@ -50,7 +50,7 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
     """Damage of the pair `name` by case, side and owner.
 
     It lies on the flank that is loaded in its `pair`, by default the first pair of its gear. In a pair that loads the other flank
-    a crack lies on the unloaded side, and pits and spalls are in no contact.
+    a crack lies on the unloaded side, and pits and spalls are in no contact. A missing tooth is missing in both.
     """
     out: dict[str, dict[str, Owned]] = {}
     for kind, make in DAMAGE.items():
@@ -63,7 +63,8 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
                 with located(file, where, row):
                     made = make(row, pair, SIDES.index(side), rows["pair"][name])
                 if side != first:
-                    made = [replace(one, side="unloaded") for one in made if isinstance(one, Crack)]
+                    cracks = [replace(one, side="unloaded") for one in made if isinstance(one, Crack)]
+                    made = [*cracks, *(one for one in made if isinstance(one, MissingTooth))]
                 if made and not (name == home and side != first):
                     owner = Owner(row.get("body"), home, first)
                     out.setdefault(row["case"], {}).setdefault(side, {}).setdefault(owner, []).extend(made)
@@ -103,6 +104,11 @@ def spall_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     return [spall, *_other_half(row, [spall], made, which, pair)]
 
 
+def missing_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
+    """The missing tooth of a row."""
+    return [MissingTooth(tooth=row["tooth"])]
+
+
 def _other_half(row, damage, made, which, pair):
     return in_both_halves((made.gear_1, made.gear_2)[which], damage, _face(made, pair)) if row["both_halves"] else []
 
@@ -111,7 +117,9 @@ def _face(made, pair):
     return pair["face"] or ("helical" if made.gear_1.beta else "spur")
 
 
-DAMAGE: dict[str, Callable[[Row, GearPair, int, Row], list[Damage]]] = {"crack": crack_of, "pits": pits_of, "spall": spall_of}
+DAMAGE: dict[str, Callable[[Row, GearPair, int, Row], list[Damage]]] = {
+    "crack": crack_of, "pits": pits_of, "spall": spall_of, "missing_tooth": missing_of,
+}  # fmt: skip
 
 
 def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[str, Flank]:

@@ -213,7 +213,9 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
 
     def row(name: str) -> NDArray[np.float64] | None:
         parts = [getattr(curve, name) for curve in curves]
-        return None if parts[0] is None else np.concatenate(parts)
+        if all(part is None for part in parts):
+            return None
+        return np.concatenate([np.zeros(c.phase.size) if part is None else part for c, part in zip(curves, parts, strict=True)])
 
     whole = {name: np.concatenate([getattr(curve, name) for curve in curves]) for name in ("phase", "k", "k_tangent", "lte")}
     return StiffnessCurve(

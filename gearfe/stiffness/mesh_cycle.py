@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.case import SIDES, Case
+from ..geometry.pair.contacts import neighbours_of
 from .curve import StiffnessCurve, joined
 from .limits import check_count
 from .solve import Solve, solve
@@ -210,7 +211,7 @@ def _windows(case, side, n):
     if not teeth:
         return []
     span = case.pair.eps_alpha + case.overlap()
-    before = math.ceil((max(1, math.ceil(case.pair.eps_alpha) - 1) + MARGIN) * n)
+    before = math.ceil((neighbours_of(case.pair) + MARGIN) * n)  # damage reaches as many teeth
     length = before + math.ceil(span * n) + before
     entries = sorted(-tooth % z for tooth in teeth)
     breaks = [i for i, entry in enumerate(entries) if (entries[i - len(entries) + 1] - entry - 1) % z * n + n > length]

@@ -44,7 +44,11 @@ def versions():
 def damage_of(case):
     """Cracks and pits of pinion and wheel as tables, numbered by pair."""
     return {
-        name: [asdict(replace(hurt, tooth=sense * hurt.tooth)) for damages in (case.cracks, case.pits) for hurt in damages[i]]
+        name: [
+            asdict(replace(hurt, tooth=sense * hurt.tooth))
+            for damages in (case.cracks, case.pits, case.missing)
+            for hurt in damages[i]
+        ]
         for i, (name, sense) in enumerate(SIDES)
     }
 

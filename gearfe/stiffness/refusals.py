@@ -57,6 +57,8 @@ def _damage(row, case, method):
         yield f"damage with {method}, which has none: use {having('cracks')}"
     if any(case.cracks) and not row.cracks:
         yield f"cracks with {method}, which has none: use {having('cracks')}"
+    if any(case.missing) and not row.missing:
+        yield f"a missing tooth with {method}, which has none: use {having('missing')}"
     if any(case.pits) and not row.pits:
         nouns = next(pit for pits in case.pits for pit in pits).nouns[1]
         yield f"{nouns} with {method}, a transverse section: use {having('pits')}"

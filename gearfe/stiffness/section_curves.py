@@ -1,6 +1,5 @@
 """Stiffness curves of plane contact: from the flexibilities of two sections, or from a plain sum of tooth pairs."""
 
-import math
 import time
 from dataclasses import asdict, replace
 
@@ -9,7 +8,7 @@ import numpy as np
 from ..contact.pair_contact import PairContact
 from ..core.steps import part, steps
 from ..flexibility.energy.closed.plain_sum import plain_sum
-from ..geometry.pair.contacts import near_pitches
+from ..geometry.pair.contacts import neighbours_of
 from .curve import StiffnessCurve
 from .estimate import MODEL, estimate, fixed_phases, other_solves
 from .own_flexibility import flexibility_of
@@ -48,18 +47,20 @@ def section_solver(row, case, how, phase, hats=1.0, **coarser):
     started = time.perf_counter()
     model, pair, numeric = row.own, case.pair, _numeric(row, how) | coarser
     extended = how.extended and (model or row).extended
-    neighbours = math.ceil(pair.eps_alpha) + sum(near_pitches(pair)) - 2
+    neighbours = neighbours_of(pair)
 
-    def named(row, gear, material, cracks=()):
+    def named(row, gear, material, cracks=(), missing=()):
         options = {"neighbours": neighbours, "state": how.state, **numeric}
+        options |= {"missing": missing} if missing else {}
         options |= {"cache": how.cache} if row.kept else {}
         return row.load()(gear, material, *((cracks,) if row.cracks else ()), **options)
 
-    gears = list(zip((pair.gear_1, pair.gear_2), case.materials, case.cracks, strict=True))
+    gone = [tuple(sorted({one.tooth for one in teeth})) for teeth in case.missing]
+    gears = list(zip((pair.gear_1, pair.gear_2), case.materials, case.cracks, gone, strict=True))
     if model is None:
         flexible = [named(row, *gear) for gear in steps(gears)]
     else:
-        flexible = [flexibility_of(model, i, gear, material, how.state, named) for i, (gear, material, _) in enumerate(gears)]
+        flexible = [flexibility_of(model, i, gear, material, how.state, named) for i, (gear, material, *_) in enumerate(gears)]
     if hats != 1:
         flexible = [replace(body, fine=hats * body.fine) for body in flexible]
     contact = PairContact(pair, case.materials, flexible, phase, extended=extended, state=how.state, flanks=case.forms)
@@ -109,7 +110,7 @@ def curve(case, phase, force, solve, meta):
 def with_error(row, curves, case, how):
     """The curves with their estimated error, by other solves of the same case."""
     order = _numeric(row, how).get("order")
-    periodic = not (any(case.cracks) or any(form.differs for form in case.forms or ()))
+    periodic = not (case.damaged or any(form.differs for form in case.forms or ()))
     phase = curves[0].phase
     where = np.append(phase, fixed_phases(phase, periodic))
     solvers = [section_solver(row, case, how, where, **options)[0] for options in steps(({}, *other_solves(how.refine, order)))]

@@ -61,10 +61,12 @@ def write_vtu(path, fields):
 
 
 def loaded_phase(case):
-    """Phase at which the damaged tooth of a spur pair carries alone for the last time, or most; 0 without damage."""
+    """Phase at which the damaged tooth of a spur pair, or the one ahead of a missing tooth, carries most; 0 without damage."""
     order = case.first_tooth
     if order is None:
         return 0.0
+    if any(case.missing):  # the pair behind a missing tooth carries alone, just before it leaves the path
+        return (case.pair.eps_alpha - 1) * 0.9 - order
     phases = -order + case.pair.eps_alpha * (np.arange(64) + 0.5) / 64
     curve = solve(replace(case, damage=None, supports=None), Solve("ritz", phases))
     load = curve.force[:, curve.order == order].sum(axis=1)
@@ -88,13 +90,14 @@ def stressed_gears(case, phase=0.0, refine=1.0):
     out = []
     rolls = candidates.roll_1[0], candidates.roll_2[0]
     mirrors, centres = (1, pair.outward), (0.0, pair.centre_2)
-    gears = (pair.gear_1, pair.gear_2), materials, case.cracks, rolls, pair.turn(nominal), centres, mirrors, (1, -1)
-    for gear, material, cracks, roll, turn, centre, mirror, ahead in steps(zip(*gears, strict=True)):
+    damage = tuple(zip(case.cracks, case.missing, strict=True))
+    gears = (pair.gear_1, pair.gear_2), materials, damage, rolls, pair.turn(nominal), centres, mirrors, (1, -1)
+    for gear, material, hurt, roll, turn, centre, mirror, ahead in steps(zip(*gears, strict=True)):
         loads = {}
         for i, k in carrying:
             radius = pair.relative_radius(candidates.roll_1[0, i], candidates.roll_2[0, i])
             loads[ahead * k] = (roll[i], forces[k], float(half_width(forces[k], radius, modulus)))
-        mesh, moved, stress = _loaded_gear(gear, material, loads, refine, cracks)
+        mesh, moved, stress = _loaded_gear(gear, material, loads, refine, *hurt)
         out.append(_placed(mesh, moved.reshape(-1, 2).T, stress, material, turn, centre, mirror))
     return out
 
@@ -123,7 +126,7 @@ def _placed(mesh, moved, stress, material, turn, centre, mirror):
     return replace(field, root=float(field.mises[outline[low]].max()))
 
 
-def _loaded_gear(gear, material, loads, refine, cracks):
+def _loaded_gear(gear, material, loads, refine, cracks, missing):
     """Mesh a gear for contacts ``{tooth: (roll, line load, half width)}`` and solve it."""
     edge = edge_lengths(gear, EDGES, refine)
     rolls, arcs = {}, {}
@@ -131,7 +134,8 @@ def _loaded_gear(gear, material, loads, refine, cracks):
         top = arc_at(gear, gear.roll_a)
         arcs[tooth] = min(arc_at(gear, roll), top - a)
         rolls[tooth] = stations(gear, edge["flank"], patches=[(arcs[tooth] - 1.5 * a, arcs[tooth] + 1.5 * a, a / 6)])
-    mesh = section(gear, rolls, fillet_size=edge["fillet"] / 2, size=edge["near"] / 2, far_size=edge["far"], cracks=cracks)
+    sizes = {"fillet_size": edge["fillet"] / 2, "size": edge["near"] / 2, "far_size": edge["far"]}
+    mesh = section(gear, rolls, **sizes, cracks=cracks, missing=[one.tooth % gear.z for one in missing])
     body = Body(mesh.mesh, material)
     force = 0.0
     for tooth, (_, line_load, a) in loads.items():

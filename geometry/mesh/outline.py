@@ -86,7 +86,7 @@ def half(gear, roll, fillet_size, size, *, mark=None):
     return Half(radius, angle, ends[0] + np.arange(roll.size), ends[1] + np.arange(root.size // 2 + 1), marked)
 
 
-def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None):
+def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None, missing=()):
     """All teeth clockwise, starting at the middle of tooth 0's tip.
 
     Parameters
@@ -100,6 +100,8 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None)
         Real teeth around each of `rolls`; the others become root circle.
     marks : dict of (int, str) to (float, float)
         Crack starts: tooth and side to arc and edge length [mm].
+    missing : sequence of int
+        Teeth that become root circle (0 <= tooth < z).
 
     Returns
     -------
@@ -114,12 +116,13 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None)
     plain, coarse, far = (
         half(gear, stations(gear, s), f, s) for s, f in ((size, fillet_size), (size, size), (far_size, far_size))
     )
-    arc = math.pi / gear.z * doubled(np.linspace(0, 1, max(1, round(math.pi / gear.z * gear.r_f / far_size)) + 1))[:-1]
+    edge = size if missing else far_size
+    arc = math.pi / gear.z * doubled(np.linspace(0, 1, max(1, round(math.pi / gear.z * gear.r_f / edge)) + 1))[:-1]
     gone = Half(np.full(arc.size, gear.r_f), arc)
 
     def choose(tooth, side):
         distance = min(abs((tooth - k + gear.z // 2) % gear.z - gear.z // 2) for k in rolls)
-        if teeth is not None and distance > teeth // 2:
+        if tooth in missing or (teeth is not None and distance > teeth // 2):
             return gone
         if (tooth, side) in marks or (distance == 0 and side == "loaded"):
             roll = rolls[tooth] if side == "loaded" and tooth in rolls else stations(gear, size)

@@ -83,8 +83,8 @@ class Sector:
         object.__setattr__(self, "edge_bulges", out)
 
 
-def sector(gear, cracks=(), *, refine=1.0, sizes=None):
-    """`Sector` of a gear with the cracks of its tooth.
+def sector(gear, cracks=(), *, missing=False, refine=1.0, sizes=None):
+    """`Sector` of a gear with the cracks of its tooth; of a `missing` tooth the root circle is left.
 
     `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. ValueError if `refine` is not positive,
     RuntimeError if no valid triangles were found.
@@ -92,17 +92,17 @@ def sector(gear, cracks=(), *, refine=1.0, sizes=None):
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default")
     for finer in (1.0, 1.4, 2.0, 2.8):
-        made = _attempt(gear, cracks, SIZES | (sizes or {}), refine, finer)
+        made = _attempt(gear, cracks, missing, SIZES | (sizes or {}), refine, finer)
         if made is not None:
             return made
     raise RuntimeError(f"z = {gear.z}: no valid coarse triangles for this tooth; use method = 'fe'")
 
 
-def _attempt(gear, cracks, sizes, refine, finer):
+def _attempt(gear, cracks, missing, sizes, refine, finer):
     """A sector with all edges but those of the sides, which must fit other sectors, divided by `finer`; None if it folds."""
     size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
     size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
-    pieces = _pieces(gear, size, cracks)
+    pieces = _pieces(gear, size, cracks, missing)
     first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])
     count = first[-1]
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
@@ -126,10 +126,10 @@ def _attempt(gear, cracks, sizes, refine, finer):
         at += line.shape[1]
     vertices = {name: np.arange(first[k], first[k + 1] + 1) % count for k, (name, _, _) in enumerate(pieces)}
     left, right = (_apart(side, triangles, doubles) for side in (vertices["left"], vertices["right"][::-1]))
-    rolls = next(params for name, params, _ in pieces if name == "flank")
+    rolls = next((params for name, params, _ in pieces if name == "flank"), np.zeros(0))
     made = Sector(
-        points, triangles, _bulges(pieces, loop, doubles), left, right, vertices["held"], vertices["flank"][::-1], rolls[::-1],
-        tuple(faces),
+        points, triangles, _bulges(pieces, loop, doubles), left, right, vertices["held"],
+        vertices.get("flank", np.zeros(0, dtype=int))[::-1], rolls[::-1], tuple(faces),
     )  # fmt: skip
     bulges = made.edge_bulges
     bent = bulges.any(axis=(0, 1, 2))  # the others are as good as their corners
@@ -152,7 +152,7 @@ def _twice_areas(points, triangles):
     return x * v - y * u
 
 
-def _pieces(gear, size, cracks):
+def _pieces(gear, size, cracks, missing=False):
     """The outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
     pitch, half = math.pi / gear.z, gear.half_thickness(gear.r_a)
     marks = {crack.side: start_arc(gear, crack) for crack in cracks}
@@ -169,6 +169,10 @@ def _pieces(gear, size, cracks):
     bottom = pitch - spaced(0.0, inner, min(inner, max(1.5 * thick, 0.1 * inner)), close, 1, GROWTH) / gear.held
     bottom[-1] = -pitch
     out = [("left", side[::-1], lambda r: cartesian(r, -pitch))]
+    ends = [("right", side, lambda r: cartesian(r, pitch)), ("held", bottom, lambda a: cartesian(gear.held, a))]
+    if missing:
+        count = max(4, math.ceil(2 * pitch * gear.r_f / size["root"]))
+        return [*out, ("root", np.linspace(-pitch, pitch, count + 1), lambda a: cartesian(gear.r_f, a)), *ends]
     roots = {name: _roots(gear, size, marks.get(name), tips, name) for name in ("unloaded", "loaded")}
     back = _flank(gear, size["back"], size["kink"], max(2 * half * gear.r_a, size["corner"]))
     front = _flank(gear, size["flank"], size["kink"], size["corner"])
@@ -187,9 +191,7 @@ def _pieces(gear, size, cracks):
         else:
             out.append(("flank", front[::-1], lambda r: _flank_points(gear, r, 1)))
             out += [(kind, params[::-1], place) for kind, params, place in part[::-1]]
-    out.append(("right", side, lambda r: cartesian(r, pitch)))
-    out.append(("held", bottom, lambda a: cartesian(gear.held, a)))
-    return out
+    return out + ends
 
 
 def _flank_points(gear, roll, sign):

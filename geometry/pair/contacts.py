@@ -138,6 +138,11 @@ def near_pitches(pair: GearPair) -> tuple[int, int]:
     return out[0], out[1]
 
 
+def neighbours_of(pair: GearPair) -> int:
+    """How many teeth after a tooth may be in contact with it, corners off the path of contact included."""
+    return math.ceil(pair.eps_alpha) + sum(near_pitches(pair)) - 2
+
+
 def touching(pair: GearPair, nominal: NDArray, *, extended: bool = True) -> Touch:
     """Where sections of unmodified teeth first touch, as of `contacts`, at any abscissae `nominal` [mm]."""
     start, end = pair.path

@@ -23,7 +23,7 @@ TERMS = {
     "theory/ritz.md": ["Ritz solution", "plane strain"],
     "theory/finite_elements.md": ["scikit-fem", "hexahedra", "CalculiX"],
     "theory/contact.md": ["Hertz's half width", "load sharing", "undercut"],
-    "theory/damage.md": ["root crack", "crack closure", "pit", "spall", "stress intensity factor", "limit line"],
+    "theory/damage.md": ["root crack", "missing tooth", "crack closure", "pit", "spall", "stress intensity factor", "limit line"],
     "theory/supports.md": ["Timoshenko beam", "bearing", "tilt"],
     "theory/planetary_sets.md": ["sun gear", "ring gear", "floating sun", "block-circulant"],
     "theory/dynamics.md": ["backlash", "anti-aliasing", "gyroscopic", "sideband", "fault frequency"],

@@ -30,6 +30,7 @@ def scene(flank=None, machine=None, **damage):
         "machine": {"model": "helical_pair", "speed_rpm": 2400.0, "torque_Nm": 40.0} | (machine or {}),
         "flank": {} if flank is None else {flank["gear"]: flank},
         "crack": [{"case": "cracked", "angle_deg": 60.0, "length_mm": 2.0} | row for row in damage.get("crack", ())],
+        "missing_tooth": [{"case": "missing"} | row for row in damage.get("missing_tooth", ())],
     }
     return scene_of("pair.toml", tables)
 
@@ -191,3 +192,32 @@ def test_models_that_cannot_have_an_input_say_why():
 def impact():
     """Machine table with the impact law."""
     return scene(machine={"contact": "impact"}).machine
+
+
+@pytest.mark.parametrize(("gear", "tooth"), [("pinion", 0), ("wheel", 23)])
+def test_a_missing_tooth_shows_at_the_turns_of_its_gear(gear, tooth):
+    """The contact opens and closes once per revolution; without a backlash it could not open."""
+    gone = {"gear": gear, "tooth": tooth}
+    with pytest.raises(ValueError, match="backlash_um"):
+        gf.build_machine(scene(missing_tooth=[gone]), "missing")
+    machine = gf.build_machine(scene(machine={"backlash_um": 300.0}, missing_tooth=[gone]), "missing", phases=32)
+    other = {"pinion": "wheel", "wheel": "pinion"}[gear]
+    own = amplitude(machine, MESH - TURNS[gear], MESH + TURNS[gear])
+    beside = amplitude(machine, MESH - TURNS[other], MESH + TURNS[other])
+    assert own.min() > 5.0
+    assert beside.max() < 0.1 * own.min()
+    assert [(one.gear, one.tooth) for one in machine.faults] == [(gear, tooth)]
+
+
+def test_slow_rotation_with_a_missing_tooth_has_the_transmission_error():
+    """With the gap: as contact solved over the whole revolution has it, and as a mass that is moved slowly."""
+    case = replace(scene(missing_tooth=[{"gear": "pinion", "tooth": 3}]).case(case="missing"), force=1669.298)
+    cycle = gf.mesh_cycle(case, gf.Solve(phases=32))
+    te = cycle.sampled("lte") + cycle.sampled("unloaded")
+    assert 5e-5 < np.ptp(te) < 3e-4
+    want = gf.solve(case, gf.Solve(phases=32, span="revolution")).te
+    assert_allclose(te, want, atol=1e-12)
+    options = {"teeth": (17, 38), "damage": teeth_of(cycle), "zeta": 1.0, "backlash": 1e-3}
+    machine = gf.single_mesh(1e-2, cycle.healthy, 1.0, force=1669.298, **options)
+    run = gf.simulate(machine, 17.0, rate=32.0, filtered=False)
+    assert_allclose(run["pair.x"][32:544], te[32:], atol=1e-3 * np.ptp(te))

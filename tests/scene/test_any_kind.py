@@ -73,6 +73,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
             "pitch_mm": 3.0, "mirrored": False, "both_halves": False, "axes_mm": [1.0, 2.0], "depth_mm": 0.2,
         },
     ],
+    "missing_tooth": [{"case": "missing", "gear": "sun", "tooth": 3}],
     "spall": [
         {
             "case": "spalled", "gear": "sun", "radius_mm": 20.8, "z_mm": 10.0, "sides_mm": [1.0, 4.0], "depth_mm": 0.2,
@@ -136,7 +137,7 @@ def vocabulary():
 def test_the_whole_scene_has_every_key():
     """Those left out exclude another, and stand in `ALSO`."""
     scene = scene_of("whole.toml", copy.deepcopy(WHOLE_SCENE))
-    assert set(scene.pair().damage) == {"cracked", "pitted", "spalled"}
+    assert set(scene.pair().damage) == {"cracked", "missing", "pitted", "spalled"}
     keys = {part for path in places(WHOLE_SCENE) for part in path if isinstance(part, str)}
     assert vocabulary() - keys == {path[-1] for path, _ in ALSO}
 

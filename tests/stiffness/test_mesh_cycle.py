@@ -36,6 +36,7 @@ CASES = {
     "pitch of one tooth": {"flanks": {"pinion": with_pitch(11)}},
     "pitch of one, a crack in another": {"flanks": {"pinion": with_pitch(11)}, "damage": {"pinion": [crack(9)]}},
     "pitch of both gears": {"flanks": {"pinion": with_pitch(11), "wheel": with_pitch(13)}},
+    "a missing tooth of the wheel": {"damage": {"wheel": [gf.MissingTooth(tooth=7)]}},
     "an eccentric pinion, a cracked wheel": {
         "flanks": {"pinion": gf.Flank(eccentricity=0.01, eccentric_tooth=2.0)},
         "damage": {"wheel": [crack(1)]},
@@ -73,7 +74,10 @@ def test_a_tooth_is_tooth_0_at_another_time(side, tooth):
 
 
 def test_changes_add_where_engagements_do_not_overlap():
-    """Cracks five teeth apart: the changes of k add within the estimated error of k; those of neighbours add less well."""
+    """Cracks five teeth apart: the changes of k add within the estimated error of k; those of neighbours add less well.
+
+    A crack softens the body three teeth away by 0.1 % here, which single cracks neglect and two cracks contain.
+    """
     how = gf.Solve(phases=PHASES)
 
     def change(*teeth):
@@ -82,7 +86,7 @@ def test_changes_add_where_engagements_do_not_overlap():
 
     apart, beside = (np.abs(change(0) + change(tooth) - change(0, tooth)).max() for tooth in (5, 1))
     assert apart < gf.solve(CASE, replace(how, error=True)).error.max()
-    assert beside > 3 * apart
+    assert beside > 1.5 * apart
 
 
 def test_neighbours_of_a_cracked_tooth_are_softer():

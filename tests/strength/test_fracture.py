@@ -116,7 +116,7 @@ def test_stress_intensity_is_the_energy_released(method):
     cracks = [(gf.Crack(length=a),) for a in lengths]
     if method == "fe":
         healthy = fe.flexibility(GEAR, STEEL, neighbours=1)
-        cracked = [fe.cracked_flexibility(GEAR, STEEL, crack, healthy, refine=1.5) for crack in cracks]
+        cracked = [fe.damaged_flexibility(GEAR, STEEL, crack, healthy, refine=1.5) for crack in cracks]
     else:
         cracked = [ritz.flexibility(GEAR, STEEL, crack) for crack in cracks]
     values = [compliance(one, roll) for one in cracked]

@@ -6,6 +6,7 @@ from itertools import product
 import numpy as np
 
 import gearfe as gf
+from gearfe.figures.stiffness_plots import plot_map
 from gearfe.runs.errormap import CRACKED, HEALTHY, LOADS, ZONES, build
 
 from ..shared import page, reference
@@ -36,7 +37,7 @@ CRACKS = {"level below 0.1": (1e-9, 0.1), "0.1 to 0.3": (0.1, 0.3), "0.3 to 0.5"
 def sampled():
     """Tables of the random pairs, as lines; draws the picture."""
     found = gf.error_map(PAIRS, progress=_progress)
-    found.plot(PICTURE)
+    plot_map(found, HEALTHY, "load", "bore_1", "mean", PICTURE)
     healthy, cracked, parts = [], [], []
     for name in HEALTHY:
         healthy.append(f"| {name} | " + " | ".join(_cell(found.bands(name, zone, crack=(0, 0))) for zone in ZONES) + " |")

@@ -26,7 +26,7 @@ from ...geometry.mesh.section_mesh import section
 from ...geometry.tooth.profile import arc_at, flank_normal
 from ..hats import SPAN, hat_knots, wider
 from ..hertz import half_plane, hat_logarithm
-from ..plane import BELOW, TILT, Flexibility, SeamFaces, leaning
+from ..plane import BELOW, TILT, Flexibility, SeamFaces, leaning, reached_teeth
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
 
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
@@ -105,11 +105,11 @@ def turned(vectors, angle):
     return np.array([cos * vectors[0] + sin * vectors[1], cos * vectors[1] - sin * vectors[0]])
 
 
-def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
+def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), missing=()):
     """Section of `gear` meshed for loads on the teeth `loaded` and for reading displacements on the teeth `read`.
 
     `refine` divides every edge length of `EDGES`. It is the section of the whole gear, or of a number of `teeth` on a plain rim,
-    with `cracks`, as in `gearfe.geometry.mesh.section_mesh.section`.
+    with `cracks` and `missing` teeth, as in `gearfe.geometry.mesh.section_mesh.section`.
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
@@ -119,7 +119,16 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
     fine = stations(gear, min(edge["flank"], longest), tip=edge["tip"], low=edge["low"], **even)
     coarse = stations(gear, min(edge["read"], longest), tip=0.025 * gear.m_n / refine, **even)
     rolls = dict.fromkeys(loaded, fine) | dict.fromkeys(read, coarse)
-    return section(gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], teeth=teeth, cracks=cracks)
+    return section(
+        gear,
+        rolls,
+        fillet_size=edge["fillet"],
+        size=edge["near"],
+        far_size=edge["far"],
+        teeth=teeth,
+        cracks=cracks,
+        missing=missing,
+    )
 
 
 def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
@@ -177,15 +186,17 @@ def _between(body, loads):
     return body.between(hstack(loads, format="coo")), [slice(a, b) for a, b in pairwise(ends)]
 
 
-def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
-    """`Flexibility` of a gear with root cracks: every tooth that can share load with a cracked one is loaded and read.
+def damaged_flexibility(
+    gear, material, cracks, healthy, *, missing=(), neighbours=1, state="plane strain", refine=1.0, teeth=None
+):
+    """`Flexibility` of a gear with root cracks and `missing` teeth: every tooth of `reached_teeth` is loaded and read.
 
     Their `tooth` counts to the loaded side of this gear; `healthy` is that of the same gear without cracks, for the teeth further
     away. The other arguments are as of `flexibility`.
     """
-    reach = max(1, neighbours - 1)
-    solved = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
-    mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks)
+    gone = tuple(tooth % gear.z for tooth in missing)
+    solved = [tooth for tooth in reached_teeth(gear, cracks, missing, neighbours) if tooth not in gone]
+    mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks, missing=gone)
     body = Body(mesh.mesh, material, state=state)
     on = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
     faces = _face_columns(mesh)
@@ -209,9 +220,9 @@ def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state=
                 near[tooth], blocks[tooth] = own_tooth(on[tooth], glued, half_plane(material, state))
             elif (other - tooth) % gear.z <= gear.z // 2:
                 far[tooth, other] = RectBivariateSpline(on[tooth].arc, on[other].arc, glued)
-    seam = SeamFaces({t: CubicSpline(on[t].arc, opening[t].T) for t in solved}, apart, stiffness)
+    seam = SeamFaces({t: CubicSpline(on[t].arc, opening[t].T) for t in solved}, apart, stiffness) if cracks else None
     limits = on[solved[0]].arc[0], on[solved[0]].arc[-1]
-    return Flexibility(gear, near, far, blocks, limits, refine, faces.shape[0], healthy, seam, basis(on[solved[0]]), leans)
+    return Flexibility(gear, near, far, blocks, limits, refine, faces.shape[0], healthy, seam, basis(on[solved[0]]), leans, gone)
 
 
 def _face_columns(mesh):
@@ -222,8 +233,8 @@ def _face_columns(mesh):
         normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
         columns += list(zip(*seam.faces[:, :-2].tolist(), normal.T, strict=True))
     at = np.arange(len(columns))
-    left, right = (np.array([column[side] for column in columns]) for side in (0, 1))
-    normal = np.array([column[2] for column in columns]).T
+    left, right = (np.array([column[side] for column in columns], dtype=int) for side in (0, 1))
+    normal = np.array([column[2] for column in columns]).reshape(-1, 2).T
     rows = [2 * nodes + d for nodes in (left, right) for d in (0, 1)]
     forces = np.concatenate([*normal, *-normal])
     return coo_matrix((forces, (np.concatenate(rows), np.tile(at, 4))), shape=(2 * mesh.mesh.doflocs.shape[1], at.size)).tocsc()

@@ -12,7 +12,7 @@ CASE = "fault"  # the case of damage that a fault is in its scene
 class Fault(NamedTuple):
     """A kind of fault: the key of a scene that its severity is, and the unit of that.
 
-    Its table has the keys of ``KIND_fault`` in ``gearfe/runs/keys.toml``.
+    A key without a name after the point has no severity. Its table has the keys of ``KIND_fault`` in ``gearfe/runs/keys.toml``.
     """
 
     key: str
@@ -29,14 +29,16 @@ class Fault(NamedTuple):
         if not self.damage:
             tables[kind][name] = severity
             return
-        value = [severity] * 2 if scene_schema()[kind].keys[name].type in LISTS else severity
         given = {key: entry for key, entry in row.items() if entry is not None and key not in ("kind", "severity")}
-        tables.setdefault(kind, []).append({"case": CASE, name: value} | given)
+        if name:
+            given[name] = [severity] * 2 if scene_schema()[kind].keys[name].type in LISTS else severity
+        tables.setdefault(kind, []).append({"case": CASE} | given)
 
 
 FAULTS = {
     "crack": Fault("crack.level", "-"),
     "pits": Fault("pits.axes_mm", "mm"),
+    "missing_tooth": Fault("missing_tooth.", "-"),
     "runout": Fault("machine.runout_um", "um"),
     "misplaced": Fault("machine.misplaced_um", "um"),
 }

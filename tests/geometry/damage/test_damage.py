@@ -196,7 +196,7 @@ def test_flexibility_of_a_cracked_gear_is_symmetric_positive_definite(method):
     gear, crack = PAIR.gear_1, (gf.Crack(level=0.6),)
     if method == "fe":
         healthy = fe.flexibility(gear, STEEL, neighbours=2)
-        cracked = fe.cracked_flexibility(gear, STEEL, crack, healthy, neighbours=2)
+        cracked = fe.damaged_flexibility(gear, STEEL, crack, healthy, neighbours=2)
     else:
         healthy, cracked = ritz.flexibility(gear, STEEL, neighbours=2), ritz.flexibility(gear, STEEL, crack, neighbours=2)
     rolls = np.array([2.5, 2.5 + gear.p_bt])
@@ -213,7 +213,7 @@ def counted(monkeypatch, tmp_path):
     monkeypatch.setenv("GEARFE_CACHE", str(tmp_path))
     cache.clear()
     calls = []
-    for name in ("flexibility", "cracked_flexibility"):
+    for name in ("flexibility", "damaged_flexibility"):
         real = getattr(fe, name)
         monkeypatch.setattr(fe, name, lambda *a, _real=real, _name=name, **k: (calls.append(_name), _real(*a, **k))[1])
     yield calls
@@ -225,7 +225,7 @@ def test_only_what_changed_is_solved_again(counted):
     stiffness(PAIR, 127.0, STEEL, **run)
     assert counted == ["flexibility"] * 2
     one = stiffness(PAIR, 127.0, STEEL, damage={"pinion": [gf.Crack(level=0.3)]}, **run)
-    assert counted[2:] == ["cracked_flexibility"]
+    assert counted[2:] == ["damaged_flexibility"]
     cache.clear()  # a new process: from disk
     again = stiffness(PAIR, 127.0, STEEL, damage={"pinion": [gf.Crack(level=0.3)]}, **run)
     assert counted[3:] == []

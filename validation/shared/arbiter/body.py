@@ -35,11 +35,14 @@ class Body:
     refine : float
         Divides all other edge lengths.
     cracks : sequence of gearfe.Crack
+    missing : sequence of int
+        Missing teeth: the root circle takes their place.
     """
 
-    def __init__(self, side, sense, marks, young, nu, refine=1.0, cracks=()):
+    def __init__(self, side, sense, marks, young, nu, refine=1.0, cracks=(), missing=()):
         self.side, self.outline, self.sense = side, side.outline, sense
         self.marks, self.refine, self.cracks = marks, refine, cracks
+        self.missing = {tooth % side.outline.gear.z for tooth in missing}
         self.unfolded = 0
         self._vertices = {}  # tooth: places s of the vertices of its loaded side, number of the first of them, +1 or -1
         rim, chains = self._rim()
@@ -145,6 +148,13 @@ class Body:
             tooth = (self.sense * step) % z
             behind, centre = float(self.outline.pitch(tooth)), 2 * math.pi * step / z
             fillet, flank = (FILLET * m, FLANK * m) if tooth in near else (FAR * m / 2, FAR * m)
+            if tooth in self.missing:  # from where its first point would be to that of the next tooth
+                first = centre + float(self._other(np.array([0.0]))[1][0])
+                count = math.ceil(2 * math.pi / z * self.outline.r_f / (FILLET * m))
+                radius.append(np.full(2 * count, self.outline.r_f))
+                angle.append(first + 2 * math.pi / z * np.arange(2 * count) / (2 * count))
+                at += 2 * count
+                continue
             for loaded_side in (False, True):
                 place = side.place if loaded_side else self._other
                 joints = side.joints if loaded_side else side.joints[[0, 1, -2, -1]]

@@ -43,7 +43,7 @@ class Result:
     zones: list = field(default_factory=list)
 
 
-def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), refines=(0.8, 1.2)):
+def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), missing=((), ()), refines=(0.8, 1.2)):
     """Mesh stiffness of a pair by whole outlines, with the difference of two meshes as its error.
 
     Parameters
@@ -57,6 +57,8 @@ def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), refines=(0
         Young's modulus [MPa] and Poisson's ratio of both gears.
     cracks : (sequence, sequence) of gearfe.Crack
         Of pinion and wheel: straight, through the whole width.
+    missing : (sequence, sequence) of int
+        Missing teeth of pinion and wheel; tooth k is in pair k.
     refines : sequence of float
         Meshes after the first pass; the last is the result. Its error is the larger of the two that its differences to the one
         before and to the first pass say, if errors fall with the square of edge lengths.
@@ -68,13 +70,13 @@ def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), refines=(0
     started = time.process_time()
     outlines = [Outline(gear, flank) for gear, flank in zip((pair.gear_1, pair.gear_2), flanks or (None, None), strict=True)]
     contact = Contact(Press(pair, outlines), [Side(outline) for outline in outlines])
-    states = [_Phase(contact, pair, phase, number, load, material) for number, phase in enumerate(np.atleast_1d(phases))]
+    states = [_Phase(contact, pair, phase, number, load, material, missing) for number, phase in enumerate(np.atleast_1d(phases))]
     zones = [state.first(FIRST) for state in states]
     answers = []
     for refine in (FIRST, *refines):
         if refine != FIRST:
             zones = [state.again(answer, refine) for state, answer in zip(states, answers[-1], strict=True)]
-        bodies = _bodies(contact, zones, material, refine, cracks)
+        bodies = _bodies(contact, zones, material, refine, cracks, missing)
         answers.append([state.solved(some, bodies) for state, some in zip(states, zones, strict=True)])
     k = np.array([[load / (one.approach - state.least) for one, state in zip(row, states, strict=True)] for row in answers])
     last, (middle, fine) = answers[-1], refines[-2:]
@@ -102,9 +104,11 @@ class _Answer:
 class _Phase:
     """One phase: poses of the tooth pairs, their rigid touches, zones and contact."""
 
-    def __init__(self, contact, pair, phase, number, load, material):
+    def __init__(self, contact, pair, phase, number, load, material, missing):
         self.contact, self.number, self.load = contact, number, load
         self.order = orders(pair, phase)
+        for gear, gone in zip((pair.gear_1, pair.gear_2), missing, strict=True):
+            self.order = self.order[~np.isin(self.order % gear.z, np.array(gone, dtype=int) % gear.z)]
         self.stands = stand(pair, float(phase), self.order)
         self.touch = touching(contact.press, self.stands)
         self.least = float(self.touch.gap.min())
@@ -233,7 +237,7 @@ class _Phase:
         return shift
 
 
-def _bodies(contact, zones, material, refine, cracks):
+def _bodies(contact, zones, material, refine, cracks, missing):
     """Both gears, meshed for all zones of all phases."""
     bodies = []
     for gear in (0, 1):
@@ -246,7 +250,7 @@ def _bodies(contact, zones, material, refine, cracks):
             marks.setdefault(zone.order % side.outline.gear.z, []).append((s[good], size[good]))
         marks = {tooth: tuple(np.concatenate(part) for part in zip(*some, strict=True)) for tooth, some in marks.items()}
         sense = 1 if gear == 0 else -1
-        bodies.append(Body(side, sense, marks, *material, refine=refine, cracks=cracks[gear]))
+        bodies.append(Body(side, sense, marks, *material, refine=refine, cracks=cracks[gear], missing=missing[gear]))
     return bodies
 
 

@@ -28,10 +28,10 @@ def join(gear, panels, healthy):
         if following - tooth > 1:
             rows.append(repeated(healthy.stiffness, following - tooth - 1))
     between = _closed(_in_a_row(rows, half), half)
-    n, stops = healthy.push.shape[1], np.cumsum([loaded[id(panels[tooth])].shape[0] - 2 * half for tooth in teeth]).tolist()
+    stops = np.cumsum([loaded[id(panels[tooth])].shape[0] - 2 * half for tooth in teeth]).tolist()
     starts = [0, *stops[:-1]]
-    index = {tooth: slice(start, start + n) for tooth, start in zip(teeth, starts, strict=True)}
-    faces = np.concatenate([np.arange(start + n, stop) for start, stop in zip(starts, stops, strict=True)])
+    index = {tooth: slice(start, start + panels[tooth].push.shape[1]) for tooth, start in zip(teeth, starts, strict=True)}
+    faces = np.concatenate([np.arange(index[tooth].stop, stop) for tooth, stop in zip(teeth, stops, strict=True)])
     influence = {(i, j): between[index[i], index[j]].copy() for i in teeth for j in teeth}
     opening = {t: between[faces, index[t]] for t in teeth}
     return influence, opening | {"influence": between[np.ix_(faces, faces)]}

@@ -15,7 +15,7 @@ from ....geometry.damage.crack import check_through
 from ....geometry.kept import keeping
 from ....geometry.mesh.sector import sector
 from ....geometry.tooth.profile import arc_at, roll_at_arc
-from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning
+from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning, reached_teeth
 from ...solved import solved_gears
 from .join import join
 from .panel import SectionModel, check_order, panel
@@ -26,7 +26,7 @@ HATS = 2  # how many times shorter the hats at corners are than those of `fe`
 KNOTS = 48  # of the splines that carry their polynomial
 
 
-def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
+def flexibility(gear, material, cracks=(), *, missing=(), neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
     """`Flexibility` of a gear by the energy model.
 
     Parameters
@@ -35,6 +35,8 @@ def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain"
     material : Material
     cracks : tuple of Crack
         Their `tooth` counts to the loaded side of this gear.
+    missing : tuple of int
+        Missing teeth, in the same numbers.
     neighbours : int
         How many following teeth may carry load at the same time.
     state : {"plane strain", "plane stress"}
@@ -53,15 +55,15 @@ def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain"
     check_order(order)
     check_through(cracks, "the energy model of the section")
     model = SectionModel(gear, material, state, int(order), float(refine))
-    return _flexibility(model, tuple(cracks), neighbours, solved_gears(cache))
+    return _flexibility(model, tuple(cracks), tuple(missing), neighbours, solved_gears(cache))
 
 
-def _flexibility(model, cracks, neighbours, cache):
-    solve = _cracked if cracks else _healthy
-    return cache.get(("ritz", model, cracks, neighbours), partial(solve, model, cracks, neighbours, cache))
+def _flexibility(model, cracks, missing, neighbours, cache):
+    solve = partial(_damaged, model, cracks, missing) if cracks or missing else partial(_healthy, model)
+    return cache.get(("ritz", model, cracks, missing, neighbours), partial(solve, neighbours, cache))
 
 
-def _healthy(model, _, neighbours, cache):
+def _healthy(model, neighbours, cache):
     gear, healthy = model.gear, loaded_sector(model, (), cache)
     teeth = range(min(neighbours + 1, gear.z))
     influence, _ = join(gear, dict.fromkeys(teeth, healthy), healthy)
@@ -73,14 +75,16 @@ def _healthy(model, _, neighbours, cache):
     )
 
 
-def _cracked(model, cracks, neighbours, cache):
-    """Flexibility with cracks; that without serves the teeth too far away to share load with a cracked one."""
-    gear, reach = model.gear, max(1, neighbours - 1)
-    healthy = _flexibility(model, (), neighbours, cache)
-    teeth = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
-    by_tooth = {tooth: tuple(crack for crack in cracks if crack.tooth % gear.z == tooth) for tooth in teeth}
-    panels = {tooth: loaded_sector(model, tooth_cracks, cache) for tooth, tooth_cracks in by_tooth.items()}
+def _damaged(model, cracks, missing, neighbours, cache):
+    """Flexibility with damage; that without serves the teeth further away than `reached`."""
+    gear = model.gear
+    healthy = _flexibility(model, (), (), neighbours, cache)
+    gone = {tooth % gear.z for tooth in missing}
+    reached = reached_teeth(gear, cracks, missing, neighbours)
+    by_tooth = {tooth: tuple(crack for crack in cracks if crack.tooth % gear.z == tooth) for tooth in reached}
+    panels = {tooth: loaded_sector(model, own, cache, missing=tooth in gone) for tooth, own in by_tooth.items()}
     influence, opening = join(gear, panels, loaded_sector(model, (), cache))
+    teeth = [tooth for tooth in reached if tooth not in gone]
     between = opening["influence"]
     stiffness = np.linalg.inv(between)
     near, within, far, leans = {}, {}, {}, {}
@@ -94,19 +98,24 @@ def _cracked(model, cracks, neighbours, cache):
     arcs, matrix = _knots(gear)
     seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t][:, :PLACES].T) for t in teeth}, between, stiffness)
     unknowns, fine = sum(p.unknowns for p in panels.values()), HATS * model.refine
-    return Flexibility(gear, near, far, within, _limits(gear), fine, unknowns, healthy, seam, _basis(gear), leans)
+    seam = seam if cracks else None
+    return Flexibility(gear, near, far, within, _limits(gear), fine, unknowns, healthy, seam, _basis(gear), leans, tuple(gone))
 
 
-def loaded_sector(model, cracks, cache=True):
-    """`Panel` of a sector with `cracks` under the loads at `_places`, and under eight tilted ones: at `_leans`, both ways."""
+def loaded_sector(model, cracks, cache=True, *, missing=False):
+    """`Panel` of a sector with `cracks` under the loads at `_places`, and under eight tilted ones: at `_leans`, both ways.
+
+    A `missing` tooth has no loads.
+    """
     gear = model.gear
 
     def solve():
         rolls = np.append(_places(gear), np.repeat(roll_at_arc(gear, _leans(gear)), 2))
         tilt = np.append(np.zeros(PLACES), [TILT, -TILT] * 4)
-        return panel(model, sector(gear, cracks, refine=model.refine), rolls, tilt)
+        loads = slice(0 if missing else None)
+        return panel(model, sector(gear, cracks, missing=missing, refine=model.refine), rolls[loads], tilt[loads])
 
-    return solved_gears(cache).get(("ritz sector", model, cracks), solve)
+    return solved_gears(cache).get(("ritz sector", model, cracks, missing), solve)
 
 
 def _limits(gear):

@@ -1,0 +1,58 @@
+"""`MissingTooth`: a tooth that has broken off."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..tooth.gear import Gear
+from ..tooth.profile import cartesian, flank
+from .given import tooth_and_side
+
+
+@dataclass(frozen=True, slots=True)
+class MissingTooth:
+    """A tooth that has broken off: the root circle continues over its pitch.
+
+    Where no other tooth pair is on the path of contact, the gears rotate on until tip corners of the neighbours touch. The
+    unloaded transmission error contains this gap, and the mesh stiffness is the force over the deflection beyond it.
+
+    Parameters
+    ----------
+    tooth : int
+        Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0.
+
+    Raises
+    ------
+    ValueError
+        If `tooth` is not a whole number.
+
+    >>> MissingTooth(tooth=5).tooth
+    5
+    """
+
+    tooth: int = 0
+
+    nouns: ClassVar[tuple[str, str]] = ("missing tooth", "missing teeth")
+    called: ClassVar[str] = "missing"
+    removes_contact: ClassVar[None] = None  # it removes the whole tooth
+    through: ClassVar[bool] = True
+    side: ClassVar[str] = "loaded"
+
+    def __post_init__(self) -> None:
+        """Check the number of the tooth."""
+        object.__setattr__(self, "tooth", tooth_and_side(self.tooth, "loaded"))
+
+    def outline(self, gear: Gear) -> NDArray[np.float64]:
+        """Line ``(2, n)`` [mm] along both flanks and the tip of the tooth, in its frame."""
+        x, y = cartesian(*flank(gear, np.linspace(gear.roll_f, gear.roll_a, 24)))
+        return np.array([np.append(x, -x[::-1]), np.append(y, y[::-1])])
+
+    def told(self, gear: Gear) -> str:
+        """Return it in words."""
+        return "missing tooth"
+
+    def doubts(self, gear: Gear) -> str:
+        """Return no warning."""
+        return ""
