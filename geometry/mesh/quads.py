@@ -184,7 +184,8 @@ def _quarters(values):
 
 def _mouths(gear, size, found):
     """By side of a cracked tooth: arc where the parting line starts and the edge length there [mm]."""
-    mouths = {crack.side: (start_arc(gear, crack), min(size["fillet"], lengths(meshed_path(gear, crack))[-1] / 4)) for _, crack in found}
+    ends = {crack.side: (start_arc(gear, crack), lengths(meshed_path(gear, crack))[-1]) for _, crack in found}
+    mouths = {side: (arc, min(size["fillet"], length / 4)) for side, (arc, length) in ends.items()}
     (only,) = [*mouths.values()][:1]
     return {side: mouths.get(side, (only[0], size["fillet"])) for side in ("unloaded", "loaded")}
 
