@@ -156,4 +156,3 @@ def judged():
 def as_printed():
     """Lines: every number of S4's table with its verdict."""
     return PRINTED.format(printed=text(*judged())).strip().splitlines()
-
