@@ -1,14 +1,17 @@
 """Checks of what geometry is given: numbers, and things given by gear."""
 
 import math
+import sys
 from collections.abc import Mapping
 from numbers import Integral, Real
 from typing import Any, TypeGuard
 
+LARGEST = sys.float_info.max
+
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Whether it is a real number: no text, no truth value."""
-    return isinstance(value, Real) and not isinstance(value, bool)
+    """Whether it is a real number that a float can hold: no text, no truth value, no whole number of 400 digits."""
+    return isinstance(value, Real) and not isinstance(value, bool) and not (is_whole(value) and abs(value) > LARGEST)
 
 
 def is_finite(value: object) -> TypeGuard[float]:

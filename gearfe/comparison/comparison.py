@@ -237,7 +237,8 @@ class Comparison:
             last: list[Any] = ["seconds", *([""] * (columns.index("zone")))]
             for name, parts in shown.items():
                 total = sum(self.times.get((*key, name), 0.0) for key in self.asked)
-                last += [(total, "{:.4f}"), *([None] * (len(parts) - 1))]
+                stored = any(self.solved[*key, name].meta.get("stored") for key in self.asked if (*key, name) in self.solved)
+                last += [(total, "{:.4f}, stored" if stored else "{:.4f}"), *([None] * (len(parts) - 1))]
             body.append(last)
         return Table(columns, body, "errors of each method")
 

@@ -15,7 +15,8 @@ FINEST = 64.0  # edges 64 times shorter: beyond, k changes by less than the erro
 
 
 def number(name: str, value: Any) -> float:
-    """The number as a float; ValueError if it is no number, nan or a truth value."""
+    """The number as a float; ValueError if it is no number, nan or a truth value. An array of one number and no axis is one."""
+    value = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 and not np.ma.is_masked(value) else value
     if not is_number(value) or math.isnan(value):
         raise ValueError(f"{name} = {value!r}, but it needs a number")
     return float(value)

@@ -1,30 +1,25 @@
 """`error_map`: how far closed forms are from the converged energy model, over thousands of gear pairs."""
 
-import csv
+import contextlib
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from ..comparison.own_model import OwnModel, own_curve
 from ..core.case import Case
-from ..core.files import written
+from ..core.checks import whole
 from ..core.material import Material
 from ..core.threads import own_warnings
-from ..geometry.aliases import Floats, StrPath
+from ..geometry.aliases import Floats
 from ..geometry.damage.crack import Crack, crack_path
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.tooth.gear import Gear
 from ..stiffness.methods import ROWS
 from ..stiffness.solve import Solve, solve
 from .batches import batch
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 # the sampled space: uniform between these ends; bores in root radii, loads F / (b m_n) in MPa on a logarithmic scale
 RANGES = {
@@ -52,14 +47,11 @@ class ErrorMap:
     `columns` maps names to arrays: the sampled numbers, ``load`` [MPa], ``crack`` (0: healthy), and for each zone ``k`` of
     ritz [N/(mm um)] and the error of each formulation as ``"textbook single"`` and so on (nan: the formulation or the zone
     does not exist there). ``extended mean`` is what contact beyond the path of contact adds to the mean k. `formulations`
-    are their names; `seconds` (cases,), `elapsed` and `workers` the cost.
+    are their names; `gearfe.figures.stiffness_plots.plot_map` draws them.
     """
 
     columns: dict[str, Floats]
     formulations: tuple[str, ...]
-    seconds: Floats
-    elapsed: float
-    workers: int
 
     def rows(self, **limits: tuple[float, float]) -> NDArray[np.bool_]:
         """Mask of the rows whose columns lie within the given ``name=(low, high)``."""
@@ -78,39 +70,17 @@ class ErrorMap:
             return (math.nan,) * 4 + (0,)
         return *np.percentile(error, [5, 50, 95]).tolist(), float((np.abs(error) < 0.03).mean()), error.size
 
-    def to_csv(self, path: StrPath) -> None:
-        """Write all columns, with a header."""
-        with written(path) as name, open(name, "w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file)
-            table.writerow(self.columns)
-            table.writerows([f"{value:.6g}" for value in row] for row in zip(*self.columns.values(), strict=True))
-
-    def plot(
-        self,
-        path: StrPath | None,
-        formulations: Sequence[str] | None = None,
-        x: str = "load",
-        y: str = "bore_1",
-        zone: str = "mean",
-    ) -> "Figure":
-        """Heat maps of the median error of healthy pairs over two columns, one for each formulation."""
-        from ..figures.stiffness_plots import plot_map
-
-        names = formulations or [name for name in self.formulations if name not in CRACKED]
-        return plot_map(self, names, x, y, zone, path)
-
 
 def error_map(
     pairs: int = 2000,
     *,
     seed: int = 0,
     loads: Sequence[float] = LOADS,
-    models: Mapping[str, Callable[[GearPair, float, Material], OwnModel]] | None = None,
     phases: int = 24,
     workers: int | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> ErrorMap:
-    """Errors of the closed forms, and of your own models, against `ritz` over a sample of gear pairs.
+    """Errors of the closed forms against `ritz` over a sample of gear pairs.
 
     A scrambled Sobol sequence over `RANGES`; samples that cannot be built or mesh, or whose crack leaves
     the body, are passed over. Every pair is taken healthy, and every second one also with a pinion crack from the 30-degree point
@@ -124,9 +94,6 @@ def error_map(
         Of the sample.
     loads : sequence of float
         F / (b m_n) [MPa]: geometry and load scale with the module.
-    models : dict of str to callable, optional
-        Your own, healthy pairs only: ``make(pair, force, material)`` returns a model as in `gearfe.compare` (a function of the
-        phase, or a `PairModel`).
     phases : int
         Per mesh cycle.
     workers, progress
@@ -141,22 +108,17 @@ def error_map(
     ------
     ValueError
         If `pairs` is no whole number from 1 on, `phases` is below 1, `loads` are empty or one is not positive and finite, or so
-        large that teeth would break, `workers` is no whole number from 1 on, or your own model fails or its k is not finite and
-        positive.
+        large that teeth would break, or `workers` is no whole number from 1 on.
     """
-    if pairs != int(pairs) or pairs < 1:
-        raise ValueError(f"pairs = {pairs}, but give a number of pairs >= 1")
-    shared: dict[str, Any] = {"loads": tuple(loads), "models": dict(models or {}), "phases": int(phases)}
-    cases = [{"sample": sample, **shared} for sample in _samples(int(pairs), seed)]
-    done = batch(cases, work=_one, workers=workers, progress=progress)
-    for result in done.results:
+    cases = [{"sample": one, "loads": list(loads), "phases": int(phases)} for one in _samples(whole("pairs", pairs, 1), seed)]
+    rows: list[dict[str, float]] = []
+    for result in batch(cases, work=_one, workers=workers, progress=progress).results:
         if isinstance(result, Exception):
             raise result
-    names = (*HEALTHY, *shared["models"], *CRACKED)
-    rows = [row for result in done.results for row in result]
+        rows += result
+    names = (*HEALTHY, *CRACKED)
     keys = [*RANGES, "load", *(f"k {zone}" for zone in ZONES), "extended mean", *(f"{n} {zone}" for n in names for zone in ZONES)]
-    columns = {key: np.array([row.get(key, math.nan) for row in rows]) for key in keys}
-    return ErrorMap(columns, names, np.array(done.seconds), done.elapsed, done.workers)
+    return ErrorMap({key: np.array([row.get(key, math.nan) for row in rows]) for key in keys}, names)
 
 
 def build(sample):
@@ -172,50 +134,36 @@ def build(sample):
 
 def _samples(count, seed):
     """`count` samples that can be built."""
-    names, ends = list(RANGES), np.array(list(RANGES.values()))
-    source = qmc.Sobol(len(names), seed=seed)
-    out = []
+    ends = np.array(list(RANGES.values()))
+    source, out = qmc.Sobol(len(RANGES), seed=seed), []
     while len(out) < count:
-        for point in qmc.scale(source.random(256), ends[:, 0], ends[:, 1]):
-            sample = dict(zip(names, point.tolist(), strict=True))
+        for point in qmc.scale(source.random(256), ends[:, 0], ends[:, 1]).tolist():
+            sample = dict(zip(RANGES, point, strict=True))
             sample |= {name: float(round(sample[name])) for name in ("z_1", "z_2")}
-            try:
+            with contextlib.suppress(ValueError):
                 crack_path(build(sample).gear_1, Crack(level=sample["crack"]))
-            except ValueError:
-                continue
-            out.append(sample)
-            if len(out) == count:
-                break
-    return [sample | {"crack": sample["crack"] if k % 2 else 0.0} for k, sample in enumerate(out)]
+                out.append(sample)
+    return [sample | {"crack": sample["crack"] * (k % 2)} for k, sample in enumerate(out[:count])]
 
 
-def _one(sample, loads, models, phases):
+def _one(sample, loads, phases):
     """Rows of one pair."""
-    pair, steel = build(sample), Material()
-    forces = [load * 1.0 for load in loads]
-    case, how = Case(pair, forces, steel), Solve("ritz", phases=(np.arange(phases) + 0.5) / phases, extended=False)
+    case, how = Case(build(sample), loads, Material()), Solve("ritz", phases=(np.arange(phases) + 0.5) / phases, extended=False)
     truth, beyond = solve(case, how), solve(case, replace(how, extended=True))
     curves = {name: solve(case, replace(how, method=name)) for name in HEALTHY}
-    for name, make in models.items():
-        curves[name] = [
-            own_curve(name, make(pair, force, steel), pair, curve) for force, curve in zip(forces, truth, strict=True)
-        ]
     rows = [
-        sample
-        | {"crack": 0.0, "load": load, "extended mean": beyond[i].k.mean() / truth[i].k.mean() - 1}
+        {**sample, "crack": 0.0, "load": load, "extended mean": beyond[i].k.mean() / truth[i].k.mean() - 1}
         | _errors(truth, curves, i)
         for i, load in enumerate(loads)
     ]
     if sample["crack"]:
-        inside = np.linspace(0, pair.eps_alpha, int(phases * pair.eps_alpha) + 1)
+        inside = np.linspace(0, case.pair.eps_alpha, int(phases * case.pair.eps_alpha) + 1)
         case = replace(case, damage={"pinion": [Crack(level=sample["crack"])]})
         how = replace(how, phases=(inside[1:] + inside[:-1]) / 2)
         truth, curves = solve(case, how), {}
         for name, (method, variants) in CRACKED.items():
-            try:
+            with contextlib.suppress(ValueError):  # nothing is left of the beam: the model has no value here
                 curves[name] = solve(case, replace(how, method=method, variants=variants))
-            except ValueError:  # nothing is left of the beam: the model has no value here
-                continue
         rows += [sample | {"load": load} | _errors(truth, curves, i) for i, load in enumerate(loads)]
     return rows
 

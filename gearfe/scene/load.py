@@ -22,6 +22,8 @@ from .schema import arguments, scene_schema
 from .set_table import SceneSet, set_of
 from .toml_file import read_toml
 
+HEALTHY = "healthy"  # the case without damage
+
 
 @dataclass(frozen=True, slots=True)
 class ScenePair:
@@ -134,6 +136,9 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     if run:
         run["bodies"] = {name: (float(body["mass_kg"]), float(body["inertia_kgm2"])) for name, body in run["bodies"].items()}
     cases = {kind: _by_case(rows[kind]) for kind in parts.DAMAGE}
+    for kind, by_case in cases.items():
+        for name in {"", HEALTHY} & by_case.keys():
+            raise ValueError(f"{file} [{kind}] case = {name!r}: this names gears without damage; give another name")
     kept, changed, own = assumed.split(file, rows["assumption"], rows["given"], rows | cases)
     title, source = rows["title"], rows["source"]
     if own:

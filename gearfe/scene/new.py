@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+from ..core.checks import is_number, number
 from ..core.files import written
 from ..geometry.damage.crack import Crack, path_length
 from .load import scene_of
@@ -73,7 +74,14 @@ def new_scene(
         raise ValueError(f"{path}: a scene is a .toml file; give a name such as my.toml")
     if path.exists():
         raise ValueError(f"{path} exists and is not overwritten: give another name, or remove it")
+    if not path.name.isprintable():
+        raise ValueError(f"{path.name!r}: give the scene a name of letters that can be printed")
     teeth = teeth or ((21, 63) if ring else (21, 31))
+    for name, pair_of in {"teeth": teeth, "crack": crack or (1.0, 1.0)}.items():
+        if not isinstance(pair_of, (tuple, list)) or len(pair_of) != 2 or not all(map(is_number, pair_of)):
+            raise ValueError(f"{name} = {pair_of!r}, but give two numbers")
+    module, helix_deg, width = number("module", module), number("helix_deg", helix_deg), number("width", width)
+    torque_Nm = None if torque_Nm is None else number("torque", torque_Nm)
     spur: dict[str, Any] = {"m_n_mm": float(module), "alpha_n_deg": 20.0, "b_mm": float(width), "x": 0.0}
     pinion = {"z": teeth[0], **spur, "beta_deg": float(helix_deg), **RACK}
     wheel = {"z": teeth[1], **spur, "beta_deg": (helix_deg if ring else -helix_deg) + 0.0, **(RING if ring else RACK)}

@@ -44,10 +44,11 @@ def oscillation(values: Floats, told: str) -> Floats:
     return x
 
 
-def hertz(name: str, value: Any) -> None:
-    """Raise ValueError unless `value` is a frequency [Hz] within `HERTZ`."""
+def hertz(name: str, value: Any) -> float:
+    """A frequency [Hz] as a float; ValueError unless it is a number within `HERTZ`."""
     if not (is_number(value) and HERTZ[0] <= value <= HERTZ[1]):
         raise ValueError(f"{name} = {value!r}, but give a positive number of Hz")
+    return float(value)
 
 
 def band_of(band: Any, rate: float, name: str) -> tuple[float, float]:

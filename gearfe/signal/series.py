@@ -48,9 +48,9 @@ class Signal:
         values = samples(self.name, self.values)
         values.flags.writeable = False
         object.__setattr__(self, "values", values)
-        hertz(f"{self.name}: rate", self.rate)
-        if self.shaft_frequency is not None:
-            hertz(f"{self.name}: shaft_frequency", self.shaft_frequency)
+        for name in ("rate", "shaft_frequency"):
+            if name == "rate" or self.shaft_frequency is not None:
+                object.__setattr__(self, name, hertz(f"{self.name}: {name}", getattr(self, name)))
         if not isinstance(self.unit, str) or not self.unit.strip():
             raise ValueError(f"{self.name}: unit = {self.unit!r}, but a signal needs one, for example 'm/s^2'")
         if self.angle is None:

@@ -4,8 +4,9 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import make_interp_spline
-from scipy.ndimage import maximum_filter1d, median_filter
+from scipy.ndimage import median_filter
 from scipy.signal import fftconvolve, get_window, stft
 
 from ..core.checks import whole
@@ -111,15 +112,13 @@ def _followed(score, step):
     """Of all paths that move by at most `step` speeds from window to window, the one with the largest sum (R. Bellman)."""
     total, came = score[0], []
     for frame in score[1:]:
-        reach = maximum_filter1d(total, 2 * step + 1, mode="constant", cval=-np.inf)
-        came.append((total, reach))
-        total = reach + frame
-    at, path = int(np.argmax(total)), []
-    for before, reach in reversed(came):
-        path.append(at)
-        near = np.arange(max(0, at - step), min(score.shape[1], at + step + 1))
-        at = int(near[np.argmin(np.abs(before[near] - reach[at]) + 1e-12 * np.abs(near - at))])
-    path.append(at)
+        reach = sliding_window_view(np.pad(total, step, constant_values=-np.inf), 2 * step + 1)
+        best = reach.argmax(axis=1)
+        came.append(best + np.arange(best.size) - step)
+        total = total[came[-1]] + frame
+    path = [int(np.argmax(total))]
+    for before in reversed(came):
+        path.append(before[path[-1]])
     return np.array(path[::-1])
 
 

@@ -4,13 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from machines import SHAPE, herringbone
+from machines import SHAPE, difference, herringbone
 from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.dynamics.machine.pitted_planetary import pitted_planetary
 from gearfe.dynamics.machine.turning_frame import frame_terms
-from gearfe.dynamics.motion.step_control import difference
 from validation.shared.reference import lin_parker
 
 SPIN, MASS, STIFF, ZETA = 300.0, 2.0, 8e6, 0.05

@@ -6,6 +6,7 @@ import pytest
 
 import gearfe as gf
 from gearfe.reports.sweep_page import SHOWN
+from gearfe.runs.store.shards import fields
 from gearfe.runs.sweeps.kinds import KINDS
 
 pytest.importorskip("plotly")
@@ -40,4 +41,4 @@ def test_every_kind_of_study_has_a_page():
     """What is drawn of a kind are columns of its results."""
     assert set(SHOWN) == set(KINDS)
     for kind, (output, curve) in SHOWN.items():
-        assert {output, curve} - {None} <= set(KINDS[kind].fields)
+        assert {output, curve} - {None} <= set(fields(kind))

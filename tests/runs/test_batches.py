@@ -11,6 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.figures.stiffness_plots import plot_map
 from gearfe.runs.errormap import CRACKED, HEALTHY, RANGES, ErrorMap, build
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 1.0}
@@ -70,8 +71,7 @@ def test_a_plain_script_runs_once_however_many_workers(tmp_path):
 
 @pytest.fixture(scope="module")
 def found():
-    models = {"same": lambda pair, force, steel: gf.PairModel(lambda r, s: np.full(r.size, 1e7))}
-    return gf.error_map(4, seed=1, loads=(20.0, 100.0), models=models, phases=12, workers=1)
+    return gf.error_map(4, seed=1, loads=(20.0, 100.0), phases=12, workers=1)
 
 
 def test_rows_of_the_map(found):
@@ -85,7 +85,7 @@ def test_rows_of_the_map(found):
     assert np.isfinite(columns["textbook mean"][healthy]).all()
     assert np.isnan(columns["textbook mean"][~healthy]).all()
     assert np.isfinite(columns["textbook straight single"][~healthy]).any()
-    assert set(found.formulations) == {*HEALTHY, "same", *CRACKED}
+    assert set(found.formulations) == {*HEALTHY, *CRACKED}
 
 
 def test_a_row_of_the_map_is_what_the_methods_give(found):
@@ -98,34 +98,25 @@ def test_a_row_of_the_map_is_what_the_methods_give(found):
         assert_allclose(found.columns[f"textbook {zone}"][row], formula[zone] / truth[zone] - 1, rtol=1e-6)
 
 
-def test_bands_and_files(found, tmp_path):
+def test_bands_and_picture(found, tmp_path):
     low, middle, high, share, count = found.bands("textbook", "mean", crack=(0, 0))
     error = found.columns["textbook mean"][found.rows(crack=(0, 0))]
     assert_allclose([low, middle, high], np.percentile(error, [5, 50, 95]))
     assert_allclose(share, (np.abs(error) < 0.03).mean())
     assert count == 8
     assert math.isnan(found.bands("textbook", "mean", load=(1, 2))[0])
-    found.to_csv(tmp_path / "map.csv")
-    table = np.genfromtxt(tmp_path / "map.csv", delimiter=",", names=True, deletechars="")
-    assert_allclose(table["k_mean"], found.columns["k mean"], rtol=1e-5)
-    found.plot(tmp_path / "map.png")
+    plot_map(found, HEALTHY, "load", "bore_1", "mean", tmp_path / "map.png")
     assert (tmp_path / "map.png").stat().st_size > 10000
-
-
-def test_your_own_model_is_in_the_map(found):
-    healthy = found.rows(crack=(0, 0))
-    assert np.isfinite(found.columns["same mean"][healthy]).all()
-    assert_allclose((1 + found.columns["same single"][healthy]) * found.columns["k single"][healthy], 10.0, rtol=1e-9)
 
 
 @pytest.mark.parametrize("pairs", [0, 1.5])
 def test_impossible_number_of_pairs(pairs):
-    with pytest.raises(ValueError, match="number of pairs"):
+    with pytest.raises(ValueError, match="pairs = "):
         gf.error_map(pairs)
 
 
 def test_models_too_soft_count_as_those_too_stiff():
     """Of four errors two are within 3 %, whichever way."""
     columns = {"load": np.ones(4), "mine mean": np.array([-0.5, -0.02, 0.02, 0.5])}
-    made = ErrorMap(columns, ("mine",), np.zeros(4), 0.0, 1)
+    made = ErrorMap(columns, ("mine",))
     assert made.bands("mine")[3:] == (0.5, 4)

@@ -105,3 +105,34 @@ def test_length_of_the_crack_beside_its_level_is_the_same_crack(tmp_path):
     crack = gf.load_scene(path).pair().damage["cracked"]["pinion"][0]
     assert crack.level is None
     assert gf.mesh_stiffness(gf.load_scene(path).pair().case("cracked"), **run).k[0] == pytest.approx(level.k[0], rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"torque_Nm": 1e9}, {"torque_Nm": 1e-9}, {"torque_Nm": 1e300}, {"torque_Nm": 10**400}, {"torque_Nm": "5"},
+        {"width": 1e-9}, {"width": "x"}, {"module": None}, {"module": math.nan}, {"module": 1e-6},
+        {"helix_deg": 80.0}, {"helix_deg": math.nan},
+        {"teeth": (21,)}, {"teeth": (21.5, 31)}, {"teeth": "ab"}, {"crack": (1.0,)}, {"crack": (1e9, 45.0)},
+        {"tip_relief_um": 20000.0, "tip_length_mm": 1.0}, {"tip_relief_um": math.inf, "tip_length_mm": 1.0},
+        {"tip_relief_um": 5.0, "tip_length_mm": 1e-9}, {"tip_relief_um": 5.0},
+    ],
+)  # fmt: skip
+def test_a_pair_that_check_rejects_is_not_written(tmp_path, options):
+    with pytest.raises(ValueError):  # noqa: PT011 - for many reasons
+        gf.new_scene(tmp_path / "my.toml", **options)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["a\nb.toml", "a\x1bb.toml", "a\udc80b.toml"])
+def test_a_name_that_no_comment_can_hold_is_refused(tmp_path, name):
+    with pytest.raises(ValueError, match="that can be printed"):
+        gf.new_scene(tmp_path / name)
+
+
+@pytest.mark.parametrize("name", ["", "healthy"])
+def test_a_case_of_damage_is_not_called_as_health_is(tmp_path, name):
+    file = gf.new_scene(tmp_path / "my.toml")
+    file.write_text(file.read_text().replace('case = "cracked"', f'case = "{name}"', 1))
+    with pytest.raises(ValueError, match=f"case = '{name}': this names gears without damage"):
+        gf.load_scene(file)

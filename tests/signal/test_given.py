@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -83,3 +84,12 @@ def test_numbers_of_turns_rates_and_bands(wrong):
     if wrong not in (2.5,):
         with pytest.raises(ValueError, match="rate = "):
             gf.decimate(SHAFT, wrong)
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64, np.int32, int, Fraction])
+def test_rates_of_any_type_are_floats(kind):
+    signal = gf.Signal(np.arange(8.0), kind(1000), "g", shaft_frequency=kind(20))
+    assert type(signal.rate) is type(signal.shaft_frequency) is float
+    assert (signal.rate, signal.shaft_frequency) == (1000.0, 20.0)
+    with pytest.raises(ValueError, match="rate = 1000"):
+        gf.Signal(np.arange(8.0), 10**400, "g")

@@ -6,6 +6,7 @@ from itertools import product
 import numpy as np
 
 import gearfe as gf
+from gearfe.figures.stiffness_plots import plot_map
 from gearfe.runs.errormap import CRACKED, HEALTHY, LOADS, ZONES, build
 
 from ..shared import page, reference
@@ -36,7 +37,7 @@ CRACKS = {"level below 0.1": (1e-9, 0.1), "0.1 to 0.3": (0.1, 0.3), "0.3 to 0.5"
 def sampled():
     """Tables of the random pairs, as lines; draws the picture."""
     found = gf.error_map(PAIRS, progress=_progress)
-    found.plot(PICTURE)
+    plot_map(found, HEALTHY, "load", "bore_1", "mean", PICTURE)
     healthy, cracked, parts = [], [], []
     for name in HEALTHY:
         healthy.append(f"| {name} | " + " | ".join(_cell(found.bands(name, zone, crack=(0, 0))) for zone in ZONES) + " |")
@@ -60,13 +61,13 @@ def sampled():
 def section(found):
     """Lines of the random pairs, of what `sampled` gives."""
     return [
-        "## Random healthy pairs",
-        "",
-        f"{found['pairs']} external pairs, {found['rows']} rows of pair, load and crack; the sample is fixed",
-        "(`gearfe.error_map`,",
-        "seed 0). Loads are F / (b m_n). Errors of k against `ritz`, without contact beyond the path of contact: at 5 / 50 /",
-        "95 %",
-        "of the rows; share of the rows within 3 %.",
+        f"""
+        ## Random healthy pairs
+
+        {found["pairs"]} external pairs, {found["rows"]} rows of pair, load and crack; the sample is fixed
+        (`gearfe.error_map`, seed 0). Loads are F / (b m_n). Errors of k against `ritz`, without contact beyond the path of
+        contact: at 5 / 50 / 95 % of the rows; share of the rows within 3 %.
+        """,
         "",
         "| formulation | " + " | ".join(ZONES) + " |",
         "|---" * (len(ZONES) + 1) + "|",
@@ -78,12 +79,13 @@ def section(found):
         "| part | " + " | ".join(HEALTHY) + " |",
         "|---" * (len(HEALTHY) + 1) + "|",
         *found["parts"],
-        "",
-        f"![median error by load and bore]({PICTURE.name})",
-        "",
-        "## Random cracked pinions",
-        "",
-        "Over the engagement of the cracked tooth, where it carries alone (single):",
+        f"""
+        ![median error by load and bore]({PICTURE.name})
+
+        ## Random cracked pinions
+
+        Over the engagement of the cracked tooth, where it carries alone (single):
+        """,
         "",
         "| formulation | " + " | ".join(CRACKS) + " |",
         "|---" * (len(CRACKS) + 1) + "|",
@@ -94,13 +96,15 @@ def section(found):
 def corners(again=False):
     """Lines: the reference against finite elements."""
     return [
-        "## The reference at the corners of the map",
-        "",
-        "Largest difference of k at any phase between `ritz`, the reference of the map, and `fe` (refine 2), contact beyond the",
-        "path included. They share the profile, the held bore and the contact: see [outlines.md](outlines.md).",
-        "",
-        "| z | pressure angle | shifts | bore / r_f | healthy | 30 % crack |",
-        "|---|---|---|---|---|---|",
+        """
+        ## The reference at the corners of the map
+
+        Largest difference of k at any phase between `ritz`, the reference of the map, and `fe` (refine 2), contact beyond the
+        path included. They share the profile, the held bore and the contact: see [outlines.md](outlines.md).
+
+        | z | pressure angle | shifts | bore / r_f | healthy | 30 % crack |
+        |---|---|---|---|---|---|
+        """,
         *kept("map", "corners", lambda: {"lines": _corners()}, again)["lines"],
     ]
 
@@ -119,7 +123,7 @@ def run(again=True):
         f"Of random pairs' mean stiffness within 3 %: {best}; parts of the map below in which nine rows in ten are: {held}. "
         "Agreement below 3 % is a coincidence of load and zone."
     )
-    page.write("map", answer, HOW.strip().splitlines(), section(found), corners(again), formulations.section(again))
+    page.write("map", answer, HOW, section(found), corners(again), formulations.section(again))
 
 
 def _three(band):

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...flexibility.hertz import contact_modulus
 from .contact_law import friction_coefficient
-from .gear_mesh import Samples
+from .mesh_curves import Samples
 from .phase_table import table
 
 SI = 1e3**1.5  # N/mm^1.5 to N/m^1.5

@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING
 
 from ...core.table import Column, Table
 from ...scene.schema import schema_of
+from ..store.shards import columns
 from .conditions import Condition
 from .faults import FAULTS, HEALTHY
 from .plan import SIDES, Plan
-from .windows import COLUMNS, LABELS, samples_of
+from .windows import samples_of
 
 if TYPE_CHECKING:
     from .opened import Dataset
@@ -140,8 +141,8 @@ def _levels(labels):
 
 
 def _columns(plan):
-    fields = LABELS | {key: LABELS["error"]._replace(unit="as in the scene") for key in plan.scatter}
-    rows = [[f"`{name}`", field.unit, COLUMNS[name][1] if name in COLUMNS else ""] for name, field in fields.items()]
+    rows = [[f"`{name}`", field.unit, text] for name, (field, text) in columns("windows").items()]
+    rows += [[f"`{key}`", "as in the scene", ""] for key in plan.scatter]
     rows.append(["`signal`", "see `unit`", f"{samples_of(plan)} numbers of 4 bytes"])
     return Table(("column", "unit", "meaning"), rows).markdown()
 

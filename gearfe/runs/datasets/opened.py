@@ -13,7 +13,7 @@ from ...core.extras import needing
 from ...core.files import written
 from ...geometry.aliases import StrPath
 from ..store.folder import read_about
-from ..store.shards import arrow, fields_of, frame, opened, read, shard_names, where_of
+from ..store.shards import arrow, fields_of, frame, opened, read, shard_names
 
 if TYPE_CHECKING:
     import pandas
@@ -88,7 +88,7 @@ class Dataset:
         shards = opened(self.folder / WINDOWS)
         fields = fields_of(shards.schema)
         names = [name for name in fields if name != "signal"]
-        rows = read(self.folder / WINDOWS, [*names, *(["signal"] if signal else [])], where_of(where, names))
+        rows = read(self.folder / WINDOWS, [*names, *(["signal"] if signal else [])], where)
         labels = frame(rows.select(names), fields)
         if not signal:
             return labels, None
@@ -115,10 +115,8 @@ class Dataset:
             raise ValueError(f"form = {form!r}, but it must be one of {', '.join(WRITERS)}")
         suffix, write = WRITERS[form]
         out = []
-        for side in ("train", "validation", "test"):
+        for side in self.labels()["side"].unique():
             signals, labels = self.windows({"side": side})
-            if not len(labels):
-                continue
             path = self.folder / f"{side}{suffix}"
             with written(path) as name:
                 write(name, signals, labels, self.about)

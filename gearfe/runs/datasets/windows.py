@@ -8,75 +8,27 @@ import numpy as np
 from ...comparison.vibration import recorded
 from ...core.threads import own_warnings
 from ...dynamics.machine.of_scene import build_machine, flat_machine
-from ...dynamics.machine.stages import Stage
 from ...dynamics.machine.tables import Machine
 from ...dynamics.motion.housing import housing_signal
 from ...dynamics.motion.response import Response
 from ...dynamics.motion.step_control import default_step
 from ...signal.series import Signal, decimate
-from ..store.shards import Field, arrow, schema_of
+from ..store.shards import Field, arrow, fields, schema_of
 from .conditions import Condition
 from .faults import CASE, FAULTS
 from .plan import Plan
 
 EDGE = 64  # samples simulated before and after what is kept: the filter of `decimate` sees no end
-COLUMNS = {  # beside the signal: kind and unit, and, where the name does not say it, what it is
-    "condition": (Field("whole"), "number of the simulation"),
-    "window": (Field("whole"), "number within the condition"),
-    "side": (Field("text"), "of the split"),
-    "fault": (Field("text"), "kind, or healthy"),
-    "gear": (Field("text"), "whose tooth is damaged"),
-    "body": (Field("text"), "of the machine, which tells planets apart"),
-    "tooth": (Field("whole"), "number of the damaged tooth"),
-    "severity": (Field("number", "see severity_unit"), "see the faults above; 0: healthy"),
-    "severity_unit": (Field("text"), ""),
-    "loss_max": (Field("number"), "largest loss of mesh stiffness"),
-    "loss_mean": (Field("number"), "mean over the engagement of the damaged tooth"),
-    "machine": (Field("text"), "scene"),
-    "sensor": (Field("text"), ""),
-    "unit": (Field("text"), "of signal, rms and noise"),
-    "rms": (Field("number", "see unit"), "of the signal before noise, without its mean, over the condition"),
-    "noise": (Field("number", "see unit"), "rms of the white noise added"),
-    "snr_dB": (Field("number", "dB"), "signal over noise; none without noise"),
-    "speed_rpm": (Field("number", "rpm"), ""),
-    "torque_Nm": (Field("number", "N m"), ""),
-    "mesh_Hz": (Field("number", "Hz"), "mesh frequency"),
-    "turning_Hz": (
-        Field("number", "Hz"),
-        "of the gear with the fault, by default the driving one; against the carrier if there is one",
-    ),
-    "fault_Hz": (Field("number", "Hz"), "how often a faulty tooth meshes"),
-    "carrier_Hz": (Field("number", "Hz"), ""),
-    "rate_Hz": (Field("number", "Hz"), ""),
-    "start_s": (Field("number", "s"), "of the window, in the simulation"),
-    "error": (Field("number"), "of the motion, relative to its range"),
-    "free": (Field("number"), "what is left of the free vibrations of the start"),
-    "seed": (Field("whole"), ""),
-    "notes": (Field("text"), "warnings"),
-}
-LABELS = {name: field for name, (field, _) in COLUMNS.items()}
 
 
-def fields_of(plan: Plan) -> dict[str, Field]:
-    """Columns of the windows but for the signal: `LABELS`, and what scatters by key."""
-    return LABELS | {key: Field("number") for key in plan.scatter}
-
-
-def schema(plan: Plan) -> Any:
-    """Schema of a file of windows: the labels, then the signal as a list of `samples_of` numbers of 4 bytes."""
-    pa = arrow()
-    signal = pa.field("signal", pa.list_(pa.float32(), samples_of(plan)), metadata={"kind": "signal", "unit": "see unit"})
-    return schema_of(fields_of(plan)).append(signal)
+def columns_of(plan: Plan) -> dict[str, Field]:
+    """Columns of the windows but for the signal, with what scatters by key."""
+    return fields("windows") | dict.fromkeys(plan.scatter, Field("number"))
 
 
 def samples_of(plan: Plan) -> int:
     """Samples of a window."""
     return round(plan.window["seconds"] * plan.window["rate_Hz"])
-
-
-def stage_of(machine: Machine) -> Stage:
-    """Driven stage of a machine."""
-    return machine.stages[-1]
 
 
 def simulated(plan: Plan, condition: Condition) -> tuple[Machine, Response, int]:
@@ -154,17 +106,18 @@ def _labels(plan, condition, machine, response):
 
 
 def table_of(plan: Plan, rows: list[dict[str, Any]]) -> Any:
-    """Windows of `rows_of` as a pyarrow table."""
-    pa, form = arrow(), schema(plan)
-    columns = [pa.array([row.get(name) for row in rows], form.field(name).type) for name in form.names[:-1]]
+    """Windows of `rows_of` as a pyarrow table: the labels, then the signal as a list of `samples_of` numbers of 4 bytes."""
+    pa, labels = arrow(), columns_of(plan)
+    form = schema_of(labels)
+    out = pa.Table.from_arrays([pa.array([row.get(name) for row in rows], form.field(name).type) for name in labels], schema=form)
     flat = pa.array(np.concatenate([row["signal"] for row in rows]))
-    columns.append(pa.FixedSizeListArray.from_arrays(flat, samples_of(plan)))
-    return pa.Table.from_arrays(columns, schema=form)
+    signal = pa.FixedSizeListArray.from_arrays(flat, samples_of(plan))
+    return out.append_column(pa.field("signal", signal.type, metadata={"kind": "signal", "unit": "see unit"}), signal)
 
 
 def slowest_fault(plan: Plan, values: dict[str, float]) -> float:
     """Least frequency at which a faulty tooth meshes [Hz], at the `values` of speed and torque."""
-    stage = stage_of(flat_machine(plan.scene_at(values)))
+    stage = flat_machine(plan.scene_at(values)).stages[-1]
     out = [stage.fault or stage.turning]
     for fault in plan.fault:
         if FAULTS[fault["kind"]].damage:
@@ -184,7 +137,7 @@ def check_machine(plan: Plan) -> dict[str, Any]:
     speeds, torques = plan.operation["speed_rpm"], plan.operation["torque_Nm"]
     values = {"machine.speed_rpm": max(speeds), "machine.torque_Nm": max(torques)}
     machine = build_machine(plan.scene_at(values), None, phases=plan.phases, method=plan.curves)
-    stage, window, spread = stage_of(machine), plan.window, plan.operation["spread"]
+    stage, window, spread = machine.stages[-1], plan.window, plan.operation["spread"]
     top = stage.mesh * (1 + spread)
     if window["harmonics"] * top > window["rate_Hz"] / 2:
         raise ValueError(

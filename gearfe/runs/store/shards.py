@@ -4,7 +4,10 @@ import filecmp
 import hashlib
 import json
 import os
+import tomllib
 from collections.abc import Mapping, Sequence
+from functools import cache
+from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -32,6 +35,19 @@ KINDS = {  # what a column holds; list: of any length, json: as JSON text
     "number": "numbers", "whole": "whole numbers of 64 bits", "truth": "True and False", "text": "texts",
     "list": "lists of numbers", "json": "what JSON can say",
 }  # fmt: skip
+
+
+@cache
+def columns(name: str) -> dict[str, tuple[Field, str]]:
+    """Columns of results, of a table of ``gearfe/runs/columns.toml``, with what they are in words."""
+    text = (resources.files("gearfe.runs") / "columns.toml").read_text(encoding="utf-8")
+    rows = tomllib.loads(text)[name].items()
+    return {key: (Field(row.get("kind", "number"), row.get("unit", "-")), row.get("text", "")) for key, row in rows}
+
+
+def fields(name: str) -> dict[str, Field]:
+    """Columns of results without their words."""
+    return {key: field for key, (field, _) in columns(name).items()}
 
 
 def arrow() -> Any:
@@ -208,21 +224,28 @@ def opened(folder: StrPath) -> "dataset.Dataset":
 
 
 def read(folder: StrPath, columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":
-    """Columns (None: all) of the rows of all shards that fulfil `where`, a pyarrow expression.
+    """Columns (None: all) of the rows of all shards that fulfil `where`, as of `where_of`.
 
-    ValueError if a shard is damaged or a copy, there is no such column, or `where` compares numbers with text.
+    ValueError if a shard is damaged or a copy, there is no such column, or `where` compares numbers with text or asks for a text
+    that no row has.
     """
     pa = arrow()
     shards = opened(folder)
     unknown = [name for name in columns or () if name not in shards.schema.names]
     if unknown:
         raise ValueError(f"no column {unknown[0]!r} in {folder}; it has {', '.join(shards.schema.names)}")
+    condition = where_of(where, shards.schema.names)
     try:
-        return shards.to_table(columns=list(columns) if columns is not None else None, filter=where)
+        found = shards.to_table(columns=list(columns) if columns is not None else None, filter=condition)
     except (pa.ArrowNotImplementedError, pa.ArrowTypeError) as error:
-        raise ValueError(f"where = {where}: {_line(error)}; a column is compared with values of its own kind") from error
+        raise ValueError(f"where = {condition}: {_line(error)}; a column is compared with values of its own kind") from error
     except (OSError, pa.ArrowInvalid) as error:
         raise _damaged(_first_damaged(folder), error) from error
+    for name, value in where.items() if isinstance(where, Mapping) and not found.num_rows else ():
+        there = shards.to_table(columns=[name])[name].unique().to_pylist()
+        if isinstance(value, str) and value not in there:
+            raise ValueError(f"where: {name} = {value!r}, but no row has that; there is {', '.join(map(str, there))}")
+    return found
 
 
 def frame(found: "pyarrow.Table", fields: Mapping[str, Field], index: str | None = None) -> "pandas.DataFrame":

@@ -10,7 +10,7 @@ from numpy.polynomial import legendre
 from scipy.stats import qmc
 
 from ...core.case import two_materials
-from ...core.checks import is_number
+from ...core.checks import whole
 from ...core.material import Material
 from ...geometry.aliases import Floats
 from ...geometry.pair.gear_pair import GearPair
@@ -74,11 +74,10 @@ def fit_surrogate(
     """
     started = time.perf_counter()
     space, materials = space_of(pair, inputs), two_materials(material)
-    for name, count, least in (("cases", cases, FEWEST), ("held_back", held_back, 8)):
-        if not is_number(count) or count != int(count) or not least <= count <= MOST:
-            raise ValueError(f"{name} = {count!r}, but give a whole number from {least} to {MOST}")
+    if max(whole("cases", cases, FEWEST), whole("held_back", held_back, 8)) > MOST:
+        raise ValueError(f"cases = {cases}, held_back = {held_back}, but give at most {MOST}")
     _check_corners(space, materials)
-    drawn, fresh = _sample(space, int(cases), seed), _sample(space, int(held_back), seed + 1_000_003)
+    drawn, fresh = _sample(space, cases, seed), _sample(space, held_back, seed + 1_000_003)
     jobs = [
         {"space": space, "materials": materials, "point": point, "check": i >= len(drawn)}
         for i, point in enumerate(drawn + fresh)
@@ -95,7 +94,7 @@ def fit_surrogate(
     values = np.array([np.append(case["breaks"], case["series"]) for case in fitted])
     powers, weights, left_out = _regression(points, values, fitted[0]["breaks"].size)
     meta = {
-        "pairs": pairs[0], "cases": int(cases), "held_back": int(held_back), "seed": seed, "terms": len(powers),
+        "pairs": pairs[0], "cases": cases, "held_back": held_back, "seed": seed, "terms": len(powers),
         "left out, rms of ln k": left_out, "seconds": time.perf_counter() - started, "seconds_cases": sum(done.seconds),
         "curve": fitted[0]["meta"],
     }  # fmt: skip

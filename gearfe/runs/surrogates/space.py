@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -28,26 +29,21 @@ WHOLE = ("z_1", "z_2")
 SHAPE = ("z_1", "z_2", "x_1", "x_2")  # they move the contact ratio and the centre distance
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Space:
     """Ranges of some `INPUTS` about a pair of spur gears; the others are held."""
 
     pair: GearPair  # what is not given is taken from it
     ranges: dict[str, tuple[float, float]]  # ends of what varies
     held: dict[str, float]  # what is given as one number
-    logarithmic: int | None = field(init=False, repr=False)  # the place of the force
-    middle: Floats = field(init=False, repr=False, compare=False)
-    half: Floats = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self) -> None:
-        """Keep what `scaled` needs: it is asked thousands of times."""
-        place = list(self.ranges).index("force") if "force" in self.ranges else None
+    @cached_property
+    def _scale(self):
+        """Which inputs are logarithmic, and middle and half of each range."""
+        logarithmic = np.array([name == "force" for name in self.ranges])
         ends = np.array(list(self.ranges.values()))
-        if place is not None:
-            ends[place] = np.log(ends[place])
-        object.__setattr__(self, "logarithmic", place)
-        object.__setattr__(self, "middle", ends.mean(axis=1))
-        object.__setattr__(self, "half", (ends[:, 1] - ends[:, 0]) / 2)
+        np.log(ends, out=ends, where=logarithmic[:, None])
+        return logarithmic, ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / 2
 
     @property
     def cracked(self) -> bool:
@@ -81,10 +77,10 @@ class Space:
 
     def scaled(self, points: Any) -> Floats:
         """Points ``(..., d)`` brought to -1 ... 1, forces by their logarithm."""
+        logarithmic, middle, half = self._scale
         values = np.array(points, dtype=float)
-        if self.logarithmic is not None:
-            values[..., self.logarithmic] = np.log(values[..., self.logarithmic])
-        return (values - self.middle) / self.half
+        np.log(values, out=values, where=logarithmic)
+        return (values - middle) / half
 
     def at(self, unit: Floats) -> dict[str, float]:
         """Point of the ranges for numbers from 0 to 1: whole ones for teeth, forces on a logarithmic scale."""
@@ -101,17 +97,15 @@ class Space:
 
         ValueError if such gears or such a crack cannot be.
         """
-        values = self.held | dict(point)
+        values: dict[str, Any] = self.held | dict(point)
         gears = []
-        for gear, number in ((self.pair.gear_1, 1), (self.pair.gear_2, 2)):
+        for number, gear in enumerate((self.pair.gear_1, self.pair.gear_2), 1):
             new: dict[str, Any] = {"z": int(values.get(f"z_{number}", gear.z)), "x": values.get(f"x_{number}", gear.x)}
-            bore = values.get(f"bore_{number}")
-            if bore is not None:
+            if bore := values.get(f"bore_{number}"):
                 new["r_bore"] = bore * replace(gear, **new, r_bore=0.1 * gear.m_n).r_f
             gears.append(replace(gear, **new))
-        pinion, wheel = gears
-        pair = GearPair(pinion, wheel) if any(name in values for name in SHAPE) else GearPair(pinion, wheel, self.pair.a)
-        crack: dict[str, Any] = {name: values[name] for name in ("level", "angle") if name in values}
+        pair = GearPair(gears[0], gears[1]) if values.keys() & {*SHAPE} else replace(self.pair, gear_1=gears[0], gear_2=gears[1])
+        crack = {name: values[name] for name in ("level", "angle") if name in values}
         return Case(pair, values["force"], material, damage={"pinion": [Crack(**crack)]} if crack else None)
 
 
@@ -142,31 +136,22 @@ def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
             f"inputs: {shape[0]!r} moves the centre distance without backlash, which a surrogate then takes, but the pair has "
             f"a = {pair.a:g} mm: give a pair with a = None, or leave {shape[0]!r} out"
         )
-    ranges, held = {}, {}
-    for name, value in inputs.items():
-        if is_number(value):
-            held[name] = _finite(name, value)
-        else:
-            ranges[name] = _range(name, value)
+    values = {name: _numbers(name, value) for name, value in inputs.items()}
+    ranges = {name: ends for name, ends in values.items() if len(ends) == 2}
     if not ranges:
         raise ValueError(
             "inputs: only single numbers, so that there is nothing to fit: give a range (low, high), or mesh_stiffness"
         )
-    return Space(pair, ranges, held)
+    return Space(pair, ranges, {name: ends[0] for name, ends in values.items() if name not in ranges})
 
 
-def _range(name, value):
-    if not isinstance(value, (tuple, list)) or len(value) != 2 or not all(is_number(end) for end in value):
+def _numbers(name, value):
+    """Ends of a range, or a single number, of an input."""
+    ends = (value,) if is_number(value) else value
+    if not (isinstance(ends, (tuple, list)) and (ends == (value,) or len(ends) == 2) and all(map(is_number, ends))):
         raise ValueError(f"inputs: {name} = {value!r}, but give a range (low, high) or one number")
-    low, high = (_finite(name, end) for end in value)
-    if not low < high:
-        raise ValueError(f"inputs: {name} from {low:g} to {high:g}, but a range rises: give low < high, or one number")
-    return low, high
-
-
-def _finite(name, value):
-    if not math.isfinite(value) or (name == "force" and not value > 0):
-        raise ValueError(f"inputs: {name} = {value!r}, but give finite numbers{', forces > 0' if name == 'force' else ''}")
-    if name in WHOLE and value != int(value):
-        raise ValueError(f"inputs: {name} = {value!r}, but teeth are whole numbers")
-    return float(value)
+    if not all(math.isfinite(end) and (end > 0 or name != "force") and (name not in WHOLE or end % 1 == 0) for end in ends):
+        raise ValueError(f"inputs: {name} = {value!r}, but give finite numbers, forces > 0, whole numbers of teeth")
+    if len(ends) == 2 and not ends[0] < ends[1]:
+        raise ValueError(f"inputs: {name} from {ends[0]:g} to {ends[1]:g}, but a range rises: give low < high, or one number")
+    return tuple(map(float, ends))

@@ -10,7 +10,7 @@ from . import samples
 
 RUNS = "gearfe.runs"
 MOST = 10**7  # cases: their values alone take gigabytes
-SPEC = {*schema_of(RUNS)["steps"].keys, *samples.SHAPES, "within"}
+SPEC = {*schema_of(RUNS)["steps"].keys, *samples.SHAPES, "choice", "within"}
 
 
 def flat(tables, path=()):

@@ -15,15 +15,12 @@ from ...core.threads import own_warnings
 from ...scene.dotted_keys import rank, set_values, trimmed
 from ...scene.load import Scene, scene_of
 from ...stiffness.cache import program
-from ..store.shards import Field, encoded, table
+from ..store.shards import Field, arrow, encoded, fields, table
 from .kinds import KINDS
 from .study import Study, of_case, values
 
 FAILURES = (ValueError, RuntimeError, ArithmeticError, LookupError, TypeError, AssertionError, MemoryError)
 DONE, FAILED, LOST = "done", "failed", "lost"
-FIRST = {"number": Field("whole"), "point": Field("whole"), "draw": Field("whole")}
-LAST = {"status": Field("text"), "error": Field("text"), "notes": Field("text"), "seconds": Field("number", "s")}
-LAST |= {"version": Field("text"), "source": Field("text")}
 _ONE = threading.Lock()  # processor time is counted for a process, not for a thread
 
 
@@ -55,7 +52,7 @@ def blocks(study: Study) -> tuple[list[Block], dict[str, Field]]:
         told = tuple({"number": int(j), "point": int(point[j]), "draw": int(draw[j])} for j in members)
         out.append(Block(f"block-{i:06d}", cases, told))
     inputs = {key: Field(_kind(column)) for key, column in columns.items()}
-    return out, FIRST | inputs | KINDS[study.kind].fields | LAST
+    return out, fields("first") | inputs | fields(study.kind) | fields("last")
 
 
 def _sorted(columns, count):
@@ -70,8 +67,7 @@ def _sorted(columns, count):
 
 def _codes(column):
     """Numbers of the distinct values by first appearance."""
-    seen: dict[str, int] = {}
-    return np.array([seen.setdefault(repr(value), len(seen)) for value in column])
+    return np.asarray(arrow().array(list(map(repr, column))).dictionary_encode().indices)
 
 
 def _parts(group, size):
@@ -89,11 +85,9 @@ def _parts(group, size):
 
 def _kind(column):
     """Kind of column that holds the values of a key."""
-    if all(isinstance(value, bool) for value in column):
-        return "truth"
-    if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in column):
-        return "whole" if all(isinstance(value, int) for value in column) else "number"
-    return "text" if all(isinstance(value, str) for value in column) else "json"
+    types = frozenset(map(type, column))
+    kinds = {"truth": {bool}, "whole": {int}, "number": {int, float}, "text": {str}}
+    return next((kind for kind, held in kinds.items() if types <= held), "json")
 
 
 def compute(study: Study, fields: Mapping[str, Field], block: Block) -> tuple[bytes, str]:

@@ -18,13 +18,8 @@ from ...scene.load import Scene
 from ...signal.series import Signal
 from ...stiffness.curve import StiffnessCurve
 from ...stiffness.solve import Solve, solve
-from ..store.shards import Field
 
 KEPT = SolvedGears(64 * 2**20)  # gears of the cases before, in this process
-MESHES = dict.fromkeys(("k_sun_planet", "k_planet_ring", "k_sun_planet_alone", "k_planet_ring_alone"), Field("number", "N/m"))
-MESHES |= {"K_gamma": Field("number"), "te_peak_to_peak": Field("number", "m")}
-STIFFNESS = dict.fromkeys(("k_mean", "k_min", "k_max", "k_single", "k_double"), Field("number", "N/m"))
-STIFFNESS |= {"k_error": Field("number"), "te_peak_to_peak": Field("number", "m")}
 HARMONICS = 3
 INDICATORS = ("crest factor", "kurtosis", "shape factor", "impulse factor", "sideband index")
 
@@ -32,13 +27,13 @@ INDICATORS = ("crest factor", "kurtosis", "shape factor", "impulse factor", "sid
 class Kind(NamedTuple):
     """A kind of study.
 
-    `options` is their table in ``gearfe/runs/keys.toml``; `fields` are the columns of its results; `work` is called with a `Case`
-    and the options, and gives a row for each of its loads; `block`: cases in a shard, which takes seconds. `whole`: it needs
-    all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the options.
+    `options` is their table in ``gearfe/runs/keys.toml``. `work` is called with a `Case` and the options, and gives a row for
+    each of its loads, with the columns of ``gearfe/runs/columns.toml``. `block`: cases in a shard, which takes seconds.
+    `whole`: it needs all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the
+    options.
     """
 
     options: str
-    fields: dict[str, Field]
     work: Callable[..., list[dict[str, Any]]]
     block: int
     whole: bool = False
@@ -106,18 +101,9 @@ def planetary_set(scene: Scene, case: str | None, options: dict[str, Any]) -> li
     return [set_numbers(planetary_stiffness(made, at, refine=options["refine"], error=False, cache=KEPT))]
 
 
-SEEN = {name.replace(" ", "_"): Field("number") for name in INDICATORS}
-SEEN |= dict.fromkeys(("rms", "peak", "mesh_line"), Field("number", "unit")) | {"unit": Field("text")}
-SEEN |= dict.fromkeys(("mesh_Hz", "fault_Hz", "rate"), Field("number", "Hz")) | {"free": Field("number")}
-TE = dict.fromkeys(("te_mean", "te_peak_to_peak", *(f"te_{i + 1}" for i in range(HARMONICS))), Field("number", "m"))
 KINDS = {
-    "stiffness": Kind("stiffness", STIFFNESS | {"phase": Field("list"), "k": Field("list", "N/m")}, stiffness, 32),
-    "transmission error": Kind(
-        "stiffness",
-        TE | {"k_mean": Field("number", "N/m"), "phase": Field("list"), "te": Field("list", "m")},
-        transmission_error,
-        32,
-    ),
-    "set": Kind("planetary_set", MESHES, planetary_set, 4, whole=True),
-    "vibration": Kind("vibration", SEEN | {"signal": Field("list", "unit")}, vibration, 4, whole=True),
+    "stiffness": Kind("stiffness", stiffness, 32),
+    "transmission error": Kind("stiffness", transmission_error, 32),
+    "set": Kind("planetary_set", planetary_set, 4, whole=True),
+    "vibration": Kind("vibration", vibration, 4, whole=True),
 }

@@ -1,7 +1,9 @@
 """`open_runs`: results of a sweep as pandas and xarray, reading only the columns and rows that are asked for."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +12,8 @@ import numpy as np
 from ...core.extras import needing
 from ...geometry.aliases import StrPath
 from ..store.folder import read_about
-from ..store.shards import Field, fields_of, frame, opened, read, shard_names, where_of
+from ..store.shards import Field, fields_of, frame, opened, read, shard_names
+from .study import inputs_of
 
 if TYPE_CHECKING:
     import pandas
@@ -48,13 +51,9 @@ class Runs:
     @property
     def inputs(self) -> list[str]:
         """Columns that vary in this study, by dotted key."""
-        names = list(self.fields)
-        first = names.index("draw") + 1
-        known = [key for axis in self.about["study"]["axes"] for key in axis]
-        known += [
-            key for name, spec in self.about["study"]["sample"].get("of", {}).items() for key in (name, *spec.get("also", []))
-        ]
-        return [name for name in names[first:] if name in known]
+        study = self.about["study"]
+        known = inputs_of(study["axes"], study["sample"])
+        return [name for name in self.fields if name in known]
 
     def table(self, columns: Sequence[str] | None = None, where: Any = None) -> "pandas.DataFrame":
         """Rows as a pandas table, by the number of the case.
@@ -82,7 +81,7 @@ class Runs:
         if columns is None:
             columns = [name for name, field in self.fields.items() if field.kind != "list"]
         wanted = ["number", *(name for name in columns if name != "number")]
-        return frame(read(self.folder, wanted, where_of(where, list(self.fields))), self.fields, "number")
+        return frame(read(self.folder, wanted, where), self.fields, "number")
 
     def curves(self, names: Sequence[str] | None = None, where: Any = None) -> "xarray.Dataset":
         """Curves and signals as arrays with named axes.
@@ -115,36 +114,25 @@ class Runs:
             if name not in known:
                 raise ValueError(f"{name!r} is no curve of this study; it has {', '.join(known)}")
         beside = ["number", *self.inputs, "status"]
-        lists = list(dict.fromkeys([*(["phase"] if "phase" in known else []), *names]))
-        rows = read(self.folder, [*beside, *lists], where_of(where, list(self.fields))).sort_by("number")
+        lists = dict.fromkeys([*names, *(["phase"] if "phase" in known else [])])
+        rows = read(self.folder, [*beside, *lists], where).sort_by("number")
         values = {name: padded(rows[name]) for name in lists}
         coords: dict[str, Any] = {name: ("number", rows[name].to_pandas().to_numpy()) for name in beside}
-        if "phase" in values and "phase" not in names and _alike(values["phase"]):
-            coords["phase"] = ("place", _longest(values["phase"]), {"units": "-"})
-        elif "phase" in values and "phase" not in names:
-            names = ["phase", *names]
+        if "phase" in lists and "phase" not in names:
+            phase = values["phase"]
+            longest = phase[np.argmax(np.isfinite(phase).sum(axis=1))] if phase.size else np.empty(0)
+            if (np.isnan(phase) | (phase == longest)).all():  # all begin with the same phases, as far as they go
+                coords["phase"] = ("place", longest, {"units": "-"})
+            else:
+                names = ["phase", *names]
         data = {name: (("number", "place"), values[name], {"units": self.fields[name].unit}) for name in names}
         return xarray.Dataset(data, coords=coords, attrs={"title": self.about["title"]})
 
 
 def padded(column: Any) -> np.ndarray:
     """Lists of a column as an array ``(n, longest)``, filled up with nan; a null is all nan."""
-    lists = [
-        np.asarray(values, dtype=float) if values is not None else np.empty(0) for values in column.to_numpy(zero_copy_only=False)
-    ]
-    out = np.full((len(lists), max((values.size for values in lists), default=0)), np.nan)
-    for row, values in zip(out, lists, strict=True):
-        row[: values.size] = values
-    return out
-
-
-def _alike(phase):
-    """Whether all curves begin with the same phases, as far as they go."""
-    return bool((np.isnan(phase) | (phase == _longest(phase))).all())
-
-
-def _longest(phase):
-    return phase[np.argmax(np.isfinite(phase).sum(axis=1))] if phase.size else np.empty(0)
+    lists = [() if values is None else values for values in column.to_numpy(zero_copy_only=False)]
+    return np.array(list(zip_longest(*lists, fillvalue=math.nan)), dtype=float).T.reshape(len(lists), -1)
 
 
 def open_runs(folder: StrPath) -> Runs:

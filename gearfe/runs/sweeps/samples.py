@@ -1,5 +1,8 @@
 """Values of a study's sample: points of the unit cube by scipy.stats.qmc, through distributions, with correlations."""
 
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
 import numpy as np
 from scipy import stats
 from scipy.stats import qmc
@@ -11,13 +14,35 @@ from ...scene.schema import shown
 WIDEST = 10.0  # standard deviation of a logarithm: two thirds of the values over nine decades
 LEAST = 1e-9  # part of a distribution that must lie within its limits: below, its values are rounding
 METHODS = ("sobol", "random", "latin", "saltelli")
-SHAPES = {  # name: number of parameters, and what they are
-    "uniform": (2, "low, high"),
-    "normal": (2, "mean, standard deviation"),
-    "lognormal": (2, "median, standard deviation of the logarithm"),
-    "triangular": (3, "low, most likely, high"),
-    "choice": (None, "the values, each as likely"),
-}
+
+
+class Shape(NamedTuple):
+    """A distribution: what its parameters are, how it is made of them, and what they must be, as a rule and in words."""
+
+    size: int
+    meaning: str
+    make: Callable[..., Any]
+    rule: Callable[[list[float]], bool]
+    told: str
+
+
+def _rises(values):
+    return sorted(values) == list(values) and values[0] < values[-1]
+
+
+RISING = (_rises, "the values must rise")
+SHAPES = {
+    "uniform": Shape(2, "low, high", lambda low, high: stats.uniform(low, high - low), *RISING),
+    "normal": Shape(2, "mean, standard deviation", stats.norm, lambda v: v[1] > 0, "a standard deviation is > 0"),
+    "lognormal": Shape(
+        2, "median, standard deviation of the logarithm", lambda median, spread: stats.lognorm(spread, scale=median),
+        lambda v: v[0] > 0 and 0 < v[1] <= WIDEST, f"a median is > 0, a standard deviation of the logarithm from 0 to {WIDEST:g}",
+    ),
+    "triangular": Shape(
+        3, "low, most likely, high",
+        lambda low, middle, high: stats.triang((middle - low) / (high - low), low, high - low), *RISING,
+    ),
+}  # fmt: skip
 
 
 def cube(method, count, dims, seed):
@@ -58,47 +83,33 @@ def correlated(points, names, pairs):
 
 def check_shape(where, spec):
     """Raise ValueError unless `spec` is one distribution, ``{name: parameters}``, and, of a normal one, ``within``."""
-    names = [name for name in spec if name in SHAPES]
-    unknown = [name for name in spec if name not in (*SHAPES, "within", "also")]
-    if len(names) != 1 or unknown:
-        raise ValueError(f"{where}: {shown(spec)} is no distribution; give one of {', '.join(SHAPES)}, and within = [low, high]")
+    names = [name for name in spec if name not in ("within", "also")]
+    if len(names) != 1 or names[0] not in (*SHAPES, "choice"):
+        known = ", ".join((*SHAPES, "choice"))
+        raise ValueError(f"{where}: {shown(spec)} is no distribution; give one of {known}, and within = [low, high]")
     (name,) = names
-    count, meaning = SHAPES[name]
-    values = spec[name]
-    if not isinstance(values, (list, tuple)) or not values or (count is not None and len(values) != count):
+    values, within, shape = spec[name], spec.get("within"), SHAPES.get(name)
+    meaning = shape.meaning if shape else "the values, each as likely"
+    if not isinstance(values, (list, tuple)) or not values or (shape and len(values) != shape.size):
         raise ValueError(f"{where}: {name} = {shown(values)}, but give a list: {meaning}")
-    if name == "choice":
-        if "within" in spec:
+    if shape is None:
+        if within is not None:
             raise ValueError(f"{where}: within is of a distribution; leave out of the choice what is not in it")
         return
     if not all(map(_finite, values)):
         raise ValueError(f"{where}: {name} = {shown(values)}, but give finite numbers: {meaning}")
-    rising = {"uniform": values, "triangular": values}.get(name, [0, 1])
-    if sorted(rising) != list(rising) or rising[0] == rising[-1]:
-        raise ValueError(f"{where}: {name} = {values!r}, but the values must rise: {meaning}")
-    if name in ("normal", "lognormal") and not values[1] > 0:
-        raise ValueError(f"{where}: {name} = {values!r}, but a standard deviation is > 0")
-    if name == "lognormal" and not (values[0] > 0 and values[1] <= WIDEST):
-        bounds = f"a median is > 0, and a standard deviation of the logarithm above {WIDEST:g} is none of gears"
-        raise ValueError(f"{where}: lognormal = {values!r}, but {bounds}")
-    if "within" in spec:
-        _check_within(where, name, spec)
+    if not shape.rule(values):
+        raise ValueError(f"{where}: {name} = {values!r}, but {shape.told}: {meaning}")
+    if within is None:
+        return
+    if not (isinstance(within, (list, tuple)) and len(within) == 2 and all(map(_finite, within)) and within[0] < within[1]):
+        raise ValueError(f"{where}: within = {shown(within)}, but give [low, high] with low < high")
+    if not np.diff(_distribution(spec).cdf(within))[0] > LEAST:
+        raise ValueError(f"{where}: within = {within} leaves nothing of {name} = {values}; give an interval in which values lie")
 
 
 def _finite(value):
     return is_number(value) and abs(value) < LARGEST
-
-
-def _check_within(where, name, spec):
-    """Raise ValueError unless ``within`` is an interval in which a part of the distribution lies."""
-    within = spec["within"]
-    if not (isinstance(within, (list, tuple)) and len(within) == 2 and all(map(_finite, within)) and within[0] < within[1]):
-        raise ValueError(f"{where}: within = {shown(within)}, but give [low, high] with low < high")
-    low, high = _distribution(spec).cdf(within)
-    if not high - low > LEAST:
-        raise ValueError(
-            f"{where}: within = {within} leaves nothing of {name} = {spec[name]}; give an interval in which values lie"
-        )
 
 
 def quantiles(spec, u):
@@ -114,13 +125,4 @@ def quantiles(spec, u):
 
 
 def _distribution(spec):
-    if "uniform" in spec:
-        low, high = spec["uniform"]
-        return stats.uniform(low, high - low)
-    if "normal" in spec:
-        return stats.norm(*spec["normal"])
-    if "lognormal" in spec:
-        median, spread = spec["lognormal"]
-        return stats.lognorm(spread, scale=median)
-    low, middle, high = spec["triangular"]
-    return stats.triang((middle - low) / (high - low), low, high - low)
+    return next(shape.make(*spec[name]) for name, shape in SHAPES.items() if name in spec)

@@ -36,7 +36,7 @@ gives other keys the same value.
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -103,7 +103,7 @@ def _study(file, place, data):
     cases = math.prod([len(next(iter(axis.values()))) for axis in grid]) * sample.get("count", 1)
     if cases > MOST:
         raise ValueError(f"{file}: {cases} cases, but a study has at most {MOST:.0e}: vary less, or part it")
-    keys = tuple(key for axis in grid for key in axis) + tuple(_with_also(sample.get("of", {})))
+    keys = inputs_of(grid, sample)
     for key in keys:
         try:
             check_key(key, tables, options)
@@ -136,9 +136,10 @@ def _check_names(file, tables, pair, case):
         raise ValueError(f"{file} case = {case!r}: no such case; there is healthy, {', '.join(sorted(cases))}")
 
 
-def _with_also(of):
-    """Keys of a sample with those that take the same value."""
-    return [key for name, spec in of.items() for key in (name, *spec.get("also", []))]
+def inputs_of(grid: Iterable[Mapping[str, Any]], sample: Mapping[str, Any]) -> tuple[str, ...]:
+    """Keys that vary, of the axes of a grid and of a sample, with those that take the value of another."""
+    drawn = [key for name, spec in sample.get("of", {}).items() for key in (name, *spec.get("also", []))]
+    return (*(key for axis in grid for key in axis), *drawn)
 
 
 def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:
@@ -146,24 +147,28 @@ def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:
 
     Each draw meets each combination.
     """
-    of = study.sample.get("of", {})
-    drawn: dict[str, list] = {}
-    count = 1
-    if of:
-        names = list(of)
-        points = samples.cube(study.sample["method"], study.sample["count"], len(names), study.seed)
-        if study.sample["correlated"]:
-            pairs = [(*one["between"], one["value"]) for one in study.sample["correlated"]]
-            points = samples.correlated(points, names, pairs)
-        for j, (key, spec) in enumerate(of.items()):
-            drawn |= dict.fromkeys((key, *spec.get("also", [])), samples.quantiles(spec, points[:, j]))
-        count = len(points)
-    sizes = [len(next(iter(axis.values()))) for axis in study.axes]
+    drawn = _drawn(study)
+    sizes, count = [len(next(iter(axis.values()))) for axis in study.axes], len(next(iter(drawn.values()), [0]))
     total = math.prod(sizes)
-    point, draw = np.repeat(np.arange(total), count), np.tile(np.arange(count), total)
+    point, draw = np.indices((total, count)).reshape(2, -1)
     places = np.unravel_index(point, sizes) if sizes else ()
     columns = {key: [one[i] for i in at] for axis, at in zip(study.axes, places, strict=True) for key, one in axis.items()}
     return columns | {key: one * total for key, one in drawn.items()}, point, draw
+
+
+def _drawn(study):
+    """Values of the sample by key; empty if there is none."""
+    sample = study.sample
+    if not sample:
+        return {}
+    points = samples.cube(sample["method"], sample["count"], len(sample["of"]), study.seed)
+    if sample["correlated"]:
+        pairs = [(*one["between"], one["value"]) for one in sample["correlated"]]
+        points = samples.correlated(points, list(sample["of"]), pairs)
+    out = {}
+    for (key, spec), column in zip(sample["of"].items(), points.T, strict=True):
+        out |= dict.fromkeys((key, *spec.get("also", [])), samples.quantiles(spec, column))
+    return out
 
 
 def of_case(study: Study, case: Mapping[str, Any]) -> tuple[str, str, dict[str, Any]]:

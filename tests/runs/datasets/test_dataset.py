@@ -153,6 +153,8 @@ def test_other_folders_are_refused_and_left_alone(made, plan, tmp_path):
     assert about["conditions"] == 4
     with pytest.raises(ValueError, match="no column 'colour'"):
         made.labels({"colour": 1})
+    with pytest.raises(ValueError, match="where: side = 'trian', but no row has that; there is "):
+        made.windows({"side": "trian"})
     with pytest.raises(ValueError, match="form = 'xls'"):
         made.export("xls")
 
