@@ -146,7 +146,8 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
     >>> headline("2 mm crack at 60 degrees", "cracked", {"single": 0.158, "mean": 0.0951}, {"single": 0.0021})
     '2 mm crack at 60 degrees: the mesh is 15.8 ± 0.3 % softer where the cracked tooth carries alone; 9.5 % in the mean'
     """
-    zone = next((name for name in ALONE if name in found), None)
+    alone = next((name for name in ALONE if name in found), None)
+    zone = None if kind == "chipped" else alone  # a chipped tooth carries alone where its flank is whole
     where = f"where the {kind} tooth {ALONE[zone]}" if zone else f"as the {kind} tooth passes"
     where = where.replace("carries", "would carry") if kind == "missing" else where
     most = percent_with_doubt(found[zone or LARGEST], doubt.get(zone or LARGEST, math.nan))
