@@ -34,9 +34,9 @@ def estimate(phase, periodic, k, coarse, finer, *, energy):
     """Estimated discretisation error of `k` from a coarser solve, and from one with finer hats at tip corners.
 
     Edges h and ``h / r`` whose results differ by d have the error ``d / (r**-p - 1)`` at h, with the least order of convergence
-    p; times `SAFETY`. Because d can vanish by chance, its largest value at the phase itself and at the fixed phases within `WINDOW`
-    is taken, and at least the mean over the fixed phases within `MEAN`. Of finite elements, whose meshes of different size have
-    nothing in common, the window is wider, and that mean is added.
+    p; times `SAFETY`. Because d can vanish by chance, its largest value at the phase itself and at the fixed phases within
+    `WINDOW` is taken, and at least the mean over the fixed phases within `MEAN`. Of finite elements, whose meshes of different
+    size have nothing in common, the window is wider, and that mean is added.
 
     While a contact slides over hats as long as a part of itself, k errs to and fro: by 0.1 to 0.3 % of ring pairs that touch with
     a tip corner, over a hundredth of a pitch. The difference from a coarser solve does so, too, and vanishes elsewhere; that from
