@@ -200,6 +200,14 @@ def drawn(draw):
     return {"holds": holds, "numbers": numbers}
 
 
+def left(broken):
+    """Mean stiffness that a reading of a broken tooth leaves over its engagement, over the healthy one."""
+    pair, run = scene(NAME).pairs["sun_planet"], {"phases": 64, "span": "tooth"}
+    whole = gf.mesh_stiffness(pair.case(), **run)
+    k = without_tooth(whole) if broken == BROKEN else gf.mesh_stiffness(pair.case(broken[1]), **run).k
+    return float(k.mean() / whole.k.mean())
+
+
 def write_more():
     """Tables: phases of the meshes, and what each ingredient leaves of the stiffness."""
     made = _made(None)
@@ -244,6 +252,7 @@ BESIDE = {
     "places of sidebands of sun 2, 500 to 1000 Hz [%]": lambda view: dict(
         zip(("3 times the healthy lines", "above the healthy lines"), (100 * x for x in more_lines(*VIEWS[view])), strict=True)
     ),
+    "mean stiffness over the engagement of the broken tooth [% of healthy]": lambda view: {"": 100 * left(VIEWS[view][2])},
     "kurtosis with noise": lambda view: kurtosis(*VIEWS[view]),
     "the article says": lambda view: statements(*VIEWS[view]),
 }
