@@ -95,12 +95,13 @@ def _row(file, where, row, reference):
 
 
 def printed_stiffness(scene, pair, case=None):
-    """Lines of text with the stiffnesses [N/um] that the sources of a scene print for a pair in a case (None: healthy)."""
-    out, damaged = [], scene.pair(pair).damage
+    """Lines with the stiffnesses [N/um] that the sources of a scene print for a pair in a case (None: healthy), each once."""
+    out, damaged = {}, scene.pair(pair).damage
     for reference in scene.references:
         for row in reference.rows if reference.unit == "N/m" else ():
             if row.pair == pair and (row.case == case if case else row.case not in damaged):
                 value, corrected = (None if k is None else f"{k / NEWTON_PER_UM:.4g} N/um" for k in (row.value, row.corrected))
                 note = "" if corrected is None else f"; {corrected} after a correction: {row.correction}"
-                out.append(f"printed, {reference.quantity}: {value} ({reference.source}){note}")
-    return out
+                note += f"; where gearfe differs: {row.reason}" if row.reason else ""
+                out[value, corrected, reference.source] = f"printed, {reference.quantity}: {value} ({reference.source}){note}"
+    return list(out.values())

@@ -50,12 +50,17 @@ def stiffness_ratio():
     return {name: k[name] / k["s2_sun_planet"] for name in ("s2_planet_planet", "s1_ring_planet", "s2_ring_planet")}
 
 
+def without_tooth(curve):
+    """Stiffness of a curve over the engagement of tooth 0 less the share that it carries [N/m]."""
+    own = curve.force[:, np.flatnonzero(curve.order == 0)[0]]
+    return curve.k * (1 - own / curve.force.sum(axis=1))
+
+
 def broken_tooth():
     """What is left of the mean over the broken tooth's engagement, if it carries nothing."""
     curve = beams("sun_planet", span="tooth")
-    own = curve.force[:, np.flatnonzero(curve.order == 0)[0]]
-    engaged = own > 0
-    return {"sudden break": float((curve.k * (1 - own / curve.force.sum(axis=1)))[engaged].mean() / curve.k[engaged].mean())}
+    engaged = curve.force[:, np.flatnonzero(curve.order == 0)[0]] > 0
+    return {"sudden break": float(without_tooth(curve)[engaged].mean() / curve.k[engaged].mean())}
 
 
 def frequencies():

@@ -1,6 +1,7 @@
 """The printed numbers of article S2 (two-stage compound planetary gearbox with a cracked sun tooth), computed."""
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 
@@ -16,15 +17,22 @@ from ..shared.laws import beside, tables
 from ..shared.places import TABLES
 from ..shared.simulated import amplitude, machine, noisy, record, scene, signal, spectrum, told
 from ..shared.table_rows import rows_of, write_table
-from .compound_numbers import LEVELS, NAME, QUICK, beams, converged, frequencies, of_mesh_lines  # noqa: F401
+from .compound_numbers import LEVELS, NAME, QUICK, beams, converged, frequencies, of_mesh_lines, without_tooth  # noqa: F401
 
 PHASES, PARTS = TABLES / "compound_planetary_phases.csv", TABLES / "compound_planetary_parts.csv"
-HEARD = "linear stiffness"
+HEARD, LOOSE, PLAY = "linear stiffness", "linear stiffness with backlash", 1e-4  # m
+TEETH = {  # sun, its mesh, and the case of the scene that its tooth 0 is; None: it has broken off
+    "sun 1": ("sun1", "sun1_p", "crack80"),
+    "sun 1 broken": ("sun1", "sun1_p", None),
+    "sun 2 broken": ("sun2", "sun2_b", None),
+}
+BROKEN, CRACKED = ("sun 1 broken", "sun 2 broken"), ("sun 1", "crack80")  # two readings of a broken tooth in sun 1 and in sun 2
 RATE, SECONDS, SETTLE = 5120.0, 3.3, 0.5  # the rate of S2
 SAMPLED = 24 * 2184.0  # Hz, 2184 is the least common multiple of both mesh frequencies: what folds, folds onto multiples of 14 Hz
 NOISE = 0.5  # of the standard deviation of the healthy signal; assumed
 SENSOR = "ring.theta acceleration"  # planets in phase cancel in x and y
 SUN, HOUSING = "sun2.theta velocity", "ring's acceleration through a mode"
+CRACK = (f"{SENSOR}, crack of 80 %", SENSOR, CRACKED)  # name, channel, reading
 DRAWN, DRAWN_SETTLE = 10 / 7, 0.5  # s, of a draw of the unprinted inputs: whole periods of all lines, 1.4 Hz apart
 BAND = (500.0, 1000.0)  # Hz, in which S2 sees more and larger sidebands of the broken sun 2
 ABOVE = 3.0  # of the healthy line: a larger one
@@ -33,24 +41,28 @@ HIGHEST = 2000.0  # Hz, below which S2 expects the dominant frequencies
 
 @cache
 def _made(case):
-    """Machine: healthy, a case of the scene (sun 2), or ``sun 1`` with the tooth of the case `crack80`."""
-    if case != "sun 1":
+    """Machine: healthy, a case of the scene (sun 2), or one of `TEETH`."""
+    if case not in TEETH:
         return machine(NAME, case, "auto")
+    sun, mesh, cracked = TEETH[case]
     pairs = scene(NAME).pairs
     kinds = {"sun1_p": "sun_planet", "p_ring": "planet_ring_1", "sun2_b": "sun_planet", "b_c": "planet_planet"}
     kinds["c_ring"] = "planet_ring_2"
     curves = {name: gf.mesh_stiffness(pairs[name].case(), phases=64) for name in set(kinds.values())}
-    hurt = gf.mesh_stiffness(pairs["sun_planet"].case("crack80"), phases=64, span="tooth")
+    hurt = gf.mesh_stiffness(pairs["sun_planet"].case(cracked), phases=64, span="tooth")
+    if cracked is None:
+        hurt = replace(hurt, k=without_tooth(hurt))
     geometry = {kind: pairs[name].pair for kind, name in kinds.items()}
     healthy = {kind: curves[name] for kind, name in kinds.items()}
-    return compound_planetary(healthy, pairs=geometry, damage={"sun1": (0, {"sun1_p": hurt})})
+    return compound_planetary(healthy, pairs=geometry, damage={sun: (0, {mesh: hurt})})
 
 
 @cache
 def _response(case, law=HEARD):
     if isinstance(law, Draw):
         return record(changed(_made(case), law), DRAWN, SAMPLED, DRAWN_SETTLE)
-    return record(_made(case), SECONDS, SAMPLED, SETTLE)
+    made = _made(case).with_meshes(backlash=PLAY) if law == LOOSE else _made(case)
+    return record(made, SECONDS, SAMPLED, SETTLE)
 
 
 @cache
@@ -80,9 +92,9 @@ def _noisy(case, law=HEARD, channel=SENSOR):
     return noisy(one, NOISE * healthy / one.values.std())
 
 
-def kurtosis():
+def kurtosis(law=HEARD, channel=SENSOR, broken=BROKEN):
     """Of 1 s of the signals with noise."""
-    return {name: _of_second(case) for name, case in (("healthy", None), ("sun 1 broken", "sun 1"), ("sun 2 broken", "crack80"))}
+    return {name: _of_second(case, law, channel) for name, case in zip(("healthy", *BROKEN), (None, *broken), strict=True)}
 
 
 @cache
@@ -93,14 +105,12 @@ def _kurtogram(case, law=HEARD, channel=SENSOR):
 
 def kurtogram_level():
     """Level of the largest kurtosis; the article's program prints 5.58 as 5.5."""
-    return {
-        name: math.floor(10 * _kurtogram(case)[0]) / 10 for name, case in (("sun 1 broken", "sun 1"), ("sun 2 broken", "crack80"))
-    }
+    return {name: math.floor(10 * _kurtogram(name)[0]) / 10 for name in BROKEN}
 
 
 def kurtogram_centre():
     """Centre of its band [Hz]."""
-    return {name: _kurtogram(case)[1] for name, case in (("sun 1 broken", "sun 1"), ("sun 2 broken", "crack80"))}
+    return {name: _kurtogram(name)[1] for name in BROKEN}
 
 
 def _stands_out(found, frequency, near=3.0):
@@ -115,13 +125,12 @@ def _sideband(case, mesh, fault, law=HEARD, channel=SENSOR):
     return (amplitude(found, mesh - fault) + amplitude(found, mesh + fault)) / 2
 
 
-def statements(law=HEARD, channel=SENSOR):
-    """What S2 says of its spectra; see the scene for the words."""
+def statements(law=HEARD, channel=SENSOR, broken=BROKEN):
+    """What S2 says of its spectra, by one reading of a broken tooth; see the scene for the words."""
     mesh, fault = frequencies()
     grown = [_sideband(case, mesh[1], fault[1], law, channel) for case in LEVELS.values()]
     healthy = _sideband(None, mesh[1], fault[1], law, channel)
     one = [_sideband(case, mesh[0], fault[0], law, channel) for case in ("sun 1", None)]
-    broken = ("sun 1", "crack80")
     squared = {
         case: gf.squared_envelope_spectrum(_noisy(case, law, channel), _kurtogram(case, law, channel)[2]) for case in broken
     }
@@ -133,11 +142,11 @@ def statements(law=HEARD, channel=SENSOR):
         "crack in sun 2: sidebands f_m2 +- 18.2 Hz": grown[3] > 10 * healthy,
         "sidebands grow with the crack": bool((np.diff(grown[:4]) > 0).all()),
         "10 %: sidebands too small to be identified": grown[0] < 0.1 * grown[3],
-        "squared envelope of the best band has 16.8 Hz (sun 1)": _stands_out(squared["sun 1"], fault[0]),
-        "squared envelope of the best band has 18.2 Hz (sun 2)": _stands_out(squared["crack80"], fault[1]),
+        "squared envelope of the best band has 16.8 Hz (sun 1)": _stands_out(squared[broken[0]], fault[0]),
+        "squared envelope of the best band has 18.2 Hz (sun 2)": _stands_out(squared[broken[1]], fault[1]),
         "dominant frequencies are below 2000 Hz": below(law, channel) > 0.5,
-        "sun 2 broken: more sidebands from 500 to 1000 Hz": more_lines(law, channel)[0] > 0.5,
-        "most of them larger than the healthy ones": more_lines(law, channel)[1] > 0.5,
+        "sun 2 broken: more sidebands from 500 to 1000 Hz": more_lines(law, channel, broken)[0] > 0.5,
+        "most of them larger than the healthy ones": more_lines(law, channel, broken)[1] > 0.5,
         "broken teeth raise the kurtosis": _of_second(None, law, channel) < min(_of_second(c, law, channel) for c in broken),
     }
 
@@ -154,10 +163,10 @@ def below(law=HEARD, channel=SENSOR):
     return float((height[frequency < HIGHEST] ** 2).sum() / (height**2).sum())
 
 
-def more_lines(law=HEARD, channel=SENSOR):
+def more_lines(law=HEARD, channel=SENSOR, broken=BROKEN):
     """Parts of the lines f_2 apart in `BAND`, off mesh harmonics, that are `ABOVE` times and that are above the healthy ones."""
     mesh, fault = frequencies()
-    hurt, healthy = (spectrum(_noisy(case, law, channel)) for case in ("crack80", None))
+    hurt, healthy = (spectrum(_noisy(case, law, channel)) for case in (broken[1], None))
     places = [n * mesh[1] + k * fault[1] for n in range(7) for k in range(-5, 6) if k]
     places = [f for f in places if BAND[0] < f < BAND[1] and min(abs(f - m * round(f / m)) for m in mesh) > 3.0]
     ratio = np.array([amplitude(hurt, f) / amplitude(healthy, f) for f in places])
@@ -171,31 +180,38 @@ def _of_second(case, law=HEARD, channel=SENSOR):
 
 
 PRINTED = {  # numbers that draws are set beside: by name, the reference
-    f"kurtosis, {SENSOR}": "kurtosis",
-    f"centre, {SENSOR}": "kurtogram_centre",
-    f"kurtosis, {HOUSING}": "kurtosis",
-    f"centre, {HOUSING}": "kurtogram_centre",
+    f"{word}, {channel}": reference
+    for channel in (SENSOR, HOUSING, CRACK[0])
+    for word, reference in (("kurtosis", "kurtosis"), ("centre", "kurtogram_centre"))
 }
 
 
 def drawn(draw):
     """Whether the statements hold with the inputs of a draw, by statement and channel, and kurtoses and kurtograms."""
     holds, numbers = {}, {}
-    for channel in (SENSOR, SUN, HOUSING):
-        for name, found in statements(draw, channel).items():
-            holds.setdefault(name, {})[channel] = bool(found)
-        numbers[f"kurtosis, {channel}"] = [_of_second(case, draw, channel) for case in (None, "sun 1", "crack80")]
-        numbers[f"centre, {channel}"] = [_kurtogram(case, draw, channel)[1] for case in ("sun 1", "crack80")]
+    for name, channel, broken in ((SENSOR, SENSOR, BROKEN), (SUN, SUN, BROKEN), (HOUSING, HOUSING, BROKEN), CRACK):
+        for word, found in statements(draw, channel, broken).items():
+            holds.setdefault(word, {})[name] = bool(found)
+        numbers[f"kurtosis, {name}"] = list(kurtosis(draw, channel, broken).values())
+        numbers[f"centre, {name}"] = [_kurtogram(case, draw, channel)[1] for case in broken]
     del holds["root circles smaller than base circles (external gears)"]
     for one in (_response, _whole, heard, _noisy, _kurtogram):
         one.cache_clear()
     return {"holds": holds, "numbers": numbers}
 
 
+def left(broken):
+    """Mean stiffness that a reading of a broken tooth leaves over its engagement, over the healthy one."""
+    pair, run = scene(NAME).pairs["sun_planet"], {"phases": 64, "span": "tooth"}
+    whole = gf.mesh_stiffness(pair.case(), **run)
+    k = without_tooth(whole) if broken == BROKEN else gf.mesh_stiffness(pair.case(broken[1]), **run).k
+    return float(k.mean() / whole.k.mean())
+
+
 def write_more():
     """Tables: phases of the meshes, and what each ingredient leaves of the stiffness."""
     made = _made(None)
-    beside("compound_planetary", BESIDE, SENSOR, SUN)
+    beside("compound_planetary", BESIDE, *VIEWS)
     phases = [(name, *map(float, pair)) for name, pair in made.notes["relative phases"].items()]
     write_table(PHASES, ("mesh", "against planet 1", "in its planet's chain"), phases)
     chosen = scene(NAME).pairs["sun_planet"].case()
@@ -219,25 +235,32 @@ def more():
         "| model | mean k [N/um] | of the first |",
     ]
     lines += ["|---|---|---|", *(f"| {name} | {in_newton_per_um(float(k))} | {float(k) / first:.2f} |" for name, k in parts), ""]
-    lines += tables("compound_planetary", SAID_OF, SENSOR, SUN)
+    lines += tables("compound_planetary", SAID_OF, *VIEWS)
     rows = rows_of(PHASES)
     lines += ["Phases of the meshes in cycles (S2's Table 2 is lost):", "", f"| {' | '.join(rows[0])} |", "|---|---|---|"]
     return [*lines, *(f"| {name} | {float(a):.4f} | {float(b):.4f} |" for name, a, b in map(dict.values, rows)), ""]
 
 
+VIEWS = {  # law, channel and reading of a broken tooth, by the head of a column
+    SENSOR: (HEARD, SENSOR, BROKEN),
+    SUN: (HEARD, SUN, BROKEN),
+    "crack of 80 %": (HEARD, SENSOR, CRACKED),
+    "backlash 0.1 mm": (LOOSE, SENSOR, BROKEN),
+}
 BESIDE = {
-    f"power of the healthy signal below {HIGHEST:g} Hz [%]": lambda channel: {"": 100 * below(channel=channel)},
-    "places of sidebands of sun 2, 500 to 1000 Hz [%]": lambda channel: dict(
-        zip(("3 times the healthy lines", "above the healthy lines"), (100 * x for x in more_lines(channel=channel)), strict=True)
+    f"power of the healthy signal below {HIGHEST:g} Hz [%]": lambda view: {"": 100 * below(*VIEWS[view][:2])},
+    "places of sidebands of sun 2, 500 to 1000 Hz [%]": lambda view: dict(
+        zip(("3 times the healthy lines", "above the healthy lines"), (100 * x for x in more_lines(*VIEWS[view])), strict=True)
     ),
-    "kurtosis with noise": lambda channel: {
-        name: _of_second(case, HEARD, channel) for name, case in (("healthy", None), ("sun 1", "sun 1"), ("sun 2", "crack80"))
-    },
-    "the article says": lambda channel: statements(HEARD, channel),
+    "mean stiffness over the engagement of the broken tooth [% of healthy]": lambda view: {"": 100 * left(VIEWS[view][2])},
+    "kurtosis with noise": lambda view: kurtosis(*VIEWS[view]),
+    "the article says": lambda view: statements(*VIEWS[view]),
 }
 SAID_OF = (
-    "What is judged, of the ring's angular acceleration, beside the same of the velocity of sun 2, which S2 shows of its "
-    "simulation"
+    "The first column is judged: the ring's angular acceleration, where a broken tooth is absent. The second is the velocity of "
+    "sun 2, which S2 shows of its simulation. In the third a broken tooth is the crack of 80 %, which keeps most of the mean "
+    "stiffness over its engagement. In the fourth the meshes have backlash, so that contact is lost where the tooth is absent; "
+    "without backlash the mesh has no stiffness there and cannot open"
 )
 
 
@@ -251,7 +274,7 @@ PICTURES = {
     "compound_planetary_spectra": "Angular acceleration of the ring",
     "compound_planetary_waves": "Angular acceleration of the ring with noise, as S2 shows its signals",
     "compound_planetary_envelopes": "Squared envelope spectra of the bands with the largest kurtosis",
-    "compound_planetary_kurtogram": "Kurtogram, sun 2 with a tooth of 80 %",
+    "compound_planetary_kurtogram": "Kurtogram, sun 2 with a tooth absent",
 }
 
 
@@ -271,14 +294,16 @@ def draw(folder):
     cases = {"healthy": None, "sun 1, 80 %": "sun 1", "sun 2, 30 %": "crack30", "sun 2, 80 %": "crack80"}
     spectra = {name: spectrum(_whole(case)) for name, case in cases.items()}
     plot_spectra(spectra, lines, folder / "compound_planetary_spectra.png", 450.0, dpi=70, title=NAME)
-    broken = {"sun 1, 80 %": "sun 1", "sun 2, 80 %": "crack80"}
+    broken = {"sun 1, tooth absent": BROKEN[0], "sun 2, tooth absent": BROKEN[1]}
     waves = {"healthy": _noisy(None)} | {name: _noisy(case) for name, case in broken.items()}
     plot_waves(waves, folder / "compound_planetary_waves.png", title=f"{NAME}, with noise")
     envelopes = {name: gf.squared_envelope_spectrum(_noisy(case), _kurtogram(case)[2]) for name, case in broken.items()}
     faults = {"f_1": slow, "2 f_1": 2 * slow, "f_2": quick, "2 f_2": 2 * quick}
     plot_spectra(envelopes, faults, folder / "compound_planetary_envelopes.png", 60.0, dpi=70, title=f"{NAME}, squared envelopes")
     gf.plot_kurtogram(
-        gf.fast_kurtogram(_noisy("crack80"), levels=7), folder / "compound_planetary_kurtogram.png", f"{NAME}, sun 2, 80 %"
+        gf.fast_kurtogram(_noisy(BROKEN[1]), levels=7),
+        folder / "compound_planetary_kurtogram.png",
+        f"{NAME}, sun 2, tooth absent",
     )
 
 

@@ -148,7 +148,7 @@ def numbers(name):
             quantity = ", ".join(filter(None, (meant, channel)))
             span = f"{min(values):.3g} to {max(values):.3g}", f"{inside} of {len(values)}"
             lines.append([quantity if not i else "", row.case, row.printed, row.ours, *span])
-    ours = Column("printed", form="{:g}"), Column("on this page", form="{:.3g}")
+    ours = Column("printed", form="{:g}"), Column("judged on this page", form="{:.3g}")
     head = ("number", "case", *ours, "least to largest of the draws", "draws within the tolerance")
     return [*Table(head, lines).markdown().splitlines(), ""]
 

@@ -123,9 +123,8 @@ def compound_planetary(found):
         f"{rings[0]:.2f} and {rings[1]:.2f} times as stiff instead of {ratios['s1']:.2f} and {ratios['s2']:.2f}, a converged "
         f"stiffness of the same gears of {true:.0f} N/um, {beams / true:.1f} times less, and kurtoses of {min(heard):.3g} to "
         f"{max(heard):.3g} instead of {min(measured):.3g} to {max(measured):.3g}",
-        "the foundation under the teeth, which the article leaves out, its lost table of parameters, and the resonances of "
-        "a housing that is "
-        "not modelled",
+        "the foundation under the teeth, which the article leaves out, its lost table of parameters, and whether a "
+        "broken tooth is absent, as here, or a deep crack",
     )
 
 
