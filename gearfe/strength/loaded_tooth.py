@@ -13,7 +13,7 @@ from ..flexibility.finite_elements.elasticity import edge_nodes, edge_shapes
 from ..flexibility.finite_elements.fe import EDGES
 from ..flexibility.finite_elements.one_tooth import NARROW, check_line_load, check_one, edge_lengths, load_at, narrow_section
 from ..geometry.tooth.gear import Gear
-from ..geometry.tooth.profile import flank, roll_at_arc
+from ..geometry.tooth.profile import flank, lengths, roll_at_arc
 
 STRESS_EDGES = {"flank": 0.1, "fillet": 0.01, "near": 0.4, "far": 0.9}  # in modules; the fillet decides
 COARSER = (0.5, 0.7)  # resolutions that the estimated error compares with
@@ -151,8 +151,7 @@ def _unit_stress(gear, material, state, arc, half_width, edges, refine):
     length = np.hypot(*along)
     stress = material.plane_modulus(state) * ((along * stretch).sum(axis=0) / length**2).ravel()
     points = np.einsum("dne,np->dep", mesh.mesh.doflocs[:, nodes], shapes).reshape(2, -1)
-    place = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=1)))])
-    return _peak(place, stress)
+    return _peak(lengths(points), stress)
 
 
 def _peak(place, stress):

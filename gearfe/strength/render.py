@@ -164,15 +164,20 @@ def _picture(path, size, text, top):
         fonts = {"title_font_size": round(26 * scale), "label_font_size": round(24 * scale), "color": "black", "fmt": "%.0f"}
         place = {"vertical": True, "position_x": 0.89, "position_y": 0.2, "width": 0.06, "height": 0.6, "n_labels": 6}
         plotter.add_scalar_bar(title="MPa", mapper=mapper, **fonts, **place)
-        plotter.add_text(f"von Mises stress\n{text}", position=(0.012, 0.985), viewport=True, color="black", font_size=1)
-        text_style = plotter.actors[next(reversed(plotter.actors))].prop
-        text_style.SetFontSize(round(28 * scale))
-        text_style.SetVerticalJustificationToTop()
-        text_style.SetBackgroundColor(1.0, 1.0, 1.0)
-        text_style.SetBackgroundOpacity(0.8)
+        _label(plotter, f"von Mises stress\n{text}", (0.012, 0.985), 28 * scale).SetVerticalJustificationToTop()
         plotter.enable_anti_aliasing("ssaa")
         with written(path) as name:
             plotter.screenshot(name)
+
+
+def _label(plotter, text, position, size):
+    """Add a text on white; its style."""
+    plotter.add_text(text, position=position, viewport=True, color="black", font_size=1)
+    style = plotter.actors[next(reversed(plotter.actors))].prop
+    style.SetFontSize(round(size))
+    style.SetBackgroundColor(1.0, 1.0, 1.0)
+    style.SetBackgroundOpacity(0.8)
+    return style
 
 
 def _grid(field, scale):
@@ -216,11 +221,7 @@ def _length_scale(plotter, size, up, view):
     sheet = pyvista.PolyData(corners, faces=[4, 0, 1, 3, 2])
     plotter.add_mesh(sheet, color="white", lighting=False)
     plotter.add_mesh(pyvista.Line(start, start + length * right), color="black", line_width=6, lighting=False)
-    plotter.add_text(f"{length:g} mm", position=(0.028, 0.045), viewport=True, color="black", font_size=1)
-    text_style = plotter.actors[next(reversed(plotter.actors))].prop
-    text_style.SetFontSize(round(24 * (size[0] / 1400) ** 0.7))
-    text_style.SetBackgroundColor(1.0, 1.0, 1.0)
-    text_style.SetBackgroundOpacity(0.8)
+    _label(plotter, f"{length:g} mm", (0.028, 0.045), 24 * (size[0] / 1400) ** 0.7)
 
 
 def _draw_gears(pair, fields, told, path, size):

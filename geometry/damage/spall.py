@@ -14,6 +14,7 @@ from .hollow import doubts, in_circle, on_line, profile
 
 LEAST, LONGEST = 1e-6, 1e6  # sides [mm]
 QUARTER = 8  # parts of a rounded corner that is drawn
+CORNERS = (1, 1), (-1, 1), (-1, -1), (1, -1)  # towards which half side they lie, counter-clockwise
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +141,7 @@ class Spall:
         """Its outline in space, from its `centre` and half `axes` ``(3, 2)``: lines, and arcs by their ends and centres."""
         inner = 1 - self.corner / np.array(self.axes)
         out = []
-        for p, q in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
+        for p, q in CORNERS:
             ends = np.array([[p, q * inner[1]], [p * inner[0], q]])[:: p * q]  # of the corner, counter-clockwise
             following = [-p * inner[0], q] if p * q > 0 else [p, -q * inner[1]]
             if self.corner:
@@ -154,7 +155,7 @@ class Spall:
         rounded = self.corner / np.array(self.axes)
         p, q, dp, dq = np.broadcast_arrays(p, q, dp, dq)
         parts = [_in_box(p, q, dp, dq, 1 - rounded[0], 1.0), _in_box(p, q, dp, dq, 1.0, 1 - rounded[1])]
-        for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1)) if self.corner else ():
+        for i, j in CORNERS if self.corner else ():
             at = (p - i * (1 - rounded[0])) / rounded[0], (q - j * (1 - rounded[1])) / rounded[1]
             parts.append(in_circle(*at, dp / rounded[0], dq / rounded[1], 1e-24))
         low, high = np.array(parts).transpose(1, 0, 2, 3)
@@ -170,7 +171,7 @@ class Spall:
         (u, ranges), reach, unit = on_line(gear, self, roll, z), self.axes[1], np.array([1.0, 0.0, 0.0])
         inner = [half - self.corner for half in self.axes]
         limits = [u - sign * half * unit for half in (self.axes[0], inner[0]) for sign in (-1, 1)]
-        for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1)) if self.corner else ():
+        for i, j in CORNERS if self.corner else ():
             circle = _square(*(u - i * inner[0] * unit))
             circle[:3] += _square(-j * inner[1], reach) - self.corner**2 * unit
             limits.append(circle)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
+from ..tooth.profile import arc_at, cartesian, fillet_length, flank, lengths, roll_at_arc, root_curve, root_half_angle
 
 NEAR = 3  # teeth beside the loaded ones that get the edge length `size`; those beyond get `far_size`
 MERGED = 1e-6  # a root arc between two fillets that is shorter than this is left out [m_n]
@@ -176,8 +176,7 @@ def inside(loop, points):
 
 def along(corners, first, last, largest):
     """Points ``(2, n)`` on a polyline of `corners`, edge lengths from `first` at its start to `last` at its end [mm]."""
-    legs = np.hypot(*np.diff(corners, axis=1))
-    ends = np.concatenate([[0.0], np.cumsum(legs)])
+    ends = lengths(corners)
     fine = [(0.0, 0.0, first), (ends[-1], ends[-1], last)]
     places = [spaced(a, b, largest, fine)[1:] for a, b in zip(ends[:-1], ends[1:], strict=True)]
     place = np.concatenate([[0.0], *places])

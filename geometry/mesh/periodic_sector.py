@@ -8,7 +8,7 @@ from skfem import MeshTri2
 
 from ..damage.crack import meshed_path, start_arc
 from ..tooth.gear import Gear
-from ..tooth.profile import cartesian
+from ..tooth.profile import cartesian, lengths
 from .outline import along, doubled, half, spaced, stations
 from .section_mesh import CRACK_EDGE, fill
 
@@ -52,7 +52,7 @@ def periodic_sector(gear, cracks=(), *, refine=1.0):
         if crack.side in lines:
             raise ValueError(f"two cracks on the {crack.side} side of tooth {crack.tooth}: give one to each side of a tooth")
         corners = meshed_path(gear, crack)
-        length = np.hypot(*np.diff(corners, axis=1)).sum()
+        length = lengths(corners)[-1]
         tip = min(CRACK_EDGE * FILLET * unit, length / 5)
         marks[crack.side] = start_arc(gear, crack), min(FILLET * unit, length / 4)
         lines[crack.side] = along(corners, marks[crack.side][1], tip, FILLET * unit)[:, 1:]

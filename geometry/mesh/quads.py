@@ -12,7 +12,7 @@ import numpy as np
 
 from ..damage.crack import check_apart, check_single, meshed_path, mirrored, start_arc
 from ..tooth.gear import Gear
-from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
+from ..tooth.profile import arc_at, cartesian, fillet_length, flank, lengths, roll_at_arc, root_curve, root_half_angle
 from .mesher import quadrangulate
 from .outline import spaced
 
@@ -184,14 +184,10 @@ def _quarters(values):
 
 def _mouths(gear, size, found):
     """By side of a cracked tooth: arc where the parting line starts and the edge length there [mm]."""
-    mouths = {crack.side: (start_arc(gear, crack), min(size["fillet"], _lengths(gear, crack)[-1] / 4)) for _, crack in found}
+    ends = {crack.side: (start_arc(gear, crack), lengths(meshed_path(gear, crack))[-1]) for _, crack in found}
+    mouths = {side: (arc, min(size["fillet"], length / 4)) for side, (arc, length) in ends.items()}
     (only,) = [*mouths.values()][:1]
     return {side: mouths.get(side, (only[0], size["fillet"])) for side in ("unloaded", "loaded")}
-
-
-def _lengths(gear, crack):
-    """Distances along a crack [mm] of its corners from its mouth."""
-    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(meshed_path(gear, crack), axis=1)))])
 
 
 def _rim(gear, draft, size, teeth, mouths, patches):
@@ -247,7 +243,7 @@ def _cut(gear, draft, size, tooth, found, mouths, marks):
     by_side = {crack.side: (number, crack) for number, crack in found}
     legs, ends, spots = {"loaded": [], "unloaded": []}, {}, {}
     for side, (number, crack) in by_side.items():
-        path, places = meshed_path(gear, crack), _lengths(gear, crack)
+        places = lengths(path := meshed_path(gear, crack))
         ends[side], spots[side] = path[:, -1], min(size["crack tip"], places[-1] / 8)
         sizes = [mouths[side][1], *[size["crack"]] * (places.size - 2), spots[side]]
         legs[side] = [(path[:, k : k + 2], number, places[k : k + 2], sizes[k : k + 2]) for k in range(places.size - 1)]

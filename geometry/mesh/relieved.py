@@ -29,20 +29,28 @@ def relieved(body: Section, form: FlankForm, order: np.ndarray, sense: int) -> S
     -------
     Section
     """
-    gear, points = body.gear, body.mesh.doflocs.copy()
-    radius = np.hypot(*points)
+    points = body.mesh.doflocs.copy()
     for k in np.asarray(order).tolist():
-        centre = 2 * np.pi * (sense * k) / gear.z
-        angle = (np.arctan2(points[0], points[1]) - centre + np.pi) % (2 * np.pi) - np.pi
-        inside = (np.abs(angle) < np.pi / gear.z) & (gear.outward * (radius - gear.r_f) > 0)
-        roll = np.sqrt(np.maximum(radius[inside] ** 2 - gear.r_b**2, 0.0))
-        least, most = sorted((gear.roll_f, gear.roll_a))
-        removed = form.of(k).removed(np.clip(roll, least, most)) + form.shift(k)
-        inner = gear.outward * (radius[inside] - gear.r_form) < 0
-        half = np.array([gear.half_thickness(r) for r in np.where(inner, gear.r_form, radius[inside])])
-        across = np.clip(angle[inside] / half, -1.0, 1.0)
-        across = across if form.flank.both_sides else (across + 1) / 2
-        fade = np.clip((radius[inside] - gear.r_f) / (gear.r_form - gear.r_f), 0.0, 1.0)
-        turned = angle[inside] + centre - across * fade * removed / gear.r_b
-        points[:, inside] = radius[inside] * np.array([np.sin(turned), np.cos(turned)])
+        own, angle = form.of(k), 2 * np.pi * (sense * k) / body.gear.z
+        bend(points, body.gear, angle, lambda roll, _, own=own, k=k: own.removed(roll) + form.shift(k), form.flank.both_sides)
     return replace(body, mesh=replace(body.mesh, doflocs=points))
+
+
+def bend(points, gear, centre, removed, both_sides):
+    """Turn the nodes `points` ``(2 or 3, n)`` of a tooth about the axis, in place, by the material removed at their radius.
+
+    `centre` is the angle of the tooth's centre-line [rad], a number or ``(n,)``. ``removed(roll, inside)`` gives the material
+    removed [mm] at the roll lengths of the nodes `inside`, those of the tooth.
+    """
+    radius, angle = np.hypot(*points[:2]), np.arctan2(*points[:2])
+    angle = (angle - centre + np.pi) % (2 * np.pi) - np.pi
+    inside = np.flatnonzero((np.abs(angle) < np.pi / gear.z) & (gear.outward * (radius - gear.r_f) > 0))
+    r, angle, centre = radius[inside], angle[inside], np.broadcast_to(centre, radius.shape)[inside]
+    roll = np.clip(np.sqrt(np.maximum(r**2 - gear.r_b**2, 0.0)), *sorted((gear.roll_f, gear.roll_a)))
+    inner = gear.outward * (r - gear.r_form) < 0
+    half = np.array([gear.half_thickness(one) for one in np.where(inner, gear.r_form, r).tolist()])
+    across = np.clip(angle / half, -1.0, 1.0)
+    across = across if both_sides else (across + 1) / 2
+    fade = np.clip((r - gear.r_f) / (gear.r_form - gear.r_f), 0.0, 1.0)
+    turned = angle + centre - across * fade * removed(roll, inside) / gear.r_b
+    points[:2, inside] = r * np.array([np.sin(turned), np.cos(turned)])

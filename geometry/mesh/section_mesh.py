@@ -13,6 +13,7 @@ from skfem import MeshTri, MeshTri2
 from ..damage.crack import check_apart, check_through, meshed_path, mirrored, start_arc
 from ..damage.seam import open_seam
 from ..tooth.gear import Gear
+from ..tooth.profile import lengths
 from .mesher import triangulate
 from .outline import along, held_circle, inside, outline
 
@@ -82,7 +83,7 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), 
     for crack in cracks:
         place = crack.tooth % gear.z, crack.side
         paths[place] = corners = _turned(meshed_path(gear, crack), 2 * math.pi * crack.tooth / gear.z)
-        length = np.hypot(*np.diff(corners, axis=1)).sum()
+        length = lengths(corners)[-1]
         marks[place] = start_arc(gear, crack), min(fillet_size, length / 4)
         tips[place] = min(CRACK_EDGE * fillet_size, length / 5)
         if crack.turning and crack.level > 0.5:  # it runs towards its mirror image: refine there as the ligament shrinks

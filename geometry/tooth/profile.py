@@ -19,6 +19,11 @@ def cartesian(radius, angle):
     return np.array([radius * np.sin(angle), radius * np.cos(angle)])
 
 
+def lengths(points):
+    """Lengths ``(n,)`` [mm] along a polyline of points ``(2, n)``, from its start."""
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=1)))])
+
+
 def flank(gear, roll):
     """Radius [mm] and angle [rad] of the loaded involute flank at roll length `roll` [mm]."""
     tangent = np.asarray(roll) / gear.r_b
@@ -178,9 +183,7 @@ def root_half_angle(gear):
 def _fillet_arc(gear):
     """Arc length [mm] from the root circle against rack tip angle, finely sampled for interpolation."""
     phi = np.linspace(math.pi / 2, form_point(gear)[0], 400)
-    points = cartesian(*fillet(gear, phi))
-    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=1)))])
-    return phi, arc
+    return phi, lengths(cartesian(*fillet(gear, phi)))
 
 
 def fillet_length(gear):

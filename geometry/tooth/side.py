@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import make_interp_spline
 
 from .gear import Gear
-from .profile import arc_at, cartesian, fillet, fillet_length, flank, form_point, roll_at_arc, root_curve
+from .profile import arc_at, cartesian, fillet, fillet_length, flank, form_point, lengths, roll_at_arc, root_curve
 
 POINTS = 200  # of the fillet between root circle and form point
 SHARPEST = 1e-3  # a form point where the outline turns by less [rad] is no corner: the limit of undercut
@@ -38,7 +38,7 @@ def _fillet(gear):
     phi = np.linspace(np.pi / 2, form_point(gear)[0], POINTS)
     radius, angle = fillet(gear, phi)
     height = np.sqrt(np.abs(radius - gear.r_f) / abs(radius[-1] - gear.r_f))
-    length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(cartesian(radius, angle), axis=1)))])
+    length = lengths(cartesian(radius, angle))
     return make_interp_spline(height, np.array([angle, length - length[-1]]).T)
 
 

@@ -104,12 +104,14 @@ def text():
     value = {row[:3]: row[3] for row in known}
     changes = [name for name in dict.fromkeys(row[2] for row in known) if "[" not in name]
     lines = [
-        "## Stiffness",
-        "",
-        "Mean mesh stiffness, of spur gears by `ritz` (the section is all there is), of others by `ritz3d`,",
-        "and its change in percent with one assumption changed at a time:",
-        "",
-        f"| change | {' | '.join(', '.join(pair) for pair in pairs)} |",
+        f"""
+        ## Stiffness
+
+        Mean mesh stiffness, of spur gears by `ritz` (the section is all there is), of others by `ritz3d`, and its change in
+        percent with one assumption changed at a time:
+
+        | change | {" | ".join(", ".join(pair) for pair in pairs)} |
+        """,
         "|---" * (1 + len(pairs)) + "|",
         "| as assumed [N/um] | " + " | ".join(in_newton_per_um(value[*pair, BASE]) for pair in pairs) + " |",
     ]
@@ -117,13 +119,14 @@ def text():
         cells = (f"{value[*pair, name]:+.1f}" if (*pair, name) in value else "" for pair in pairs)
         lines.append(f"| {name} | {' | '.join(cells)} |")
     lines += [
-        "",
-        "## Pits",
-        "",
-        "Largest loss of k by `ritz3d`, in percent:",
-        "",
-        "| scene, case | change | loss |",
-        "|---|---|---|",
+        """
+        ## Pits
+
+        Largest loss of k by `ritz3d`, in percent:
+
+        | scene, case | change | loss |
+        |---|---|---|
+        """,
     ]
     for scene, _, change, loss in known:
         if change.startswith("pits"):
@@ -135,11 +138,10 @@ def text():
         f"{max(bores):+.0f} %, the others by at most {rest:.1f} % (not tried: face width, to which k is nearly proportional, and "
         "centre distance); the length and angle of a crack decide what it takes."
     )
-    how = [
-        "`python -m validation assumptions` computes these tables (`tables/assumptions*`). Both sides of each comparison",
-        "are",
-        "gearfe's: this page says what a choice does, not which choice is right.",
-    ]
+    how = """
+    `python -m validation assumptions` computes these tables (`tables/assumptions*`). Both sides of each comparison are
+    gearfe's: this page says what a choice does, not which choice is right.
+    """
     return answer, how, lines, conventions()
 
 
@@ -148,15 +150,16 @@ def conventions(again=False):
     rows = reference.load()["crack"]["rows"][:3]
     levels = " | ".join(f"{100 * row['level']:.0f} %" for row in rows)
     lines = [
-        "## Cracks",
-        "",
-        "Largest reduction of k by `ritz`, the 18/27 pair of [truth.md](truth.md), a crack in the pinion over its whole",
-        "engagement,",
-        "no extended contact, level 50 % at the centre-line. The first convention is that of an earlier study, whose values",
-        "gearfe finds there.",
-        "",
-        f"| convention | {levels} |",
-        "|---|---|---|---|",
+        f"""
+        ## Cracks
+
+        Largest reduction of k by `ritz`, the 18/27 pair of [truth.md](truth.md), a crack in the pinion over its whole
+        engagement, no extended contact, level 50 % at the centre-line. The first convention is that of an earlier study,
+        whose values gearfe finds there.
+
+        | convention | {levels} |
+        |---|---|---|---|
+        """,
     ]
     for name, crack in CONVENTIONS.items():
         row = kept("assumptions_cracks", name, lambda crack=crack: _reductions(rows, crack), again)

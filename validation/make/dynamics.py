@@ -24,18 +24,20 @@ cases: [hard.md](hard.md). Both sides integrate the same equations of the same m
 of others in [truth.md](truth.md).
 """
 HEAD = [
-    "## The step that `simulate` chooses",
-    "",
-    "Without `step` the fast path halves its step on a short stretch until two runs agree; where contact is lost, whole runs.",
-    "Here against DOP853 (rtol 1e-10) between located changes of contact, from rest, over about three mesh cycles, at five",
-    "output rates, 2 to 50 kHz: the largest error of a displacement over the largest range of a displacement of its kind",
-    '(translation, rotation), and of a mesh force over its range; and the estimate, `stats["error"]`, of the larger of both.',
-    "Wanted: 1e-3, with contact loss 1e-2, and the error below the estimate in 95 of 100 runs. Curves of the spur stages by",
-    "`ritz`; a damaged tooth loses 20 % of the stiffness (planetary), is cracked to 50 % (compound), has a pit of 10 by 2 mm",
-    "under the impact law (helical), or loses 30 % (herringbone). Contact is lost to errors of 40 um with 0.1 mm of play.",
-    "",
-    "| machine | steps, us | estimates | largest displacement error | largest force error | covered | losses of contact |",
-    "|---|---|---|---|---|---|---|",
+    """
+    ## The step that `simulate` chooses
+
+    Without `step` the fast path halves its step on a short stretch until two runs agree; where contact is lost, whole runs.
+    Here against DOP853 (rtol 1e-10) between located changes of contact, from rest, over about three mesh cycles, at five
+    output rates, 2 to 50 kHz: the largest error of a displacement over the largest range of a displacement of its kind
+    (translation, rotation), and of a mesh force over its range; and the estimate, `stats["error"]`, of the larger of both.
+    Wanted: 1e-3, with contact loss 1e-2, and the error below the estimate in 95 of 100 runs. Curves of the spur stages by
+    `ritz`; a damaged tooth loses 20 % of the stiffness (planetary), is cracked to 50 % (compound), has a pit of 10 by 2 mm
+    under the impact law (helical), or loses 30 % (herringbone). Contact is lost to errors of 40 um with 0.1 mm of play.
+
+    | machine | steps, us | estimates | largest displacement error | largest force error | covered | losses of contact |
+    |---|---|---|---|---|---|---|
+    """,
 ]
 CHATTER = "A chattering stage, with and without located changes of contact: [dynamics_chatter.md](dynamics_chatter.md)."
 
@@ -152,7 +154,7 @@ def answer():
 def run(again=True):
     """Write the page; `again`: compute its rows again."""
     sections = [*HEAD, *accuracy(again)], [CHATTER]
-    page.write("dynamics", answer(), HOW.strip().splitlines(), *sections)
+    page.write("dynamics", answer(), HOW, *sections)
 
 
 def _timed(model, method, rtol):

@@ -83,14 +83,16 @@ def text():
     """Arguments of `page.text`."""
     gears, steel = pair()
     lines = [
-        "## Sections beside CalculiX",
-        "",
-        f"A pair {gears.gear_1.z}/{gears.gear_2.z} of m 3, bores 15/20 mm, {LINE_LOAD:g} N/mm, tip relief on both gears over",
-        "the last millimetres of roll length; plane strain, mean pose. CalculiX: both gears meshed with their modified flanks,",
-        "eight edges per Hertz half width, surface-to-surface contact, large displacements (`gf.write_contact_inp`).",
-        "",
-        "| relief | phase | load shares | error, gearfe [um] | CalculiX [um] | difference in the deflection |",
-        "|---|---|---|---|---|---|",
+        f"""
+        ## Sections beside CalculiX
+
+        A pair {gears.gear_1.z}/{gears.gear_2.z} of m 3, bores 15/20 mm, {LINE_LOAD:g} N/mm, tip relief on both gears over the
+        last millimetres of roll length; plane strain, mean pose. CalculiX: both gears meshed with their modified flanks,
+        eight edges per Hertz half width, surface-to-surface contact, large displacements (`gf.write_contact_inp`).
+
+        | relief | phase | load shares | error, gearfe [um] | CalculiX [um] | difference in the deflection |
+        |---|---|---|---|---|---|
+        """
     ]
     worst, known = 0.0, stored(TABLE)
     for case in CASES:
@@ -102,7 +104,14 @@ def text():
             f"| {name} | {case[3]:g} | {shares} | {ours:.3f} | {theirs:.3f} | {100 * (ours - theirs) / reference:+.3f} % |"
         )
     lines += ["", f"Largest difference {100 * worst:.2f} % (asked for: 0.3 % away from corners, 1 % at corners)."]
-    lines += ["", "## Transmission error over load", "", "Peak-to-peak over a mesh cycle [um], 64 phases, by `ritz`:", ""]
+    lines += [
+        """
+        ## Transmission error over load
+
+        Peak-to-peak over a mesh cycle [um], 64 phases, by `ritz`:
+        """,
+        "",
+    ]
     shapes = {
         "involutes": None, "linear, 10 um over 4.7 mm": (10.0, 4.7, 1.0), "parabolic, 10 um over 4.7 mm": (10.0, 4.7, 2.0),
         "linear, 30 um over 4 mm": (30.0, 4.0, 1.0),
@@ -116,24 +125,24 @@ def text():
         if shape == (10.0, 4.7, 1.0):
             found.plot(PICTURE)
     lines += [
-        "",
-        "The linear relief of 10 um makes up for the difference of deflection between one and two pairs at 150 N/mm (Munro,",
-        "Gregory, Harris). What is left there: stiffness changes along the flank, too, and a straight relief cannot follow that;",
-        "and contact bends round the kinks.",
-        "",
-        "![transmission error over phase and load](flanks_map.png)",
+        """
+        The linear relief of 10 um makes up for the difference of deflection between one and two pairs at 150 N/mm (Munro,
+        Gregory, Harris). What is left there: stiffness changes along the flank, too, and a straight relief cannot follow
+        that; and contact bends round the kinks.
+
+        ![transmission error over phase and load](flanks_map.png)
+        """,
     ]
     answer = (
         f"`ritz` is within {100 * worst:.2f} % of CalculiX in the deflection of sections with tip relief, and `ritz3d` within "
         f"{100 * flanks_three.worst():.1f} % of it on crowned, relieved and askew helical flanks, on meshes that are "
         "themselves too stiff."
     )
-    how = [
-        "`python -m validation flanks` makes this page from `tables/flanks_*` and new solves of gearfe; `... flanks --reference`",
-        "computes the rows of CalculiX, in three dimensions on the finer mesh, and of finite elements. Shared with CalculiX: the",
-        "shapes of the flanks",
-        "and where they stand.",
-    ]
+    how = """
+    `python -m validation flanks` makes this page from `tables/flanks_*` and new solves of gearfe; `... flanks
+    --reference` computes the rows of CalculiX, in three dimensions on the finer mesh, and of finite elements. Shared with
+    CalculiX: the shapes of the flanks and where they stand.
+    """
     return answer, how, lines, flanks_wide.text(), flanks_three.text()
 
 

@@ -73,17 +73,19 @@ def text():
     known = outsider.stored()
     apart = [outsider.apart(known[outsider.SHOWN, outsider.told(mesh)]) for mesh in outsider.STRIP]
     lines = [
-        "## Three dimensions beside CalculiX",
-        "",
-        f"A helical pair 13/16 of m 2, 15 degrees, 6 mm wide, {LOAD:g} N/mm. Its flanks: lead crowning of 6 um (pinion) and 4 um",
-        "(wheel), a parabolic tip relief of 8 um over 2 mm of roll length on the pinion, and axes askew by F_beta = 8 um, which",
-        "presses it at one end. CalculiX: both whole gears in 20-node hexahedra whose nodes lie on the modified flanks,",
-        'surface-to-surface contact, large displacements (`gf.write_contact_inp(face="helical", flanks=..., misalignment=...)`).',
-        "Involutes by the same meshes show what of a difference is the mesh's: at phase 0.45 k differs by",
-        f"{100 * apart[0]:+.2f} % with one edge per half width and by {100 * apart[1]:+.2f} % with 1.5 ([three.md](three.md)).",
-        "",
-        "| flanks | phase | edges per half width | nodes | error, `ritz3d` [um] | CalculiX [um] | its part |",
-        "|---|---|---|---|---|---|---|",
+        f"""
+        ## Three dimensions beside CalculiX
+
+        A helical pair 13/16 of m 2, 15 degrees, 6 mm wide, {LOAD:g} N/mm. Its flanks: lead crowning of 6 um (pinion) and 4 um
+        (wheel), a parabolic tip relief of 8 um over 2 mm of roll length on the pinion, and axes askew by F_beta = 8 um, which
+        presses it at one end. CalculiX: both whole gears in 20-node hexahedra whose nodes lie on the modified flanks,
+        surface-to-surface contact, large displacements (`gf.write_contact_inp(face="helical", flanks=...,
+        misalignment=...)`). Involutes by the same meshes show what of a difference is the mesh's: at phase 0.45 k differs by
+        {100 * apart[0]:+.2f} % with one edge per half width and by {100 * apart[1]:+.2f} % with 1.5 ([three.md](three.md)).
+
+        | flanks | phase | edges per half width | nodes | error, `ritz3d` [um] | CalculiX [um] | its part |
+        |---|---|---|---|---|---|---|
+        """
     ]
     rows = stored(TABLE)
     for run in RUNS:

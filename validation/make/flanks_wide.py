@@ -89,22 +89,23 @@ def text():
     away = {seed: 100 * sections[f"section, seed {seed}"]["difference"] for seed in SECTION_SEEDS}
     worst = max(away, key=lambda seed: away[seed])
     lines = [
-        "## Random sections",
-        "",
-        f"`ritz` against `fe` on {len(away)} random pairs: tip relief (linear to parabolic), crowning and slope on both gears,",
-        "24 phases each: largest difference of the transmission error over the mean deflection. "
-        f"Median {np.median(list(away.values())):.3f} %, largest {away[worst]:.3f} % (seed {worst}).",
-        "Each is on file ([tables/flanks_fe.jsonl](tables/flanks_fe.jsonl)).",
-        "",
-        "## Along the width",
-        "",
-        "Random narrow pairs of m 2 with tip relief, lead crowning, helix slope, twist and end relief on both gears and",
-        f"misaligned axes, `ritz3d` against hexahedra of whole gears (`fe3d`, refine {REFINE:g}) at three phases; both are asked",
-        "the same gaps, so this judges the bodies, not the gaps",
-        "([tables/flanks_fe3d.jsonl](tables/flanks_fe3d.jsonl)).",
-        "",
-        "| seed | teeth | helix | width | force | deflection [um] | largest difference of the error |",
-        "|---|---|---|---|---|---|---|",
+        f"""
+        ## Random sections
+
+        `ritz` against `fe` on {len(away)} random pairs: tip relief (linear to parabolic), crowning and slope on both gears,
+        24 phases each: largest difference of the transmission error over the mean deflection. Median
+        {np.median(list(away.values())):.3f} %, largest {away[worst]:.3f} % (seed {worst}). Each is on file
+        ([tables/flanks_fe.jsonl](tables/flanks_fe.jsonl)).
+
+        ## Along the width
+
+        Random narrow pairs of m 2 with tip relief, lead crowning, helix slope, twist and end relief on both gears and
+        misaligned axes, `ritz3d` against hexahedra of whole gears (`fe3d`, refine {REFINE:g}) at three phases; both are asked
+        the same gaps, so this judges the bodies, not the gaps ([tables/flanks_fe3d.jsonl](tables/flanks_fe3d.jsonl)).
+
+        | seed | teeth | helix | width | force | deflection [um] | largest difference of the error |
+        |---|---|---|---|---|---|---|
+        """
     ]
     for seed in SEEDS:
         row = wide[f"askew, seed {seed}"]
@@ -120,12 +121,13 @@ def _section():
     rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 30.0}
     pair = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack), gf.Gear(z=36, r_bore=20.0, **rack))
     lines = [
-        "",
-        "Spur gears 24/36 of m 3, 30 mm wide, 150 N/mm, the same profile along the width, three dimensions beside the section",
-        "(plane strain is the stiffer one): peak-to-peak over 16 phases, and the mean error.",
-        "",
-        "| relief on both gears | `ritz` [um] | `ritz3d` [um] | mean, `ritz3d` over `ritz` |",
-        "|---|---|---|---|",
+        """
+        Spur gears 24/36 of m 3, 30 mm wide, 150 N/mm, the same profile along the width, three dimensions beside the section
+        (plane strain is the stiffer one): peak-to-peak over 16 phases, and the mean error.
+
+        | relief on both gears | `ritz` [um] | `ritz3d` [um] | mean, `ritz3d` over `ritz` |
+        |---|---|---|---|
+        """,
     ]
     shapes = {"none": None, "linear, 10 um over 4.7 mm": (0.01, 4.7, 1.0), "parabolic, 30 um over 4 mm": (0.03, 4.0, 2.0)}
     for name, shape in shapes.items():
@@ -143,13 +145,14 @@ def _kinks():
     rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 100.0}
     pair = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack), gf.Gear(z=36, r_bore=20.0, **rack))
     lines = [
-        "",
-        "Only even loads along the width (plane strain), 100 mm wide, 64 phases: three dimensions against the section. Where a",
-        "kink of a linear relief lies in the contact, the section resolves it hat by hat; three dimensions take its local law",
-        "from there (`gearfe.contact.kink_law`; without it linear reliefs are off by 0.7 to 6.0 % at those phases).",
-        "",
-        "| relief on both gears | load | largest difference of the error, of the deflection | median |",
-        "|---|---|---|---|",
+        """
+        Only even loads along the width (plane strain), 100 mm wide, 64 phases: three dimensions against the section. Where a
+        kink of a linear relief lies in the contact, the section resolves it hat by hat; three dimensions take its local law
+        from there (`gearfe.contact.kink_law`; without it linear reliefs are off by 0.7 to 6.0 % at those phases).
+
+        | relief on both gears | load | largest difference of the error, of the deflection | median |
+        |---|---|---|---|
+        """,
     ]
     shapes = {"none": None, "parabolic, 10 um over 4.7 mm": (0.01, 4.7, 2.0), "linear, 10 um over 4.7 mm": (0.01, 4.7, 1.0),
               "linear, 30 um over 4 mm": (0.03, 4.0, 1.0)}  # fmt: skip

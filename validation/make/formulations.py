@@ -15,32 +15,34 @@ def section(again=False):
         kept("map", name, lambda job=job: {"lines": job(tables)}, again)["lines"] for name, job in JOBS.items()
     )
     return [
-        "## Below 3 % is a coincidence of load and zone",
-        "",
-        "Lowest to highest error of four external pairs (19/48, 25/30, 18/27, 21/31 at 200, 150, 127 and 150 N/mm), in",
-        "percent of",
-        "`fe`, beside an earlier study: against finite elements of five teeth on a plain rim, as that study had, and of the",
-        "whole",
-        "gear; no contact beyond the path of contact.",
-        "",
-        "| formulation | zone | earlier study | five teeth | whole gear | verdict |",
-        "|---|---|---|---|---|---|",
+        """
+        ## Below 3 % is a coincidence of load and zone
+
+        Lowest to highest error of four external pairs (19/48, 25/30, 18/27, 21/31 at 200, 150, 127 and 150 N/mm), in percent
+        of `fe`, beside an earlier study: against finite elements of five teeth on a plain rim, as that study had, and of the
+        whole gear; no contact beyond the path of contact.
+
+        | formulation | zone | earlier study | five teeth | whole gear | verdict |
+        |---|---|---|---|---|---|
+        """,
         *study,
-        "",
-        "The textbook is near the truth with one pair in contact because two errors cancel: its teeth are too soft, its linear",
-        "contact far too stiff. With two pairs its teeth share nothing and it is a fifth to a third too stiff. As the contact",
-        "stiffens with load and the textbook's does not, its error moves with the load; the 62/62 pair at the pitch point:",
-        "",
-        "| N/mm | source | here, composed as there | against `fe` |",
-        "|---|---|---|---|",
+        """
+        The textbook is near the truth with one pair in contact because two errors cancel: its teeth are too soft, its linear
+        contact far too stiff. With two pairs its teeth share nothing and it is a fifth to a third too stiff. As the contact
+        stiffens with load and the textbook's does not, its error moves with the load; the 62/62 pair at the pitch point:
+
+        | N/mm | source | here, composed as there | against `fe` |
+        |---|---|---|---|
+        """,
         *trend,
-        "",
-        "The source composes its truth from teeth by finite elements at their centre-line and Weber's formula for what lies",
-        "above; that is 1.5 % stiffer than the whole contact by finite elements, whence the difference of the last two columns.",
-        "",
-        "## What each ingredient changes",
-        "",
-        "Error of the rung in the single / double zone and in the mean, for the same pairs.",
+        """
+        The source composes its truth from teeth by finite elements at their centre-line and Weber's formula for what lies
+        above; that is 1.5 % stiffer than the whole contact by finite elements, whence the difference of the last two columns.
+
+        ## What each ingredient changes
+
+        Error of the rung in the single / double zone and in the mean, for the same pairs.
+        """,
         "",
         "| rung | " + " | ".join("{}/{}".format(*row["z"]) for row in pairs) + " |",
         "|---" * (len(pairs) + 1) + "|",

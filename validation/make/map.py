@@ -61,13 +61,13 @@ def sampled():
 def section(found):
     """Lines of the random pairs, of what `sampled` gives."""
     return [
-        "## Random healthy pairs",
-        "",
-        f"{found['pairs']} external pairs, {found['rows']} rows of pair, load and crack; the sample is fixed",
-        "(`gearfe.error_map`,",
-        "seed 0). Loads are F / (b m_n). Errors of k against `ritz`, without contact beyond the path of contact: at 5 / 50 /",
-        "95 %",
-        "of the rows; share of the rows within 3 %.",
+        f"""
+        ## Random healthy pairs
+
+        {found["pairs"]} external pairs, {found["rows"]} rows of pair, load and crack; the sample is fixed
+        (`gearfe.error_map`, seed 0). Loads are F / (b m_n). Errors of k against `ritz`, without contact beyond the path of
+        contact: at 5 / 50 / 95 % of the rows; share of the rows within 3 %.
+        """,
         "",
         "| formulation | " + " | ".join(ZONES) + " |",
         "|---" * (len(ZONES) + 1) + "|",
@@ -79,12 +79,13 @@ def section(found):
         "| part | " + " | ".join(HEALTHY) + " |",
         "|---" * (len(HEALTHY) + 1) + "|",
         *found["parts"],
-        "",
-        f"![median error by load and bore]({PICTURE.name})",
-        "",
-        "## Random cracked pinions",
-        "",
-        "Over the engagement of the cracked tooth, where it carries alone (single):",
+        f"""
+        ![median error by load and bore]({PICTURE.name})
+
+        ## Random cracked pinions
+
+        Over the engagement of the cracked tooth, where it carries alone (single):
+        """,
         "",
         "| formulation | " + " | ".join(CRACKS) + " |",
         "|---" * (len(CRACKS) + 1) + "|",
@@ -95,13 +96,15 @@ def section(found):
 def corners(again=False):
     """Lines: the reference against finite elements."""
     return [
-        "## The reference at the corners of the map",
-        "",
-        "Largest difference of k at any phase between `ritz`, the reference of the map, and `fe` (refine 2), contact beyond the",
-        "path included. They share the profile, the held bore and the contact: see [outlines.md](outlines.md).",
-        "",
-        "| z | pressure angle | shifts | bore / r_f | healthy | 30 % crack |",
-        "|---|---|---|---|---|---|",
+        """
+        ## The reference at the corners of the map
+
+        Largest difference of k at any phase between `ritz`, the reference of the map, and `fe` (refine 2), contact beyond the
+        path included. They share the profile, the held bore and the contact: see [outlines.md](outlines.md).
+
+        | z | pressure angle | shifts | bore / r_f | healthy | 30 % crack |
+        |---|---|---|---|---|---|
+        """,
         *kept("map", "corners", lambda: {"lines": _corners()}, again)["lines"],
     ]
 
@@ -120,7 +123,7 @@ def run(again=True):
         f"Of random pairs' mean stiffness within 3 %: {best}; parts of the map below in which nine rows in ten are: {held}. "
         "Agreement below 3 % is a coincidence of load and zone."
     )
-    page.write("map", answer, HOW.strip().splitlines(), section(found), corners(again), formulations.section(again))
+    page.write("map", answer, HOW, section(found), corners(again), formulations.section(again))
 
 
 def _three(band):

@@ -42,10 +42,10 @@ def section():
     """Lines of the page, from its tables alone."""
     known = stored()
     moved = max(abs(row["now"] / row["approach"] - 1) for row in known.values() if "approach" in row)
-    text = ["## CalculiX", "", *verdict(known), *COMPARED.splitlines(), "", "### In contact", ""]
+    text = ["## CalculiX", "", *verdict(known), COMPARED, "", "### In contact", ""]
     text += [f"Today's approaches differ from those of the runs by at most {100 * moved:.2f} %.", ""]
     text += [*_table("k [N/um]", known, cases())]
-    text += [*HOLES.splitlines(), "", *_against_control(known)]
+    text += [HOLES, "", *_against_control(known)]
     return [*text, "", "### Single gears under line loads", "", *_table("deflection [nm/N]", known, lines()), *_shared(known)]
 
 
@@ -144,7 +144,7 @@ def _against_control(known):
 
 
 def _shared(known):
-    yield from SHARES.splitlines()
+    yield SHARES
     yield ""
     yield "| mesh | pair | `ritz3d` [N] | CalculiX [N] | apart | `ritz3d`, z [mm] | CalculiX, z [mm] |"
     yield "|---" * 7 + "|"

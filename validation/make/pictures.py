@@ -75,13 +75,14 @@ def picture(task):
 def sections(parts):
     """Sections of the page from the lines of every task."""
     yield [
-        "`python -m validation pictures` draws these anew; a larger one is drawn by `gearfe render SCENE --case CASE -o",
-        "x.png`, mesh,",
-        "displacement and stress are written by `-o x.vtu`.",
-        "",
-        "Pits: the damaged tooth in three dimensions, pits cut out as holes, under its share of the load along the contact",
-        "lines, spread over 0.15 modules to either side; what is above the bar is the load's strip, rims of pits and fronts of",
-        "cracks, where no mesh gives a finite value. Cracks of spur gears: the transverse section, in grey both gears unloaded.",
+        """
+        `python -m validation pictures` draws these anew; a larger one is drawn by `gearfe render SCENE --case CASE -o x.png`,
+        mesh, displacement and stress are written by `-o x.vtu`.
+
+        Pits: the damaged tooth in three dimensions, pits cut out as holes, under its share of the load along the contact
+        lines, spread over 0.15 modules to either side; what is above the bar is the load's strip, rims of pits and fronts of
+        cracks, where no mesh gives a finite value. Cracks of spur gears: the transverse section, in grey both gears unloaded.
+        """,
     ]
     for name in scene_names():
         scene = gf.load_scene(name)

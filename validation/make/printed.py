@@ -100,7 +100,7 @@ def lines(rows):
         else:
             told = f"input: not used, because {told}"
         out.append([row["article"], ", ".join(f"{value:.6g}" for value in row["values"]), row["what"], told])
-    return Table(("article", "printed", "what", "became of it"), out).markdown().splitlines()
+    return Table(("article", "printed", "what", "became of it"), out).markdown()
 
 
 def answer(rows):
@@ -127,5 +127,5 @@ def run(again=True):
         "without a number are rows of the pages of the machines.",
     ]
     head = ("article", *(Column(name, form="{}") for name in ("results", "inputs used", "inputs not used")))
-    small = Table(head, [[name, *counts(rows, name)] for name in articles(rows)]).markdown().splitlines()
+    small = Table(head, [[name, *counts(rows, name)] for name in articles(rows)]).markdown()
     page.write("printed", answer(rows), how, small, lines(rows))

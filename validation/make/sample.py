@@ -86,7 +86,7 @@ def run(again=True):
         if found is not None:
             rows.append(found)
             write_table(TABLE, FIELDS, [row.values() for row in rows])
-    page.write("sample", answer(rows), HOW.strip().splitlines(), section(rows), [THREE])
+    page.write("sample", answer(rows), HOW, section(rows), [THREE])
 
 
 def answer(rows):
@@ -98,12 +98,14 @@ def answer(rows):
 def section(rows):
     """Lines of the page."""
     return [
-        "## In the section",
-        "",
-        f"{len(rows)} pairs (seeds {rows[0]['seed']} to {rows[-1]['seed']}; external and rings, 60 % cracked), not used to",
-        "develop the methods. Largest values over the phases of each pair, in percent of k; errors are against `ritz` with",
-        f"{FINE['refine']:g} times the resolution and order {FINE['order']}. Shared by both methods: the profile, the held bore",
-        "and the contact, which [outlines.md](outlines.md) judges. The part of the estimates that stands for the contact",
+        f"""
+        ## In the section
+
+        {len(rows)} pairs (seeds {rows[0]["seed"]} to {rows[-1]["seed"]}; external and rings, 60 % cracked), not used to
+        develop the methods. Largest values over the phases of each pair, in percent of k; errors are against `ritz` with
+        {FINE["refine"]:g} times the resolution and order {FINE["order"]}. Shared by both methods: the profile, the held bore
+        and the contact, which [outlines.md](outlines.md) judges. The part of the estimates that stands for the contact
+        """,
         '(`meta["error_of_contact"]`) is therefore left out here: it would hide what the rest does not cover.',
         "",
         "| in percent of k | median | 95th percentile | worst | of the pair |",

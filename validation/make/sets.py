@@ -122,10 +122,12 @@ def table():
     """Lines of the table; least and largest k of planet and ring on supports over that of the isolated pair, by means."""
     alone = gf.planetary_stiffness(case(1, RIMS[1], 0), SAMPLES).k_alone.mean(axis=(1, 2)) / 1e6
     lines = [
-        f"Isolated pairs: k of sun and planet {alone[0]:.0f}, of planet and ring {alone[1]:.0f} N/um.",
-        "",
-        "| N | rim [mm] | supports | k sun-planet [N/um] | k planet-ring | least | largest | K_gamma | TE [um] | kind |",
-        "|---|---|---|---|---|---|---|---|---|---|",
+        f"""
+        Isolated pairs: k of sun and planet {alone[0]:.0f}, of planet and ring {alone[1]:.0f} N/um.
+
+        | N | rim [mm] | supports | k sun-planet [N/um] | k planet-ring | least | largest | K_gamma | TE [um] | kind |
+        |---|---|---|---|---|---|---|---|---|---|
+        """
     ]
     parts = []
     for planets in PLANETS:
@@ -198,7 +200,7 @@ def outsider():
             f"Ring {name}: largest displacement {1e3 * row['ring_ours']:.3f} um here, {1e3 * row['ring']:.3f} um by CalculiX; "
             f"{100 * row['apart']:.2f} % apart at most."
         )
-    return [*OUTSIDE.splitlines(), "", *lines, "", *rings]
+    return [OUTSIDE, "", *lines, "", *rings]
 
 
 def worst():
@@ -220,10 +222,12 @@ def cost():
     new, started = time.process_time() - started, time.process_time()
     gf.planetary_stiffness(one, 32, error=False, cache=made)
     return [
-        "## Cost",
-        "",
-        f"CPU seconds of the set of 21/31/84 teeth on six pads, on the machine that made this page: all gears new and one "
-        f"position {new:.1f}, then 32 positions {time.process_time() - started:.1f}.",
+        f"""
+        ## Cost
+
+        CPU seconds of the set of 21/31/84 teeth on six pads, on the machine that made this page: all gears new and one
+        position {new:.1f}, then 32 positions {time.process_time() - started:.1f}.
+        """,
     ]
 
 
@@ -243,19 +247,20 @@ def run(again=True):
         f"contact of the whole set; k of planet and ring on supports is {least:.2f} to {most:.2f} times the isolated pair's."
     )
     drawn = [
-        "",
-        f"![A set of 21/31/84 teeth on six pads, bent by its load]({PICTURE.name})",
-        "",
-        "21/31/84 teeth, rim of 5.4 mm, planets between the pads (triangles).",
+        f"""
+        ![A set of 21/31/84 teeth on six pads, bent by its load]({PICTURE.name})
+
+        21/31/84 teeth, rim of 5.4 mm, planets between the pads (triangles).
+        """,
     ]
     page.write(
         "sets",
         answer,
-        [*INTRO.splitlines(), "", *lines, *drawn],
+        [INTRO, "", *lines, *drawn],
         [MACHINES],
         outsider(),
         sets_cracks.section(),
-        PROOF.splitlines(),
+        PROOF,
         cost(),
         [HOW],
     )

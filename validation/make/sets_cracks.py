@@ -75,4 +75,4 @@ def section():
         beside = [cell for a, b in zip(own[i], whole[i], strict=True) for cell in (a, b, 100 * (a / b - 1))]
         rows.append([at, faces, WHOLE_BODIES[at][1][0], *beside, 100 * (1 - own[i, 0] / sound[i])])
     told = ", ".join(f"{name} {100 * value:.2f} %" for name, value in zip(names, error, strict=True))
-    return [*TEXT.splitlines(), "", *Table(columns, rows).markdown().splitlines(), "", f"Estimated errors: {told}."]
+    return [TEXT, "", Table(columns, rows).markdown(), "", f"Estimated errors: {told}."]

@@ -65,25 +65,27 @@ def text():
         f"a herringbone pair `ritz3d` {ritz3d[2]:.2g} s at {100 * ritz3d[4]:.2g} % and hexahedra {brute[2]:.0f} s at "
         f"{100 * brute[4]:.2g} %, and a simulated second of its stage {quick[2]:.2g} s at {100 * quick[4]:.2g} %."
     )
-    how = [
-        f"`python -m validation speed` measures all of it in one run: {found['machine']}. Seconds are the processor's. Errors:",
-        "relative, of k at each phase against the finest solution (2-D: finite elements; 3-D: the energy model at the highest",
-        "orders), of mesh forces over their range against DOP853 at rtol 1e-10. So these are errors of discretisation; what all",
-        "methods share is judged in [outlines.md](outlines.md) and [three.md](three.md). Bold, and circled in the picture: the",
-        "defaults.",
-        "",
-        "![seconds against error](speed.png)",
-    ]
+    how = f"""
+    `python -m validation speed` measures all of it in one run: {found["machine"]}. Seconds are the processor's. Errors:
+    relative, of k at each phase against the finest solution (2-D: finite elements; 3-D: the energy model at the highest
+    orders), of mesh forces over their range against DOP853 at rtol 1e-10. So these are errors of discretisation; what all
+    methods share is judged in [outlines.md](outlines.md) and [three.md](three.md). Bold, and circled in the picture: the
+    defaults.
+
+    ![seconds against error](speed.png)
+    """
     return (
         answer,
         how,
         ["## Sections (2-D)", "", found["sections"]["about"], "", *speed_page.table(found["sections"]["rows"])],
         ["## Three dimensions", "", speed_three.ABOUT, "", *speed_page.table(solid.values())],
         [
-            "## Integrators",
-            "",
-            "Herringbone stage with a damaged sun tooth, 55 degrees of freedom, 12 meshes; seconds per simulated second. More:",
-            "[dynamics.md](dynamics.md).",
+            """
+            ## Integrators
+
+            Herringbone stage with a damaged sun tooth, 55 degrees of freedom, 12 meshes; seconds per simulated second. More:
+            [dynamics.md](dynamics.md).
+            """,
             "",
             *speed_page.table(found["dynamics"]["rows"]),
             "",

@@ -23,7 +23,7 @@ def answer():
 
 def text():
     """Arguments of `page.text`, from the tables."""
-    return answer(), HOW.strip().splitlines(), outsider_three.section(), [PAIRS]
+    return answer(), HOW, outsider_three.section(), [PAIRS]
 
 
 def reference():

@@ -212,17 +212,19 @@ def text():
         "reason, and k of "
         f"CalculiX in nonlinear contact within {far:.2f} % away from the ends of double contact."
     )
-    how = [
-        "`python -m validation truth` computes gearfe's side of [tables/truth.csv](tables/truth.csv) and",
-        "[tables/calculix.csv](tables/calculix.csv), CalculiX's where it is installed; the values of others are in",
-        "`validation/sources/reference.toml`. Shared with others: the shapes of gears as they describe them; with CalculiX:",
-        "the meshes, which gearfe writes.",
-    ]
+    how = """
+    `python -m validation truth` computes gearfe's side of [tables/truth.csv](tables/truth.csv) and
+    [tables/calculix.csv](tables/calculix.csv), CalculiX's where it is installed; the values of others are in
+    `validation/sources/reference.toml`. Shared with others: the shapes of gears as they describe them; with CalculiX: the
+    meshes, which gearfe writes.
+    """
     lines = [
-        "## Values that others published or computed",
-        "",
-        "| table | case | theirs | gearfe | difference | tolerance | verdict |",
-        "|---|---|---|---|---|---|---|",
+        """
+        ## Values that others published or computed
+
+        | table | case | theirs | gearfe | difference | tolerance | verdict |
+        |---|---|---|---|---|---|---|
+        """
     ]
     for i, row in enumerate(rows):
         name = "" if i and rows[i - 1].table == row.table else f"{row.table} [{tables[row.table].get('unit', '-')}]"
@@ -252,16 +254,17 @@ def _contact_text():
     pair, _ = contact_pair()
     phase, ours, theirs = read_contact()
     lines = [
-        "## Nonlinear contact in CalculiX",
-        "",
-        f"Both gears of a pair {pair.gear_1.z}/{pair.gear_2.z} (m 2.5, x {pair.gear_1.x:g}/{pair.gear_2.x:g}, bores 12/20 mm, "
-        f"{LINE_LOAD:g} N/mm), meshed anew for each phase",
-        "with eight edges per Hertz half width, surface-to-surface contact of all flanks (`gearfe.write_contact_inp`), both",
-        "in the mean pose: each gear is turned by half of the approach that `ritz` computes. Double contact begins at phase 0",
-        f"and ends at {pair.eps_alpha % 1:.4f}.",
-        "",
-        "| phase | gearfe, ritz [N/um] | CalculiX [N/um] | difference | less its springs | from double contact's ends [cycles] |",
-        "|---|---|---|---|---|---|",
+        f"""
+        ## Nonlinear contact in CalculiX
+
+        Both gears of a pair {pair.gear_1.z}/{pair.gear_2.z} (m 2.5, x {pair.gear_1.x:g}/{pair.gear_2.x:g}, bores 12/20 mm,
+        {LINE_LOAD:g} N/mm), meshed anew for each phase with eight edges per Hertz half width, surface-to-surface contact of
+        all flanks (`gearfe.write_contact_inp`), both in the mean pose: each gear is turned by half of the approach that
+        `ritz` computes. Double contact begins at phase 0 and ends at {pair.eps_alpha % 1:.4f}.
+
+        | phase | gearfe, ritz [N/um] | CalculiX [N/um] | difference | less its springs | from double contact's ends [cycles] |
+        |---|---|---|---|---|---|
+        """
     ]
     soft = springs(phase)
     for one, a, b, added in zip(phase, ours, theirs, soft, strict=True):
@@ -276,11 +279,12 @@ def _contact_text():
     ]
     part = [100 * one for one in soft if one is not None]
     lines += [
-        "",
-        f"Why CalculiX is softer everywhere: its contact is a bed of springs, {PENALTY:g} E per mm of overlap, which Hertz's",
-        f"pressure presses in by 8 p0 / (3 pi) over that stiffness: {min(part):.3f} to {max(part):.3f} % of the approach.",
-        "Without it (fifth column) differences have both signs. Where a tip corner carries, its pressure has no peak, and the",
-        "column is empty.",
+        f"""
+        Why CalculiX is softer everywhere: its contact is a bed of springs, {PENALTY:g} E per mm of overlap, which Hertz's
+        pressure presses in by 8 p0 / (3 pi) over that stiffness: {min(part):.3f} to {max(part):.3f} % of the approach.
+        Without it (fifth column) differences have both signs. Where a tip corner carries, its pressure has no peak, and the
+        column is empty.
+        """,
     ]
     return lines
 

@@ -76,7 +76,7 @@ def verdicts(found, scene):
 def section(again=False):
     """Lines of the page."""
     found = rows(again)
-    lines = [*TITLE.strip().splitlines(), "", "| scene | pair | case 1 | case 2 | case 3 | case 4 |", "|---|---|---|---|---|---|"]
+    lines = [TITLE, "", "| scene | pair | case 1 | case 2 | case 3 | case 4 |", "|---|---|---|---|---|---|"]
     for scene in SCENES:
         for pair in ("sun_planet", "planet_ring"):
             cells = [" ; ".join(f"{found[scene, pair, n][name]:.1f}" for name in FAULTS) for n in (1, 2, 3, 4)]

@@ -78,7 +78,7 @@ def write(again=False):
         f"At {off.size} phases at which tooth pairs off the path come near, {' and '.join(answers)} differ from whole "
         "outlines pressed together by an arbiter that shares none of gearfe's contact."
     )
-    page.write("outlines", answer, "".join(parts).strip().splitlines())
+    page.write("outlines", answer, "".join(parts))
 
 
 def _fresh():

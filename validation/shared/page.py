@@ -23,7 +23,6 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "three": "Is the stiffness in three dimensions right?",
     "sets": "What does a whole planetary set do to the stiffness of its meshes?",
     "flanks": "Are modified flanks right?",
-    "holes": "What do pits change beyond the contact they take away?",
     "map": "How wrong are closed forms, and where may they be used?",
     "assumptions": "What do values that articles leave out do to the stiffness?",
     "speed": "What does each method cost, and how wrong is it?",
@@ -44,15 +43,16 @@ MACHINES = {
 
 
 def text(name, answer, *sections):
-    """A page as Markdown; sections are lines."""
+    """A page as Markdown; a section is a text, or lines and texts of several lines, indented or not."""
     lines = [f"# {QUESTIONS[name]}", "", answer]
     for section in sections:
-        lines += ["", *filled(section)]
+        lines += ["", *filled([section] if isinstance(section, str) else section)]
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines).rstrip()) + "\n"
 
 
-def filled(lines):
-    """Lines with their paragraphs, which are neither tables, lists, headings nor pictures, broken anew."""
+def filled(parts):
+    """Lines of `parts` with their paragraphs, which are neither tables, lists, headings nor pictures, broken anew."""
+    lines = (line for part in parts for line in (textwrap.dedent(part).rstrip().splitlines() if "\n" in part else [part]))
     for prose, group in groupby(lines, lambda line: re.match(r"(?!\d+\. |- )[^|#!\s]", line) is not None):
         own = list(group)
         yield from textwrap.wrap(" ".join(own), 120, **WRAP) if prose else own
