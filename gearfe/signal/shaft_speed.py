@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -64,7 +65,8 @@ def with_own_speed(
     - Q. Leclere, H. Andre, J. Antoni, Mech. Syst. Signal Process. 81 (2016) 371-386: several orders at once.
     - F. Bonnardot et al., Mech. Syst. Signal Process. 19(4) (2005) 766-785: angle from the phase of a mesh line.
     """
-    low, high = speeds if np.shape(speeds) == (2,) else (speeds, speeds)
+    ends: Any = speeds if np.shape(speeds) == (2,) else (speeds, speeds)
+    low, high = ends
     for name, value in {"order": order, "speeds[0]": low, "speeds[1]": high}.items():
         hertz(name, value)
     if not low < high:
