@@ -108,10 +108,10 @@ def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: 
     """Estimated discretisation error of the losses by zone: how far a coarser solve of both gears moves them.
 
     It is the coarser solve that an estimate of k looks at; empty if it would be too coarse. Of finite elements in three
-    dimensions, which take minutes, and of missing teeth the relative errors of both stiffnesses are added: a much wider bound.
+    dimensions, which take minutes, and of broken teeth the relative errors of both stiffnesses are added: a much wider bound.
     """
     losses, method = loss(healthy, hurt), str(how.method)
-    if method == "fe3d" or (any(case.missing) and healthy.error is not None and hurt.error is not None):
+    if method == "fe3d" or (any(case.broken) and healthy.error is not None and hurt.error is not None):
         before, after = healthy.zone_errors(), hurt.zone_errors()
         widest = {zone: (1 - losses[zone]) * (before[zone] + after[zone]) for zone in before.keys() & after.keys()}
         return widest | {LARGEST: max(widest.values(), default=math.nan)}

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import checked_refine, is_number
+from ..core.checks import checked_refine
 from ..core.files import check_output
+from ..core.record import ranged
 from ..decks.contact_deck import TIP, posed
 from ..decks.deck import held_nodes
 from ..decks.pressed import Sections, pressing, read_rows, write_lines
@@ -121,8 +122,7 @@ def write_set_inp(
     check_output(path, "deck")
     case, stand = drawable(curves, at)
     for name, value in (("per_width", per_width), ("penalty", penalty)):
-        if not (is_number(value) and 0 < value < math.inf):
-            raise ValueError(f"{name} = {value!r}, but give a finite number > 0")
+        ranged(name, value, above=0.0)
     refine = checked_refine(refine)
     pressed, bodies = touching(case, stand, curves, at), placed(case, stand, curves, at)
     text = Sections()
