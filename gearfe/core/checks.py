@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.checks import is_number
+from ..geometry.checks import is_number, is_whole
 
+MOST = 2**63  # of anything that is counted
 COARSEST = 0.2  # at 0.4 sections are off by 0.2 %, at 0.2 by 0.5 %, below they follow no mesh any more (25 % at 1e-9)
 FINEST = 64.0  # edges 64 times shorter: beyond, k changes by less than the errors of rounding and contact
 
@@ -22,14 +23,16 @@ def number(name: str, value: Any) -> float:
     return float(value)
 
 
-def whole(name: str, value: Any, least: float = -math.inf) -> int:
-    """A whole number from `least` on.
+def whole(name: str, value: Any, least: float = -math.inf, most: int = MOST) -> int:
+    """A whole number from `least` to `most`.
 
     Raises
     ------
     ValueError
-        If it is another kind of number, ``24.0``, or smaller.
+        If it is another kind of number, ``24.0``, smaller or larger.
     """
+    if is_whole(value) and value > most:
+        raise ValueError(f"{name} = {str(value)[:40]}, but at most {most} makes sense here")
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         close = is_number(value) and math.isfinite(value) and value == int(value) and value >= least
         remedy = f": give {name} = {int(value)}" if close else "" if least == -math.inf else f" from {least} on"

@@ -81,6 +81,12 @@ def new_file(path):
         raise ValueError(f"cannot write {path}: {reason}; give an existing, writable folder") from error
 
 
+def check_path(name, path):
+    """TypeError unless `path` names a file or a folder: a number would be a file that is open already."""
+    if not isinstance(path, (str, os.PathLike)):
+        raise TypeError(f"{name} = {path!r}, but give the name of a file or a folder")
+
+
 def check_output(path, kind):
     """Raise ValueError if `path` cannot be written later: to be called before work begins.
 
@@ -256,6 +262,7 @@ def read_mat(path):
 
 @contextlib.contextmanager
 def _opened(path):
+    check_path("path", path)
     try:
         with open(path, "rb") as file:
             yield file

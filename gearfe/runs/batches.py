@@ -63,8 +63,14 @@ def batch(
     ...
     ValueError: workers = 0, but it is a whole number from 1 on
     """
-    cases, work = list(cases), work or mesh_stiffness
     check_workers(workers)
+    work = work or mesh_stiffness
+    try:
+        cases = list(cases)
+    except TypeError:
+        cases = []
+    if not cases or not all(isinstance(case, (Case, Mapping)) for case in cases):
+        raise ValueError("cases: give a list of one Case or dict at least")
     if getattr(multiprocessing.current_process(), "_inheriting", False):
         sys.exit(1)  # a worker that imports an unguarded script: the process that started it says what to do
     workers = count_of(workers, cases)

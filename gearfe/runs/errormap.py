@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from ..core.case import Case
-from ..core.checks import whole
+from ..core.checks import numbers, whole
 from ..core.material import Material
 from ..core.threads import own_warnings
 from ..geometry.aliases import Floats
@@ -110,7 +110,8 @@ def error_map(
         If `pairs` is no whole number from 1 on, `phases` is below 1, `loads` are empty or one is not positive and finite, or so
         large that teeth would break, or `workers` is no whole number from 1 on.
     """
-    cases = [{"sample": one, "loads": list(loads), "phases": int(phases)} for one in _samples(whole("pairs", pairs, 1), seed)]
+    at = {"loads": numbers("loads", loads, " [MPa]").reshape(-1).tolist(), "phases": whole("phases", phases, 1)}
+    cases = [{"sample": one, **at} for one in _samples(whole("pairs", pairs, 1, 10**6), seed)]
     rows: list[dict[str, float]] = []
     for result in batch(cases, work=_one, workers=workers, progress=progress).results:
         if isinstance(result, Exception):

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core.case import Case
+from ..core.files import check_path
 from ..core.material import Material
 from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
@@ -112,6 +113,7 @@ def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
     if isinstance(name_or_path, str) and name_or_path in scene_names():
         file = resources.files("gearfe.scene.scenes") / f"{name_or_path}.toml"
     else:
+        check_path("scene", name_or_path)
         file = Path(name_or_path)
         if not file.is_file():
             raise ValueError(f"no scene {str(name_or_path)!r}: built in are {', '.join(scene_names())}; or give a .toml file")

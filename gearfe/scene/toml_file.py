@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..core.files import check_path
 from ..geometry.aliases import StrPath
 
 
@@ -26,6 +27,7 @@ def given_tables(given: StrPath | Mapping[str, Any], what: str) -> tuple[str, Pa
     """
     if isinstance(given, Mapping):
         return what, Path(), _plain(given)
+    check_path(what, given)
     path = Path(given)
     if not path.is_file():
         raise ValueError(f"no {what} {str(given)!r}: give a .toml file")

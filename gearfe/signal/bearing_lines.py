@@ -2,7 +2,7 @@
 
 import math
 
-from ..core.checks import whole
+from ..core.checks import number, whole
 from .given import hertz
 
 
@@ -59,7 +59,8 @@ def bearing_lines(
     {'cage': 0.3983, 'outer': 3.5848, 'inner': 5.4152, 'roller': 2.3567}
     """
     hertz("turns", turns)
-    if not (isinstance(outer, (int, float)) and math.isfinite(outer)) or outer == turns:
+    roller, pitch, contact_angle = number("roller", roller), number("pitch", pitch), number("contact_angle", contact_angle)
+    if not math.isfinite(number("outer", outer)) or outer == turns:
         raise ValueError(f"outer = {outer!r} Hz with an inner ring of {turns} Hz: give a finite number, other than that")
     if not 0 < roller < pitch * math.sin(math.pi / whole("rollers", rollers, 3)) * (1 + 1e-9):
         raise ValueError(f"{rollers} rollers of diameter {roller} do not fit on a circle of diameter {pitch}")

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..core.checks import whole
+from .given import hertz
 from .kurtogram import Kurtogram, fast_kurtogram
 from .series import Signal
 from .spectra import squared_envelope_spectrum
@@ -70,7 +72,7 @@ def demodulate(
     ----------
     J. Antoni, Mech. Syst. Signal Process. 21(1) (2007) 108-124; the way article S2 treats its measured signals.
     """
-    if not 0 < (count + 1) * fault_frequency < signal.rate / 4:
+    if not (whole("count", count, 1) + 1) * hertz("fault_frequency", fault_frequency) < signal.rate / 4:
         raise ValueError(
             f"fault_frequency = {fault_frequency} Hz with {count} harmonics, but {signal.name} at {signal.rate:g} Hz shows up to "
             f"{signal.rate / 4:g} Hz in its envelope: give a positive frequency below, or fewer harmonics"

@@ -141,8 +141,11 @@ def gear_indicator_table(
     dict of str to dict of str to float
         ``table[record][indicator]``; NA4 and NB4 over this and all earlier records.
     """
+    records = list(signals.values()) if isinstance(signals, Mapping) else signals
+    if not isinstance(records, (list, tuple)) or not records or not all(isinstance(record, Signal) for record in records):
+        raise ValueError(f"signals = {signals!r}, but give one record or more, by name or in a list")
     if not isinstance(signals, Mapping):
-        signals = {record.name: record for record in signals}
+        signals = {record.name: record for record in records}
     averages = {name: synchronous_average(record, samples_per_turn)[0] for name, record in signals.items()}
     if len({record.size for record in averages.values()}) > 1:
         most = max(record.size for record in averages.values())

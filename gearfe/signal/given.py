@@ -58,8 +58,7 @@ def band_of(band: Any, rate: float, name: str) -> tuple[float, float]:
     """
     if band is None:
         return 0.0, rate / 2
-    ends = band if isinstance(band, (tuple, list, np.ndarray)) else ()
-    fine = len(ends) == 2 and all(map(is_number, ends))
-    if not fine or not 0 <= ends[0] < ends[1] <= rate / 2 * (1 + 1e-12):
+    ends: Any = band if isinstance(band, (tuple, list)) or getattr(band, "ndim", 0) == 1 else ()
+    if len(ends) != 2 or not all(map(is_number, ends)) or not 0 <= ends[0] < ends[1] <= rate / 2 * (1 + 1e-12):
         raise ValueError(f"band = {band!r} Hz, but {name} has 0 to {rate / 2:g} Hz: give (low, high) with low < high inside")
     return float(ends[0]), float(ends[1])

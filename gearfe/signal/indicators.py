@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from ..core.checks import whole
 from .given import hertz
 from .spectral_lines import find_lines
 
@@ -65,7 +66,7 @@ def sideband_index(found, mesh_frequency, fault_frequency, *, tolerance=None, ha
             f"line covers its sidebands; record {LOBES / fault_frequency:.3g} s or longer"
         )
     _below(mesh_frequency, fault_frequency)
-    sides = [(n, sign) for n in range(1, harmonics + 1) for sign in (-1, 0, 1)]
+    sides = [(n, sign) for n in range(1, whole("harmonics", harmonics, 1, 1000) + 1) for sign in (-1, 0, 1)]
     lines = {(n, sign): n * mesh_frequency + sign * fault_frequency for n, sign in sides}
     placed = find_lines(found, lines, tolerance, between=True)
     amplitudes = [amplitude for (_, sign), (_, amplitude) in placed.items() if sign]

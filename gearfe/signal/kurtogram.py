@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import fftconvolve, firwin, upfirdn
 
+from ..core.checks import one_of, whole
 from ..geometry.aliases import Floats
 from .given import oscillation
 from .series import Signal
@@ -84,11 +85,10 @@ def fast_kurtogram(signal: Signal, levels: int | None = None, *, filters: str = 
     """
     x = _oscillation(signal)
     deepest = math.floor(math.log2(x.size / FEWEST)) if x.size >= FEWEST else 0
-    levels = deepest if levels is None else levels
+    levels = deepest if levels is None else whole("levels", levels, 0)
     if not 1 <= levels <= deepest:
         raise ValueError(f"levels = {levels}, but {signal.name} with {x.size} samples allows 1 to {deepest}; record longer")
-    if filters not in BANKS:
-        raise ValueError(f"filters = {filters!r}, but it must be one of {', '.join(BANKS)}")
+    one_of("filters", filters, tuple(BANKS))
     start, split, judged = BANKS[filters]
     floor = EMPTY * np.mean(x**2)
     rows, bands = [(0.0, 0.5, 1.0, _excess(x, 3, floor))], [start(x)]

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -9,7 +10,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.ndimage import median_filter
 from scipy.signal import fftconvolve, get_window, stft
 
-from ..core.checks import whole
+from ..core.checks import number, whole
 from .given import hertz
 from .series import Signal
 
@@ -64,7 +65,8 @@ def with_own_speed(
     - Q. Leclere, H. Andre, J. Antoni, Mech. Syst. Signal Process. 81 (2016) 371-386: several orders at once.
     - F. Bonnardot et al., Mech. Syst. Signal Process. 19(4) (2005) 766-785: angle from the phase of a mesh line.
     """
-    low, high = speeds
+    ends: Any = speeds if np.shape(speeds) == (2,) else (speeds, speeds)
+    low, high = ends
     for name, value in {"order": order, "speeds[0]": low, "speeds[1]": high}.items():
         hertz(name, value)
     if not low < high:
@@ -74,7 +76,7 @@ def with_own_speed(
         raise ValueError(f"order {order:g} reaches {order * high:g} Hz, but {signal.name} shows up to {signal.rate / 2:g} Hz")
     if seconds is None:
         seconds = max(math.sqrt(signal.duration / (order * (high - low) * count)), 2 * WIDTH / (order * low))
-    size = 2 * round(seconds * signal.rate / 2)
+    size = 2 * round(min(number("seconds", seconds), signal.duration) * signal.rate / 2)
     if not WIDTH * 2 <= size <= signal.values.size // 4:
         raise ValueError(
             f"{signal.name}: windows of {seconds:.3g} s in a record of {signal.duration:.3g} s, but four or more are needed: "

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.fft import fft, fftfreq, ifft
 from scipy.signal import welch
 
+from ..core.checks import is_number
 from .given import band_of
 from .series import Signal
 from .spectrum import Spectrum, amplitudes, noise_bins
@@ -81,7 +82,13 @@ def power_spectral_density(
     P. D. Welch, IEEE Trans. Audio Electroacoust. 15(2) (1967) 70-73.
     """
     n = signal.values.size
-    size = max(n // 16, min(n, 8)) if resolution is None else round(signal.rate / resolution) if resolution > 0 else 0
+    size = (
+        max(n // 16, min(n, 8))
+        if resolution is None
+        else round(signal.rate / resolution)
+        if is_number(resolution) and resolution > 0
+        else 0
+    )
     if not 2 <= size <= n:
         raise ValueError(
             f"resolution = {resolution} Hz, but a record of {signal.duration:g} s at {signal.rate:g} Hz resolves "

@@ -75,7 +75,7 @@ def stage_lines(
     _check(sun, ring, n_planets, carrier, damaged)
     if unknown := sorted(set(highest) - set(HIGHEST)):
         raise TypeError(f"stage_lines() has no argument {unknown[0]!r}; it has {', '.join(HIGHEST)}")
-    harmonics, turns, window = (HIGHEST | highest).values()
+    harmonics, turns, window = (whole(name, value, 0, 1000) for name, value in (HIGHEST | highest).items())
     mesh, planet = ring * carrier, round((ring - sun) / 2)
     turn = {"sun": mesh / sun, "planet": mesh / planet}.get(damaged or "", 0.0)
     reach, spread = (turns, window) if turn else (0, turns * n_planets if damaged == "ring" else window)

@@ -2,13 +2,12 @@
 
 import math
 from dataclasses import replace
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
-from ..core.checks import whole
+from ..core.checks import is_number, number, whole
 from ..geometry.aliases import Floats
 from .given import samples
 from .series import Signal
@@ -26,7 +25,7 @@ def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool
     """
     x = -tachometer.values if falling else tachometer.values
     low, high = float(x.min()), float(x.max())
-    level = (low + high) / 2 if level is None else (-level if falling else level)
+    level = (low + high) / 2 if level is None else number("level", level) * (-1 if falling else 1)
     armed = level - QUIET * (high - low)
     above, below = x > level, x < armed
     state = np.where(above, 1, np.where(below, -1, 0))
@@ -71,10 +70,9 @@ def tachometer_angle(
 
 def shaft_ratio(ratio: object) -> float:
     """Ratio of two shafts' speeds as a float; ValueError if it is not positive and finite."""
-    value = float(ratio) if isinstance(ratio, (int, float, Fraction, np.number)) and not isinstance(ratio, bool) else math.nan
-    if not 0 < value < math.inf:
+    if not (is_number(ratio) and 0 < ratio < math.inf):
         raise ValueError(f"ratio = {ratio!r}, but give the speed of the gear's shaft over that of the tachometer's, above 0")
-    return value
+    return float(ratio)
 
 
 def with_speed_record(signal: Signal, speed: Signal, *, ratio: float = 1.0) -> Signal:

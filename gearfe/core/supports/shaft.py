@@ -182,7 +182,7 @@ def _segment(i, row):
 def _two(name, values, what, least=-math.inf):
     try:
         numbers = tuple(float(value) for value in values)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         numbers = ()
     if len(numbers) != 2 or any(math.isnan(value) or not value > least for value in numbers):
         raise ValueError(f"shaft: {name} = {values!r}, but give two {what}{' > 0' if least == 0 else ''}")

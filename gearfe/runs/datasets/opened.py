@@ -167,4 +167,5 @@ def open_dataset(folder: StrPath) -> Dataset:
         If pyarrow is missing; the message names what to install.
     """
     arrow()
-    return Dataset(Path(folder), read_about(folder, FORMAT, SHAPE))
+    about = read_about(folder, FORMAT, SHAPE)
+    return Dataset(Path(folder), about)

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ...core.files import PART, written
+from ...core.files import PART, check_path, written
 from ...geometry.aliases import StrPath
 
 ABOUT, LOCK = "about.json", ".lock"
@@ -63,6 +63,7 @@ def begin(folder: StrPath, about: Mapping[str, Any], shape: Mapping[str, Any]) -
     `about` is JSON, and its ``"format"`` a name such as ``"gearfe sweep 1"``; `shape` is as of `read_about`. ValueError if the
     folder cannot be made or written, or holds anything else.
     """
+    check_path("folder", folder)
     if not os.fspath(folder):
         raise ValueError("an empty name of a folder: give one")
     try:
@@ -85,8 +86,7 @@ def read_about(folder: StrPath, form: str, shape: Mapping[str, Any]) -> dict[str
     `shape` has by key the type of its value, or the shape of a table in it. ValueError if it is no such folder, or its note
     lacks a key or has one of another type; nothing in it is touched.
     """
-    if not isinstance(folder, (str, os.PathLike)):
-        raise TypeError(f"folder = {folder!r}, but give the name of a folder that holds a {form}")
+    check_path("folder", folder)
     file = Path(folder) / ABOUT
     if not Path(folder).is_dir():
         raise ValueError(f"no folder {folder}")

@@ -76,6 +76,7 @@ def fit_surrogate(
     space, materials = space_of(pair, inputs), two_materials(material)
     if max(whole("cases", cases, FEWEST), whole("held_back", held_back, 8)) > MOST:
         raise ValueError(f"cases = {cases}, held_back = {held_back}, but give at most {MOST}")
+    whole("seed", seed, 0)
     _check_corners(space, materials)
     drawn, fresh = _sample(space, cases, seed), _sample(space, held_back, seed + 1_000_003)
     jobs = [

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy import stats
 
+from ...core.checks import numbers
 from .runs import Runs
 
 if TYPE_CHECKING:
@@ -146,14 +147,21 @@ def told_apart(healthy: Any, damaged: Any) -> float:
     Returns
     -------
     float
-        Between 0 and 1; equal values count half. nan if one of the values is nan, or if there are none on one side.
+        Between 0 and 1; equal values count half. nan if one of the values is nan.
+
+    Raises
+    ------
+    ValueError
+        If there are no values on one side, or they are no numbers.
 
     Examples
     --------
     >>> told_apart([1.0, 2.0, 3.0], [2.5, 3.5, 4.5])
     0.8888888888888888
     """
-    undamaged, hurt = np.asarray(healthy, dtype=float), np.asarray(damaged, dtype=float)
+    undamaged, hurt = numbers("healthy", healthy, ""), numbers("damaged", damaged, "")
+    if not undamaged.size or not hurt.size:
+        raise ValueError("values of healthy and damaged gears: give one of each at least")
     return float(stats.mannwhitneyu(hurt, undamaged).statistic / (undamaged.size * hurt.size))
 
 
