@@ -24,8 +24,6 @@ from .dynamics.machine.force_law import ForceLaw as ForceLaw
 from .dynamics.machine.force_law import force_law as force_law
 from .dynamics.machine.frequency_response import frequency_response as frequency_response
 from .dynamics.machine.gear_mesh import GearMesh as GearMesh
-from .dynamics.machine.gear_mesh import Samples as Samples
-from .dynamics.machine.gear_mesh import ToothDamage as ToothDamage
 from .dynamics.machine.gear_pair import gear_pair as gear_pair
 from .dynamics.machine.helical_pair import pitted_helical as pitted_helical
 from .dynamics.machine.herringbone_planetary import herringbone_planetary as herringbone_planetary
@@ -38,6 +36,7 @@ from .dynamics.machine.loads import Load as Load
 from .dynamics.machine.loads import pulses as pulses
 from .dynamics.machine.member import Member as Member
 from .dynamics.machine.member import disc as disc
+from .dynamics.machine.mesh_curves import Samples as Samples
 from .dynamics.machine.mesh_errors import with_errors as with_errors
 from .dynamics.machine.mesh_excitation import mesh_excitation as mesh_excitation
 from .dynamics.machine.modal_energy import modal_energy as modal_energy
@@ -53,6 +52,7 @@ from .dynamics.machine.springs import Spring as Spring
 from .dynamics.machine.stages import Fault as Fault
 from .dynamics.machine.stages import Stage as Stage
 from .dynamics.machine.tables import Machine as Machine
+from .dynamics.machine.tooth_damage import ToothDamage as ToothDamage
 from .dynamics.motion.dynamic_factor import dynamic_factors as dynamic_factors
 from .dynamics.motion.housing import housing_signal as housing_signal
 from .dynamics.motion.housing import ring_window as ring_window

@@ -5,11 +5,13 @@ import math
 import numpy as np
 
 import gearfe as gf
-from gearfe.dynamics.machine.gear_mesh import GearMesh, Samples, cycle_table
+from gearfe.dynamics.machine.gear_mesh import GearMesh
 from gearfe.dynamics.machine.herringbone_planetary import herringbone_planetary
 from gearfe.dynamics.machine.loads import Load
+from gearfe.dynamics.machine.mesh_curves import Samples, cycle_table
 from gearfe.dynamics.machine.springs import Spring
 from gearfe.dynamics.machine.tables import Machine
+from gearfe.dynamics.motion.step_control import differences, seen
 
 WAVE = 1e8 * (1 + 0.2 * np.cos(2 * math.pi * np.arange(64) / 64))
 
@@ -26,6 +28,11 @@ def two_masses(c=10.0, zeta=0.03, stiffness=WAVE, load=1000.0, **mesh):
 def worst(got, want):
     """Largest error of a displacement over its range."""
     return (np.abs(got.q - want.q).max(axis=0) / np.ptp(want.q, axis=0)).max()
+
+
+def difference(one, two):
+    """Largest differences of the displacements and of the mesh forces of two runs, over their ranges."""
+    return differences(seen(one), seen(two), two.machine)[:2]
 
 
 def tooth(wave, loss, eps):

@@ -8,11 +8,12 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.comparison.vibration import recorded
-from gearfe.dynamics.machine.gear_mesh import Samples, ToothDamage, cycle_table
 from gearfe.dynamics.machine.gear_pair import gear_pair
 from gearfe.dynamics.machine.layout import Body
 from gearfe.dynamics.machine.member import disc
+from gearfe.dynamics.machine.mesh_curves import Samples, cycle_table
 from gearfe.dynamics.machine.scene_curves import stage_of
+from gearfe.dynamics.machine.tooth_damage import ToothDamage
 from validation.shared.page import filled
 from validation.shared.places import SOURCES
 

@@ -217,7 +217,7 @@ class Comparison:
         return [*labels, *(column for _, column, _ in cells)], body
 
     def table(self, zones: Collection[str] | None = None, *, digits: int = 4, mark: float = math.inf) -> Table:
-        """`Table` of the reference [N/um] and every method with its error, by zone; the last row has the seconds, of stored curves those of their computation.
+        """`Table` of the reference [N/um] and every method with its error, by zone; the last row has the seconds.
 
         Parameters
         ----------

@@ -1,16 +1,16 @@
 """A stiffness model as a text file with stated units: a table of any program, or a curve that gearfe wrote."""
 
 import math
-import os
 import re
 import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.files import read_text
+from ..geometry.aliases import Floats, StrPath
 from ..geometry.pair.gear_pair import GearPair
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.curve_file import FIRST_LINE
@@ -48,13 +48,13 @@ class ModelFile:
 
     path: str
     abscissa: str
-    x: NDArray[np.float64]
-    k: NDArray[np.float64]
+    x: Floats
+    k: Floats
     per_width: bool = False
     phase_offset: float = 0.0
     meta: dict[str, Any] = field(default_factory=dict)
 
-    def total(self, pair: GearPair, phase: ArrayLike) -> NDArray[np.float64]:
+    def total(self, pair: GearPair, phase: ArrayLike) -> Floats:
         """Mesh stiffness at mesh phases, as the file has it: [N/m], or [N/m per m] if `per_width`.
 
         Linear between rows, never across the phases at which a pair enters or leaves: beside them the nearest row on the same
@@ -107,7 +107,7 @@ class ModelFile:
                 stacklevel=5,
             )
 
-    def single(self, pair: GearPair, radius: ArrayLike) -> NDArray[np.float64]:
+    def single(self, pair: GearPair, radius: ArrayLike) -> Floats:
         """Stiffness of one tooth pair touching at `radius` on the pinion [mm], linear between rows; units as `total`.
 
         ValueError if the rows do not cover the path of contact or are more than `COARSEST` of it apart.
@@ -126,7 +126,7 @@ class ModelFile:
         return np.interp(np.asarray(radius, dtype=float), self.x, self.k)
 
 
-def read_model(path: str | os.PathLike[str], *, phase_offset: float | None = None) -> ModelFile:
+def read_model(path: StrPath, *, phase_offset: float | None = None) -> ModelFile:
     """Read a stiffness curve of any program, or one that gearfe wrote.
 
     Two columns separated by comma, semicolon or tab, numbers with a decimal point. Units are stated by a header line or by a

@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.case import Case
 from ..core.material import Material
+from ..geometry.aliases import Floats, StrPath
 from ..geometry.pair.contacts import contacts
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.own_flexibility import OwnFlexibility
@@ -36,7 +36,7 @@ class PairModel:
         pair [N/m] over the whole width, shape (n,). It is asked for contacts on the path of contact only.
     """
 
-    function: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
+    function: Callable[[Floats, Floats], Floats]
 
     def __post_init__(self) -> None:
         """Raise ValueError for what is not a function."""
@@ -45,7 +45,7 @@ class PairModel:
 
 
 # a function of the phase, or what says more of itself
-OwnModel = Callable[[NDArray[np.float64]], NDArray[np.float64]] | PairModel | OwnFlexibility | ModelFile | str | os.PathLike[str]
+OwnModel = Callable[[Floats], Floats] | PairModel | OwnFlexibility | ModelFile | StrPath
 
 
 def own_models(models, taken=()):

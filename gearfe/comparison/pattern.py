@@ -1,15 +1,14 @@
 """The contact pattern of a scene's pair: where it presses hardest over a mesh cycle, and how evenly along the width."""
 
 import math
-import os
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..contact.wide_contact import Contact3D
 from ..core.case import Case
 from ..figures.contact_plot import plot_contact
+from ..geometry.aliases import Floats, StrPath
 from ..stiffness.pattern import contact_pattern
 from .losses import damage_phases
 
@@ -62,14 +61,14 @@ def pattern_of(case: Case, phases: int = 24) -> Pattern:
     )  # fmt: skip
 
 
-def render_pattern(case: Case, path: str | os.PathLike[str], *, title: str = "") -> Pattern:
+def render_pattern(case: Case, path: StrPath, *, title: str = "") -> Pattern:
     """Picture of a case's contact pattern (`gearfe.plot_contact`); gives what `pattern_of` does."""
     pattern = pattern_of(case)
     plot_contact(case.pair, pattern.contact, None, path, case.pits[0], title)
     return pattern
 
 
-def face_load(contact: Contact3D) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def face_load(contact: Contact3D) -> tuple[Floats, Floats]:
     """Load per width along the face of a contact pattern: that of all tooth pairs together, the mean of its phases.
 
     Its largest value over its mean is the face load factor. Over a whole mesh cycle the contact lines of helical teeth pass every

@@ -3,11 +3,11 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.checks import whole
 from ..core.table import Column, Table, stiffness_column
 from ..core.units import NEWTON_PER_UM, in_newton_per_um
+from ..geometry.aliases import Floats
 from ..planetary_sets.case import PlanetaryCase
 from ..planetary_sets.curves import SetCurves
 from ..planetary_sets.rim_supports import RimBed, RimSupports
@@ -26,7 +26,7 @@ MOST = 10_000  # positions, and cycles that they are spread over
 ENGAGED = 2  # mesh cycles after which the damaged tooth 0 has been through its mesh
 
 
-def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> NDArray[np.float64]:
+def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> Floats:
     """Positions of the sun [pitches], evenly spread over `cycles` mesh cycles; some more than `count` if phases would repeat.
 
     Default: one cycle; of damaged sets two, in which tooth 0 goes through its mesh; of a ring on pads, a pitch of these.
@@ -80,7 +80,7 @@ def set_table(curves: SetCurves) -> Table:
     return Table(COLUMNS, rows)
 
 
-def told_span(positions: NDArray[np.float64]) -> str:
+def told_span(positions: Floats) -> str:
     """Over which positions of `spread` the numbers of a table are taken, in words."""
     cycles = round(positions.size * positions[1]) if positions.size > 1 else 1
     return f"over {positions.size} positions in {'a mesh cycle' if cycles == 1 else f'{cycles} mesh cycles'}"
@@ -119,7 +119,7 @@ def _taken(curves, healthy):
     return f"the damage takes up to {most:.1f} % of k of {kind}, planet {planet}"
 
 
-def _mean(k: NDArray[np.float64]) -> float:
+def _mean(k: Floats) -> float:
     """Mean stiffness where something is carried."""
     return float(k[k > 0].mean()) if (k > 0).any() else 0.0
 

@@ -23,7 +23,7 @@ SLOPE = 1e-4  # relative change of the line load by which the slope of the local
 class Shared(NamedTuple):
     """Forces on the cells, then on the faces [N]; approach [mm]; tangent stiffness d load / d approach [N/mm]."""
 
-    force: NDArray[np.float64]
+    force: NDArray
     approach: float
     tangent: float
 

@@ -36,18 +36,18 @@ class Cells:
 
     half: NDArray[np.int64]
     order: NDArray[np.int64]
-    z: NDArray[np.float64]
-    width: NDArray[np.float64]
-    depth: NDArray[np.float64]
-    nominal: NDArray[np.float64]
-    roll_1: NDArray[np.float64]
-    roll_2: NDArray[np.float64]
-    gap: NDArray[np.float64]
+    z: NDArray
+    width: NDArray
+    depth: NDArray
+    nominal: NDArray
+    roll_1: NDArray
+    roll_2: NDArray
+    gap: NDArray
     corner: NDArray[np.int64]
-    floor: NDArray[np.float64]
-    radius: NDArray[np.float64]
-    load: NDArray[np.float64] = None  # type: ignore[assignment]  # None until the contact is solved
-    pressure: NDArray[np.float64] = None  # type: ignore[assignment]
+    floor: NDArray
+    radius: NDArray
+    load: NDArray = None  # type: ignore[assignment]  # None until the contact is solved
+    pressure: NDArray = None  # type: ignore[assignment]
 
     def some(self, which: NDArray | slice) -> "Cells":
         """Those of `which`, a mask, slice or numbers."""

@@ -22,9 +22,9 @@ class Direction(NamedTuple):
     points along the involute's normal, and along the tangent away from the gear's centre.
     """
 
-    rate: NDArray[np.float64]
-    turns: NDArray[np.float64]
-    parts: NDArray[np.float64]
+    rate: NDArray
+    turns: NDArray
+    parts: NDArray
 
 
 def met(contact, at, roll, host):

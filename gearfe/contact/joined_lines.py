@@ -43,14 +43,14 @@ class System(NamedTuple):
         End faces in which loads are mirrored, as of `bodies.mirrors_of`; as many in all systems solved together.
     """
 
-    matrix: NDArray[np.float64]
-    gap: NDArray[np.float64]
-    ends: tuple[NDArray[np.float64], NDArray[np.float64]]
+    matrix: NDArray
+    gap: NDArray
+    ends: tuple[NDArray, NDArray]
     line: NDArray[np.int64]
-    radius: NDArray[np.float64]
+    radius: NDArray
     block: NDArray[np.int64] | None = None
     faces: Any = None
-    floor: NDArray[np.float64] | None = None
+    floor: NDArray | None = None
     mirrors: Any = ()
 
 

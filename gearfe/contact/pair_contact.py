@@ -121,14 +121,7 @@ class PairContact:
         open_ = np.flatnonzero(~done)
         closed, fillet = [], []
         if open_.size:
-            finest = self.finest(line_load)
-            at = np.argwhere((corner > 0) & ~done[:, None]).tolist()
-            rows = self.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), finest, float(width[i, k])) for i, k in at])
-            rows = dict(zip(map(tuple, at), rows, strict=True)) | kink_rows(self, np.argwhere(kink), line_load)
-            corner = np.where(kink, KINK, corner)
-            sets = self.contacts_at(
-                [(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in open_.tolist()], rows, tilt
-            )
+            sets, _ = self.problems(line_load, open_, possible, (corner, zone, width), kink, tilt)
             sets = [problem | {"gap": problem["gap"] - least[i]} for i, problem in zip(open_.tolist(), sets, strict=True)]
             sets = [_within(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
             line[open_], pressure[open_], closing[open_], tangent[open_], closed, fillet = self._solved(
@@ -138,6 +131,21 @@ class PairContact:
         marked = (tuple(open_[which].tolist()) for which in (closed, fillet))
         doubt = left_out(self, line, closing, beyond)
         return Solved(points.order, closing, tangent, line, pressure, *marked, unloaded, left_out=doubt)
+
+    def problems(self, line_load, phases, possible, corners, kink, tilt):
+        """Contact problems of some phases under a load [N/mm] as of `contacts_at`, and their rows of hats by phase and column.
+
+        `possible`, `kink` and `tilt` ``(phases, pairs)``: pairs that may touch, pairs on a kink, and as of `line_contacts`;
+        `corners` as of `corners`.
+        """
+        (corner, zone, width), chosen, finest = corners, np.zeros((len(possible), 1), dtype=bool), self.finest(line_load)
+        chosen[phases] = True
+        at = np.argwhere((corner > 0) & chosen).tolist()
+        rows = self.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), finest, float(width[i, k])) for i, k in at])
+        rows = dict(zip(map(tuple, at), rows, strict=True)) | kink_rows(self, np.argwhere(kink & chosen), line_load)
+        corner = np.where(kink, KINK, corner)
+        wanted = [(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in np.flatnonzero(chosen).tolist()]
+        return self.contacts_at(wanted, rows, tilt), rows
 
     def _solved(self, sets, line_load, smooth):
         """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch.

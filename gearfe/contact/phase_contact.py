@@ -8,9 +8,8 @@ import numpy as np
 
 from ..core.steps import steps
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
-from ..geometry.pair.contacts import TIP, touching
+from ..geometry.pair.contacts import TIP
 from ..geometry.pair.lines import bands_of
-from ..geometry.pair.modified import first_touch
 from .bodies import between, faces_of, mirrors_of
 from .cell_sharing import SharedLines
 from .cells import SETTLED, TIMES, Cells, carrying, cells_of
@@ -25,7 +24,6 @@ from .sliding import MOST, slid
 FINEST = 1.5  # shortest cell, in Hertz half widths: the load on a shorter one would not be a line any more
 ALIKE = 1e-9  # largest difference of the cells of two halves that are solved once, in base pitches
 DEEPEST = 0.01  # modules: how deep the floor of a pit that covers a whole line is looked for
-FINE, ROUNDS = 9, 2  # places along the cell with the least gap, and how often they are looked for more closely
 ROW = math.sqrt(2)  # ratio of neighbouring forces in the row for which cells are made
 REACH = 1.3  # ratio of each search radius for gaps to the one before, where the first is too small
 TOGETHER = 16  # phases that are solved at once
@@ -170,33 +168,6 @@ class PhaseContact:
                     )
             open_ = sorted([*again, *empty])
         return done
-
-    def unloaded(self, found):
-        """Approach at which the gears first touch, from the `Cells` of each phase ``(phases,)`` [mm]: the least gap.
-
-        How deep pits are is part of it only where flanks are modified.
-        """
-        cos = math.cos(self.beta_b)
-        gaps = [cells.gap - (cells.floor / cos if self.flanks is None else 0.0) for cells in found]
-        best = [int(np.argmin(gap)) for gap in gaps]
-        if self.flanks is None and max(abs(gap[k]) for gap, k in zip(gaps, best, strict=True)) < 1e-12 * self.pair.p_bt:
-            return np.zeros(len(found))
-        names = ("half", "order", "nominal", "z", "width", "floor")
-        half, order, nominal, z, width, floor = (
-            np.array([getattr(c, n)[k] for c, k in zip(found, best, strict=True)]) for n in names
-        )
-        slope = math.tan(self.beta_b) * np.sign([last - first for first, last in self.bands])[half]  # of the abscissa, down by z
-        low, high, gap = -width / 2, width / 2, np.zeros(0)
-        for _ in range(ROUNDS):
-            steps = np.linspace(low, high, FINE, axis=1)
-            at = (nominal[:, None] - slope[:, None] * steps).ravel()
-            gap = touching(self.pair, at).gap
-            if self.flanks is not None:
-                gap = first_touch(self.pair, self.flanks, at, np.repeat(order, FINE), gap, (z[:, None] + steps).ravel()).gap
-            gap, rows = gap.reshape(-1, FINE), np.arange(order.size)
-            least = np.argmin(gap, axis=1)
-            low, high = steps[rows, np.maximum(least - 1, 0)], steps[rows, np.minimum(least + 1, FINE - 1)]
-        return gap.min(axis=1) + (0.0 if self.flanks is None else floor / cos)
 
     def _cells(self, phases, reaches, closings):
         """`Cells` of each phase, None where there are none."""

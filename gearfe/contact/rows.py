@@ -34,12 +34,12 @@ class Row(NamedTuple):
     `fillet`: whether a hat stands in a fillet into which the mate's tip presses.
     """
 
-    roll_1: NDArray[np.float64]
-    roll_2: NDArray[np.float64]
-    gap: NDArray[np.float64]
-    influence: NDArray[np.float64]
-    turn_1: NDArray[np.float64]
-    turn_2: NDArray[np.float64]
+    roll_1: NDArray
+    roll_2: NDArray
+    gap: NDArray
+    influence: NDArray
+    turn_1: NDArray
+    turn_2: NDArray
     fillet: NDArray[np.bool_]
 
 

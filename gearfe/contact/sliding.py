@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ..flexibility.hertz import half_width
+from ..flexibility.plane import cracks_beyond
 from ..geometry.tooth.profile import arc_at, roll_at_arc
 from .thinned import UNSURE
 
@@ -85,11 +86,11 @@ def left_out(contact, line, closing, beyond):
     flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
 
     Of line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``; `closing` ``(phases,)`` is how far the
-    load moves the gears [mm].
+    load moves the gears [mm]. What cracks add under loads on teeth too far away to be solved with them is unsure, too.
     """
     points, (start, end) = contact.found, contact.pair.path
     off = (line > 0) & ((points.nominal < start) | (points.nominal > end))
-    softer = _cut_away(contact, line) + UNSURE * np.abs(contact.thinner) * line
+    softer = _cut_away(contact, line) + UNSURE * np.abs(contact.thinner) * line + _cracks_beyond(contact, line)
     if not (off.any() or softer.any()):
         return np.zeros(closing.size)
     closed = closing[:, None] - beyond
@@ -98,6 +99,16 @@ def left_out(contact, line, closing, beyond):
     changed = np.where(off, (np.sqrt(2 * contact.radius * gap) * u + u**2 / 2) / contact.radius, 0.0)
     changed = np.minimum(changed, np.where(off, closed, 0.0))  # no gap is unsure by more than it is closed
     return (stiff * (changed + softer)).sum(axis=1) / stiff.sum(axis=1) / closing
+
+
+def _cracks_beyond(contact, line):
+    """Deflection ``(phases, pairs)`` [mm] that cracks further away than their solved teeth may add to contacts."""
+    out, order = np.zeros(line.shape), contact.found.order
+    for flexible, teeth in zip(contact.flexibility, (order, -order), strict=True):
+        beyond, most = cracks_beyond(flexible, teeth)
+        far = ((line > 0) & beyond).any(axis=1)
+        out += most * (far * line.sum(axis=1))[:, None]
+    return out
 
 
 def _cut_away(contact, line):

@@ -39,7 +39,7 @@ class Thinning:
         self.stretch, self.shear = material.plane_modulus(state), material.shear_modulus
         self._tables: dict[int, tuple[NDArray, NDArray]] = {}
 
-    def between(self, roll: NDArray[np.float64], tooth: int) -> NDArray[np.float64]:
+    def between(self, roll: NDArray, tooth: int) -> NDArray:
         """Difference ``(n, n)`` between loads at roll lengths ``(n,)`` [mm] on one tooth."""
         height, moment, lever, across, along = self._loads(roll)
         heights, integrals = self._table(tooth)
@@ -51,7 +51,7 @@ class Thinning:
         straight = np.outer(along, along) / (2 * self.stretch) + 0.6 * np.outer(across, across) / self.shear
         return 1.5 * bending / self.stretch + straight * thin
 
-    def alone(self, roll: ArrayLike, teeth: ArrayLike) -> NDArray[np.float64]:
+    def alone(self, roll: ArrayLike, teeth: ArrayLike) -> NDArray:
         """Difference ``(..., n)`` of loads at roll lengths ``(..., n)`` on `teeth` ``(n,)``, each at its own place."""
         rolls, out = np.asarray(roll, dtype=float), np.zeros(np.shape(roll))
         for column, tooth in enumerate(np.asarray(teeth).tolist()):
@@ -91,7 +91,7 @@ class Thinning:
         return self._tables[key]
 
 
-def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple[list[Thinning], NDArray[np.float64]]:
+def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple[list[Thinning], NDArray]:
     """`Thinning` of both gears, none without flanks, and what pairs yield more at `points`, a `Contacts` [mm per N/mm]."""
     gears = [Thinning(form, material, state) for form, material in zip(flanks or (), materials, strict=False)]
     rolls = points.roll_1, points.roll_2
@@ -100,7 +100,7 @@ def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple
     )
 
 
-def unmodelled(case: Any, found: Any) -> NDArray[np.float64]:
+def unmodelled(case: Any, found: Any) -> NDArray:
     """By what k of a `Contact3D` is too high because its teeth have their full thickness ``(phases,)`` [N/m].
 
     By virtual work the lines of load q close further by ``sum q**2 dS dz / F``, with dS of the section.

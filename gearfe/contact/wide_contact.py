@@ -20,6 +20,7 @@ from .cells import Cells
 from .corner import in_fillet
 from .phase_contact import PhaseContact
 from .thinned import unmodelled
+from .unloaded import least_gap
 
 STEP = 0.2  # longest cell along the width [m_n]
 LONGER = 2  # cells that become one in the coarser solution that the error estimate compares with
@@ -40,19 +41,19 @@ class Contact3D:
     of the hubs give way [mm], the mean over the loads. `error` contains what is unsure of `Carried`.
     """
 
-    phase: NDArray[np.float64]
-    k: NDArray[np.float64]
-    approach: NDArray[np.float64]
+    phase: NDArray
+    k: NDArray
+    approach: NDArray
     order: NDArray[np.int64]
-    load: NDArray[np.float64]
+    load: NDArray
     cells: tuple[Cells, ...]
     dofs: tuple[int, int]
     closed: tuple[int, ...] = ()
     fillet: tuple[int, ...] = ()
-    error: NDArray[np.float64] | None = None
-    unloaded: NDArray[np.float64] | None = None
-    k_tangent: NDArray[np.float64] | None = None
-    supports: NDArray[np.float64] | None = None
+    error: NDArray | None = None
+    unloaded: NDArray | None = None
+    k_tangent: NDArray | None = None
+    supports: NDArray | None = None
 
 
 def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, error=False, cache=True):
@@ -158,7 +159,7 @@ def _solved(contact, phase, bodies):
     fillet = tuple(
         i for i, loaded in enumerate(cells) if (in_fillet(contact.pair, loaded.roll_1, loaded.roll_2) & (loaded.load > 0)).any()
     )
-    unloaded = contact.unloaded(cells)
+    unloaded = least_gap(contact, cells)
     k = 1e3 * contact.force / (approach - unloaded)
     supports = None if contact.hubs is None else np.array([loaded.given for loaded in carried])
     unsure = k * np.array([loaded.unsure for loaded in carried])

@@ -1,7 +1,6 @@
 """A whole gear pair in nonlinear contact as a CalculiX deck: the second opinion on load sharing and corner contact."""
 
 import math
-import os
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +10,7 @@ from ..core.case import Case
 from ..flexibility.finite_elements.fe import EDGES
 from ..flexibility.finite_elements.one_tooth import edge_lengths
 from ..flexibility.hertz import contact_modulus, half_width
+from ..geometry.aliases import Floats, StrPath
 from ..geometry.mesh.outline import stations
 from ..geometry.mesh.relieved import relieved
 from ..geometry.mesh.section_mesh import section
@@ -29,22 +29,22 @@ class ContactDeck:
     """What is needed to read the result, of both gears: held nodes (numbers), their places from the centre [mm], r_b [mm]."""
 
     held: tuple[NDArray[np.int64], NDArray[np.int64]]
-    place: tuple[NDArray[np.float64], NDArray[np.float64]]
+    place: tuple[Floats, Floats]
     r_b: tuple[float, float]
 
-    def forces(self, path: str | os.PathLike[str]) -> tuple[float, float]:
+    def forces(self, path: StrPath) -> tuple[float, float]:
         """``T1 / r_b1`` and ``T2 / r_b2`` per width [N/mm] from the reactions CalculiX printed to the ``.dat`` file `path`."""
         reaction = read_rows(path)
         pushed = [np.array([reaction[n] for n in held.tolist()]).T for held in self.held]
         moment = [float((f[0] * p[1] - f[1] * p[0]).sum()) for f, p in zip(pushed, self.place, strict=True)]
         return moment[0] / self.r_b[0], abs(moment[1]) / self.r_b[1]
 
-    def force(self, path: str | os.PathLike[str]) -> float:
+    def force(self, path: StrPath) -> float:
         """Force along the line of action per width [N/mm], the mean of `forces` (see `gearfe.geometry.pair.contacts`)."""
         return sum(self.forces(path)) / 2
 
 
-def write_contact_section(path: str | os.PathLike[str], case: Case, phase: float, approach: float, how: Pressing) -> ContactDeck:
+def write_contact_section(path: StrPath, case: Case, phase: float, approach: float, how: Pressing) -> ContactDeck:
     """The deck of `gearfe.decks.contact_inp.write_contact_inp` in plane strain; TIP edges at the tip corner that touches."""
     pair, materials, forms = case.pair, case.materials, case.forms
     gears, line_load = (pair.gear_1, pair.gear_2), case.forces[0] / min(pair.gear_1.b, pair.gear_2.b)

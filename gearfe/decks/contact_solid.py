@@ -1,7 +1,6 @@
 """A whole gear pair of finite width in nonlinear contact as a CalculiX deck: the second opinion in three dimensions."""
 
 import math
-import os
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..core.case import Case
 from ..flexibility.hertz import contact_modulus, half_width
+from ..geometry.aliases import Floats, StrPath
 from ..geometry.damage.kinds import split
 from ..geometry.mesh.holes import SIZES as HOLES
 from ..geometry.mesh.holes import filled, holed_sector
@@ -48,7 +48,7 @@ class SolidDeck(ContactDeck):
     parts: tuple[Part, Part]
     slaves: dict[int, tuple[int, NDArray[np.int64]]]
 
-    def carried(self, path: str | os.PathLike[str]) -> dict[int, tuple[float, float]]:
+    def carried(self, path: StrPath) -> dict[int, tuple[float, float]]:
         """What each tooth pair carries, from the ``.dat`` file `path`: force [N] and the height z of its line of action [mm].
 
         CalculiX prints force F and moment M about the origin; the line is ``F x M / |F|**2 + t F``, and the height is that of its
@@ -65,13 +65,13 @@ class SolidDeck(ContactDeck):
         return out
 
 
-def contact_sums(path: str | os.PathLike[str]) -> dict[str, tuple[NDArray[np.float64], ...]]:
+def contact_sums(path: StrPath) -> dict[str, tuple[Floats, ...]]:
     """Force [N], moment about the origin [N mm], middle of the area [mm] by slave surface that touches, of the last increment.
 
     RuntimeError if the ``.dat`` file has none.
     """
     rows = [line.split() for line in Path(path).read_text(encoding="ascii").splitlines() if line.strip()]
-    out: dict[str, tuple[NDArray[np.float64], ...]] = {}
+    out: dict[str, tuple[Floats, ...]] = {}
     for k, row in enumerate(rows):
         if row[:4] == ["statistics", "for", "slave", "set"]:
             first, middle = (np.array(rows[k + step], dtype=float) for step in (2, 4))
@@ -94,14 +94,14 @@ class Touching:
     """
 
     order: list[int]
-    heights: list[NDArray[np.float64]]
-    rolls: tuple[list[NDArray[np.float64]], list[NDArray[np.float64]]]
+    heights: list[Floats]
+    rolls: tuple[list[Floats], list[Floats]]
     width: list[float]
     slave: list[int]
     fillet: tuple[list[bool], list[bool]]
 
 
-def nominal_at(pair: GearPair, phase: float, z: NDArray[np.float64] | float) -> NDArray[np.float64]:
+def nominal_at(pair: GearPair, phase: float, z: Floats | float) -> Floats:
     """Abscissa [mm] of pair 0 on the line of action at heights z [mm] of the common width; `phase` is that of the end ahead."""
     slope = math.tan(pair.gear_1.beta_b)
     origin = min(pair.gear_1.b, pair.gear_2.b) if slope > 0 else 0.0
@@ -143,7 +143,7 @@ def _modified(pair, found, heights, forms):
     return Contacts(found.order, found.nominal, *(np.stack(values, axis=-1) for values in zip(*touches, strict=True)))
 
 
-def write_contact_solid(path: str | os.PathLike[str], case: Case, phase: float, approach: float, how: Pressing) -> SolidDeck:
+def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float, how: Pressing) -> SolidDeck:
     """The deck of `contact_inp.write_contact_inp` for gears of finite width.
 
     Nodes lie on modified flanks (`gearfe.geometry.mesh.relieved_solid`); axes askew are among them.

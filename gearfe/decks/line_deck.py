@@ -1,17 +1,16 @@
 """One gear of finite width under a line load as a CalculiX / Abaqus deck: hexahedra, for a second opinion on its flexibility."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.checks import check_length
 from ..core.files import check_output
 from ..core.material import Material
 from ..flexibility.finite_elements.fe3d import Patches, mesh_patches, patch_loads
 from ..flexibility.finite_elements.one_tooth import check_cracks, check_line_load, check_one, load_at
+from ..geometry.aliases import Floats, StrPath
 from ..geometry.damage.crack import Crack
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import arc_at
@@ -24,10 +23,10 @@ class LineDeck:
     """What is needed to read the result: the meshed gear, the nodal forces ``(nodes, 3)`` and the sum of the pressure [N]."""
 
     part: Part
-    load: NDArray[np.float64]
+    load: Floats
     force: float
 
-    def deflection(self, path: str | os.PathLike[str]) -> float:
+    def deflection(self, path: StrPath) -> float:
         """Displacement of the load along itself, weighted like the load [mm], from what CalculiX printed to the ``.dat`` file."""
         moved = np.zeros(self.load.shape)
         for node, values in read_rows(path).items():
@@ -36,7 +35,7 @@ class LineDeck:
 
 
 def write_line_inp(
-    path: str | os.PathLike[str],
+    path: StrPath,
     gear: Gear,
     radius: float,
     line_load: float,

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.files import new_file, written
 from ..core.steps import steps
+from ..geometry.aliases import Floats, StrPath
 from .set_plot import BRIGHT, LARGEST, draw_set
 
 SUFFIX = ".gif"
@@ -26,8 +26,8 @@ def check_moving(path: Any) -> None:
 
 
 def draw_motion(
-    positions: list[tuple[list[Any], NDArray[np.float64] | None]],
-    path: str | os.PathLike[str],
+    positions: list[tuple[list[Any], Floats | None]],
+    path: StrPath,
     *,
     magnified: float | None,
     rate: int,

@@ -1,14 +1,13 @@
 """Pictures (matplotlib) of a planetary set: bent under its load, and loads and stiffness of its meshes over the positions."""
 
 import math
-import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.files import save_figure
 from ..core.units import NEWTON_PER_UM
+from ..geometry.aliases import Floats, StrPath
 from .look import COLOURS, DASHES, blank
 
 if TYPE_CHECKING:
@@ -20,8 +19,8 @@ BRIGHT = 99.5  # per cent of the nodes that the colours tell apart: point loads 
 
 def draw_set(
     shapes: list[Any],
-    supports: NDArray[np.float64] | None,
-    path: str | os.PathLike[str] | None,
+    supports: Floats | None,
+    path: StrPath | None,
     *,
     magnified: float | None,
     dpi: int,
@@ -49,7 +48,7 @@ def draw_set(
     return save_figure(figure, path, dpi)
 
 
-def draw_curves(curves: Any, path: str | os.PathLike[str] | None, *, dpi: int) -> "Figure":
+def draw_curves(curves: Any, path: StrPath | None, *, dpi: int) -> "Figure":
     """Picture of `gearfe.planetary_sets.curves.SetCurves.plot`."""
     figure, (above, middle, below) = blank((9, 8), 3, sharex=True)
     for planet in range(curves.force.shape[2]):

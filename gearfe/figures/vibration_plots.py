@@ -1,13 +1,12 @@
 """Plots (matplotlib) of vibration: spectra, kurtogram, phase portraits."""
 
-import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.files import save_figure
+from ..geometry.aliases import Floats, StrPath
 from .look import COLOURS, blank
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ LETTER = 0.014  # height of a letter, which lines' names need beside each other,
 def plot_spectra(
     spectra: Mapping[str, "Spectrum"],
     lines: Mapping[str, float] | None = None,
-    path: str | os.PathLike[str] | None = None,
+    path: StrPath | None = None,
     top: float | None = None,
     *,
     dpi: int = 120,
@@ -78,7 +77,7 @@ def _apart(places, least):
     return dict(zip(names, shifted.tolist(), strict=True))
 
 
-def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
+def plot_kurtogram(kurtogram: "Kurtogram", path: StrPath | None = None, title: str = "") -> "Figure":
     """Draw a `gearfe.signal.kurtogram.Kurtogram` under a `title`, the best band framed; save to `path` if given."""
     from matplotlib import cm, colormaps, colors
 
@@ -103,7 +102,7 @@ def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None =
     return save_figure(figure, path, dpi=120)
 
 
-def plot_spectrogram(spectrogram: "Spectrogram", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
+def plot_spectrogram(spectrogram: "Spectrogram", path: StrPath | None = None, title: str = "") -> "Figure":
     """Draw a `gearfe.signal.time_frequency.Spectrogram`, 80 dB deep, under a `title`; save to `path` if given."""
     figure, axes = blank((9, 4))
     largest = max(float(spectrogram.values.max()), 1e-300)
@@ -115,7 +114,7 @@ def plot_spectrogram(spectrogram: "Spectrogram", path: str | os.PathLike[str] | 
     return save_figure(figure, path, dpi=120)
 
 
-def plot_cepstrum(found: "Spectrum", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
+def plot_cepstrum(found: "Spectrum", path: StrPath | None = None, title: str = "") -> "Figure":
     """Draw a cepstrum, `gearfe.cepstrum`, from a thousandth of its length on; save to `path` if given."""
     figure, axes = blank((9, 3))
     first = max(1, found.values.size // 1000)  # the shape of the whole spectrum stands before
@@ -126,10 +125,10 @@ def plot_cepstrum(found: "Spectrum", path: str | os.PathLike[str] | None = None,
 
 
 def plot_phase(
-    portrait: tuple[NDArray[np.float64], NDArray[np.float64]],
-    section: NDArray[np.float64] | None = None,
+    portrait: tuple[Floats, Floats],
+    section: Floats | None = None,
     unit: str = "m",
-    path: str | os.PathLike[str] | None = None,
+    path: StrPath | None = None,
     title: str = "",
 ) -> "Figure":
     """Draw a phase portrait, `gearfe.phase_portrait`, with the points of a Poincare section; save to `path` if given."""

@@ -13,6 +13,7 @@ from ..geometry.tooth.profile import arc_at
 
 NEAREST = 0.001  # added to distances from a tip corner before their logarithm is taken [m_n]
 TILT = 0.2  # of the two loads, at each of four places, from which it is found how a tooth yields across its normal [rad]
+FURTHER = 1  # teeth beyond those that can share load with a damaged one that are solved with the damage, too
 BELOW = 0.1  # how far below the tip the third of these places is [m_n]
 
 
@@ -38,9 +39,9 @@ def _logarithmic(arc, places, least):
 
 
 def reached_teeth(gear: Gear, cracks: Iterable[Any], missing: Iterable[int], neighbours: int) -> list[int]:
-    """Numbers of the teeth whose flexibility damage changes noticeably: `neighbours` to either side of a damaged tooth."""
-    damaged = [*(crack.tooth for crack in cracks), *missing]
-    return sorted({(tooth + k) % gear.z for tooth in damaged for k in range(-neighbours, neighbours + 1)})
+    """Numbers of the teeth that are solved with damage: `neighbours` and `FURTHER` to either side of a damaged tooth."""
+    damaged, reach = [*(crack.tooth for crack in cracks), *missing], neighbours + FURTHER
+    return sorted({(tooth + k) % gear.z for tooth in damaged for k in range(-reach, reach + 1)})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -180,6 +181,23 @@ class Flexibility:
             here, there = on.nonzero()
             out[..., here, there] = out[..., there, here] = spline.ev(arc[..., here], arc[..., there])
         return out
+
+
+def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.bool_], float]:
+    """Which `teeth` ``(n,)`` of a cracked gear its cracks were not solved for, and the most these can add there [mm per N/mm].
+
+    Cracks open less under loads further away. The bound is the flexibility that open cracks add to the outermost solved teeth.
+    """
+    none = np.zeros(teeth.size, dtype=bool), 0.0
+    if flexible.seam is None:
+        return none
+    z, faces = flexible.gear.z, flexible.seam
+    ends = [tooth for tooth in faces.opening if not {(tooth + 1) % z, (tooth - 1) % z} <= faces.opening.keys()]
+    if not ends:
+        return none
+    opening = np.concatenate([faces.opening[tooth](np.array(flexible.limits)) for tooth in ends])
+    most = np.einsum("nf,fg,ng->n", opening, faces.stiffness, opening).max()
+    return ~np.isin(teeth % z, list(faces.opening)), float(most)
 
 
 def singly(flexible: Any, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[int]) -> list[NDArray[np.float64]]:

@@ -1,10 +1,10 @@
 """A loaded planetary set as a moving picture."""
 
-import math
 import os
 from pathlib import Path
 
-from ..core.checks import is_number, whole
+from ..core.checks import whole
+from ..core.record import ranged
 from ..core.steps import part
 from ..figures.set_motion import check_moving, draw_motion
 from .curves import SetCurves
@@ -53,8 +53,8 @@ def animate_planetary_set(
     check_moving(path)
     if not isinstance(curves, SetCurves):
         raise ValueError(f"curves = {curves!r}, but give what planetary_stiffness gives")
-    if magnified is not None and not (is_number(magnified) and 0 < float(magnified) < math.inf):
-        raise ValueError(f"magnified = {magnified!r}, but give a finite number > 0, or leave it out")
+    if magnified is not None:
+        ranged("magnified", magnified, above=0.0)
     whole("rate", rate, 1)
     if curves.position.size > MOST:
         raise ValueError(f"{curves.position.size} positions make too many frames: give curves of at most {MOST}")

@@ -1,6 +1,5 @@
 """`SetCurves`: what a planetary set does over its positions, in SI units."""
 
-import os
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 from ..core.files import save
 from ..core.units import NEWTON_PER_UM
 from ..figures.set_plot import draw_curves
+from ..geometry.aliases import StrPath
 from .rim import rim_angles, rim_moved
 from .set_file import MESHES, content
 
@@ -96,11 +96,11 @@ class SetCurves:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(self.k > 0, self.force / (self.force / self.k - self.rim), 0.0)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: StrPath) -> None:
         """Write to `path`; its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
         save(path, "curve", content(self))
 
-    def plot(self, path: str | os.PathLike[str] | None = None, *, dpi: int = 120) -> "Figure":
+    def plot(self, path: StrPath | None = None, *, dpi: int = 120) -> "Figure":
         """Draw stiffness and load of every mesh and the transmission error; save to `path` if given."""
         return draw_curves(self, path, dpi=dpi)
 

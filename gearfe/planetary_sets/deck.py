@@ -4,20 +4,21 @@ Sun and planets are turned by what was found here, the ring is held on its pads;
 """
 
 import math
-import os
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import checked_refine, is_number
+from ..core.checks import checked_refine
 from ..core.files import check_output
+from ..core.record import ranged
 from ..decks.contact_deck import TIP, posed
 from ..decks.deck import held_nodes
 from ..decks.pressed import Sections, pressing, read_rows, write_lines
 from ..flexibility.finite_elements.fe import EDGES
 from ..flexibility.finite_elements.one_tooth import edge_lengths
+from ..geometry.aliases import StrPath
 from ..geometry.mesh.outline import stations
 from ..geometry.tooth.profile import arc_at
 from .case import PlanetaryCase
@@ -42,7 +43,7 @@ class SetDeck:
     around: NDArray
     angle: float
 
-    def forces(self, path: str | os.PathLike[str]) -> dict[str, Any]:
+    def forces(self, path: StrPath) -> dict[str, Any]:
         """What CalculiX printed to the ``.dat`` file `path`, per width [N/mm].
 
         ``"sun"``, ``"ring"``: torque over the base radius. ``"outer"``, ``"inner"`` ``(planets,)``: forces of the meshes of each
@@ -69,7 +70,7 @@ class SetDeck:
             "inner": loads[1],
         }
 
-    def moved(self, path: str | os.PathLike[str]) -> tuple[NDArray, NDArray]:
+    def moved(self, path: StrPath) -> tuple[NDArray, NDArray]:
         """Angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad]; how they move outwards, clockwise ``(n, 2)`` [mm]."""
         displacements = read_rows(path, "displacements")
         u = np.array([displacements[n] for n in self.rim.tolist()])[:, :2]
@@ -80,7 +81,7 @@ class SetDeck:
 
 
 def write_set_inp(
-    path: str | os.PathLike[str],
+    path: StrPath,
     curves: SetCurves,
     at: int,
     *,
@@ -121,8 +122,7 @@ def write_set_inp(
     check_output(path, "deck")
     case, stand = drawable(curves, at)
     for name, value in (("per_width", per_width), ("penalty", penalty)):
-        if not (is_number(value) and 0 < value < math.inf):
-            raise ValueError(f"{name} = {value!r}, but give a finite number > 0")
+        ranged(name, value, above=0.0)
     refine = checked_refine(refine)
     pressed, bodies = touching(case, stand, curves, at), placed(case, stand, curves, at)
     text = Sections()

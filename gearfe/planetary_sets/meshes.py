@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.kinks import kink_rows, near_kink
-from ..contact.pair_contact import KINK, PairContact
-from ..contact.rows import Wanted
+from ..contact.kinks import near_kink
+from ..contact.pair_contact import PairContact
 from ..contact.sliding import bounded
 from ..flexibility.energy.ritz.plane import flexibility
 from ..flexibility.section_contact import Solved
@@ -147,15 +146,9 @@ def _contacts(contact: Any, i: int, line_load: float, reach: float) -> Contacts:
     least = candidates.gap.min(axis=1)
     reaches = np.maximum(contact._reach(line_load), reach)
     possible = candidates.gap - least[:, None] < reaches[:, None]
-    corner, zone, width = contact.corners(line_load, possible)
-    kink = near_kink(contact, line_load) & possible & (corner == 0)
-    finest, at = contact.finest(line_load), np.flatnonzero(corner[i]).tolist()
-    rows = contact.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), finest, float(width[i, k])) for k in at])
-    here = np.zeros_like(kink)
-    here[i] = kink[i]
-    rows = dict(zip([(i, k) for k in at], rows, strict=True)) | kink_rows(contact, np.argwhere(here), line_load)
-    corner = np.where(kink, KINK, corner)
-    (built,) = contact.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near])], rows, tilt)
+    corners = contact.corners(line_load, possible)
+    kink = near_kink(contact, line_load) & possible & (corners[0] == 0)
+    (built,), rows = contact.problems(line_load, [i], possible, corners, kink, tilt)
     return _one(contact, i, built, rows, possible[i], least[i], reaches[i])
 
 

@@ -15,7 +15,7 @@ K. L. Johnson, Contact Mechanics, 1985, sec. 2.8 (tractions under a rigid punch)
 """
 
 import math
-from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,8 +28,10 @@ from .whole_gear import PLACES, WholeGear, between_teeth, motion
 SURE = 1e-9  # of the largest singular value of the pads' balance: less, and the ring can move without force
 
 
-@dataclass(frozen=True, slots=True)
-class Rim:
+NONE_2, NONE_3 = np.zeros((0, 0)), np.zeros((0, 0, 0))  # of what a ring without pads has not
+
+
+class Rim(NamedTuple):
     """A ring's teeth as what holds its rim lets them move, per mm of width (z teeth, `PLACES` loads on each right flank).
 
     `more` ``(z, PLACES, z, PLACES)`` is added to the flexibility with the rim held. With p pads' tractions per load `reaction`
@@ -42,13 +44,13 @@ class Rim:
     whole: WholeGear
     more: NDArray
     pads: Pads | None = None
-    reaction: NDArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    moves: NDArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    lug: NDArray = field(default_factory=lambda: np.zeros((0, 0)))
-    across: NDArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    turns: NDArray = field(default_factory=lambda: np.zeros((0, 0)))
-    gives: NDArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    grip: NDArray = field(default_factory=lambda: np.zeros((0, 0)))
+    reaction: NDArray = NONE_3
+    moves: NDArray = NONE_3
+    lug: NDArray = NONE_2
+    across: NDArray = NONE_3
+    turns: NDArray = NONE_2
+    gives: NDArray = NONE_3
+    grip: NDArray = NONE_2
 
 
 def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: float) -> Rim:
@@ -59,11 +61,12 @@ def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: floa
     gear = whole.gear
     check_support(support, gear)
     if isinstance(support, RimBed):
-        return Rim(whole, between_teeth(whole.bedded(_springs(support))))
+        return Rim(whole, between_teeth(whole.between(whole.bedded_inverse(_springs(support))) - whole.held()))
     if not isinstance(support, RimSupports):
         return Rim(whole, np.zeros((gear.z, PLACES) * 2))
-    more, moved = whole.loose()
-    pads = pads_on(whole, support, width, moved)
+    loose = whole.loose_inverse()
+    pads = pads_on(whole, support, width, whole.moved(loose))
+    more = whole.between(loose) - whole.held()
     teeth, across, between = between_teeth(more), by_teeth(pads), among(pads) + pads.compliance
     gives = _moves(gear)
     if support.pushes:

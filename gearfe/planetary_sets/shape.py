@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import is_number
 from ..core.files import check_output
+from ..core.record import ranged
 from ..core.steps import steps
 from ..decks.contact_deck import posed
 from ..figures.set_plot import draw_set
@@ -70,8 +70,8 @@ def plot_planetary_set(
     """
     if path is not None:
         check_output(path, "picture")
-    if magnified is not None and not (is_number(magnified) and 0 < magnified < math.inf):
-        raise ValueError(f"magnified = {magnified!r}, but give a finite number > 0, or leave it out")
+    if magnified is not None:
+        ranged("magnified", magnified, above=0.0)
     ((shapes, supports),) = loaded_shapes(curves, [at])
     return draw_set(shapes, supports, path, magnified=magnified, dpi=dpi)
 

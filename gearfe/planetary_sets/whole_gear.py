@@ -60,56 +60,42 @@ class WholeGear:
         """Unknowns of the held edge of a sector."""
         return 2 * self.angle.size
 
+    def between(self, inverse: NDArray[np.complex128]) -> NDArray:
+        """Displacement ``(z, 2 PLACES, 2 PLACES)`` [mm per N/mm] of the loads of tooth d by those of tooth 0.
+
+        `inverse` ``(h, n, n)`` of the stiffness, as what holds the edge makes it. Of tooth 0 itself only what passes through the
+        sides of its sector.
+        """
+        return np.fft.irfft(np.conj(self.push.transpose(0, 2, 1)) @ inverse @ self.push, n=self.gear.z, axis=0)
+
     def held(self) -> NDArray:
-        """Displacement ``(z, 2 PLACES, 2 PLACES)`` [mm per N/mm] of the loads of tooth d by those of tooth 0, its edge held.
+        """`between` loads with the edge held."""
+        return self.between(self.held_inverse())
 
-        Of tooth 0 itself only what passes through the sides of its sector.
-        """
-        inner = slice(self.edge, None)
-        return self._turned(self._yields(self.stiffness[:, inner, inner], self.push[:, inner], self.push[:, inner]))
+    def moved(self, inverse: NDArray[np.complex128]) -> NDArray:
+        """Displacements of the edge by harmonic ``(h, r, 2 PLACES + r)``, under the loads and under forces on itself."""
+        edge = inverse[:, : self.edge]
+        return np.concatenate([edge @ self.push, edge[:, :, : self.edge]], axis=2)
 
-    def bedded(self, stiffness: NDArray) -> NDArray:
-        """What is added to `held` if springs hold the edge: radial and tangential [N/mm per mm of edge, per mm of width]."""
-        return self._turned(self._yields(self._springs(stiffness), self.push, self.push)) - self.held()
-
-    def loose(self) -> tuple[NDArray, NDArray[np.complex128]]:
-        """What is added to `held` if nothing holds the edge, and how forces on the edge move the loads and the edge.
-
-        Forces are to be in balance with those on the teeth; the motion of the whole gear is left out. Given are ``(z, 2 PLACES, 2
-        PLACES)``, and displacements of the edge by harmonic ``(h, r, 2 PLACES + r)``, under the loads and under forces on itself.
-        """
-        h, n, r = *self.stiffness.shape[:2], self.edge
-        own = np.zeros((h, n, r))
-        own[:, np.arange(r), np.arange(r)] = 1.0
-        out = self.loose_inverse() @ np.concatenate([self.push, own], axis=2)
-        more = self._turned(np.conj(self.push.transpose(0, 2, 1)) @ out[:, :, : self.push.shape[2]]) - self.held()
-        return more, out[:, :r]
-
-    def held_inverse(self) -> NDArray[np.complex128]:
+    def held_inverse(self) -> NDArray:
         """Inverses ``(h, n, n)`` of the stiffness with the edge held: 0 there."""
         out, inner = np.zeros_like(self.stiffness), slice(self.edge, None)
         out[:, inner, inner] = np.linalg.inv(self.stiffness[:, inner, inner])
         return out
 
-    def bedded_inverse(self, stiffness: NDArray) -> NDArray[np.complex128]:
-        """Inverses with the springs of `bedded` on the edge."""
-        return np.linalg.inv(self._springs(stiffness))
-
-    def loose_inverse(self) -> NDArray[np.complex128]:
-        """Inverses if nothing holds the edge, without the motions of the whole gear."""
-        free = [_pseudo(one) for one in self.stiffness[:2]]
-        return np.concatenate([free, np.linalg.inv(self.stiffness[2:])])
-
-    def _springs(self, stiffness):
+    def bedded_inverse(self, stiffness: NDArray) -> NDArray:
+        """Inverses if springs hold the edge: radial and tangential [N/mm per mm of edge, per mm of width]."""
         springs = self.stiffness.copy()
         springs[:, : self.edge, : self.edge] += self.bed * np.tile(stiffness, self.edge // 2)
-        return springs
+        return np.linalg.inv(springs)
 
-    def _yields(self, stiffness, left, right):
-        return np.conj(left.transpose(0, 2, 1)) @ np.linalg.solve(stiffness, right)
+    def loose_inverse(self) -> NDArray:
+        """Inverses if nothing holds the edge, without the motions of the whole gear.
 
-    def _turned(self, harmonics):
-        return np.fft.irfft(harmonics, n=self.gear.z, axis=0)
+        Forces on the edge are to be in balance with those on the teeth.
+        """
+        free = [_pseudo(one) for one in self.stiffness[:2]]
+        return np.concatenate([free, np.linalg.inv(self.stiffness[2:])])
 
 
 def _pseudo(stiffness):

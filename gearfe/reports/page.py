@@ -2,7 +2,6 @@
 
 import base64
 import itertools
-import os
 import tempfile
 import time
 from importlib import resources
@@ -11,6 +10,7 @@ from pathlib import Path
 from ..comparison.told_scene import told_details, told_load, told_supports
 from ..core.steps import part
 from ..core.table import Column, Table
+from ..geometry.aliases import StrPath
 from ..scene.load import Scene, scene_names
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import versions
@@ -26,8 +26,8 @@ PICTURE, REFINE = (1120, 840), 0.7  # of stress [px], and of its mesh
 
 
 def report(
-    scene: Scene | str | os.PathLike[str],
-    path: str | os.PathLike[str],
+    scene: Scene | StrPath,
+    path: StrPath,
     case: str | None = None,
     *,
     duration: float = 0.2,

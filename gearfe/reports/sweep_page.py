@@ -1,12 +1,12 @@
 """`sweep_report`: a page of the results of a sweep, in one file that needs no network."""
 
 import json
-import os
 from pathlib import Path
 
 import numpy as np
 
 from ..core.table import Column, Table
+from ..geometry.aliases import StrPath
 from ..runs.sweeps.effects import curve_bands, main_effects
 from ..runs.sweeps.runs import Runs, open_runs
 from .figures import BAND, blank, part_of_page, style
@@ -21,7 +21,7 @@ SHOWN = {  # by kind of study: the output whose effects are drawn, and the curve
 }
 
 
-def sweep_report(runs: Runs | str | os.PathLike[str], path: str | os.PathLike[str]) -> Path:
+def sweep_report(runs: Runs | StrPath, path: StrPath) -> Path:
     """Write one self-contained page of a sweep: what varied, results, what matters, bands of curves, how all was made.
 
     Parameters

@@ -8,8 +8,11 @@ from ..core.units import NEWTON_PER_UM
 
 REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
 NOT, NEVER, FORMULA = "not reproduced", "not reproducible", "no number printed"
+STATEMENT = "statement"
+DEPENDS = "depends"  # a statement that holds under some of the values that its source leaves out
 ASSUMED = "set by an assumption"  # within the tolerance, or in order, but by a value of ours
 DISTINCT = 1e-3  # two of our values whose relative difference is smaller have no order
+CHANGE = 3.0  # of a trend: each relative change is at least a third of the printed one, and at most three times it
 SHOWN_AS = {"N/m": "N/um"}  # units of the sources that are shown in ours
 COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
 
@@ -18,7 +21,8 @@ class Row(NamedTuple):
     """A printed value and ours.
 
     `difference` is taken from the corrected value if there is one: in percent, or in the unit where the tolerance is. `kind`
-    is that of `gearfe.scene.references.Printed`; `run` names the simulation behind ours, empty if there is none.
+    is that of `gearfe.scene.references.Printed`, or ``"statement"`` of a model's statement. `run` names the simulation behind
+    ours, empty if there is none.
     """
 
     id: str
@@ -48,7 +52,8 @@ def judge(reference, found, run=""):
         corrected = math.nan if row.corrected is None else row.corrected
         difference = _rounded(math.nan if value is None else _difference(reference, value, row.target))
         numbers = [_rounded(x) for x in (row.value, corrected, math.nan if value is None else value)]
-        out.append(Row(reference.id, row.case, row.pair or "", *numbers, difference, word, row.kind, run))
+        kind = STATEMENT if reference.unit == STATEMENT and row.kind == "model" else row.kind
+        out.append(Row(reference.id, row.case, row.pair or "", *numbers, difference, word, kind, run))
     return out
 
 
@@ -72,7 +77,7 @@ def _verdict(reference, row, ours, ordered):
 
 
 def _ordered(printed, ours):
-    """Whether all our values have the order of the printed ones."""
+    """Whether all our values have the order of the printed ones, and change alike relative to the first: see `CHANGE`."""
     if len(ours) < 2 or any(value is None for value in ours):
         return False
     for i, (a, x) in enumerate(zip(printed, ours, strict=True)):
@@ -80,7 +85,8 @@ def _ordered(printed, ours):
             close = abs(x - y) <= DISTINCT * max(abs(x), abs(y))
             if a != b and (close or not (a - b) * (x - y) > 0):
                 return False
-    return True
+    parts = [[value / values[0] - 1 if values[0] else value for value in values[1:]] for values in (printed, ours)]
+    return all(a == 0 or 1 / CHANGE <= x / a <= CHANGE for a, x in zip(*parts, strict=True))
 
 
 def _difference(reference, ours, target):
@@ -108,11 +114,12 @@ def reason(reference, row):
 
 
 def counts(rows):
-    """One line: verdicts of what a model computes, and apart from them inputs, arithmetic and formulas without a number."""
+    """One line: verdicts of a model's numbers, of its statements, and apart from them those of inputs and arithmetic."""
     printed = [row for row in rows if row.verdict != FORMULA]
-    model = [row for row in printed if row.kind == "model"]
-    rest = [row for row in printed if row.kind != "model"]
-    parts = [f"{_count(model, 'result')} of a model: {_words(model)}"] if model else []
+    model, said = ([row for row in printed if row.kind == kind] for kind in ("model", STATEMENT))
+    rest = [row for row in printed if row.kind not in ("model", STATEMENT)]
+    groups = ((model, f"{_count(model, 'number')} of a model"), (said, f"{_count(said, STATEMENT)} of a model"))
+    parts = ["; ".join(f"{name}: {_words(rows)}" for rows, name in groups if rows)] if model or said else []
     if rest:
         parts.append(f"{_count(rest, 'input')} and arithmetic on printed numbers: {_words(rest)}")
     if len(rows) > len(printed):
@@ -125,9 +132,9 @@ def _count(rows, noun):
 
 
 def _words(rows):
-    verdicts = (REPRODUCED, CORRECTED, TREND, ASSUMED, NOT, NEVER)
+    verdicts = (REPRODUCED, CORRECTED, TREND, ASSUMED, DEPENDS, NOT, NEVER)
     many = {word: sum(row.verdict == word for row in rows) for word in verdicts}
-    return ", ".join(f"{n} {word}" for word, n in many.items() if n)
+    return ", ".join(f"{n} {'depend' if word == DEPENDS else word}" for word, n in many.items() if n)
 
 
 def text(references, rows, beside=None):
@@ -147,7 +154,7 @@ def text(references, rows, beside=None):
             if not math.isnan(row.corrected):
                 printed += f" (corrected {_shown(reference, row.corrected)})"
             verdict = f"**{row.verdict}**" if row.verdict in (NOT, NEVER) else row.verdict
-            verdict += (beside or {}).get(case, "") if row.kind == "model" else ""
+            verdict += (beside or {}).get(case, "") if row.kind in ("model", STATEMENT) else ""
             cells.append((name, case, row.kind, printed, _shown(reference, row.ours), _away(reference, row), verdict))
     table = Table(("quantity", "case", "kind", "printed", "gearfe", "difference", "verdict"), cells).markdown()
     return "\n".join(

@@ -1,6 +1,5 @@
 """`StiffnessCurve`: a mesh stiffness over one mesh cycle, in SI units, with all it takes to repeat it."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from html import escape
@@ -15,6 +14,7 @@ from ..core.units import NEWTON_PER_UM
 from ..figures.inline import line_svg
 from ..figures.stiffness_plots import plot_curves
 from ..flexibility.section_contact import MARKS
+from ..geometry.aliases import Floats, StrPath
 from .curve_file import content, read_fields
 
 if TYPE_CHECKING:
@@ -53,17 +53,17 @@ class StiffnessCurve:
         Gears, centre distance, load, materials, method, resolution, versions: all that is needed to repeat it.
     """
 
-    phase: NDArray[np.float64]
-    k: NDArray[np.float64]
-    k_tangent: NDArray[np.float64]
-    lte: NDArray[np.float64]
+    phase: Floats
+    k: Floats
+    k_tangent: Floats
+    lte: Floats
     order: NDArray[np.int64]
-    force: NDArray[np.float64]
-    pressure: NDArray[np.float64]
-    error: NDArray[np.float64] | None = None
+    force: Floats
+    pressure: Floats
+    error: Floats | None = None
     meta: dict[str, Any] = field(default_factory=dict)
-    unloaded: NDArray[np.float64] | None = None
-    lte_supports: NDArray[np.float64] | None = None
+    unloaded: Floats | None = None
+    lte_supports: Floats | None = None
 
     def __repr__(self):
         """One line: method, phases, load, the range of k."""
@@ -132,7 +132,7 @@ class StiffnessCurve:
         return np.interp(phases, known, k)
 
     @property
-    def te(self) -> NDArray[np.float64]:
+    def te(self) -> Floats:
         """Transmission error under load ``(n,)`` [m], its unloaded part included, as a length on the line of action."""
         return self.lte if self.unloaded is None else self.lte + self.unloaded
 
@@ -151,7 +151,7 @@ class StiffnessCurve:
         return replace(self, k=k, k_tangent=k_tangent, lte=lte, error=error, lte_supports=None)
 
     @property
-    def share(self) -> NDArray[np.float64]:
+    def share(self) -> Floats:
         """Load share of each pair ``(n, pairs)``, rows sum to 1."""
         return self.force / self.force.sum(axis=1, keepdims=True)
 
@@ -180,20 +180,20 @@ class StiffnessCurve:
         zones = {names.get(pairs, f"{pairs} pairs"): rows for pairs, rows in ((low, ~inside), (low + 1, inside))}
         return {name: rows for name, rows in zones.items() if rows.any()}
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: StrPath) -> None:
         """Write to `path`; its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
         save(path, "curve", content(self))
 
-    def to_csv(self, path: str | os.PathLike[str]) -> None:
+    def to_csv(self, path: StrPath) -> None:
         """Write a CSV table with a header of units and meta data; `from_csv` reads it back exactly if the phases rise."""
         save_as(".csv", path, content(self))
 
     @classmethod
-    def from_csv(cls, path: str | os.PathLike[str]) -> "StiffnessCurve":
+    def from_csv(cls, path: StrPath) -> "StiffnessCurve":
         """Read what `to_csv` wrote; ValueError if the file is not such a table, or its phases do not rise."""
         return cls(**read_fields(path))
 
-    def plot(self, path: str | os.PathLike[str] | None = None, title: str | None = None) -> "Figure":
+    def plot(self, path: StrPath | None = None, title: str | None = None) -> "Figure":
         """Draw the curve under a `title` (default: teeth, damage and load); save to `path` if given.
 
         The figure's ``axes`` are two: the stiffness, and below it the load shares. A notebook shows it.
@@ -205,13 +205,13 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
     """One curve of several that follow each other, of the same gears under the same load; columns of pairs by their order."""
     order = np.unique(np.concatenate([curve.order for curve in curves]))
 
-    def rows(name: str) -> NDArray[np.float64]:
+    def rows(name: str) -> Floats:
         out = [np.zeros((curve.phase.size, order.size)) for curve in curves]
         for part, source in zip(out, curves, strict=True):
             part[:, np.searchsorted(order, source.order)] = getattr(source, name)
         return np.concatenate(out)
 
-    def row(name: str) -> NDArray[np.float64] | None:
+    def row(name: str) -> Floats | None:
         parts = [getattr(curve, name) for curve in curves]
         if all(part is None for part in parts):
             return None

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.case import SIDES, Case
+from ..flexibility.plane import FURTHER
 from ..geometry.pair.contacts import neighbours_of
 from .curve import StiffnessCurve, joined
 from .limits import check_count
@@ -211,7 +212,7 @@ def _windows(case, side, n):
     if not teeth:
         return []
     span = case.pair.eps_alpha + case.overlap()
-    before = math.ceil((neighbours_of(case.pair) + MARGIN) * n)  # damage reaches as many teeth
+    before = math.ceil((neighbours_of(case.pair) + FURTHER + MARGIN) * n)  # damage reaches as many teeth
     length = before + math.ceil(span * n) + before
     entries = sorted(-tooth % z for tooth in teeth)
     breaks = [i for i, entry in enumerate(entries) if (entries[i - len(entries) + 1] - entry - 1) % z * n + n > length]

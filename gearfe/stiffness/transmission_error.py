@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.case import Case
 from ..core.table import Column, Table
 from ..figures.error_plots import plot_transmission_error
+from ..geometry.aliases import Floats
 from ..geometry.pair.gear_pair import GearPair
 from .curve import StiffnessCurve
 from .solve import Loads, Materials, Solve, StiffnessOptions, solve, split_arguments
@@ -35,18 +35,18 @@ class TransmissionError:
         One for each load: stiffness, load sharing, pressure.
     """
 
-    force: NDArray[np.float64]
-    phase: NDArray[np.float64]
-    te: NDArray[np.float64]
-    unloaded: NDArray[np.float64]
+    force: Floats
+    phase: Floats
+    te: Floats
+    unloaded: Floats
     curves: tuple[StiffnessCurve, ...]
 
     @property
-    def peak_to_peak(self) -> NDArray[np.float64]:
+    def peak_to_peak(self) -> Floats:
         """Largest less smallest transmission error over the phases, by load ``(m,)`` [m]."""
         return np.ptp(self.te, axis=1)
 
-    def harmonics(self, count: int = 4) -> NDArray[np.float64]:
+    def harmonics(self, count: int = 4) -> Floats:
         """Amplitudes of the first mesh harmonics, by load ``(m, count)`` [m].
 
         ValueError if the phases are not equidistant over whole mesh cycles, or too few.

@@ -5,12 +5,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.material import Material
 from ..core.threads import single
 from ..flexibility.finite_elements.line_load import check_spread, contact_line, strip, under_line
 from ..flexibility.finite_elements.one_tooth import check_load_along, check_one
+from ..geometry.aliases import Floats
 from ..geometry.damage.crack import Crack, check_apart, deepest, meshed_path
 from ..geometry.damage.front import open_part, shallowest, whole
 from ..geometry.damage.kinds import check_crack
@@ -42,11 +42,11 @@ class FrontIntensity:
     unknowns : int
     """
 
-    z: NDArray[np.float64]
-    depth: NDArray[np.float64]
-    K_I: NDArray[np.float64]
-    K_II: NDArray[np.float64]
-    K_III: NDArray[np.float64]
+    z: Floats
+    depth: Floats
+    K_I: Floats
+    K_II: Floats
+    K_III: Floats
     unknowns: int
 
 
@@ -55,7 +55,7 @@ def stress_intensity_along_front(
     gear: Gear,
     crack: Crack,
     radius: float,
-    line_load: float | Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    line_load: float | Callable[[Floats], Floats],
     material: Material,
     *,
     refine: float = 1.0,

@@ -4,13 +4,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.material import Material
 from ..core.threads import single
 from ..flexibility.finite_elements.hexahedron import face_shapes
 from ..flexibility.finite_elements.line_load import check_spread, contact_line, strip, under_line
 from ..flexibility.finite_elements.one_tooth import check_line_load, check_one
+from ..geometry.aliases import Floats
 from ..geometry.mesh.solid import Solid, solid
 from ..geometry.tooth.gear import Gear
 from .loaded_tooth import _peak
@@ -36,9 +36,9 @@ class RootStress:
     unknowns : int
     """
 
-    z: NDArray[np.float64]
-    stress: NDArray[np.float64]
-    radius: NDArray[np.float64]
+    z: Floats
+    stress: Floats
+    radius: Floats
     unknowns: int
 
     @property

@@ -6,8 +6,8 @@ from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..aliases import Floats
 from ..checks import is_finite
 from ..kept import keeping
 from ..tooth.gear import Gear
@@ -107,7 +107,7 @@ class Crack:
         """Whether it has turned at the tooth's centre-line: its path is not straight."""
         return self.turning and self.level is not None and self.level > 0.5
 
-    def outline(self, gear: Gear) -> NDArray[np.float64]:
+    def outline(self, gear: Gear) -> Floats:
         """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth: `crack_path`."""
         return crack_path(gear, self)
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..aliases import Floats
 from ..tooth.gear import Gear
 from ..tooth.profile import cartesian, flank
 from .given import tooth_and_side
@@ -44,7 +44,7 @@ class MissingTooth:
         """Check the number of the tooth."""
         object.__setattr__(self, "tooth", tooth_and_side(self.tooth, "loaded"))
 
-    def outline(self, gear: Gear) -> NDArray[np.float64]:
+    def outline(self, gear: Gear) -> Floats:
         """Line ``(2, n)`` [mm] along both flanks and the tip of the tooth, in its frame."""
         x, y = cartesian(*flank(gear, np.linspace(gear.roll_f, gear.roll_a, 24)))
         return np.array([np.append(x, -x[::-1]), np.append(y, y[::-1])])

@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from ..aliases import Floats
 from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
 from .hollow import doubts, in_circle, on_line, profile
@@ -102,7 +103,7 @@ class Pit:
         area = self.axes[0] * self.axes[1]
         return math.sqrt(across) * area, math.sqrt(along) * area
 
-    def outline(self, gear: Gear) -> NDArray[np.float64]:
+    def outline(self, gear: Gear) -> Floats:
         """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth."""
         return profile(gear, self)
 
@@ -118,12 +119,12 @@ class Pit:
         """Its mirror image in the other half of a face of width `b` [mm]."""
         return replace(self, z=b - self.z, angle=-self.angle)
 
-    def covers(self, u: NDArray[np.float64], w: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def covers(self, u: Floats, w: Floats) -> NDArray[np.bool_]:
         """Whether places are in it: `u` along the profile, `w` along the width from its centre [mm]."""
         across, mixed, along = self.form
         return across * w**2 + 2 * mixed * w * u + along * u**2 <= 1
 
-    def span(self, u: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def span(self, u: Floats) -> tuple[Floats, Floats]:
         """Heights z [mm] between which it lies at `u` along the profile from its centre [mm]; equal where it does not."""
         across, mixed, along = self.form
         root = across - (across * along - mixed**2) * u**2
@@ -131,19 +132,19 @@ class Pit:
         middle = self.z - mixed * np.where(root > 0, u, 0.0) / across
         return middle - half, middle + half
 
-    def edge(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def edge(self) -> tuple[Floats, Floats]:
         """Its outline: places along the profile and along the width from its centre [mm]."""
         turn = np.linspace(0, 2 * np.pi, 90)
         p, q = self.axes[0] * np.cos(turn), self.axes[1] * np.sin(turn)
         c, s = np.cos(self.angle), np.sin(self.angle)
         return p * c - q * s, p * s + q * c
 
-    def drawn(self, centre: NDArray[np.float64], axes: NDArray[np.float64]) -> list[tuple[str, NDArray[np.float64]]]:
+    def drawn(self, centre: Floats, axes: Floats) -> list[tuple[str, Floats]]:
         """Its outline in space: centre and half axes at right angles ``(3, 3)`` of the ellipse that `axes` ``(3, 2)`` span."""
         turned, size, _ = np.linalg.svd(axes, full_matrices=False)
         return [("ellipse", np.column_stack([centre, turned * size]))]
 
-    def along(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def along(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[Floats, Floats]:
         """Where lines ``(p + t dp, q + t dq)``, in units of the semi-axes, are in it: from t to t, equal where nowhere."""
         return in_circle(p, q, dp, dq, 1e-12 / min(self.axes) ** 2)
 

@@ -35,6 +35,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..aliases import Floats
 from ..tooth.flank_form import FlankForm
 from ..tooth.profile import cartesian
 from ..tooth.side import form_corner, place, side
@@ -66,26 +67,26 @@ class Contacts:
     """
 
     order: NDArray[np.int64]
-    nominal: NDArray[np.float64]
-    roll_1: NDArray[np.float64]
-    roll_2: NDArray[np.float64]
-    gap: NDArray[np.float64]
+    nominal: Floats
+    roll_1: Floats
+    roll_2: Floats
+    gap: Floats
     corner: NDArray[np.int64]
-    corner_gap: NDArray[np.float64]
-    corner_roll: NDArray[np.float64]
-    radius: NDArray[np.float64]
+    corner_gap: Floats
+    corner_roll: Floats
+    radius: Floats
 
 
 class Touch(NamedTuple):
     """Where sections first touch: roll lengths, gaps [mm], corners and relative radii of curvature [mm], as of `Contacts`."""
 
-    roll_1: NDArray[np.float64]
-    roll_2: NDArray[np.float64]
-    gap: NDArray[np.float64]
+    roll_1: Floats
+    roll_2: Floats
+    gap: Floats
     corner: NDArray[np.int64]
-    corner_gap: NDArray[np.float64]
-    corner_roll: NDArray[np.float64]
-    radius: NDArray[np.float64]
+    corner_gap: Floats
+    corner_roll: Floats
+    radius: Floats
 
 
 class Met(NamedTuple):
@@ -95,12 +96,12 @@ class Met(NamedTuple):
     `out`, `met_out`: what part of a unit force points away from these centres, on the gear it acts on.
     """
 
-    gap: NDArray[np.float64]
-    roll: NDArray[np.float64]
-    arm: NDArray[np.float64]
-    met_arm: NDArray[np.float64]
-    out: NDArray[np.float64]
-    met_out: NDArray[np.float64]
+    gap: Floats
+    roll: Floats
+    arm: Floats
+    met_arm: Floats
+    out: Floats
+    met_out: Floats
 
 
 def contacts(pair: GearPair, phase: ArrayLike, *, extended: bool = True) -> Contacts:
@@ -236,7 +237,7 @@ def approach(
     sense = 1 if driver else -1
     roll, nominal = np.broadcast_arrays(np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float))
     gap, distances = np.array(np.broadcast_to(start, nominal.shape), dtype=float), facing(pair, roll, nominal, driver)
-    back: NDArray[np.float64] | float = 0.0
+    back: Floats | float = 0.0
     mate = None
     if flanks is not None:
         host, mate = (form.of(order) for form in (flanks if driver else flanks[::-1]))

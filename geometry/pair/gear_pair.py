@@ -6,8 +6,9 @@ from dataclasses import dataclass, field, replace
 from numbers import Real
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..aliases import Floats
 from ..tooth.gear import Gear
 from ..tooth.involute import inv, inverse_inv
 from ..tooth.profile import flank
@@ -166,11 +167,11 @@ class GearPair:
         """Distance between the tangent points of the line of action on the two base circles [mm]."""
         return self.a * math.sin(self.alpha_w)
 
-    def mate_roll(self, roll_1: ArrayLike) -> NDArray[np.float64]:
+    def mate_roll(self, roll_1: ArrayLike) -> Floats:
         """Roll length on gear 2 [mm] where the pinion touches at `roll_1`, on the line of action."""
         return self.length - self.outward * np.asarray(roll_1)
 
-    def relative_radius(self, roll_1: NDArray[np.float64], roll_2: NDArray[np.float64]) -> NDArray[np.float64]:
+    def relative_radius(self, roll_1: Floats, roll_2: Floats) -> Floats:
         """Relative radius of curvature [mm]."""
         return roll_1 * roll_2 / (roll_2 + self.outward * roll_1)
 
@@ -233,12 +234,12 @@ class GearPair:
         """Working pitch radius of the wheel [mm]."""
         return self.gear_2.r_b / math.cos(self.alpha_w)
 
-    def curvature_radii(self, phase: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def curvature_radii(self, phase: ArrayLike) -> tuple[Floats, Floats]:
         """Radii of curvature [mm] of both flanks where the pair of `phase` touches."""
         roll = self.path[0] + np.asarray(phase) * self.p_bt
         return roll, self.mate_roll(roll)
 
-    def turn(self, nominal: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def turn(self, nominal: ArrayLike) -> tuple[Floats, Floats]:
         """Clockwise angles [rad] of tooth 0 of both gears for a contact at `nominal` [mm] on the line of action.
 
         Gear 1's centre is the origin, gear 2's at ``(0, centre_2)``. A ring's loaded flank faces the other way: its own

@@ -17,6 +17,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..aliases import Floats
 from ..tooth.flank_form import FlankForm
 from ..tooth.profile import arc_at, fillet_length, roll_at_arc
 from .contacts import TIP, Contacts, Touch, approach, contacts, corners_of, facing
@@ -55,10 +56,10 @@ def flank_contacts(
 def first_touch(
     pair: GearPair,
     forms: tuple[FlankForm, FlankForm],
-    nominal: NDArray[np.float64],
+    nominal: Floats,
     order: NDArray[np.int64],
-    start: NDArray[np.float64],
-    z: NDArray[np.float64] | None = None,
+    start: Floats,
+    z: Floats | None = None,
 ) -> Touch:
     """Where the modified flanks of transverse sections first touch: the one gap function of all contact models.
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
+from ..aliases import Floats
 from .gear import Gear
 from .lead import LeadForm
 from .relief import relief_start
@@ -50,7 +51,7 @@ class FlankForm:
         self._tooth: NDArray[np.int64] | None = None
         self.sense = 1
         self.tilt, self._lead = 0.0, LeadForm(flank, gear, self.low, self.high) if flank.wide else None
-        self._z: NDArray[np.float64] | None = None
+        self._z: Floats | None = None
         self._check_size()
 
     @property
@@ -108,7 +109,7 @@ class FlankForm:
                     "tooth would be another one; amounts are in mm (20 um are 0.02)"
                 )
 
-    def removed(self, roll: ArrayLike, derivative: int = 0) -> NDArray[np.float64]:
+    def removed(self, roll: ArrayLike, derivative: int = 0) -> Floats:
         """Material removed at roll lengths [mm], or its derivative by the roll length; pitch deviations left out.
 
         Derivatives are those of the flank without the edge of its tip (for that see `bend`).
@@ -120,12 +121,12 @@ class FlankForm:
             out = out + self._off_centre(at, derivative)
         return out
 
-    def _on_flank(self, roll: ArrayLike) -> NDArray[np.float64]:
+    def _on_flank(self, roll: ArrayLike) -> Floats:
         """Roll lengths, those in the fillet moved to the form point."""
         rolls = np.asarray(roll, dtype=float)
         return np.maximum(rolls, self.low) if self.high > self.low else np.minimum(rolls, self.low)
 
-    def _formed(self, at: NDArray, n: int) -> NDArray[np.float64]:
+    def _formed(self, at: NDArray, n: int) -> Floats:
         """What is removed by form, wear and the edge of the tip: all but what the whole gear is off its axis."""
         out = self._shaped(at, n)
         if self._scales.size:
@@ -137,12 +138,12 @@ class FlankForm:
             out = out + self.edge.removed(at)
         return out
 
-    def thinned(self, roll: ArrayLike, tooth: int) -> NDArray[np.float64]:
+    def thinned(self, roll: ArrayLike, tooth: int) -> Floats:
         """Material removed from a tooth at roll lengths [mm], which leaves it thinner; its edge, place and pitch left out."""
         at = self.before_edge(self._on_flank(roll))
         return self.of(np.array([tooth]))._formed(at[None, :], 0)[0]
 
-    def slope(self, roll: ArrayLike) -> NDArray[np.float64]:
+    def slope(self, roll: ArrayLike) -> Floats:
         """How far the flank leans towards its gear's tip, the tip's edge included: what is removed by arc length [mm/mm].
 
         At a kink it is the mean of both sides.
@@ -151,10 +152,10 @@ class FlankForm:
         rise = (self.removed(at + step) - self.removed(at - step)) / (2 * step)
         return self.gear.outward * rise * self.gear.r_b / np.maximum(at, 1e-3 * self.gear.r_b)
 
-    def _wear(self, roll: NDArray, derivative: int) -> NDArray[np.float64]:
+    def _wear(self, roll: NDArray, derivative: int) -> Floats:
         return np.nan_to_num(self._worn(roll, derivative, extrapolate=False))  # type: ignore[misc]  # asked for only if there is any
 
-    def _off_centre(self, roll: NDArray, derivative: int) -> NDArray[np.float64]:
+    def _off_centre(self, roll: NDArray, derivative: int) -> Floats:
         """What an eccentric gear lacks along the flank's normal, which turns with the roll length."""
         gear, flank = self.gear, self.flank
         teeth = self.sense * (_along(self._tooth, roll) - flank.eccentric_tooth)  # type: ignore[arg-type]  # there are some here
@@ -162,7 +163,7 @@ class FlankForm:
         rate = -gear.outward / gear.r_b
         return flank.eccentricity * (np.sin(turn), rate * np.cos(turn), -(rate**2) * np.sin(turn))[derivative]
 
-    def _shaped(self, roll: NDArray, derivative: int) -> NDArray[np.float64]:
+    def _shaped(self, roll: NDArray, derivative: int) -> Floats:
         """What is removed by design, alike on all teeth but for their scales."""
         span, n = self.high - self.low, derivative
         out = np.zeros(roll.shape)
@@ -182,7 +183,7 @@ class FlankForm:
             out = out + self._lead.removed(roll, _along(self._z, roll), n)
         return out
 
-    def before_edge(self, roll: NDArray[np.float64]) -> NDArray[np.float64]:
+    def before_edge(self, roll: Floats) -> Floats:
         """Roll lengths, those on the edge of the tip moved to its beginning."""
         if self.edge is None:
             return roll
@@ -203,7 +204,7 @@ class FlankForm:
         low, high = np.minimum(low, high), np.maximum(low, high)
         return float(low.min() + shifts.min()) - off, float(high.max() + shifts.max()) + off + edge
 
-    def shift(self, tooth: ArrayLike) -> NDArray[np.float64]:
+    def shift(self, tooth: ArrayLike) -> Floats:
         """How far the flanks of teeth lie behind their places, along the line of action [mm]."""
         tooth = np.asarray(tooth, dtype=int)
         behind = self._shifts[tooth % self.gear.z] if self._shifts.size else np.zeros(tooth.shape)
@@ -211,7 +212,7 @@ class FlankForm:
             behind = behind + self.tilt * (_along(self._z, tooth) - self.gear.b / 2)
         return behind
 
-    def bend(self, roll: ArrayLike) -> NDArray[np.float64]:
+    def bend(self, roll: ArrayLike) -> Floats:
         """Curvature that the modification adds to the flank, by its arc [1/mm] (kinks left out).
 
         Eccentricity shifts the whole gear, which bends no flank.

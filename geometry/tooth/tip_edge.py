@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from ..aliases import Floats
 from .gear import Gear
 from .profile import cartesian, flank, flank_normal
 
@@ -57,7 +58,7 @@ class TipEdge:
             raise ValueError(f"{name} = {size:g} mm cuts beyond the centre-line of a tooth of z = {gear.z}: give a smaller one")
         self.most = gear.r_b * (float(flank(gear, gear.roll_a)[1]) - left)
 
-    def _place(self, roll: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _place(self, roll: float) -> tuple[Floats, Floats]:
         """Point of the flank [mm] and its normal out of the material."""
         return cartesian(*flank(self.gear, roll)), flank_normal(self.gear, roll)
 
@@ -82,7 +83,7 @@ class TipEdge:
             raise ValueError(f"tip_chamfer = {size:g} mm leaves no flank of z = {gear.z}: give a smaller one")
         return math.sqrt(radius**2 - gear.r_b**2)
 
-    def _angle(self, roll: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _angle(self, roll: Floats) -> Floats:
         """Angle of the edge from the tooth's centre-line [rad] at the radii of roll lengths.
 
         The gear's centre, that of the arc and the place make a triangle with sides c, rounding and R; its angle at the gear's
@@ -99,17 +100,17 @@ class TipEdge:
         t = rise / (up + gear.outward * np.sqrt(np.maximum(up**2 + rise, 0.0)))
         return np.arctan2(first[0] + t * cut[0], first[1] + t * cut[1])
 
-    def removed(self, roll: NDArray[np.float64]) -> NDArray[np.float64]:
+    def removed(self, roll: Floats) -> Floats:
         """Material removed at roll lengths [mm]; beyond the tip circle as much as at it."""
         gear, on = self.gear, self.on(roll)
         low, high = sorted((self.start, gear.roll_a))
         at = np.clip(np.where(on, roll, self.start), low, high)
         return np.where(on, gear.r_b * (flank(gear, at)[1] - self._angle(at)), 0.0)
 
-    def on(self, roll: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def on(self, roll: Floats) -> NDArray[np.bool_]:
         """Whether places of the flank are on the edge."""
         return self.gear.outward * (roll - self.start) > 0
 
-    def bend(self, roll: NDArray[np.float64]) -> NDArray[np.float64]:
+    def bend(self, roll: Floats) -> Floats:
         """Curvature of the edge more than that of the involute it replaces [1/mm]."""
         return (1 / self.rounding if self.rounding else 0.0) - self.gear.outward / roll

@@ -10,8 +10,10 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.dynamics.machine.contact_cycle import SI, friction_weights, impact_cycle
 from gearfe.dynamics.machine.contact_law import force, friction_coefficient, parameters, slopes, step
-from gearfe.dynamics.machine.gear_mesh import GearMesh, Samples, ToothDamage, cycle_table
+from gearfe.dynamics.machine.gear_mesh import GearMesh
+from gearfe.dynamics.machine.mesh_curves import Samples, cycle_table
 from gearfe.dynamics.machine.phase_table import table
+from gearfe.dynamics.machine.tooth_damage import ToothDamage
 
 pytestmark = pytest.mark.quick
 

@@ -8,12 +8,14 @@ import pytest
 from machines import WAVE, two_masses, worst
 from numpy.testing import assert_allclose
 
-from gearfe.dynamics.machine.gear_mesh import GearMesh, Samples, ToothDamage, cycle_table
+from gearfe.dynamics.machine.gear_mesh import GearMesh
 from gearfe.dynamics.machine.loads import Load, pulses
+from gearfe.dynamics.machine.mesh_curves import Samples, cycle_table
 from gearfe.dynamics.machine.modes import natural_frequencies
 from gearfe.dynamics.machine.single_mesh import single_mesh
 from gearfe.dynamics.machine.springs import Spring
 from gearfe.dynamics.machine.tables import Machine
+from gearfe.dynamics.machine.tooth_damage import ToothDamage
 from gearfe.dynamics.motion.simulate import simulate
 from gearfe.dynamics.motion.steady import steady_state
 

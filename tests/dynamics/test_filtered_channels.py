@@ -8,8 +8,8 @@ from machines import WAVE, tooth, two_masses
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.dynamics.machine.gear_mesh import ToothDamage
 from gearfe.dynamics.machine.phase_table import table
+from gearfe.dynamics.machine.tooth_damage import ToothDamage
 from gearfe.dynamics.motion.fixed_step import fixed_steps
 from gearfe.dynamics.motion.response import all_channels
 from gearfe.dynamics.motion.thinned import stages, thinned

@@ -11,13 +11,12 @@ from functools import cache
 
 import numpy as np
 import pytest
-from machines import worst
+from machines import difference, worst
 from numpy.testing import assert_allclose
 from scipy.integrate import cumulative_simpson
 
 import gearfe as gf
 from gearfe.dynamics.machine.of_scene import with_flanks
-from gearfe.dynamics.motion.step_control import difference
 
 STEEL = gf.Material(E=207e3, nu=0.25)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}

@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from machines import two_masses
+from machines import difference, two_masses
 from numba import njit
 from numba.core.caching import CacheImpl
 from numpy.testing import assert_allclose
@@ -14,7 +14,6 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.dynamics.motion.loop_parts import announced, kept
 from gearfe.dynamics.motion.simulate import simulate
-from gearfe.dynamics.motion.step_control import difference
 
 
 @pytest.fixture(scope="module")

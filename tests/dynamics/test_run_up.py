@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from machines import two_masses
+from machines import difference, two_masses
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.dynamics.machine.gear_mesh import ToothDamage
 from gearfe.dynamics.machine.speed import Speed
+from gearfe.dynamics.machine.tooth_damage import ToothDamage
 from gearfe.dynamics.motion.simulate import simulate
-from gearfe.dynamics.motion.step_control import difference, stretch
+from gearfe.dynamics.motion.step_control import stretch
 
 START, END, LAST = 0.3, 1.2, 0.05  # factors of the speed; seconds
 

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
 
-from gearfe.dynamics.machine.gear_mesh import ToothDamage
 from gearfe.dynamics.machine.single_mesh import single_mesh
+from gearfe.dynamics.machine.tooth_damage import ToothDamage
 from gearfe.dynamics.motion.simulate import simulate
 from gearfe.dynamics.motion.steady import common_period, steady_state
 

@@ -4,20 +4,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from machines import SHAPE, WAVE, tooth, two_masses
+from machines import SHAPE, WAVE, difference, tooth, two_masses
 from numpy.testing import assert_allclose
 from scipy.linalg import expm
 
 import gearfe as gf
-from gearfe.dynamics.machine.gear_mesh import ToothDamage
 from gearfe.dynamics.machine.pitted_planetary import pitted_planetary
 from gearfe.dynamics.machine.springs import Spring
+from gearfe.dynamics.machine.tooth_damage import ToothDamage
 from gearfe.dynamics.motion import simulate as dynamics
 from gearfe.dynamics.motion import step_control
 from gearfe.dynamics.motion.fixed_step import fixed_steps
 from gearfe.dynamics.motion.propagator import _phi
 from gearfe.dynamics.motion.simulate import simulate
-from gearfe.dynamics.motion.step_control import default_step, difference, differences, seen, stretch
+from gearfe.dynamics.motion.step_control import default_step, differences, seen, stretch
 
 
 def spur(stage, damaged):

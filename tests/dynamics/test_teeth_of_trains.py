@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.comparison.vibration import recorded
-from gearfe.dynamics.machine.gear_mesh import changed
+from gearfe.dynamics.machine.mesh_curves import changed
 from gearfe.dynamics.machine.of_scene import flat_machine
 from gearfe.dynamics.machine.pitted_planetary import pitted_planetary
 from gearfe.scene.load import read_tables, scene_of

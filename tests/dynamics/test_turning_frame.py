@@ -4,13 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from machines import SHAPE, herringbone
+from machines import SHAPE, difference, herringbone
 from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.dynamics.machine.pitted_planetary import pitted_planetary
 from gearfe.dynamics.machine.turning_frame import frame_terms
-from gearfe.dynamics.motion.step_control import difference
 from validation.shared.reference import lin_parker
 
 SPIN, MASS, STIFF, ZETA = 300.0, 2.0, 8e6, 0.05
@@ -154,5 +153,5 @@ def test_what_a_turning_frame_cannot_hold_is_refused(herringbone_stage):
     bare = gf.Layout([gf.Body("one", 1.0, 1.0, "tilt_x tilt_y", 1.0)])
     with pytest.raises(ValueError, match="one has no moment of inertia about its axis"):
         gf.Machine(bare.dofs, bare.mass, (), (), (), rotors={"one": 1.0})
-    with pytest.raises(ValueError, match="rotors: one turns at nan rad/s"):
+    with pytest.raises(ValueError, match="rotors: one = nan"):
         gf.Machine(layout.dofs, layout.mass, (), (), (), rotors={"one": float("nan")})

@@ -9,17 +9,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from machines import difference
 
 import gearfe as gf
-from gearfe.dynamics.machine.gear_mesh import Samples, ToothDamage, cycle_table
 from gearfe.dynamics.machine.gear_pair import gear_pair
 from gearfe.dynamics.machine.layout import Body
 from gearfe.dynamics.machine.member import disc
+from gearfe.dynamics.machine.mesh_curves import Samples, cycle_table
 from gearfe.dynamics.machine.modes import natural_frequencies
 from gearfe.dynamics.machine.single_mesh import single_mesh
+from gearfe.dynamics.machine.tooth_damage import ToothDamage
 from gearfe.dynamics.motion.simulate import simulate
 from gearfe.dynamics.motion.steady import steady_state
-from gearfe.dynamics.motion.step_control import chosen_step, difference
+from gearfe.dynamics.motion.step_control import chosen_step
 
 pytestmark = pytest.mark.slow
 STEEL = gf.Material(E=207e3, nu=0.3)

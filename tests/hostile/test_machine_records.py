@@ -190,6 +190,7 @@ RECORDS = {
     ],
     "flanks|damage": [(lambda v: case(flanks={"planet": v}), (True, None, "Flank"))],
     "crack": [(lambda v: case(damage={"sun": v}), ([gf.Crack(level=0.6), gf.Crack(level=0.6, side="unloaded")],))],
+    "harmonics": [(lambda v: gf.campbell(gf.single_mesh(1.0, 1e8, 500.0), [0.5, 4.0], harmonics=v), (0, 2.5, 10**7, "3"))],
     "pin": [(lambda v: case(pin=v), (0.0, -1.0, NAN, "1e5"))],
 }
 INPUTS = [(name, build, value) for name, rows in RECORDS.items() for build, values in rows for value in values]

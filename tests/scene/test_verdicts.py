@@ -49,7 +49,7 @@ def test_agreement_that_an_assumption_sets_is_none():
     found = judged([1.01, 3.0], *rows)
     assert [row.verdict for row in found] == [verdicts.ASSUMED, verdicts.NOT]
     assert verdicts.reason(reference(*rows), found[0]) == "the runout assumed"
-    assert verdicts.counts(found) == "2 results of a model: 1 set by an assumption, 1 not reproduced"
+    assert verdicts.counts(found) == "2 numbers of a model: 1 set by an assumption, 1 not reproduced"
     assert [row.verdict for row in judged([5.0, 9.0], *rows, trend=True)] == [verdicts.ASSUMED] * 2
     corrected = Printed("a", None, 2.0, 1.0, "swapped", "why", "model", "the runout assumed")
     assert judged([1.0], corrected)[0].verdict == verdicts.ASSUMED
@@ -61,6 +61,14 @@ def test_the_order_is_that_of_the_corrected_values():
     assert [row.verdict for row in judged([9.0, 5.0], *rows, trend=True)] == [verdicts.NOT] * 2
 
 
+@pytest.mark.parametrize(
+    ("change", "word"), [(0.32, "not reproduced"), (0.34, "trend only"), (2.9, "trend only"), (3.1, "not reproduced")]
+)
+def test_a_trend_changes_by_a_third_to_three_times_the_printed_change(change, word):
+    rows = printed("healthy", 10.0), printed("faulty", 11.0)
+    assert [row.verdict for row in judged([20.0, 20.0 + 2 * change], *rows, trend=True)] == [word] * 2
+
+
 def test_the_headline_counts_results_of_a_model_only():
     rows = judged(
         [1.0, 1.0, 1.0, 2.0, None, 1.0],
@@ -68,7 +76,7 @@ def test_the_headline_counts_results_of_a_model_only():
         printed("measured", 1.0), printed("formula", math.nan),
     )  # fmt: skip
     told = verdicts.counts(rows)
-    assert told.startswith("3 results of a model: 1 reproduced, 1 not reproduced, 1 not reproducible; apart from them 2 inputs")
+    assert told.startswith("3 numbers of a model: 1 reproduced, 1 not reproduced, 1 not reproducible; apart from them 2 inputs")
     assert told.endswith("1 value without a printed number")
 
 
@@ -115,6 +123,6 @@ def test_what_the_herringbone_scene_says_of_its_errors_is_what_runs():
 
 def test_values_that_are_nearly_one_have_no_order():
     """Two of ours within a thousandth rise only by rounding."""
-    rows = printed("a", 1.0), printed("b", 2.0)
+    rows = printed("a", 1.0), printed("b", 1.002)
     assert [row.verdict for row in judged([5.0, 5.004], *rows, trend=True)] == [verdicts.NOT] * 2
     assert [row.verdict for row in judged([5.0, 5.006], *rows, trend=True)] == [verdicts.TREND] * 2

@@ -9,7 +9,7 @@ from machines import SHAPE, tooth
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.dynamics.machine.gear_mesh import ToothDamage
+from gearfe.dynamics.machine.tooth_damage import ToothDamage
 
 MESH = 1000.0  # Hz
 ANGLE = math.radians(20)

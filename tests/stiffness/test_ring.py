@@ -126,12 +126,22 @@ def test_energy_methods_have_no_ring(pair):
 
 @pytest.mark.parametrize("start", ["30deg", "root"])
 def test_ring_crack(pair, start):
-    """The crack makes the mesh softer; one whose mouth is next to the form point does so within the estimate."""
-    run = {"span": "tooth", "phases": 16, "error": True}
-    healthy = gf.mesh_stiffness(pair, 2000.0, STEEL, **run)
-    cracked = gf.mesh_stiffness(pair, 2000.0, STEEL, damage={"wheel": [gf.Crack(level=0.3, start=start)]}, **run)
-    loss = 1 - cracked.k / healthy.k
-    assert (loss > (-2e-4 if start == "root" else -cracked.error / cracked.k)).all()
+    """The crack makes the mesh softer, by the work up to each load.
+
+    Less stiff bodies store more work ``int(delta, dF)`` under the same load, gaps included. k itself may rise by 0.1 % where the
+    cracked tooth touches off the path: loads on its neighbour then press it less away from its mate, and it carries more.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    loads = [2000.0 * (1 + float(x)) / 2 for x in nodes]
+
+    def work(**damage):
+        curves = gf.mesh_stiffness(pair, [*loads, 2000.0], STEEL, span="tooth", phases=16, **damage)
+        return curves[-1].k, np.array([curve.lte for curve in curves[:-1]]).T @ weights
+
+    (healthy, least), (cracked, more) = work(), work(damage={"wheel": [gf.Crack(level=0.3, start=start)]})
+    assert (more > least * (1 - 2e-5)).all()
+    loss = 1 - cracked / healthy
+    assert loss.min() > -1e-3
     assert 0.02 < loss.max() < 0.5
 
 

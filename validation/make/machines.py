@@ -85,6 +85,7 @@ def text(page):
     told = scene.assumptions
     rows = table_rows.read(page)
     claim, find, decide = OPENINGS[page](Found(rows))
+    rows = decided(page, rows)
     drawn = f" {drawn_jointly(page)}" if joint.rows_of(page) else ""
     lines = [
         f"# {scene.title}: which printed numbers of {ARTICLES[page]} are reproduced?",
@@ -100,9 +101,11 @@ def text(page):
         "`validation/sources/statements.toml`.",
         "Verdicts are computed: *reproduced*: within the tolerance; *after a stated correction*: of the corrected value, "
         "which alone",
-        "counts where there is one; *trend only*: all cases have the printed order, each 0.1 % from the next; *not reproduced*;",
+        "counts where there is one; *trend only*: all cases have the printed order, each 0.1 % from the next, and their",
+        "relative changes from the first are a third to three times the printed ones; *not reproduced*; *depends*: a",
+        "statement that holds in some [draws](joint.md) of all inputs that are not printed, and fails in others;",
         "*set by an assumption*: agrees, by a value that the scene assumes; *not reproducible*: nothing computed is that",
-        "quantity. Beside statements: in how many [draws](joint.md) of all inputs that are not printed they hold. Kinds:",
+        "quantity. Beside statements: in how many draws they hold. The last statements were added after a first run. Kinds:",
         "*input*: put in, or found from this very value; *arithmetic*: follows from printed numbers; *model*:",
         "could have come out otherwise. Reasons: below.",
         "",
@@ -122,6 +125,17 @@ def text(page):
         ).markdown(),
     ]
     return "\n".join(lines) + "\n"
+
+
+def decided(page, rows):
+    """Rows whose statements that hold in some joint draws only have the verdict `verdicts.DEPENDS`."""
+    shares = {case: held.mean() for case, held in joint.judged(page).items()} if joint.rows_of(page) else {}
+    return [
+        row._replace(verdict=verdicts.DEPENDS)
+        if row.kind == verdicts.STATEMENT and row.verdict != verdicts.ASSUMED and 0 < shares.get(row.case, 1) < 1
+        else row
+        for row in rows
+    ]
 
 
 def draws(page):

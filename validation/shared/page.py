@@ -28,6 +28,7 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "speed": "What does each method cost, and how wrong is it?",
     "dynamics": "Are simulated vibrations integrated correctly?",
     "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
+    "two_minutes": "The articles in two minutes: what do they claim, and what is found?",
     "printed": "What became of every number that the articles print?",
     "joint": "Which statements of the articles hold whatever the inputs that they do not print?",
     "pictures": "What do the damaged teeth of the scenes look like under load?",

@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 
 import gearfe as gf
-from gearfe.dynamics.machine.gear_mesh import Samples, cycle_table
 from gearfe.dynamics.machine.helical_pair import pitted_helical
 from gearfe.dynamics.machine.herringbone_planetary import herringbone_planetary
+from gearfe.dynamics.machine.mesh_curves import Samples, cycle_table
 from gearfe.dynamics.machine.pitted_planetary import pitted_planetary
 
 WAVE = 1 + 0.15 * np.cos(2 * math.pi * np.arange(64) / 64) + 0.05 * np.sin(4 * math.pi * np.arange(64) / 64)

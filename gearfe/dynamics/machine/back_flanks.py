@@ -10,8 +10,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from ...geometry.pair.gear_pair import GearPair
-from .gear_mesh import GearMesh, Stiffness, ToothDamage
+from .gear_mesh import GearMesh
+from .mesh_curves import Stiffness
 from .tables import Machine
+from .tooth_damage import ToothDamage
 
 
 @dataclass(frozen=True, slots=True)

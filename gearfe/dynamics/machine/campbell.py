@@ -7,9 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...core.checks import whole
+from ...core.record import ranged
 from .modes import natural_frequencies
 from .tables import Machine
 
+MOST_HARMONICS = 1000  # of a mesh
 FASTEST = 50.0  # times the speed of the machine: a larger number is probably meant in rpm
 
 
@@ -91,12 +94,11 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
         raise ValueError(
             f"speeds up to {speed[-1]:g} times that of the machine: give them over its own speed (1: as it runs), not in rpm"
         )
-    if isinstance(harmonics, bool) or harmonics != int(harmonics) or harmonics < 1:
-        raise ValueError(f"harmonics = {harmonics!r}, but give a whole number >= 1")
-    named = _orders(machine, int(harmonics)) if orders is None else dict(orders)
+    if whole("harmonics", harmonics, 1) > MOST_HARMONICS:
+        raise ValueError(f"harmonics = {harmonics}, but give at most {MOST_HARMONICS}")
+    named = _orders(machine, harmonics) if orders is None else dict(orders)
     for name, value in named.items():
-        if not (np.isfinite(value) and value > 0):
-            raise ValueError(f"order {name} = {value} Hz, but it must be positive")
+        ranged(f"order {name}", value, " Hz", above=0.0)
     if machine.spin or machine.rotors:
         natural = np.array([natural_frequencies(_at_speed(machine, factor))[0] for factor in speed])
     else:

@@ -8,10 +8,11 @@ import numpy as np
 
 from ...core.record import ranged
 from ...geometry.pair.gear_pair import GearPair
-from .gear_mesh import GearMesh, Stiffness
+from .gear_mesh import GearMesh
 from .layout import Body, Layout, around, through
 from .loads import Load
 from .member import disc
+from .mesh_curves import Stiffness
 from .planetary import teeth_damaged
 from .scene_curves import Meshed, scene_machine
 from .stages import Stage

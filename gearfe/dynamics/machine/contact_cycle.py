@@ -9,9 +9,10 @@ import numpy as np
 
 from ...flexibility.hertz import contact_modulus
 from .contact_law import friction_coefficient
-from .gear_mesh import Samples
+from .mesh_curves import Samples
 from .phase_table import table
 
+COUNT = 256  # phases in a cycle
 SI = 1e3**1.5  # N/mm^1.5 to N/m^1.5
 
 
@@ -24,21 +25,22 @@ def engaged(pair, phase):
     return np.where((pair_phase >= 0) & (pair_phase < pair.eps_alpha), pair_phase, np.nan)
 
 
-def impact_cycle(pair, materials, *, lost=None, count=256):
+def impact_cycle(pair, materials, *, lost=None):
     """Coefficient of ``F = K delta**1.5`` over a cycle: the sum over the pairs in touch of ``4/3 sqrt(R) E*`` [N/m^1.5].
 
     All pairs are pressed together by the same depth, each with the radius of curvature R at its contact. With `lost`, the part of
     its contact line that tooth 0 lacks as a function of its phase: over its whole engagement, as a damaged tooth's curve.
     """
-    if lost is None:
-        phase = (np.arange(count) + 0.5) / count  # between the ends of engagements, which fall on whole phases
-        pair_phase = engaged(pair, phase)
-        return Samples(phase, SI * np.nansum(_hertz(pair, pair_phase, materials), axis=1))
-    phase = np.arange(-count // 8, math.ceil((pair.eps_alpha + 0.125) * count)) / count + 0.5 / count
+    phase = _steps(pair.eps_alpha, lost) + 0.5 / COUNT  # between the ends of engagements, which fall on whole phases
     pair_phase = engaged(pair, phase)
     first = np.abs(pair_phase - phase[:, None]) < 1e-9
-    weight = np.where(first, 1.0 - np.asarray(lost(phase))[:, None], 1.0)
+    weight = 1.0 if lost is None else np.where(first, 1.0 - np.asarray(lost(phase))[:, None], 1.0)
     return Samples(phase, SI * np.nansum(weight * _hertz(pair, pair_phase, materials), axis=1))
+
+
+def _steps(length, lost):
+    """Phases of a cycle, or with what is `lost` of the whole engagement, `length` cycles, with an eighth before and after it."""
+    return (np.arange(COUNT) if lost is None else np.arange(-COUNT // 8, math.ceil((length + 0.125) * COUNT))) / COUNT
 
 
 def _hertz(pair, phase, materials):
@@ -57,7 +59,7 @@ def contact_line(pair, phase, *, width=None):
     return np.maximum(high - low, 0.0) / over * width / slope
 
 
-def line_cycle(pair, coefficient, *, lost=None, width=None, count=256):
+def line_cycle(pair, coefficient, *, lost=None, width=None):
     """Coefficient of the impact law of a helical pair over a cycle [N/m^1.5].
 
     `coefficient` [N/mm^1.5] times the length of all contact lines over its mean, the contact-line-percentage method: the
@@ -66,8 +68,7 @@ def line_cycle(pair, coefficient, *, lost=None, width=None, count=256):
     width = width or min(pair.gear_1.b, pair.gear_2.b)
     total = pair.eps_alpha + pair.eps_beta_of(width)
     mean = pair.eps_alpha * width / math.cos(pair.gear_1.beta_b)
-    steps = np.arange(count) if lost is None else np.arange(-count // 8, math.ceil((total + 0.125) * count))
-    phase = steps / count
+    phase = _steps(total, lost)
     around_it = phase[:, None] + np.arange(-math.ceil(total + 1 + phase.max()), math.ceil(total) + 2)
     length = contact_line(pair, around_it, width=width).sum(axis=1)
     if lost is not None:

@@ -5,7 +5,7 @@ true of one load alone. Under a law of several loads the mesh pushes with ``F(de
 pressed beyond their first touch, and for small vibrations about a load it has its tangent stiffness ``dF/d depth``.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Unpack
 
@@ -19,80 +19,10 @@ from ...core.record import settle
 from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.curve import StiffnessCurve, joined
 from ...stiffness.solve import PairOptions, Solve, solve, split_arguments
+from .secant import Secant
 
 ROWS, COLUMNS = 1024, 64  # of a law as a table: rows in a mesh cycle, depths
-TINY = 1e-30  # depth [m]: a mesh just touching
 BETWEEN = 7  # extra phases solved between two, where a pair comes in or leaves between them at any of the loads
-
-
-@dataclass(frozen=True, slots=True)
-class Secant:
-    """Secant stiffness, force over depth, in a table over phase and depth.
-
-    Straight between its columns; over its rows the quadratic B-spline whose control points they are, so that integrators meet no
-    kinks as the phase runs on: within an eighth of a second difference of the rows, as straight lines would be.
-
-    Attributes
-    ----------
-    start, width : float
-        Phase of the first row and distance of the rows.
-    deepest : float
-        Depth of the last column [m]; that of column j of n + 1 is ``deepest (j / n)**2``, closer together where loads are light.
-    k : ndarray, shape (rows, columns)
-        [N/m]. Beyond the last column the force goes on with its slope.
-    """
-
-    start: float
-    width: float
-    deepest: float
-    k: NDArray
-
-    @property
-    def end(self) -> float:
-        """Phase of the last row."""
-        return self.start + self.width * (len(self.k) - 1)
-
-    def __call__(self, phase: ArrayLike, depth: ArrayLike) -> tuple[NDArray, NDArray]:
-        """Secant stiffness [N/m] at phases from `start` to `end` and depths [m], and its derivative by the depth [N/m2]."""
-        row = np.clip((np.asarray(phase, dtype=float) - self.start) / self.width, 0.0, len(self.k) - 1)
-        last, deep = self.k.shape[1] - 1, np.maximum(np.asarray(depth, dtype=float), 0.0)
-        at = last * np.sqrt(deep / self.deepest)
-        i = np.clip((row + 0.5).astype(np.int64), 1, len(self.k) - 2)
-        j, u = np.minimum(at.astype(np.int64), last - 1), row + 0.5 - i
-        weights = (1 - u) ** 2 / 2, 0.5 + u * (1 - u), u**2 / 2
-        left, right = (
-            sum(weight * self.k[i + near, column] for near, weight in zip((-1, 0, 1), weights, strict=True))
-            for column in (j, j + 1)
-        )
-        before = (1 - 1 / last) ** 2  # depth of the last column but one, over that of the last
-        slope = (right - left * before) / (1 - before)
-        far, beyond = np.maximum(deep, self.deepest), at > last
-        outside = slope + (right - slope) * self.deepest / far
-        rise = np.where(beyond, (slope - right) * self.deepest / far**2, (right - left) * at / (2 * np.maximum(deep, TINY)))
-        return np.where(beyond, outside, left + (at - j) * (right - left)), rise
-
-    @property
-    def mean(self) -> "Secant":
-        """Its mean over the rows of one cycle: what the mesh is on average at each depth."""
-        return Secant(-1.0, 1.0, self.deepest, np.tile(self.k[1:-2].mean(axis=0), (3, 1)))
-
-    @property
-    def depths(self) -> NDArray:
-        """Depth of each column [m]."""
-        return self.deepest * np.linspace(0.0, 1.0, self.k.shape[1]) ** 2
-
-    def less(self, healthy: "Secant", others: Iterable[tuple[float, float, "Secant"]] = ()) -> "Secant":
-        """Its difference from a `healthy` cycle, with two rows of zeros beyond either end.
-
-        `others` are changes that it includes: cycles until each returns, and where its phase 0 lies.
-        """
-        phase = self.start + self.width * np.arange(len(self.k))
-        change = self.k - healthy((phase % 1.0)[:, None], self.depths)[0]
-        for z, first, other in others:
-            at = (phase - first - other.start) % z + other.start
-            change = change - np.where((at < other.end)[:, None], other(at[:, None], self.depths)[0], 0.0)
-        none = np.zeros((2, self.k.shape[1]))
-        return Secant(self.start - 2 * self.width, self.width, self.deepest, np.concatenate([none, change, none]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,7 +195,7 @@ def force_law(
         Per mesh cycle; between two of them `BETWEEN` more are solved where the number of pairs that carry changes, which
         depends on the load.
     span : {"cycle", "tooth"}
-        ``tooth`` for the law of a damaged tooth (`gearfe.dynamics.machine.gear_mesh.ToothDamage`).
+        ``tooth`` for the law of a damaged tooth (`gearfe.dynamics.machine.tooth_damage.ToothDamage`).
     **options
         As of `mesh_stiffness`: ``method``, ``damage``, ``flanks`` and so on.
 

@@ -15,7 +15,6 @@ def frequency_response(
     driven: str | ArrayLike,
     *,
     kind: str = "receptance",
-    x: ArrayLike | None = None,
 ) -> NDArray[np.complex128]:
     """Motion at one coordinate per harmonic force at another, meshes at their mean stiffness and damping.
 
@@ -35,8 +34,6 @@ def frequency_response(
         A degree of freedom, a mesh (its compression; its force on both bodies), or a row over the degrees of freedom.
     kind : str
         ``"receptance"`` [m/N, rad/(N m)...], ``"mobility"`` [times 1/s], ``"accelerance"`` [times 1/s2].
-    x : ndarray, shape (m,), optional
-        Mesh compressions [m] about which laws that are not linear are taken; default: those at rest.
 
     Returns
     -------
@@ -68,7 +65,7 @@ def frequency_response(
     if f.ndim != 1 or not (np.isfinite(f).all() and (f >= 0).all()):
         raise ValueError("frequencies: give a row of finite numbers of Hz, 0 or more")
     out, at = _row(machine, heard), _row(machine, driven)
-    K, C, _, _ = machine.linear(machine.working() if x is None else x)
+    K, C, _, _ = machine.linear(machine.working())
     scale = 1 / np.sqrt(machine.mass)  # so that 1 has one meaning for displacements and angles
     K, C = (scale[:, None] * matrix * scale for matrix in (K, C))
     answer = np.empty(f.size, dtype=complex)

@@ -7,155 +7,24 @@ interval.
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...core.checks import numbers, truth, whole
+from ...core.checks import truth, whole
 from ...core.record import settle, settle_numbers, settle_row
 from ...geometry.checks import is_finite
 from ...stiffness.curve import StiffnessCurve
 from .contact_law import LAWS, Law, law_of
-from .force_law import ForceLaw, Secant
-from .phase_table import SMOOTH, Table, smooth_table, table
+from .force_law import ForceLaw
+from .mesh_curves import ALIKE, Change, Stiffness, changed, cycle_table, tooth_phase_of
+from .phase_table import Table, table
+from .secant import Secant
+from .tooth_damage import ToothDamage
 
-FINE = 1024  # samples per cycle that curves on uneven phases are brought to
-
-
-class Samples(NamedTuple):
-    """Stiffness `k` [N/m^power] at phases, of what is no `StiffnessCurve`: contact coefficients, or curves of other programs."""
-
-    phase: NDArray
-    k: NDArray
-
-
-Curve = StiffnessCurve | Samples  # stiffness over the phase
-
-
-Stiffness = float | NDArray | Curve | ForceLaw | Table  # what `GearMesh` takes
-Change = tuple[float, float, Table]  # cycles until it returns, the first of them, and the change over the phase from there on
 NOWHERE = 1e-12  # m: smaller shifts of a tooth are rounding
-ALIKE = 1e-6  # of a mesh cycle, of a cell: how far samples of two curves are apart that count as the same
-
-
-def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[Table, Any], Any] = Table.__call__) -> Any:
-    """Sum of all changes at running phases, or of another `value` of their tables."""
-    running: NDArray = np.asarray(phase, dtype=float)
-    out = np.zeros(running.shape)
-    for z, first, change in changes:
-        tooth_phase = _tooth_phase(running, z, first, change.start)
-        inside = tooth_phase < change.end
-        if inside.any():
-            out = out + np.where(inside, value(change, np.minimum(tooth_phase, change.end)), 0.0)
-    return out
-
-
-def _tooth_phase(running, z, first, start):
-    """Phases from `start` on of what returns after z mesh cycles, first at the running phase `first`."""
-    on = running - first - start
-    return on - z * np.floor(on / z) + start
-
-
-def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> NDArray | None:
-    """Coefficients ``(count, 4)`` of the sum of changes in cells from a running phase on; None if their cells are others."""
-    out = np.zeros((count, 4))
-    for z, first, change in changes:
-        place = (start - first - change.start) / change.width
-        if abs(change.width - width) > ALIKE * width or abs(place - round(place)) > ALIKE:
-            return None
-        cell = (round(place) + np.arange(count)) % round(z / width)
-        inside = cell < len(change.cells)
-        out[inside] += change.cells[cell[inside]]
-    return out
-
-
-def cycle_table(stiffness: Stiffness) -> Table:
-    """`Table` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law.
-
-    Through samples smooth cubics (`machine.phase_table.smooth_table`), through a `StiffnessCurve` those of `table`.
-    """
-    if isinstance(stiffness, Table):
-        return stiffness
-    if isinstance(stiffness, ForceLaw):
-        stiffness = Samples(*stiffness.at(stiffness.force))
-    if not isinstance(stiffness, (StiffnessCurve, Samples)):
-        values = np.atleast_1d(numbers("stiffness", stiffness, ""))
-    else:
-        phase = np.asarray(stiffness.phase, dtype=float) % 1.0
-        order = np.argsort(phase, kind="stable")
-        phase, values = phase[order], np.asarray(stiffness.k, dtype=float)[order]
-        if not np.allclose(phase, np.arange(phase.size) / phase.size, atol=1e-9):
-            values = np.interp(np.arange(FINE) / FINE, phase, values, period=1.0)
-    if values.ndim != 1 or not np.isfinite(values).all() or (values < 0).any():
-        raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
-    if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # bent where pairs come in
-        return table(values, 0.0, 1.0 / values.size, periodic=True)
-    return smooth_table(values)
-
-
-@dataclass(frozen=True, slots=True)
-class ToothDamage:
-    """A damaged tooth of one of the two bodies of a mesh.
-
-    Parameters
-    ----------
-    body : int
-        0 or 1: whose tooth.
-    tooth : int
-        Its number.
-    curve : StiffnessCurve, Samples or ForceLaw
-        Stiffness over the tooth's whole engagement (``span="tooth"``): phase 0 is where its pair enters. A law where the mesh
-        has one. A curve over all mesh cycles until the tooth returns repeats without end.
-    every : int, optional
-        Mesh cycles until it returns, if these are not the teeth of its body: the hunting period of two damaged teeth that are in
-        mesh with each other. Such a curve replaces those of the teeth before it in `GearMesh.damage`.
-    """
-
-    body: int
-    tooth: int
-    curve: Curve | ForceLaw
-    every: int | None = None
-
-    def __post_init__(self) -> None:
-        """Raise ValueError unless `body` is 0 or 1, and `tooth` and `every` are whole numbers."""
-        if self.body not in (0, 1) or isinstance(self.body, bool):
-            raise ValueError(f"damaged tooth: body = {self.body!r}, but give 0 or 1")
-        whole("damaged tooth: tooth", self.tooth)
-        if self.every is not None:
-            whole("damaged tooth: every", self.every, 1)
-
-    def change(self, usual: Sequence[Change], first: float, cycles: int, name: str = "k") -> Table:
-        """`Table` of the difference of `name` from the sum of what is `usual`, zero one cell beyond either end.
-
-        `first` is the running phase at which the tooth enters, `cycles` those until it returns; a curve that lasts as long
-        repeats. Of curves at the same samples the cubics are subtracted: their sum is that through the curve itself.
-        """
-        curve = Samples(*self.curve.at(self.curve.force)) if isinstance(self.curve, ForceLaw) and name == "k" else self.curve
-        phase, values = np.asarray(curve.phase, dtype=float), getattr(curve, name, None)
-        values = np.zeros(phase.size) if values is None else np.asarray(values, dtype=float)
-        if phase.size < 2 or not (np.diff(phase) > 0).all():
-            raise ValueError("the phases of a damaged tooth's curve must rise: use mesh_stiffness(..., span='tooth')")
-        width = np.diff(phase).min()
-        count = round((phase[-1] - phase[0]) / width)
-        grid = phase[0] + np.arange(count + 1) * (phase[-1] - phase[0]) / max(count, 1)
-        values, width = np.interp(grid, phase, values), grid[1] - grid[0]
-        whole = abs((count + 1) * width - cycles) < ALIKE
-        if whole:
-            own = table(values, grid[0], width, periodic=True)
-        else:
-            beyond = width * np.array([-2, -1])
-            before, after = (changed(usual, first + end) for end in (grid[0] + beyond, grid[-1] - beyond[::-1]))
-            own = table(np.concatenate([before, values, after]), grid[0] - 2 * width, width, periodic=False)
-            own = Table(grid[0] - width, width, own.cells[1:-1])
-        cells = cells_of(usual, first + own.start, width, len(own.cells))
-        if cells is not None and isinstance(self.curve, StiffnessCurve):
-            return Table(own.start, width, own.cells - cells)
-        values = values - changed(usual, first + grid)
-        values = values if whole else np.concatenate([[0.0], values, [0.0]])
-        return table(values, grid[0] if whole else grid[0] - width, width, periodic=whole)
 
 
 @dataclass(frozen=True, slots=True)
@@ -332,7 +201,7 @@ class GearMesh:
             return self.at_phase(phase), 0.0
         k, bend = self.secants[0](phase % 1.0, deep)
         for (z, first, _), change in zip(self.changes, self.secants[1:], strict=True):
-            tooth_phase = _tooth_phase(phase, z, first, change.start + change.width)
+            tooth_phase = tooth_phase_of(phase, z, first, change.start + change.width)
             inside = tooth_phase < change.end - change.width
             more, rise = change(tooth_phase, deep)
             k, bend = k + np.where(inside, more, 0.0), bend + np.where(inside, rise, 0.0)

@@ -5,11 +5,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...geometry.pair.gear_pair import GearPair
-from .gear_mesh import GearMesh, Stiffness, ToothDamage
+from .gear_mesh import GearMesh
 from .layout import Body, Layout
 from .loads import History, Load
+from .mesh_curves import Stiffness
 from .stages import Stage
 from .tables import Machine
+from .tooth_damage import ToothDamage
 
 
 def gear_pair(

@@ -9,12 +9,12 @@ from ...core.material import Material
 from ...geometry.pair.gear_pair import GearPair
 from .contact_cycle import ellipse_loss, line_cycle
 from .contact_law import hertz_coefficient
-from .gear_mesh import ToothDamage
 from .gear_pair import gear_pair
 from .layout import Body
 from .member import disc
 from .scene_curves import Meshed, scene_machine
 from .tables import Machine
+from .tooth_damage import ToothDamage
 
 BODIES = ("pinion", "wheel")
 DENSITY = 7850.0  # kg/m3

@@ -11,10 +11,11 @@ import numpy as np
 from ...core.record import ranged
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
-from .gear_mesh import GearMesh, Stiffness
+from .gear_mesh import GearMesh
 from .layout import AXES, SPACE, Body, Layout
 from .loads import Load
 from .member import disc
+from .mesh_curves import Stiffness
 from .planetary import HOMES, carrier_and_mesh, simple_meshes, stage_meshes, stage_phases, teeth_damaged, with_stage
 from .scene_curves import scene_machine, stage_of
 from .springs import Spring

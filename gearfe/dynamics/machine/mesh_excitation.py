@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...stiffness.curve import StiffnessCurve
-from .gear_mesh import Samples
+from .mesh_curves import Samples
 
 SMALLEST = 1e-9  # harmonics smaller than that part of the largest are left out
 ABOUT = ("rest", "load")

@@ -43,7 +43,7 @@ class ModalEnergy:
         return {name: float(self.strain[name][mode]) for name in ranked[:count]}
 
 
-def modal_energy(machine: Machine, *, x: ArrayLike | None = None) -> ModalEnergy:
+def modal_energy(machine: Machine) -> ModalEnergy:
     """Elastic energy of every mode by spring and mesh, kinetic energy by degree of freedom, parts of one.
 
     ::
@@ -57,8 +57,6 @@ def modal_energy(machine: Machine, *, x: ArrayLike | None = None) -> ModalEnergy
     ----------
     machine : Machine
         Of a machine with a `spin` or `rotors` the modes are complex and the energies their means over a cycle.
-    x : ndarray, shape (m,), optional
-        As of `gearfe.natural_frequencies`.
 
     Returns
     -------
@@ -75,8 +73,8 @@ def modal_energy(machine: Machine, *, x: ArrayLike | None = None) -> ModalEnergy
     >>> {name: part.tolist() for name, part in energy.strain.items()}
     {'mesh': [1.0]}
     """
-    frequencies, modes = natural_frequencies(machine, x=x)
-    k = machine.linear(machine.working() if x is None else x)[2]
+    frequencies, modes = natural_frequencies(machine)
+    k = machine.linear(machine.working())[2]
     members = [(s.name, s.row, s.k) for s in machine.springs] + list(
         zip((m.name for m in machine.meshes), machine.G, k, strict=True)
     )

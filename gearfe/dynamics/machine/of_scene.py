@@ -15,10 +15,10 @@ from ...scene.load import Scene
 from ...stiffness.curve import StiffnessCurve
 from .compound_planetary import scene_compound
 from .force_law import ForceLaw
-from .gear_mesh import Samples
 from .helical_pair import scene_pair
 from .herringbone_planetary import scene_herringbone
 from .impact import impact_helical, impact_planetary
+from .mesh_curves import Samples
 from .mesh_errors import with_errors
 from .pitted_planetary import scene_planetary
 from .scene_curves import own_forces

@@ -11,9 +11,9 @@ import numpy as np
 from ...core.record import ranged
 from ...geometry.pair.planetary import PlanetarySet
 from .contact_cycle import friction_weights
-from .gear_mesh import Stiffness
 from .loads import History
 from .member import Member, disc
+from .mesh_curves import Stiffness
 from .planetary import (
     HOMES,
     carrier_and_mesh,
@@ -60,7 +60,7 @@ def pitted_planetary(
     torque : float
         Torque on the sun [N m], assumed 100.
     carrier_torque : number, history or function, optional
-        Load against the carrier's rotation [N m] (`machine.tables.pulses`); default: steady, in balance with `torque`.
+        Load against the carrier's rotation [N m] (`machine.loads.pulses`); default: steady, in balance with `torque`.
     bearing : float
         Stiffness of every body's bearing in x and in y [N/m], assumed 1e8.
     drive : float

@@ -17,13 +17,15 @@ from ...core.checks import numbers, whole
 from ...core.record import check_named, ranged
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
-from .gear_mesh import GearMesh, Stiffness, ToothDamage
+from .gear_mesh import GearMesh
 from .layout import Body, Layout, around, through
 from .loads import History, Load
 from .member import Member
+from .mesh_curves import Stiffness
 from .scene_curves import Meshed
 from .stages import Stage
 from .tables import Machine
+from .tooth_damage import ToothDamage
 
 
 def planetary(

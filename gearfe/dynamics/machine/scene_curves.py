@@ -15,8 +15,8 @@ from ...stiffness.mesh_cycle import MeshCycle, differing, like_all, mesh_cycle, 
 from ...stiffness.solve import Solve, solve
 from .contact_law import force
 from .force_law import law_of
-from .gear_mesh import ToothDamage
 from .stages import Fault
+from .tooth_damage import ToothDamage
 
 IDLE = 1e-3  # of the load that a scene states for a pair: below it a mesh at rest counts as unloaded, and that load is taken
 

@@ -4,8 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from .gear_mesh import GearMesh, Stiffness
+from .gear_mesh import GearMesh
 from .loads import History, Load
+from .mesh_curves import Stiffness
 from .tables import Machine
 
 

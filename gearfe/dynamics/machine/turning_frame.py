@@ -1,8 +1,8 @@
 """What turning adds to the equations of motion: of the frame, that of the carrier, and of bodies whose axes tilt."""
 
-import math
-
 import numpy as np
+
+from ...core.record import ranged
 
 
 def frame_terms(dofs, mass, springs, spin, rotors=None):
@@ -81,8 +81,7 @@ def _momentum(dofs, mass, body, rotors, spin):
         )
     if body not in rotors:
         return 0.0
-    if not math.isfinite(rotors[body]):
-        raise ValueError(f"rotors: {body} turns at {rotors[body]} rad/s, but that must be finite")
+    ranged(f"rotors: {body}", rotors[body], " rad/s")
     if f"{body}.theta" not in dofs:
         raise ValueError(f"rotors: {body} has no moment of inertia about its axis; give it theta")
     return rotors[body] * mass[dofs.index(f"{body}.theta")]

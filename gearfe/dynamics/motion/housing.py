@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.signal import cont2discrete, lfilter, ss2tf
 
+from ...core.record import ranged
 from ...signal.series import Signal
 from .response import Response
 
@@ -148,8 +149,8 @@ def ring_window(radius: float, bending: float, foundation: float) -> Callable[[N
     By the energy of bending ``EI / (2 R**3) integral of (w + w'')**2``: S. P. Timoshenko, Vibration Problems in Engineering, art.
     on the flexural vibrations of a circular ring.
     """
-    if not all(0 < value < np.inf for value in (radius, bending, foundation)):
-        raise ValueError(f"radius = {radius}, bending = {bending}, foundation = {foundation}: give positive numbers")
+    for name, value in {"radius": radius, "bending": bending, "foundation": foundation}.items():
+        ranged(name, value, above=0.0)
     n = np.arange(1, 400)
     share = 1 / (bending * (n**2 - 1.0) ** 2 / radius**3 + foundation * radius)
     share = share / share.sum()

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...stiffness.curve import StiffnessCurve
 from ..machine.force_law import ForceLaw
-from ..machine.gear_mesh import cycle_table
+from ..machine.mesh_curves import cycle_table
 from ..machine.phase_table import table
 
 LOOKS = 20_000  # times of a run at which its mesh forces are compared with the loads of their laws

@@ -132,7 +132,7 @@ def _row(now, row, at, shape, which, place, inside):
 
 @compiled
 def secant(table, one, place, u, depth):
-    """Stiffness from a part of the tables at a place that `_row` gives, and a depth [m]; as `machine.force_law.Secant`.
+    """Stiffness from a part of the tables at a place that `_row` gives, and a depth [m]; as `machine.secant.Secant`.
 
     The rows of a column lie one after the other, so that what the next step asks for is near at hand.
     """

@@ -10,39 +10,35 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...core.checks import truth, whole
-from ...core.memory import free_memory
 from ...core.record import ranged
 from ...core.threads import single
 from ..machine.tables import Machine
 from .fixed_step import fixed_steps
 from .law_range import compared
-from .reference import SOLVERS, reference
+from .reference import reference
 from .response import Response, all_channels
+from .run_checks import check_initial, check_memory, check_run
 from .step_control import (
     WANTED_OPEN,
     Estimate,
     beginning,
     chosen_step,
     default_step,
-    difference,
-    differences,
+    deviation,
     estimate,
     estimate_along,
     is_rough,
     longest_seen,
-    seen,
     unseen,
 )
 from .thinned import stages, thinned
 
 FINE = 4  # steps of the reference that the filter sees in each `default_step`
 FINER = 3  # times the step of a whole run is halved where contact is lost
-DEEPEST, FASTEST = 1.0, 1e3  # of flanks along a line of action [m], [m/s]: no tooth is so high, no gear so fast
 ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
 WHOLE = 1e-3  # of the range, of a whole run whose error is asked for
 COARSE = 0.1  # of the range: an estimate of a given step above which is warned of
 SLOW, ENDLESS = 5.0, 7200.0  # s of computing expected of a whole run: above these it is told, and refused
-LONGEST, LATEST = 1e11, 1e9  # steps of a run; its start [s]
 NUDGE, GROWN = 1e-9, 1e-2  # a disturbance of the start, of the state; what it may grow to, of the range
 
 
@@ -159,7 +155,7 @@ def simulate(
     error, filtered = (
         None if value is None else truth(name, value) for name, value in (("error", error), ("filtered", filtered))
     )
-    _check(machine, duration, method, rate, step, dt, start, every)
+    check_run(machine, duration, method, rate, step, dt, start, every)
     if initial is None:
         state = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     else:
@@ -167,14 +163,14 @@ def simulate(
     if state.shape != (2 * len(machine.dofs),) or not np.isfinite(state).all():
         raise ValueError(f"initial: give displacements and velocities, {len(machine.dofs)} finite numbers each")
     if initial is not None:
-        _check_initial(machine, state)
+        check_initial(machine, state)
     if rate is not None:
         count = math.floor(duration * rate * (1 + 1e-12))
         duration = count / rate
     else:
         count = math.ceil(duration / (dt or min(default_step(machine), duration)) / every * (1 - 1e-12))
     filtered = dt is None if filtered is None else filtered
-    _check_memory(machine, duration, count, filtered)
+    check_memory(machine, duration, count, filtered)
     if method != "fast":
         return compared(_reference(machine, duration, count, state, method, rtol, start, filtered))
     own = state if initial is not None else None
@@ -188,17 +184,6 @@ def simulate(
         return compared(run.given(steps, error))
 
 
-def _check_initial(machine, state):
-    """Refuse initial states in which flanks lie in each other by more than teeth are high, or move as fast as no gear does."""
-    n = len(machine.dofs)
-    deep, fast = (float(np.abs(machine.G @ part).max(initial=0.0)) for part in (state[:n], state[n:]))
-    if deep > DEEPEST or fast > FASTEST:
-        raise ValueError(
-            f"initial: the flanks of a mesh would be {deep:.3g} m in or off each other and move at {fast:.3g} m/s, but give less "
-            f"than {DEEPEST:g} m and {FASTEST:g} m/s: displacements in m and rad, velocities in m/s and rad/s"
-        )
-
-
 def _reference(machine, duration, count, state, method, rtol, start, filtered):
     """`reference`, its channels filtered if asked for."""
     if not filtered:
@@ -207,17 +192,6 @@ def _reference(machine, duration, count, state, method, rtol, start, filtered):
     every = math.prod(counts)
     whole = reference(machine, duration, count * every, state, method, rtol, start)
     return replace(whole.part(slice(None, None, every)), filtered=thinned([all_channels(whole)], counts))
-
-
-def _check_memory(machine, duration, count, filtered):
-    """Refuse more outputs than memory holds, before they are computed."""
-    size = 4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0)  # and a copy
-    memory, free = 8.0 * count * size, free_memory()
-    if memory > free:
-        raise ValueError(
-            f"duration = {duration:g} s: {count:.3g} outputs, every {duration / count:.3g} s, need about {memory / 1e9:.3g} GB, "
-            f"but {free / 1e9:.3g} GB are free: give a shorter duration, or a lower rate"
-        )
 
 
 class _Runs:
@@ -258,9 +232,8 @@ class _Runs:
             return out
         length = float(self.duration)
         if error:
-            finer = self(2 * every)
-            *moved, shaken = differences(seen(out), seen(finer), self.machine)
-            found = Estimate(max(moved), False, length, 0.0, shaken)
+            moved, shaken = deviation(out, self(2 * every))
+            found = Estimate(moved, False, length, 0.0, shaken)
         else:
             try:
                 place, span = beginning(self.machine, self.duration, self.own, self.start)
@@ -297,8 +270,7 @@ class _Runs:
         for _ in range(FINER):
             every *= 2
             finer = self(every, adapt=True)
-            *moved, shaken = differences(seen(out), seen(finer), self.machine)
-            out, doubt = finer, max(moved)
+            (doubt, shaken), out = deviation(out, finer), finer
             if doubt <= (ALLOWED if out.stats["losses"] else WHOLE):
                 break
         if doubt <= ALLOWED or not out.stats["losses"]:
@@ -306,37 +278,11 @@ class _Runs:
         h = out.stats["dt"]
         why = f"contact is lost and two runs of the fast path, with steps of {2 * h:.3g} s and half of it, differ by {doubt:.2g}"
         rest = np.concatenate([self.machine.rest(self.start), np.zeros(len(self.machine.dofs))])
-        grown = max(difference(self(every, self.state + NUDGE * (self.state + rest), adapt=True), out))
+        grown, _ = deviation(self(every, self.state + NUDGE * (self.state + rest), adapt=True), out)
         if grown > GROWN:
             why += f" of the range, and two whose start differs by {NUDGE:g} by {grown:.2g}: no integration can follow the motion"
             why += " for so long; trust its averages and spectra, or shorten the run"
             return told(out, chaotic=why, error=doubt, error_seconds=length)
         start = self.start
         want = _reference(self.machine, self.duration, self.count, self.state, "DOP853", 1e-10, start, self.filtered)
-        return told(want, switched=f"{why} of the range", error=max(difference(out, want)), error_seconds=length)
-
-
-def _check(machine, duration, method, rate, step, dt, start, every):
-    if not isinstance(machine, Machine):
-        raise ValueError(
-            f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
-        )
-    if method != "fast" and method not in SOLVERS:
-        raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
-    for name, value in {"dt": dt, "step": step}.items():
-        if value is not None and not value <= duration:
-            raise ValueError(f"{name} = {value} s, but it must be positive and no longer than the duration")
-    if rate is not None and not duration * rate * (1 + 1e-12) >= 1:
-        raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
-    shortest = min(value for value in (dt, step, duration, rate and 1 / rate) if value)
-    if duration / shortest > LONGEST:
-        raise ValueError(
-            f"duration = {duration:g} s in steps of {shortest:.3g} s: {duration / shortest:.3g} of them, but at most "
-            f"{LONGEST:.0e} are computed: give a shorter duration, or a longer step"
-        )
-    if dt is not None and (rate is not None or step is not None):
-        raise ValueError("dt is both the step and the interval of the output: give rate and step instead, or one of them")
-    if rate is not None and every != 1:
-        raise ValueError(f"rate = {rate} Hz and every = {every}: both thin out the output; give a lower rate alone")
-    if abs(start) > LATEST:
-        raise ValueError(f"start = {start:g} s, but give a time within {LATEST:g} s: phases of later ones are rounding")
+        return told(want, switched=f"{why} of the range", error=deviation(out, want)[0], error_seconds=length)

@@ -69,9 +69,10 @@ def differences(one, two, machine):
     return moved, float((np.abs(one.force - two.force).max(axis=0) / size).max()), shaken
 
 
-def difference(one, two):
-    """`differences` of the displacements and the mesh forces of two responses."""
-    return differences(seen(one), seen(two), two.machine)[:2]
+def deviation(one, two):
+    """Largest of the `differences` of displacements and mesh forces of two responses, and that of their accelerations."""
+    *moved, shaken = differences(seen(one), seen(two), two.machine)
+    return max(moved), shaken
 
 
 def _by_kind(one, two, machine):
@@ -203,7 +204,7 @@ class Estimate(NamedTuple):
     Attributes
     ----------
     error : float
-        Of displacements and mesh forces, the larger of `difference`, times `SMOOTH` or `ROUGH`.
+        Of displacements and mesh forces, the larger of `differences`, times `SMOOTH` or `ROUGH`.
     lost : bool
         Whether contact is lost there.
     length : float

@@ -9,6 +9,7 @@ from scipy.sparse import bmat, coo_array, coo_matrix, csc_matrix, spmatrix
 from skfem import Basis, BilinearForm, ElementTriP2, MeshTri2, asm
 
 from ...core.material import Material
+from ...geometry.aliases import Floats
 from .solver import factor
 
 GAUSS_3 = (np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)]), np.array([5.0, 8.0, 5.0]) / 9)
@@ -84,7 +85,7 @@ class Body:
         row, column = (2 * (place % nodes) + place // nodes for place in by_component.coords)
         return coo_matrix((by_component.data, (row, column)), shape=by_component.shape).tocsc()
 
-    def local(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    def local(self) -> tuple[Floats, NDArray[np.int64]]:
         """Stiffness matrices of the triangles ``(m, 12, 12)`` [N/mm per mm of width] and their unknowns ``(m, 12)``."""
         lam, mu = self.material.lame(self.state)
         xx, yy, xy = (form.elemental(self.basis).tolocal().transpose(0, 2, 1) for form in (_dx_dx, _dy_dy, _dx_dy))
@@ -93,14 +94,14 @@ class Body:
         local = np.array(rows).transpose(2, 3, 0, 4, 1).reshape(-1, 12, 12)
         return local, (2 * self.nodes.T[:, :, None] + np.arange(2)).reshape(-1, 12)
 
-    def between(self, load: spmatrix) -> NDArray[np.float64]:
+    def between(self, load: spmatrix) -> Floats:
         """Displacements of the columns of `load` (sparse, ``(2 nodes, n)``) under each other: ``load' K^-1 load`` ``(n, n)``.
 
         It takes half of a solution: the product of ``L^-1 load`` with itself, where ``K = L L'``.
         """
         return self._factor.gram(load.tocsr()[self.free])
 
-    def solve(self, load: NDArray[np.float64] | spmatrix) -> NDArray[np.float64]:
+    def solve(self, load: Floats | spmatrix) -> Floats:
         """Displacements for the columns of `load` (dense or sparse, ``(2 nodes, n)``) [N/mm]."""
         dense = load.toarray() if hasattr(load, "toarray") else np.asarray(load)
         out = np.zeros(dense.shape)
@@ -109,7 +110,7 @@ class Body:
             raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
         return out
 
-    def stress(self, displacement: NDArray[np.float64], inset: float = 0.0) -> NDArray[np.float64]:
+    def stress(self, displacement: Floats, inset: float = 0.0) -> Floats:
         """Stress at the nodes ``(3, nodes)`` [MPa]: xx, yy, xy, averaged over the triangles that share a node.
 
         It is taken by the part `inset` of the way to the middle of each triangle: at a crack's tip it is infinite.

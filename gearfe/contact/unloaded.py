@@ -1,0 +1,40 @@
+"""Approach at which the gears of a pair of finite width first touch."""
+
+import math
+
+import numpy as np
+
+from ..geometry.pair.contacts import touching
+from ..geometry.pair.modified import first_touch
+
+FINE, ROUNDS = 9, 2  # places along the cell with the least gap, and how often they are looked for more closely
+
+
+def least_gap(contact, found):
+    """Approach at which the gears of a `PhaseContact` first touch ``(phases,)`` [mm]: the least gap of the `Cells` of each.
+
+    How deep pits are is part of it only where flanks are modified.
+    """
+    cos = math.cos(contact.beta_b)
+    gaps = [cells.gap - (cells.floor / cos if contact.flanks is None else 0.0) for cells in found]
+    best = [int(np.argmin(gap)) for gap in gaps]
+    if contact.flanks is None and max(abs(gap[k]) for gap, k in zip(gaps, best, strict=True)) < 1e-12 * contact.pair.p_bt:
+        return np.zeros(len(found))
+    names = ("half", "order", "nominal", "z", "width", "floor")
+    half, order, nominal, z, width, floor = (
+        np.array([getattr(c, n)[k] for c, k in zip(found, best, strict=True)]) for n in names
+    )
+    slope = (
+        math.tan(contact.beta_b) * np.sign([last - first for first, last in contact.bands])[half]
+    )  # of the abscissa, down by z
+    low, high, gap = -width / 2, width / 2, np.zeros(0)
+    for _ in range(ROUNDS):
+        steps = np.linspace(low, high, FINE, axis=1)
+        at = (nominal[:, None] - slope[:, None] * steps).ravel()
+        gap = touching(contact.pair, at).gap
+        if contact.flanks is not None:
+            gap = first_touch(contact.pair, contact.flanks, at, np.repeat(order, FINE), gap, (z[:, None] + steps).ravel()).gap
+        gap, rows = gap.reshape(-1, FINE), np.arange(order.size)
+        least = np.argmin(gap, axis=1)
+        low, high = steps[rows, np.maximum(least - 1, 0)], steps[rows, np.minimum(least + 1, FINE - 1)]
+    return gap.min(axis=1) + (0.0 if contact.flanks is None else floor / cos)

@@ -1,0 +1,84 @@
+"""Stiffness over the mesh phase as tables, and what damaged teeth change of it."""
+
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...core.checks import numbers
+from ...stiffness.curve import StiffnessCurve
+from .force_law import ForceLaw
+from .phase_table import SMOOTH, Table, smooth_table, table
+
+FINE = 1024  # samples per cycle that curves on uneven phases are brought to
+
+
+class Samples(NamedTuple):
+    """Stiffness `k` [N/m^power] at phases, of what is no `StiffnessCurve`: contact coefficients, or curves of other programs."""
+
+    phase: NDArray
+    k: NDArray
+
+
+Curve = StiffnessCurve | Samples  # stiffness over the phase
+
+
+Stiffness = float | NDArray | Curve | ForceLaw | Table  # what `GearMesh` takes
+Change = tuple[float, float, Table]  # cycles until it returns, the first of them, and the change over the phase from there on
+ALIKE = 1e-6  # of a mesh cycle, of a cell: how far samples of two curves are apart that count as the same
+
+
+def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[Table, Any], Any] = Table.__call__) -> Any:
+    """Sum of all changes at running phases, or of another `value` of their tables."""
+    running: NDArray = np.asarray(phase, dtype=float)
+    out = np.zeros(running.shape)
+    for z, first, change in changes:
+        tooth_phase = tooth_phase_of(running, z, first, change.start)
+        inside = tooth_phase < change.end
+        if inside.any():
+            out = out + np.where(inside, value(change, np.minimum(tooth_phase, change.end)), 0.0)
+    return out
+
+
+def tooth_phase_of(running, z, first, start):
+    """Phases from `start` on of what returns after z mesh cycles, first at the running phase `first`."""
+    on = running - first - start
+    return on - z * np.floor(on / z) + start
+
+
+def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> NDArray | None:
+    """Coefficients ``(count, 4)`` of the sum of changes in cells from a running phase on; None if their cells are others."""
+    out = np.zeros((count, 4))
+    for z, first, change in changes:
+        place = (start - first - change.start) / change.width
+        if abs(change.width - width) > ALIKE * width or abs(place - round(place)) > ALIKE:
+            return None
+        cell = (round(place) + np.arange(count)) % round(z / width)
+        inside = cell < len(change.cells)
+        out[inside] += change.cells[cell[inside]]
+    return out
+
+
+def cycle_table(stiffness: Stiffness) -> Table:
+    """`Table` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law.
+
+    Through samples smooth cubics (`machine.phase_table.smooth_table`), through a `StiffnessCurve` those of `table`.
+    """
+    if isinstance(stiffness, Table):
+        return stiffness
+    if isinstance(stiffness, ForceLaw):
+        stiffness = Samples(*stiffness.at(stiffness.force))
+    if not isinstance(stiffness, (StiffnessCurve, Samples)):
+        values = np.atleast_1d(numbers("stiffness", stiffness, ""))
+    else:
+        phase = np.asarray(stiffness.phase, dtype=float) % 1.0
+        order = np.argsort(phase, kind="stable")
+        phase, values = phase[order], np.asarray(stiffness.k, dtype=float)[order]
+        if not np.allclose(phase, np.arange(phase.size) / phase.size, atol=1e-9):
+            values = np.interp(np.arange(FINE) / FINE, phase, values, period=1.0)
+    if values.ndim != 1 or not np.isfinite(values).all() or (values < 0).any():
+        raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
+    if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # bent where pairs come in
+        return table(values, 0.0, 1.0 / values.size, periodic=True)
+    return smooth_table(values)

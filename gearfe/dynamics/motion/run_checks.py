@@ -1,0 +1,59 @@
+"""Checks of what `simulate` is given, before anything is computed."""
+
+import numpy as np
+
+from ...core.memory import free_memory
+from ..machine.tables import Machine
+from .reference import SOLVERS
+
+DEEPEST, FASTEST = 1.0, 1e3  # of flanks along a line of action [m], [m/s]: no tooth is so high, no gear so fast
+LONGEST, LATEST = 1e11, 1e9  # steps of a run; its start [s]
+
+
+def check_initial(machine, state):
+    """Refuse initial states in which flanks lie in each other by more than teeth are high, or move as fast as no gear does."""
+    n = len(machine.dofs)
+    deep, fast = (float(np.abs(machine.G @ part).max(initial=0.0)) for part in (state[:n], state[n:]))
+    if deep > DEEPEST or fast > FASTEST:
+        raise ValueError(
+            f"initial: the flanks of a mesh would be {deep:.3g} m in or off each other and move at {fast:.3g} m/s, but give less "
+            f"than {DEEPEST:g} m and {FASTEST:g} m/s: displacements in m and rad, velocities in m/s and rad/s"
+        )
+
+
+def check_memory(machine, duration, count, filtered):
+    """Refuse more outputs than memory holds, before they are computed."""
+    size = 4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0)  # and a copy
+    memory, free = 8.0 * count * size, free_memory()
+    if memory > free:
+        raise ValueError(
+            f"duration = {duration:g} s: {count:.3g} outputs, every {duration / count:.3g} s, need about {memory / 1e9:.3g} GB, "
+            f"but {free / 1e9:.3g} GB are free: give a shorter duration, or a lower rate"
+        )
+
+
+def check_run(machine, duration, method, rate, step, dt, start, every):
+    """ValueError for numbers of `simulate` that are out of range or contradict each other."""
+    if not isinstance(machine, Machine):
+        raise ValueError(
+            f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
+        )
+    if method != "fast" and method not in SOLVERS:
+        raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
+    for name, value in {"dt": dt, "step": step}.items():
+        if value is not None and not value <= duration:
+            raise ValueError(f"{name} = {value} s, but it must be positive and no longer than the duration")
+    if rate is not None and not duration * rate * (1 + 1e-12) >= 1:
+        raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
+    shortest = min(value for value in (dt, step, duration, rate and 1 / rate) if value)
+    if duration / shortest > LONGEST:
+        raise ValueError(
+            f"duration = {duration:g} s in steps of {shortest:.3g} s: {duration / shortest:.3g} of them, but at most "
+            f"{LONGEST:.0e} are computed: give a shorter duration, or a longer step"
+        )
+    if dt is not None and (rate is not None or step is not None):
+        raise ValueError("dt is both the step and the interval of the output: give rate and step instead, or one of them")
+    if rate is not None and every != 1:
+        raise ValueError(f"rate = {rate} Hz and every = {every}: both thin out the output; give a lower rate alone")
+    if abs(start) > LATEST:
+        raise ValueError(f"start = {start:g} s, but give a time within {LATEST:g} s: phases of later ones are rounding")
