@@ -68,6 +68,7 @@ from .figures.vibration_plots import plot_kurtogram as plot_kurtogram
 from .figures.vibration_plots import plot_phase as plot_phase
 from .figures.vibration_plots import plot_spectra as plot_spectra
 from .figures.vibration_plots import plot_spectrogram as plot_spectrogram
+from .geometry.damage.chip import Chip as Chip
 from .geometry.damage.crack import Crack as Crack
 from .geometry.damage.missing import MissingTooth as MissingTooth
 from .geometry.damage.pit import Pit as Pit

@@ -108,10 +108,10 @@ def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: 
     """Estimated discretisation error of the losses by zone: how far a coarser solve of both gears moves them.
 
     It is the coarser solve that an estimate of k looks at; empty if it would be too coarse. Of finite elements in three
-    dimensions, which take minutes, and of missing teeth the relative errors of both stiffnesses are added: a much wider bound.
+    dimensions, which take minutes, and of broken teeth the relative errors of both stiffnesses are added: a much wider bound.
     """
     losses, method = loss(healthy, hurt), str(how.method)
-    if method == "fe3d" or (any(case.missing) and healthy.error is not None and hurt.error is not None):
+    if method == "fe3d" or (any(case.broken) and healthy.error is not None and hurt.error is not None):
         before, after = healthy.zone_errors(), hurt.zone_errors()
         widest = {zone: (1 - losses[zone]) * (before[zone] + after[zone]) for zone in before.keys() & after.keys()}
         return widest | {LARGEST: max(widest.values(), default=math.nan)}
@@ -146,7 +146,8 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
     >>> headline("2 mm crack at 60 degrees", "cracked", {"single": 0.158, "mean": 0.0951}, {"single": 0.0021})
     '2 mm crack at 60 degrees: the mesh is 15.8 ± 0.3 % softer where the cracked tooth carries alone; 9.5 % in the mean'
     """
-    zone = next((name for name in ALONE if name in found), None)
+    alone = next((name for name in ALONE if name in found), None)
+    zone = None if kind == "chipped" else alone  # a chipped tooth carries alone where its flank is whole
     where = f"where the {kind} tooth {ALONE[zone]}" if zone else f"as the {kind} tooth passes"
     where = where.replace("carries", "would carry") if kind == "missing" else where
     most = percent_with_doubt(found[zone or LARGEST], doubt.get(zone or LARGEST, math.nan))

@@ -14,6 +14,8 @@ from scipy.linalg import block_diag
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, peak_pressure
 from ..flexibility.section_contact import Solved
+from ..geometry.pair.contacts import Touch, touching
+from ..geometry.pair.gear_pair import with_tips
 from ..geometry.pair.modified import flank_contacts
 from ..geometry.tooth.profile import arc_at
 from .directions import leaning
@@ -55,20 +57,41 @@ def _aligned(rows):
     return out | {"coefficient": zero, "tilt": zero, "radius": zero + 1}
 
 
-def without_missing(points, pair, flexibility):
-    """Contacts without those of missing teeth, whose gap is infinite; ValueError if at some phase none is left."""
+def with_broken(points, pair, flexibility, extended):
+    """Contacts of a pair with missing teeth and chipped tips, and ends of the path ``(2, pairs)`` [mm].
+
+    A missing tooth has an infinite gap. The flank of a chipped one ends at its corner. ValueError if no pair is left at a phase.
+    """
+    path = np.tile(np.array(pair.path)[:, None], points.order.size)
+    points = _chipped(points, pair, flexibility, extended, path)
     gone = np.zeros(points.order.size, dtype=bool)
     for gear, own, teeth in zip((pair.gear_1, pair.gear_2), flexibility, (points.order, -points.order), strict=True):
         gone |= np.isin(teeth % gear.z, [tooth % gear.z for tooth in getattr(own, "missing", ())])
     if not gone.any():
-        return points
+        return points, path
     gap = np.where(gone, np.inf, points.gap)
     if not np.isfinite(gap).any(axis=1).all():
         raise ValueError(
             "at some phases no teeth but a missing one are near each other: leave contact off the path on (extended = True), or "
             "take a pair with a larger contact ratio"
         )
-    return replace(points, gap=gap, corner_gap=np.where(gone, np.inf, points.corner_gap))
+    return replace(points, gap=gap, corner_gap=np.where(gone, np.inf, points.corner_gap)), path
+
+
+def _chipped(points, pair, flexibility, extended, path):
+    """Contacts in which flanks end at the corners of chips; the ends of their path are put into `path`."""
+    cut = [getattr(own, "tips", {}) for own in flexibility]
+    if not any(cut):
+        return points
+    found = {name: getattr(points, name).copy() for name in Touch._fields}
+    for k, order in enumerate(points.order.tolist()):
+        ends = [tips.get(tooth % own.gear.z) for tips, own, tooth in zip(cut, flexibility, (order, -order), strict=True)]
+        if any(ends):
+            short = with_tips(pair, [end and end[0] for end in ends])
+            path[:, k] = short.path
+            for name, values in touching(short, points.nominal[:, k], extended=extended)._asdict().items():
+                found[name][..., k] = values
+    return replace(points, **found)
 
 
 class PairContact:
@@ -81,7 +104,8 @@ class PairContact:
         self.pair, self.flexibility, self.flanks = pair, flexibility, flanks
         self.coefficients = [half_plane(m, state) for m in materials]
         self.modulus = contact_modulus(materials, state)
-        self.found = points = without_missing(flank_contacts(pair, phase, extended=extended, flanks=flanks), pair, flexibility)
+        found = flank_contacts(pair, phase, extended=extended, flanks=flanks)
+        self.found, self.path = points, _ = with_broken(found, pair, flexibility, extended)
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
         matrices = [flexibility[0].matrix(points.roll_1, points.order), flexibility[1].matrix(points.roll_2, -points.order)]
@@ -209,7 +233,7 @@ class PairContact:
         rows = []
         for flexible, roll, teeth in zip(self.flexibility, (roll_1, roll_2), (order, -order), strict=True):
             if flexible.seam is not None:
-                arc = np.clip(arc_at(flexible.gear, roll), *flexible.limits)
+                arc = flexible.clipped(arc_at(flexible.gear, roll), teeth)
                 rows.append(flexible.seam.at(arc, (teeth % flexible.gear.z).tolist()))
         return np.concatenate(rows, axis=-1) if rows else None
 
@@ -241,7 +265,7 @@ class PairContact:
         corner = np.zeros(points.gap.shape, dtype=int)
         if not self.extended:
             return corner, *np.zeros((2, *corner.shape))
-        start, end = self.pair.path
+        start, end = self.path
         mate = self.pair.mate_roll(points.nominal)
         radius = np.where(points.corner > 0, self.pair.relative_radius(points.nominal, mate), self.radius)
         width = half_width(line_load, np.where(radius > 0, radius, 1.0), self.modulus)

@@ -86,11 +86,12 @@ def left_out(contact, line, closing, beyond):
     flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
 
     Of line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``; `closing` ``(phases,)`` is how far the
-    load moves the gears [mm]. What cracks add under loads on teeth too far away to be solved with them is unsure, too.
+    load moves the gears [mm]. What cracks add far away, or in thin teeth, is unsure, too.
     """
     points, (start, end) = contact.found, contact.pair.path
     off = (line > 0) & ((points.nominal < start) | (points.nominal > end))
-    softer = _cut_away(contact, line) + UNSURE * np.abs(contact.thinner) * line + _cracks_beyond(contact, line)
+    softer = _cut_away(contact, line) + UNSURE * np.abs(contact.thinner) * line
+    softer = softer + _cracks_beyond(contact, line) + _cracks_in_thin_teeth(contact, line)
     if not (off.any() or softer.any()):
         return np.zeros(closing.size)
     closed = closing[:, None] - beyond
@@ -108,6 +109,20 @@ def _cracks_beyond(contact, line):
         beyond, most = cracks_beyond(flexible, teeth)
         far = ((line > 0) & beyond).any(axis=1)
         out += most * (far * line.sum(axis=1))[:, None]
+    return out
+
+
+def _cracks_in_thin_teeth(contact, line):
+    """Deflection ``(phases, pairs)`` [mm] that cracks add in teeth which modified flanks have left thinner.
+
+    The flexibility of a crack of a given part of the thickness h goes by ``h**-2``; it is that of the whole tooth.
+    """
+    out, stop, order = np.zeros(line.shape), 0, contact.found.order
+    for flexible, thin, teeth in zip(contact.flexibility, contact.thinning, (order, -order), strict=False):
+        if flexible.seam is not None:
+            faces = slice(stop, stop := stop + flexible.seam.influence.shape[0])
+            opening, lost = contact.opening[..., faces], np.array([thin.lost(tooth) for tooth in teeth.tolist()])
+            out += ((1 - lost) ** -2 - 1) * np.einsum("pcf,fg,pcg->pc", opening, flexible.seam.stiffness, opening) * line
     return out
 
 

@@ -72,17 +72,26 @@ class Thinning:
         x, y, lever, along = radius * np.sin(angle), radius * np.cos(angle), np.cos(turn), np.sin(turn)
         return y, lever * y + along * x, lever, lever, along
 
+    def lost(self, tooth: int) -> float:
+        """Part of the half thickness that is removed at the foot of a tooth."""
+        _, half, left = self._sections(tooth)
+        return float(1 - left[0] / half[0])
+
+    def _sections(self, tooth):
+        """Heights, half thicknesses and what is left of these, first at the foot, then from root to tip circle [mm]."""
+        foot = float(fillet(self.gear, tangent_point(self.gear))[0])
+        radius = np.append(foot, np.linspace(self.gear.r_f, self.gear.r_a, POINTS + 1))
+        angle = place(self.gear, radius).angle
+        half = radius * np.sin(angle)
+        removed = self.form.thinned(np.sqrt(np.maximum(radius**2 - self.gear.r_b**2, 0.0)), tooth)
+        share = 1.0 if self.form.flank.both_sides else 0.5
+        return radius * np.cos(angle), half, np.maximum(half - share * radius * removed / self.gear.r_b, 0.1 * half)
+
     def _table(self, tooth):
         """Heights from root to tip and integrals up to them, foot included: of D(h**-3) times 1, y and y**2, and of D(h**-1)."""
         key = tooth % self.gear.z if self.form.differs else 0
         if key not in self._tables:
-            foot = float(fillet(self.gear, tangent_point(self.gear))[0])
-            radius = np.append(foot, np.linspace(self.gear.r_f, self.gear.r_a, POINTS + 1))
-            angle = place(self.gear, radius).angle
-            half, y = radius * np.sin(angle), radius * np.cos(angle)
-            removed = self.form.thinned(np.sqrt(np.maximum(radius**2 - self.gear.r_b**2, 0.0)), tooth)
-            share = 1.0 if self.form.flank.both_sides else 0.5
-            left = np.maximum(half - share * radius * removed / self.gear.r_b, 0.1 * half)
+            y, half, left = self._sections(tooth)
             cubed, plain, squared = (left**-power - half**-power for power in (3.0, 1.0, 2.0))
             base = FOOT / 1.5 / 4 * squared[0] * np.array([1.0, y[0], y[0] ** 2, 0.0])
             parts = np.array([cubed, y * cubed, y**2 * cubed, plain])[:, 1:]

@@ -9,9 +9,10 @@ from typing import Any, Self, TypedDict
 import numpy as np
 
 from ..geometry.aliases import Floats
+from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import Crack, check_apart
 from ..geometry.damage.hollow import doubts_together
-from ..geometry.damage.kinds import Damage, by_side, split, why_wide
+from ..geometry.damage.kinds import BROKEN, Damage, by_side, split, why_wide
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.pair.flanks import Misalignment, flank_forms
 from ..geometry.pair.gear_pair import GearPair
@@ -65,8 +66,8 @@ class Case:
     materials : (Material, Material)
     cracks, pits : (tuple, tuple)
         Damage of pinion and wheel, teeth numbered in each gear's own frame.
-    missing : (tuple, tuple)
-        Missing teeth of pinion and wheel in the same numbers.
+    broken : (tuple, tuple)
+        Missing teeth and chipped tips of pinion and wheel in the same numbers.
     forms : (FlankForm, FlankForm) or None
         `flanks` and `misalignment` on the gears; None for involutes.
     held : (Support or Shaft or None, Support or Shaft or None) or None
@@ -109,7 +110,7 @@ class Case:
     materials: tuple[Material, Material] = field(init=False, repr=False)
     cracks: tuple[tuple[Crack, ...], ...] = field(init=False, repr=False, compare=False)
     pits: tuple[tuple[Any, ...], ...] = field(init=False, repr=False, compare=False)
-    missing: tuple[tuple[MissingTooth, ...], ...] = field(init=False, repr=False, compare=False)
+    broken: tuple[tuple[MissingTooth | Chip, ...], ...] = field(init=False, repr=False, compare=False)
     forms: tuple[FlankForm, FlankForm] | None = field(init=False, repr=False, compare=False)
     held: tuple[Support | Shaft | None, ...] | None = field(init=False, repr=False, compare=False)
 
@@ -128,9 +129,9 @@ class Case:
         if self.face in FACES[1:] and not pair.gear_1.beta:
             message = f"face = {self.face!r}, but the gears have no helix angle (beta = 0): their teeth are straight"
             warnings.warn(message, stacklevel=4)
-        cracks, pits, missing = by_gear(pair, self.damage)
+        cracks, pits, broken = by_gear(pair, self.damage)
         given: Any = self.force if self.torque is None else self.torque
-        made: dict[str, Any] = {"forces": forces, "materials": materials, "cracks": cracks, "pits": pits, "missing": missing}
+        made: dict[str, Any] = {"forces": forces, "materials": materials, "cracks": cracks, "pits": pits, "broken": broken}
         made |= {"force": forces if np.ndim(given) else forces[0], "torque": None}
         made |= {"material": self.material if isinstance(self.material, Material) else materials}
         made |= {"forms": flank_forms(pair, self.flanks, self.misalignment)}
@@ -171,12 +172,17 @@ class Case:
     @property
     def damaged(self) -> bool:
         """Whether there is any damage."""
-        return any(map(any, (self.cracks, self.pits, self.missing)))
+        return any(map(any, (self.cracks, self.pits, self.broken)))
 
-    def without_missing(self, what: str) -> None:
-        """ValueError if a tooth is missing, because `what` does not model it."""
-        if any(self.missing):
-            raise ValueError(f"a missing tooth in {what}, which has whole teeth only: use mesh_stiffness, compare or render")
+    @property
+    def missing(self) -> bool:
+        """Whether a tooth is missing."""
+        return any(isinstance(one, MissingTooth) for own in self.broken for one in own)
+
+    def without_broken(self, what: str) -> None:
+        """ValueError if a tooth is missing or chipped, because `what` does not model it."""
+        for one in sum(self.broken, ()):
+            raise ValueError(f"a {one.nouns[0]} in {what}, which has whole teeth only: use mesh_stiffness, compare or render")
 
     @property
     def runs(self) -> str:
@@ -201,7 +207,7 @@ class Case:
             dict.fromkeys(
                 sense * defect.tooth
                 for i, (_, sense) in enumerate(SIDES)
-                for kind in (self.cracks, self.pits, self.missing)
+                for kind in (self.cracks, self.pits, self.broken)
                 for defect in kind[i]
             )
         )
@@ -306,8 +312,8 @@ def check_load(pair: GearPair, force: float, materials: tuple[Material, Material
 
 
 def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Any, ...], ...], ...]:
-    """Cracks, hollows (pits, spalls) and missing teeth of pinion and wheel, numbered in each gear's own frame."""
-    cracks, pits, missing = [], [], []
+    """Cracks, hollows (pits, spalls) and broken teeth of pinion and wheel, numbered in each gear's own frame."""
+    cracks, pits, broken = [], [], []
     for (_, sense), gear, defects in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
         hollows = [[one for one in split(defects)[1] if (one.tooth, one.side) == place] for place in _flanks(defects)]
         together = (doubts_together(gear, found) for found in hollows)
@@ -318,17 +324,21 @@ def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Any, ...], ...], .
         check_apart(gear, split(defects)[0])
         cracks.append(weakens)
         pits.append(removes)
-        missing.append(tuple(defect for defect in own if isinstance(defect, MissingTooth)))
-        _check_missing(gear, own, missing[-1])
-    return tuple(cracks), tuple(pits), tuple(missing)
+        broken.append(tuple(dict.fromkeys(defect for defect in own if isinstance(defect, BROKEN))))
+        _check_broken(gear, own, broken[-1])
+    return tuple(cracks), tuple(pits), tuple(broken)
 
 
-def _check_missing(gear, defects, missing):
-    """ValueError for other damage of a missing tooth, and for two missing teeth side by side."""
-    gone = sorted({defect.tooth % gear.z for defect in missing})
-    for defect in defects:
-        if defect not in missing and defect.tooth % gear.z in gone:
-            raise ValueError(f"tooth {defect.tooth} of z = {gear.z} is missing and has a {defect.nouns[0]}: give one of them")
+def _check_broken(gear, defects, broken):
+    """ValueError for other damage of a broken tooth, chips that cannot be, and two missing teeth side by side."""
+    gone = sorted({one.tooth % gear.z for one in broken if isinstance(one, MissingTooth)})
+    for one in broken:
+        if isinstance(one, Chip):
+            one.cut(gear)
+        for defect in defects:
+            if defect != one and (defect.tooth - one.tooth) % gear.z == 0:
+                said = "is missing" if isinstance(one, MissingTooth) else "has a chip"
+                raise ValueError(f"tooth {one.tooth} of z = {gear.z} {said} and has a {defect.nouns[0]}: give one of them")
     for tooth in gone:
         if (tooth + 1) % gear.z in gone:
             raise ValueError(f"teeth {tooth} and {tooth + 1} of z = {gear.z} are missing: of neighbours only one may be missing")

@@ -148,7 +148,7 @@ def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float
 
     Nodes lie on modified flanks (`gearfe.geometry.mesh.relieved_solid`); axes askew are among them.
     """
-    case.without_missing("a deck")
+    case.without_broken("a deck")
     pair, forms, fineness = case.pair, case.forms, (how.per_width or SOLID) * how.refine
     common = min(pair.gear_1.b, pair.gear_2.b)
     touch = touching(case, phase, approach)

@@ -9,7 +9,7 @@ from ..core.checks import checked_refine
 from ..core.files import check_output, suffix_of, written
 from ..flexibility.finite_elements.folds import check_folds
 from ..flexibility.finite_elements.one_tooth import check_gear
-from ..geometry.damage.kinds import NAMES, Damage, are, split
+from ..geometry.damage.kinds import BROKEN, NAMES, Damage, are, split
 from ..geometry.mesh.holes import holed_sector
 from ..geometry.mesh.solid import solid
 from ..geometry.tooth.gear import Gear
@@ -67,8 +67,9 @@ def export_mesh(
     if not are(damage):
         raise ValueError(f"damage = {damage!r}, but give a list of {' and '.join(NAMES)} of this gear, [] for none")
     cracks, pits = split(damage)
-    if len(cracks) + len(pits) < len(damage):
-        raise ValueError("a missing tooth in an exported mesh, which has whole teeth only: leave it out")
+    for one in damage:
+        if isinstance(one, BROKEN):
+            raise ValueError(f"a {one.nouns[0]} in an exported mesh, which has whole teeth only: leave it out")
     cells = cells or ("tetrahedra" if pits or teeth is not None else "hexahedra")
     if cells not in KINDS:
         raise ValueError(f"cells = {cells!r}, but they are one of {', '.join(KINDS)}")

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..geometry.damage.missing import MissingTooth
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import arc_at
 
@@ -38,10 +39,15 @@ def _logarithmic(arc, places, least):
     return np.minimum(arc - middle, 0.0) + np.log((tip - middle + least) / left)
 
 
-def reached_teeth(gear: Gear, cracks: Iterable[Any], missing: Iterable[int], neighbours: int) -> list[int]:
+def missing_teeth(gear: Gear, broken: Iterable[Any]) -> tuple[int, ...]:
+    """Numbers of the missing teeth among broken ones."""
+    return tuple(one.tooth % gear.z for one in broken if isinstance(one, MissingTooth))
+
+
+def reached_teeth(gear: Gear, damage: Iterable[Any], neighbours: int) -> list[int]:
     """Numbers of the teeth that are solved with damage: `neighbours` and `FURTHER` to either side of a damaged tooth."""
-    damaged, reach = [*(crack.tooth for crack in cracks), *missing], neighbours + FURTHER
-    return sorted({(tooth + k) % gear.z for tooth in damaged for k in range(-reach, reach + 1)})
+    reach = neighbours + FURTHER
+    return sorted({(one.tooth + k) % gear.z for one in damage for k in range(-reach, reach + 1)})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,6 +115,8 @@ class Flexibility:
         loads off its normal by their torque.
     missing : tuple of int
         Missing teeth, which touch nothing.
+    tips : dict of int to (float, (float, float), spline)
+        Of teeth whose loaded flank ends below the tip circle: roll length of the corner [mm], their own `limits` and `basis`.
     """
 
     gear: Gear
@@ -123,19 +131,20 @@ class Flexibility:
     basis: Any = None
     leans: dict[int, NDArray[np.float64]] = field(default_factory=dict)
     missing: tuple[int, ...] = ()
+    tips: dict[int, tuple[float, tuple[float, float], Any]] = field(default_factory=dict)
 
     def within(self, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[int]) -> list[NDArray[np.float64]]:
         """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth, for each of both."""
         if self.basis is None and self.healthy is None:
             return singly(self, rolls, teeth)
         arc = arc_at(self.gear, np.concatenate(rolls))
-        at, depth = np.clip(arc, *self.limits), np.minimum(arc - self.limits[0], 0.0)
         solved = [self if tooth % self.gear.z in self.own else self._whole() for tooth in teeth]
-        rows = {basis: (basis(at), basis(self.limits[0], 1)) for basis in {flexible.basis for flexible in solved}}
-        out, stop = [], 0
-        for flexible, roll, tooth in zip(solved, rolls, teeth, strict=True):
+        bases = [flexible._end(tooth) for flexible, tooth in zip(solved, teeth, strict=True)]
+        rows = {basis: (basis(np.clip(arc, *limits)), basis(limits[0], 1)) for limits, basis in bases}
+        depth, out, stop = np.minimum(arc - self.limits[0], 0.0), [], 0
+        for flexible, (_, basis), roll, tooth in zip(solved, bases, rolls, teeth, strict=True):
             part, values = slice(stop, stop := stop + roll.size), flexible.own.get(tooth % self.gear.z, flexible.own.get(0))
-            here, ahead = rows[flexible.basis][0][part], rows[flexible.basis][1]
+            here, ahead = rows[basis][0][part], rows[basis][1]
             smooth = here @ values @ here.T
             if depth[part].any():  # in the fillet it goes on straight
                 slope = np.outer(depth[part], ahead @ values @ here.T)
@@ -151,6 +160,15 @@ class Flexibility:
         at, places = (_logarithmic(arc, leans[0], NEAREST * self.gear.m_n) for arc in (arc_at(self.gear, roll), leans[0]))
         return np.array([np.interp(at, places, values) for values in leans[1:]])
 
+    def _end(self, tooth):
+        """Limits and basis of a tooth's flank."""
+        return self.tips.get(tooth % self.gear.z, (0.0, self.limits, self.basis))[1:]
+
+    def clipped(self, arc: NDArray[np.float64], teeth: ArrayLike) -> NDArray[np.float64]:
+        """Arcs ``(..., n)`` on `teeth` ``(n,)``, moved into the limits of their splines [mm]."""
+        low, high = np.array([self._end(tooth)[0] for tooth in np.asarray(teeth).tolist()]).reshape(-1, 2).T
+        return np.minimum(np.maximum(arc, low), high)
+
     def _whole(self):
         return self if self.healthy is None else self.healthy
 
@@ -159,10 +177,9 @@ class Flexibility:
 
         Contacts on one tooth get no influence on each other here: see `within`. Cracks are glued shut: see `SeamFaces`.
         """
-        low, high = self.limits
         z, whole = self.gear.z, self._whole()
-        arc = np.minimum(np.maximum(arc_at(self.gear, roll), low), high)
         teeth = np.asarray(teeth)
+        arc = self.clipped(arc_at(self.gear, roll), teeth)
         out = np.zeros((*np.shape(roll), teeth.size))
         members = {tooth: teeth == tooth for tooth in sorted(set(teeth.tolist()))}
         near: dict[Any, NDArray[np.bool_]] = {}  # contacts by the spline that holds for them: teeth that are alike have one

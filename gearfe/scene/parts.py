@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
+from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import Crack
 from ..geometry.damage.kinds import Damage
 from ..geometry.damage.missing import MissingTooth
@@ -50,7 +51,7 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
     """Damage of the pair `name` by case, side and owner.
 
     It lies on the flank that is loaded in its `pair`, by default the first pair of its gear. In a pair that loads the other flank
-    a crack lies on the unloaded side, and pits and spalls are in no contact. A missing tooth is missing in both.
+    a crack lies on the unloaded side, and pits and spalls are in no contact. So does a chip. A missing tooth is missing in both.
     """
     out: dict[str, dict[str, Owned]] = {}
     for kind, make in DAMAGE.items():
@@ -63,8 +64,8 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
                 with located(file, where, row):
                     made = make(row, pair, SIDES.index(side), rows["pair"][name])
                 if side != first:
-                    cracks = [replace(one, side="unloaded") for one in made if isinstance(one, Crack)]
-                    made = [*cracks, *(one for one in made if isinstance(one, MissingTooth))]
+                    turned = [replace(one, side="unloaded") for one in made if isinstance(one, (Crack, Chip))]
+                    made = [*turned, *(one for one in made if isinstance(one, MissingTooth))]
                 if made and not (name == home and side != first):
                     owner = Owner(row.get("body"), home, first)
                     out.setdefault(row["case"], {}).setdefault(side, {}).setdefault(owner, []).extend(made)
@@ -109,6 +110,11 @@ def missing_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     return [MissingTooth(tooth=row["tooth"])]
 
 
+def chip_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
+    """The chip of a row."""
+    return [Chip(**arguments("chip", row))]
+
+
 def _other_half(row, damage, made, which, pair):
     return in_both_halves((made.gear_1, made.gear_2)[which], damage, _face(made, pair)) if row["both_halves"] else []
 
@@ -118,7 +124,7 @@ def _face(made, pair):
 
 
 DAMAGE: dict[str, Callable[[Row, GearPair, int, Row], list[Damage]]] = {
-    "crack": crack_of, "pits": pits_of, "spall": spall_of, "missing_tooth": missing_of,
+    "crack": crack_of, "pits": pits_of, "spall": spall_of, "missing_tooth": missing_of, "chip": chip_of,
 }  # fmt: skip
 
 

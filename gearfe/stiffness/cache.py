@@ -36,14 +36,14 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
     """Flexibility of a gear's section by finite elements, from the cache if it is there.
 
     `cache` as of `gearfe.flexibility.solved.solved_gears`; False: solve anew, store nothing. Only with the results of this
-    process is the disk used. `options` as of `finite_elements.fe.damaged_flexibility`: missing, neighbours, state, refine, teeth.
+    process is the disk used. `options` as of `finite_elements.fe.damaged_flexibility`: broken, neighbours, state, refine, teeth.
     """
     kept = solved_gears(cache)
 
     def solve():
-        if not (cracks or options.get("missing")):
+        if not (cracks or options.get("broken")):
             return fe.flexibility(gear, material, **options)
-        healthy = solved_gear(gear, material, cache=kept, **{name: value for name, value in options.items() if name != "missing"})
+        healthy = solved_gear(gear, material, cache=kept, **{name: value for name, value in options.items() if name != "broken"})
         return fe.damaged_flexibility(gear, material, cracks, healthy, **options)
 
     case = (material, cracks, tuple(sorted(options.items())), tuple(sorted(fe.EDGES.items())))

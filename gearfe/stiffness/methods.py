@@ -52,8 +52,8 @@ class Method:
         Its discretisation can be refined to the limit; otherwise a closed form.
     cracks : {"", "through", "any"}
         None; of one depth through the whole width; also of part of the width, or of a depth that changes along it.
-    pits, missing : bool
-        Whether it has pits and spalls, and missing teeth.
+    pits, broken : bool
+        Whether it has pits and spalls, and missing teeth and chipped tips.
     rings : {"yes", "no", "external", "printed"}
         The last two: only with the variant ``foundation`` saying what a ring's body does; of a scene's rings it is this one.
     faces : tuple of str
@@ -79,7 +79,7 @@ class Method:
     converged: bool = False
     cracks: str = ""
     pits: bool = False
-    missing: bool = False
+    broken: bool = False
     rings: str = "yes"
     faces: tuple[str, ...] = SPUR
     variants: bool = False
@@ -124,7 +124,7 @@ def _loaded(home):
 ROWS = (
     Method(
         "ritz", "converged energy model of the transverse section", "section", "gearfe.flexibility.energy.ritz.plane:flexibility",
-        "milliseconds", converged=True, cracks="through", missing=True, error=True, extended=True, flanks=True,
+        "milliseconds", converged=True, cracks="through", broken=True, error=True, extended=True, flanks=True,
         order=4, kept="process",
     ),
     Method(
@@ -134,7 +134,7 @@ ROWS = (
     ),
     Method(
         "fe", "finite elements of the transverse section, the independent reference", "section",
-        "gearfe.stiffness.cache:solved_gear", "seconds", converged=True, cracks="through", missing=True, teeth=True, error=True,
+        "gearfe.stiffness.cache:solved_gear", "seconds", converged=True, cracks="through", broken=True, teeth=True, error=True,
         extended=True, flanks=True, kept="disk",
     ),
     Method(

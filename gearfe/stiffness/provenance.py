@@ -46,7 +46,7 @@ def damage_of(case):
     return {
         name: [
             asdict(replace(hurt, tooth=sense * hurt.tooth))
-            for damages in (case.cracks, case.pits, case.missing)
+            for damages in (case.cracks, case.pits, case.broken)
             for hurt in damages[i]
         ]
         for i, (name, sense) in enumerate(SIDES)

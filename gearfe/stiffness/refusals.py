@@ -6,6 +6,7 @@ from itertools import chain
 
 from ..core.checks import is_number, one_of
 from ..flexibility.energy.closed.plain_sum import plain_sum
+from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import check_through
 from .limits import check_section, check_teeth
 from .methods import METHODS, RING_FOUNDATIONS, having
@@ -57,8 +58,10 @@ def _damage(row, case, method):
         yield f"damage with {method}, which has none: use {having('cracks')}"
     if any(case.cracks) and not row.cracks:
         yield f"cracks with {method}, which has none: use {having('cracks')}"
-    if any(case.missing) and not row.missing:
-        yield f"a missing tooth with {method}, which has none: use {having('missing')}"
+    for one in sum(case.broken, ()) if not row.broken else ():
+        yield f"a {one.nouns[0]} with {method}, which has none: use {having('broken')}"
+    if case.forms is not None and any(isinstance(one, Chip) for own in case.broken for one in own):
+        yield "chips of modified flanks: leave the flanks out, or the chips"
     if any(case.pits) and not row.pits:
         nouns = next(pit for pits in case.pits for pit in pits).nouns[1]
         yield f"{nouns} with {method}, a transverse section: use {having('pits')}"

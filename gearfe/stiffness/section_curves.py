@@ -49,14 +49,13 @@ def section_solver(row, case, how, phase, hats=1.0, **coarser):
     extended = how.extended and (model or row).extended
     neighbours = neighbours_of(pair)
 
-    def named(row, gear, material, cracks=(), missing=()):
+    def named(row, gear, material, cracks=(), broken=()):
         options = {"neighbours": neighbours, "state": how.state, **numeric}
-        options |= {"missing": missing} if missing else {}
+        options |= {"broken": broken} if broken else {}
         options |= {"cache": how.cache} if row.kept else {}
         return row.load()(gear, material, *((cracks,) if row.cracks else ()), **options)
 
-    gone = [tuple(sorted({one.tooth for one in teeth})) for teeth in case.missing]
-    gears = list(zip((pair.gear_1, pair.gear_2), case.materials, case.cracks, gone, strict=True))
+    gears = list(zip((pair.gear_1, pair.gear_2), case.materials, case.cracks, case.broken, strict=True))
     if model is None:
         flexible = [named(row, *gear) for gear in steps(gears)]
     else:

@@ -201,7 +201,7 @@ def _curves(row, case, how):
         curves = row.curves(loads, how, at)
         for curve in curves:
             check_plausible(curve, pair, case.materials)
-        if case.damaged and not any(case.missing) and how.span == "cycle" and row.kind != "solid":
+        if case.damaged and not any(case.broken) and how.span == "cycle" and row.kind != "solid":
             _warn_if_unseen(case, curves[0].order)
         return curves
 
@@ -218,7 +218,7 @@ def _curves(row, case, how):
     if how.span not in LONG:
         return posed(phase)
     differs = [
-        bool(case.cracks[i] or case.pits[i] or case.missing[i]) or (case.forms is not None and case.forms[i].differs)
+        bool(case.cracks[i] or case.pits[i] or case.broken[i]) or (case.forms is not None and case.forms[i].differs)
         for i in (0, 1)
     ]
     return over_turns(posed, phase, pair, how.span, differs)

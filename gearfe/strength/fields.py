@@ -11,6 +11,7 @@ from ..flexibility.finite_elements.elasticity import Body
 from ..flexibility.finite_elements.fe import EDGES, flank_load
 from ..flexibility.finite_elements.one_tooth import edge_lengths
 from ..flexibility.hertz import contact_modulus, half_width
+from ..geometry.damage.chip import loaded_side
 from ..geometry.damage.kinds import why_wide
 from ..geometry.mesh.outline import stations
 from ..geometry.mesh.section_mesh import section
@@ -65,7 +66,7 @@ def loaded_phase(case):
     order = case.first_tooth
     if order is None:
         return 0.0
-    if any(case.missing):  # the pair behind a missing tooth carries alone, just before it leaves the path
+    if case.missing:  # the pair behind a missing tooth carries alone, just before it leaves the path
         return (case.pair.eps_alpha - 1) * 0.9 - order
     phases = -order + case.pair.eps_alpha * (np.arange(64) + 0.5) / 64
     curve = solve(replace(case, damage=None, supports=None), Solve("ritz", phases))
@@ -90,7 +91,7 @@ def stressed_gears(case, phase=0.0, refine=1.0):
     out = []
     rolls = candidates.roll_1[0], candidates.roll_2[0]
     mirrors, centres = (1, pair.outward), (0.0, pair.centre_2)
-    damage = tuple(zip(case.cracks, case.missing, strict=True))
+    damage = tuple(zip(case.cracks, case.broken, strict=True))
     gears = (pair.gear_1, pair.gear_2), materials, damage, rolls, pair.turn(nominal), centres, mirrors, (1, -1)
     for gear, material, hurt, roll, turn, centre, mirror, ahead in steps(zip(*gears, strict=True)):
         loads = {}
@@ -126,16 +127,17 @@ def _placed(mesh, moved, stress, material, turn, centre, mirror):
     return replace(field, root=float(field.mises[outline[low]].max()))
 
 
-def _loaded_gear(gear, material, loads, refine, cracks, missing):
+def _loaded_gear(gear, material, loads, refine, cracks, broken):
     """Mesh a gear for contacts ``{tooth: (roll, line load, half width)}`` and solve it."""
     edge = edge_lengths(gear, EDGES, refine)
     rolls, arcs = {}, {}
     for tooth, (roll, _, a) in loads.items():
-        top = arc_at(gear, gear.roll_a)
+        end = loaded_side(gear, broken, tooth)
+        top = arc_at(gear, end.roll_a)
         arcs[tooth] = min(arc_at(gear, roll), top - a)
-        rolls[tooth] = stations(gear, edge["flank"], patches=[(arcs[tooth] - 1.5 * a, arcs[tooth] + 1.5 * a, a / 6)])
+        rolls[tooth] = stations(end, edge["flank"], patches=[(arcs[tooth] - 1.5 * a, arcs[tooth] + 1.5 * a, a / 6)])
     sizes = {"fillet_size": edge["fillet"] / 2, "size": edge["near"] / 2, "far_size": edge["far"]}
-    mesh = section(gear, rolls, **sizes, cracks=cracks, missing=[one.tooth % gear.z for one in missing])
+    mesh = section(gear, rolls, **sizes, cracks=cracks, broken=broken)
     body = Body(mesh.mesh, material)
     force = 0.0
     for tooth, (_, line_load, a) in loads.items():

@@ -64,7 +64,7 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, size
     """
     if not spread > 0:
         raise ValueError(f"spread = {spread}, but it is a length to either side of the contact line: give spread > 0")
-    case.without_missing("a tooth with holes")
+    case.without_broken("a tooth with holes")
     pair, materials, face, cracks, pits = case.pair, case.materials, case.runs, case.cracks, case.pits
     which = [i for i in (0, 1) if cracks[i] or pits[i]] or [0]
     if len(which) > 1 or len(cracks[which[0]]) > 1:

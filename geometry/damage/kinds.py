@@ -1,10 +1,10 @@
 """All kinds of damage, and what is asked of them together; a new kind is a class and a word in `Damage`.
 
 Damage acts in two ways, `split`: a crack weakens the body it runs into; pits and spalls take contact away (and with it a
-little material, which plain sums and holes in meshes see). A missing tooth does both and is in neither part. Each kind has
-`tooth`, `through` (it is the same in every transverse section), `removes_contact`, `nouns` (one, several), `called` (what a
-tooth with it is), ``outline(gear)`` (a line that shows it in the section), ``told(gear)`` (it in words) and ``doubts(gear)`` (a
-warning, or nothing); what hollows have is in `hollow`.
+little material, which plain sums and holes in meshes see). Missing teeth and chipped tips are `BROKEN`: they do both and are in
+neither part. Each kind has `tooth`, `through` (it is the same in every transverse section), `removes_contact`, `nouns` (one,
+several), `called` (what a tooth with it is), ``outline(gear)`` (a line that shows it in the section), ``told(gear)`` (it in
+words) and ``doubts(gear)`` (a warning, or nothing); what hollows have is in `hollow`.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,12 +13,14 @@ from typing import Any, get_args
 
 from ..checks import by_gear
 from ..tooth.gear import Gear
+from .chip import Chip
 from .crack import Crack
 from .missing import MissingTooth
 from .pit import Pit
 from .spall import Spall
 
-Damage = Crack | Pit | Spall | MissingTooth
+Damage = Crack | Pit | Spall | MissingTooth | Chip
+BROKEN = (MissingTooth, Chip)
 NAMES = [kind.__name__ for kind in get_args(Damage)]
 
 

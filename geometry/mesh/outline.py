@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..damage.chip import chip_of
+from ..damage.missing import MissingTooth
+from ..tooth.gear import shortened
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, lengths, roll_at_arc, root_curve, root_half_angle
 
 NEAR = 3  # teeth beside the loaded ones that get the edge length `size`; those beyond get `far_size`
@@ -66,11 +69,15 @@ def doubled(values):
     return out
 
 
-def half(gear, roll, fillet_size, size, *, mark=None):
-    """Half a tooth with flank vertices at `roll`; `mark` is an arc of `root_curve` and the edge length there [mm]."""
+def half(gear, roll, fillet_size, size, *, mark=None, top=None):
+    """Half a tooth with flank vertices at `roll`; `mark` is an arc of `root_curve` and the edge length there [mm].
+
+    `top` are the pieces of `gearfe.geometry.damage.chip.Chip.top`, without a chip the tip circle.
+    """
     width = gear.half_thickness(gear.r_a) * gear.r_a
     corner = arc_at(gear, roll[-1]) - arc_at(gear, roll[-2])
     tip = doubled(spaced(0.0, width, size, [(width, width, min(corner, size))])) / gear.r_a
+    tip = (np.full(tip.size, gear.r_a), tip) if top is None else _chipped(top, min(size, fillet_size), corner)
     below, top = -gear.r_f * (math.pi / gear.z - root_half_angle(gear)), fillet_length(gear)
     if mark is None:
         parts = [np.linspace(top, below, max(2, round((top - below) / fillet_size)) + 1)]
@@ -79,14 +86,25 @@ def half(gear, roll, fillet_size, size, *, mark=None):
         bounds = [(mark[0], top), (below, mark[0])][: 2 if mark[0] - below > MERGED * gear.m_n else 1]
         parts = [spaced(a, b, fillet_size, fine)[::-1] for a, b in bounds]
     root = doubled(np.concatenate([parts[0], *[part[1:] for part in parts[1:]]]))
-    pieces = [(np.full(tip.size, gear.r_a), tip), flank(gear, doubled(roll[::-1])), root_curve(gear, root)]
+    pieces = [tip, flank(gear, doubled(roll[::-1])), root_curve(gear, root)]
     radius, angle = (np.concatenate([p[k][:-1] for p in pieces]) for k in (0, 1))
     ends = np.cumsum([p[0].size - 1 for p in pieces]) // 2
     marked = None if mark is None else int(ends[1] + parts[0].size - 1)
     return Half(radius, angle, ends[0] + np.arange(roll.size), ends[1] + np.arange(root.size // 2 + 1), marked)
 
 
-def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None, missing=()):
+def _chipped(top, size, corner):
+    """Radius and angle along the pieces of a chipped tip, to the flank."""
+    points = [np.zeros((2, 0))]
+    for k, (length, place) in enumerate(top):
+        last = k == len(top) - 1
+        fine = [(length, length, min(corner, size, length))] if last else []
+        points.append(place(doubled(spaced(0.0, length, size, fine)) / length)[:, : None if last else -1])
+    x, y = np.hstack(points)
+    return np.hypot(x, y), np.arctan2(x, y)
+
+
+def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None, broken=()):
     """All teeth clockwise, starting at the middle of tooth 0's tip.
 
     Parameters
@@ -100,8 +118,8 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None,
         Real teeth around each of `rolls`; the others become root circle.
     marks : dict of (int, str) to (float, float)
         Crack starts: tooth and side to arc and edge length [mm].
-    missing : sequence of int
-        Teeth that become root circle (0 <= tooth < z).
+    broken : sequence of (MissingTooth or Chip)
+        Teeth that become root circle, or lose their tips; their loaded flanks end where their `rolls` end.
 
     Returns
     -------
@@ -112,7 +130,7 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None,
     starts : dict of (int, str) to int
         Vertex numbers of the marks.
     """
-    marks = marks or {}
+    marks, missing = marks or {}, {one.tooth % gear.z for one in broken if isinstance(one, MissingTooth)}
     plain, coarse, far = (
         half(gear, stations(gear, s), f, s) for s, f in ((size, fillet_size), (size, size), (far_size, far_size))
     )
@@ -124,6 +142,11 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None,
         distance = min(abs((tooth - k + gear.z // 2) % gear.z - gear.z // 2) for k in rolls)
         if tooth in missing or (teeth is not None and distance > teeth // 2):
             return gone
+        chip = chip_of(gear, broken, tooth)
+        if chip is not None:
+            given = rolls.get(tooth) if side == "loaded" else None
+            roll = stations(shortened(gear, chip.end_roll(gear, side)), size) if given is None else given
+            return half(gear, roll, fillet_size, size, mark=marks.get((tooth, side)), top=chip.top(gear, side))
         if (tooth, side) in marks or (distance == 0 and side == "loaded"):
             roll = rolls[tooth] if side == "loaded" and tooth in rolls else stations(gear, size)
             return half(gear, roll, fillet_size, size, mark=marks.get((tooth, side)))

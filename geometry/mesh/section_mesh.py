@@ -47,7 +47,7 @@ class Section:
     seams: tuple = ()
 
 
-def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), missing=()):
+def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), broken=()):
     """Mesh the whole section of `gear`, all teeth and the true rim.
 
     Parameters
@@ -67,8 +67,8 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), 
         (0.3 % in double contact with 5 teeth). Default: all teeth.
     cracks : sequence of Crack
         Their `tooth` is the number used in `rolls`.
-    missing : sequence of int
-        Missing teeth, in the same numbers.
+    broken : sequence of (MissingTooth or Chip)
+        Missing teeth and chipped tips, in the same numbers.
 
     Returns
     -------
@@ -92,7 +92,7 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), 
             marks.setdefault((crack.tooth % gear.z, opposite), (marks[place][0], min(fillet_size, left / 4)))
             tips[place] = min(tips[place], left / 8)
     rim, flanks, fillets, starts = outline(
-        gear, rolls, fillet_size=fillet_size, size=size, far_size=far_size, teeth=teeth, marks=marks, missing=missing
+        gear, rolls, fillet_size=fillet_size, size=size, far_size=far_size, teeth=teeth, marks=marks, broken=broken
     )
     chains = []
     for crack, (place, corners) in zip(cracks, paths.items(), strict=True):

@@ -5,11 +5,14 @@ The outline is exact: every boundary edge carries how its curve departs from its
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from ..damage.crack import meshed_path, start_arc
+from ..damage.missing import MissingTooth
 from ..damage.seam import open_seam
+from ..tooth.gear import shortened
 from ..tooth.profile import arc_at, cartesian, fillet, fillet_angle, fillet_length, flank, form_point, roll_at_arc, root_curve
 from ..tooth.profile import root_half_angle as root_half
 from .mesher import triangulate
@@ -83,8 +86,8 @@ class Sector:
         object.__setattr__(self, "edge_bulges", out)
 
 
-def sector(gear, cracks=(), *, missing=False, refine=1.0, sizes=None):
-    """`Sector` of a gear with the cracks of its tooth; of a `missing` tooth the root circle is left.
+def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None):
+    """`Sector` of a gear with the cracks of its tooth, which may be `broken`: a `MissingTooth` or a `Chip`.
 
     `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. ValueError if `refine` is not positive,
     RuntimeError if no valid triangles were found.
@@ -92,17 +95,17 @@ def sector(gear, cracks=(), *, missing=False, refine=1.0, sizes=None):
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default")
     for finer in (1.0, 1.4, 2.0, 2.8):
-        made = _attempt(gear, cracks, missing, SIZES | (sizes or {}), refine, finer)
+        made = _attempt(gear, cracks, broken, SIZES | (sizes or {}), refine, finer)
         if made is not None:
             return made
     raise RuntimeError(f"z = {gear.z}: no valid coarse triangles for this tooth; use method = 'fe'")
 
 
-def _attempt(gear, cracks, missing, sizes, refine, finer):
+def _attempt(gear, cracks, broken, sizes, refine, finer):
     """A sector with all edges but those of the sides, which must fit other sectors, divided by `finer`; None if it folds."""
     size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
     size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
-    pieces = _pieces(gear, size, cracks, missing)
+    pieces = _pieces(gear, size, cracks, broken)
     first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])
     count = first[-1]
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
@@ -152,9 +155,9 @@ def _twice_areas(points, triangles):
     return x * v - y * u
 
 
-def _pieces(gear, size, cracks, missing=False):
+def _pieces(gear, size, cracks, broken=None):
     """The outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
-    pitch, half = math.pi / gear.z, gear.half_thickness(gear.r_a)
+    pitch = math.pi / gear.z
     marks = {crack.side: start_arc(gear, crack) for crack in cracks}
     tips = [(meshed_path(gear, crack)[:, -1], crack.side) for crack in cracks]
     thick = abs(gear.r_f - gear.held)
@@ -170,14 +173,16 @@ def _pieces(gear, size, cracks, missing=False):
     bottom[-1] = -pitch
     out = [("left", side[::-1], lambda r: cartesian(r, -pitch))]
     ends = [("right", side, lambda r: cartesian(r, pitch)), ("held", bottom, lambda a: cartesian(gear.held, a))]
-    if missing:
+    if isinstance(broken, MissingTooth):
         count = max(4, math.ceil(2 * pitch * gear.r_f / size["root"]))
         return [*out, ("root", np.linspace(-pitch, pitch, count + 1), lambda a: cartesian(gear.r_f, a)), *ends]
     roots = {name: _roots(gear, size, marks.get(name), tips, name) for name in ("unloaded", "loaded")}
-    back = _flank(gear, size["back"], size["kink"], max(2 * half * gear.r_a, size["corner"]))
-    front = _flank(gear, size["flank"], size["kink"], size["corner"])
-    width = half * gear.r_a
+    ends_at = {side: gear if broken is None else shortened(gear, broken.end_roll(gear, side)) for side in roots}
+    width = gear.half_thickness(gear.r_a) * gear.r_a
+    back = _flank(ends_at["unloaded"], size["back"], size["kink"], max(2 * width, size["corner"]))
+    front = _flank(ends_at["loaded"], size["flank"], size["kink"], size["corner"])
     tip = spaced(-width, width, size["root"], [(width, width, min(size["corner"], width))], 1, GROWTH) / gear.r_a
+    top = [("tip", tip, lambda a: cartesian(gear.r_a, a))] if broken is None else _broken_top(gear, size, broken)
     for name, sign in (("unloaded", -1), ("loaded", 1)):
         arc, phi = roots[name]
         part = [
@@ -187,11 +192,28 @@ def _pieces(gear, size, cracks, missing=False):
         part = [piece for piece in part if piece[1].size > 1]
         if sign < 0:
             out += [*part, ("back", back, lambda r: _flank_points(gear, r, -1))]
-            out.append(("tip", tip, lambda a: cartesian(gear.r_a, a)))
+            out += top
         else:
             out.append(("flank", front[::-1], lambda r: _flank_points(gear, r, 1)))
             out += [(kind, params[::-1], place) for kind, params, place in part[::-1]]
     return out + ends
+
+
+def _broken_top(gear, size, chip):
+    """Pieces of a chipped tip from the unloaded flank to the loaded one."""
+    out = []
+    for side, sign in (("unloaded", -1), ("loaded", 1)):
+        pieces = chip.top(gear, side)
+        for k, (length, place) in enumerate(pieces[::sign]):
+            corner = [(length, length, min(size["corner"], length))] if sign > 0 and k == len(pieces) - 1 else []
+            at = spaced(0.0, length, size["root"], corner, 1, GROWTH) / length
+            out.append(("tip", at if sign > 0 else at[::-1], partial(_mirrored, place, sign)))
+    return out
+
+
+def _mirrored(place, sign, at):
+    points = place(at)
+    return points * np.reshape([sign, 1], (2,) + (1,) * (points.ndim - 1))
 
 
 def _flank_points(gear, roll, sign):

@@ -2,6 +2,8 @@
 
 import math
 import warnings
+from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
 from numbers import Real
 
@@ -9,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..aliases import Floats
-from ..tooth.gear import Gear
+from ..tooth.gear import Gear, shortened
 from ..tooth.involute import inv, inverse_inv
 from ..tooth.profile import flank
 from .interference import overlap, radial_assembly
@@ -250,6 +252,18 @@ class GearPair:
         turn_1 = np.arctan2(x, y) - flank(self.gear_1, nominal)[1]
         turn_2 = np.arctan2(x, y - self.centre_2) - self.outward * flank(self.gear_2, self.mate_roll(nominal))[1]
         return turn_1, turn_2
+
+
+def with_tips(pair: GearPair, rolls: Sequence[float | None]) -> GearPair:
+    """The pair of teeth whose flanks end at these roll lengths of pinion and wheel [mm], None where they are whole.
+
+    Its path may be shorter than a base pitch, because other teeth are whole.
+    """
+    out = copy(pair)
+    for name, roll in zip(("gear_1", "gear_2"), rolls, strict=True):
+        if roll is not None:
+            object.__setattr__(out, name, shortened(getattr(pair, name), roll))
+    return out
 
 
 def free_centre_distance(one: Gear, two: Gear) -> float:

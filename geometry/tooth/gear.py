@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 
 from ..checks import is_number
@@ -259,3 +259,11 @@ class Gear:
     def half_thickness(self, radius: float) -> float:
         """Half angle of the involute tooth [rad] at `radius` [mm], r_b <= radius (ISO 21771:2007, eq. 33)."""
         return self.base_half_angle - self.outward * inv(math.acos(min(1.0, self.r_b / radius)))
+
+
+def shortened(gear: Gear, roll: float) -> Gear:
+    """The gear with tips at a roll length [mm]: its flanks end there."""
+    if roll == gear.roll_a:
+        return gear
+    lost = gear.outward * (gear.r_a - math.hypot(roll, gear.r_b))
+    return replace(gear, addendum=gear.addendum - lost / gear.m_n)

@@ -15,7 +15,7 @@ from gearfe.scene.load import scene_names
 def everything(tmp_path):
     text = gf.new_scene(tmp_path / "my.toml").read_text()
     text = re.sub(
-        r"^#\[\[missing_tooth.*?\n\n", "\n", text, flags=re.M | re.S
+        r"^#\[\[(missing_tooth|chip).*?\n\n", "\n", text, flags=re.M | re.S
     )  # with flanks that change along the width no method has it
     (tmp_path / "all.toml").write_text(re.sub(r"^#(?=[\w\[])", "", text, flags=re.M))
     return tmp_path / "all.toml"

@@ -31,6 +31,7 @@ def scene(flank=None, machine=None, **damage):
         "flank": {} if flank is None else {flank["gear"]: flank},
         "crack": [{"case": "cracked", "angle_deg": 60.0, "length_mm": 2.0} | row for row in damage.get("crack", ())],
         "missing_tooth": [{"case": "missing"} | row for row in damage.get("missing_tooth", ())],
+        "chip": [{"case": "chipped", "depth_mm": 1.5} | row for row in damage.get("chip", ())],
     }
     return scene_of("pair.toml", tables)
 
@@ -192,6 +193,17 @@ def test_models_that_cannot_have_an_input_say_why():
 def impact():
     """Machine table with the impact law."""
     return scene(machine={"contact": "impact"}).machine
+
+
+@pytest.mark.parametrize(("gear", "tooth"), [("pinion", 6), ("wheel", 0)])
+def test_a_chipped_tip_shows_at_the_turns_of_its_gear(gear, tooth):
+    """Lines at the frequency of that gear around the mesh frequency, and none of the other gear."""
+    machine = gf.build_machine(scene(chip=[{"gear": gear, "tooth": tooth}]), "chipped", phases=32)
+    other = {"pinion": "wheel", "wheel": "pinion"}[gear]
+    own = amplitude(machine, MESH - TURNS[gear], MESH + TURNS[gear])
+    assert own.min() > 0.5
+    assert amplitude(machine, MESH - TURNS[other], MESH + TURNS[other]).max() < 0.1 * own.min()
+    assert [(one.gear, one.tooth) for one in machine.faults] == [(gear, tooth)]
 
 
 @pytest.mark.parametrize(("gear", "tooth"), [("pinion", 0), ("wheel", 23)])

@@ -74,6 +74,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
         },
     ],
     "missing_tooth": [{"case": "missing", "gear": "sun", "tooth": 3}],
+    "chip": [{"case": "chipped", "gear": "sun", "tooth": 3, "pair": "stage", "depth_mm": 0.5, "angle_deg": 60.0}],
     "spall": [
         {
             "case": "spalled", "gear": "sun", "radius_mm": 20.8, "z_mm": 10.0, "sides_mm": [1.0, 4.0], "depth_mm": 0.2,
@@ -137,7 +138,7 @@ def vocabulary():
 def test_the_whole_scene_has_every_key():
     """Those left out exclude another, and stand in `ALSO`."""
     scene = scene_of("whole.toml", copy.deepcopy(WHOLE_SCENE))
-    assert set(scene.pair().damage) == {"cracked", "missing", "pitted", "spalled"}
+    assert set(scene.pair().damage) == {"chipped", "cracked", "missing", "pitted", "spalled"}
     keys = {part for path in places(WHOLE_SCENE) for part in path if isinstance(part, str)}
     assert vocabulary() - keys == {path[-1] for path, _ in ALSO}
 

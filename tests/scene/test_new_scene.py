@@ -85,7 +85,7 @@ def test_all_that_a_scene_can_say_stands_in_it_and_holds(options, tmp_path):
     (tmp_path / "all.toml").write_text(re.sub(r"^#(?=[\w\[])", "", text, flags=re.M))
     scene = gf.load_scene(tmp_path / "all.toml")
     chosen = scene.pair()
-    assert set(chosen.damage) == {"cracked", "cracked_part", "pitted", "spalled", "missing"}
+    assert set(chosen.damage) == {"cracked", "cracked_part", "pitted", "spalled", "missing", "chipped"}
     assert set(chosen.supports) == {"pinion", "wheel"}
     assert chosen.flanks["pinion"].tip_relief == pytest.approx(
         1e-3 * options.get("tip_relief_um", 10 * options.get("module", 2.0))

@@ -37,6 +37,7 @@ CASES = {
     "pitch of one, a crack in another": {"flanks": {"pinion": with_pitch(11)}, "damage": {"pinion": [crack(9)]}},
     "pitch of both gears": {"flanks": {"pinion": with_pitch(11), "wheel": with_pitch(13)}},
     "a missing tooth of the wheel": {"damage": {"wheel": [gf.MissingTooth(tooth=7)]}},
+    "a chip of the pinion": {"damage": {"pinion": [gf.Chip(depth=0.8, tooth=4)]}},
     "an eccentric pinion, a cracked wheel": {
         "flanks": {"pinion": gf.Flank(eccentricity=0.01, eccentric_tooth=2.0)},
         "damage": {"wheel": [crack(1)]},

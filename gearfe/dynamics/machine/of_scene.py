@@ -84,7 +84,7 @@ def build_machine(
     if not len(loads) or not all(math.isfinite(multiple) and multiple > 0 for multiple in loads):
         raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")
     play = scene.machine.get("backlash_um")
-    if not play and any(any(pair.case(case).missing) for pair in scene.pairs.values() if case in pair.damage):
+    if not play and any(pair.case(case).missing for pair in scene.pairs.values() if case in pair.damage):
         raise ValueError(
             "[machine] backlash_um: a missing tooth lets the contact open, so that the machine needs a backlash; give one, "
             "such as backlash_um = 100.0"

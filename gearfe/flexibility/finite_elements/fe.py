@@ -21,12 +21,13 @@ import numpy as np
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 from scipy.sparse import coo_matrix, hstack
 
+from ...geometry.damage.chip import loaded_side
 from ...geometry.mesh.outline import GROWTH, stations
 from ...geometry.mesh.section_mesh import section
 from ...geometry.tooth.profile import arc_at, flank_normal
 from ..hats import SPAN, hat_knots, wider
 from ..hertz import half_plane, hat_logarithm
-from ..plane import BELOW, TILT, Flexibility, SeamFaces, leaning, reached_teeth
+from ..plane import BELOW, TILT, Flexibility, SeamFaces, leaning, missing_teeth, reached_teeth
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
 
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
@@ -105,20 +106,24 @@ def turned(vectors, angle):
     return np.array([cos * vectors[0] + sin * vectors[1], cos * vectors[1] - sin * vectors[0]])
 
 
-def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), missing=()):
+def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), broken=()):
     """Section of `gear` meshed for loads on the teeth `loaded` and for reading displacements on the teeth `read`.
 
     `refine` divides every edge length of `EDGES`. It is the section of the whole gear, or of a number of `teeth` on a plain rim,
-    with `cracks` and `missing` teeth, as in `gearfe.geometry.mesh.section_mesh.section`.
+    with `cracks` and `broken` teeth, as in `gearfe.geometry.mesh.section_mesh.section`.
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
     edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
-    longest = abs(arc_at(gear, gear.roll_a) - arc_at(gear, gear.roll_f)) / (8 * SPAN)  # a bicubic spline needs hats enough
     even = {"span": SPAN, "growth": GROWTH / refine}  # or the graded ends would be equally coarse at any resolution
-    fine = stations(gear, min(edge["flank"], longest), tip=edge["tip"], low=edge["low"], **even)
-    coarse = stations(gear, min(edge["read"], longest), tip=0.025 * gear.m_n / refine, **even)
-    rolls = dict.fromkeys(loaded, fine) | dict.fromkeys(read, coarse)
+
+    def vertices(tooth, size, **ends):
+        end = loaded_side(gear, broken, tooth)
+        longest = abs(arc_at(end, end.roll_a) - arc_at(end, end.roll_f)) / (8 * SPAN)  # a bicubic spline needs hats enough
+        return stations(end, min(edge[size], longest), **ends, **even)
+
+    rolls = {tooth: vertices(tooth, "flank", tip=edge["tip"], low=edge["low"]) for tooth in loaded}
+    rolls |= {tooth: vertices(tooth, "read", tip=0.025 * gear.m_n / refine) for tooth in read}
     return section(
         gear,
         rolls,
@@ -127,7 +132,7 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), 
         far_size=edge["far"],
         teeth=teeth,
         cracks=cracks,
-        missing=missing,
+        broken=broken,
     )
 
 
@@ -187,16 +192,16 @@ def _between(body, loads):
 
 
 def damaged_flexibility(
-    gear, material, cracks, healthy, *, missing=(), neighbours=1, state="plane strain", refine=1.0, teeth=None
+    gear, material, cracks, healthy, *, broken=(), neighbours=1, state="plane strain", refine=1.0, teeth=None
 ):
-    """`Flexibility` of a gear with root cracks and `missing` teeth: every tooth of `reached_teeth` is loaded and read.
+    """`Flexibility` of a gear with root cracks and `broken` teeth: every tooth of `reached_teeth` is loaded and read.
 
     Their `tooth` counts to the loaded side of this gear; `healthy` is that of the same gear without cracks, for the teeth further
     away. The other arguments are as of `flexibility`.
     """
-    gone = tuple(tooth % gear.z for tooth in missing)
-    solved = [tooth for tooth in reached_teeth(gear, cracks, missing, neighbours) if tooth not in gone]
-    mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks, missing=gone)
+    gone = missing_teeth(gear, broken)
+    solved = [tooth for tooth in reached_teeth(gear, (*cracks, *broken), neighbours) if tooth not in gone]
+    mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks, broken=broken)
     body = Body(mesh.mesh, material, state=state)
     on = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
     faces = _face_columns(mesh)
@@ -221,8 +226,15 @@ def damaged_flexibility(
             elif (other - tooth) % gear.z <= gear.z // 2:
                 far[tooth, other] = RectBivariateSpline(on[tooth].arc, on[other].arc, glued)
     seam = SeamFaces({t: CubicSpline(on[t].arc, opening[t].T) for t in solved}, apart, stiffness) if cracks else None
-    limits = on[solved[0]].arc[0], on[solved[0]].arc[-1]
-    return Flexibility(gear, near, far, blocks, limits, refine, faces.shape[0], healthy, seam, basis(on[solved[0]]), leans, gone)
+    tips = {
+        tooth: (float(mesh.roll[tooth][-1]), (on[tooth].arc[0], on[tooth].arc[-1]), basis(on[tooth]))
+        for tooth in solved
+        if loaded_side(gear, broken, tooth) is not gear
+    }
+    whole = next(tooth for tooth in solved if tooth not in tips)
+    limits = on[whole].arc[0], on[whole].arc[-1]
+    options = {"basis": basis(on[whole]), "leans": leans, "missing": gone, "tips": tips}
+    return Flexibility(gear, near, far, blocks, limits, refine, faces.shape[0], healthy, seam, **options)
 
 
 def _face_columns(mesh):

@@ -39,6 +39,7 @@ FAULTS = {
     "crack": Fault("crack.level", "-"),
     "pits": Fault("pits.axes_mm", "mm"),
     "missing_tooth": Fault("missing_tooth.", "-"),
+    "chip": Fault("chip.depth_mm", "mm"),
     "runout": Fault("machine.runout_um", "um"),
     "misplaced": Fault("machine.misplaced_um", "um"),
 }

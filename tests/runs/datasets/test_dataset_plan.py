@@ -39,7 +39,10 @@ def changed(**values):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (changed(fault__0__kind="rust"), "kind = 'rust', but it must be one of crack, pits, missing_tooth, runout, misplaced"),
+        (
+            changed(fault__0__kind="rust"),
+            "kind = 'rust', but it must be one of crack, pits, missing_tooth, chip, runout, misplaced",
+        ),
         (changed(fault__0__severity=[0.2, 1.2]), r"severity = \[0\.2, 1\.2\], but each number must lie between 0\.01 and 0\.9"),
         (changed(fault__0__severity=[0.2, 0.2]), "give different numbers"),
         (changed(fault__0__gear="moon"), "no such gear|only the teeth"),

@@ -11,11 +11,13 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 
+from ....geometry.damage.chip import loaded_side
 from ....geometry.damage.crack import check_through
+from ....geometry.damage.missing import MissingTooth
 from ....geometry.kept import keeping
 from ....geometry.mesh.sector import sector
 from ....geometry.tooth.profile import arc_at, roll_at_arc
-from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning, reached_teeth
+from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning, missing_teeth, reached_teeth
 from ...solved import solved_gears
 from .join import join
 from .panel import SectionModel, check_order, panel
@@ -26,7 +28,7 @@ HATS = 2  # how many times shorter the hats at corners are than those of `fe`
 KNOTS = 48  # of the splines that carry their polynomial
 
 
-def flexibility(gear, material, cracks=(), *, missing=(), neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
+def flexibility(gear, material, cracks=(), *, broken=(), neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
     """`Flexibility` of a gear by the energy model.
 
     Parameters
@@ -35,8 +37,8 @@ def flexibility(gear, material, cracks=(), *, missing=(), neighbours=1, state="p
     material : Material
     cracks : tuple of Crack
         Their `tooth` counts to the loaded side of this gear.
-    missing : tuple of int
-        Missing teeth, in the same numbers.
+    broken : tuple of (MissingTooth or Chip)
+        Missing teeth and chipped tips, in the same numbers.
     neighbours : int
         How many following teeth may carry load at the same time.
     state : {"plane strain", "plane stress"}
@@ -55,12 +57,12 @@ def flexibility(gear, material, cracks=(), *, missing=(), neighbours=1, state="p
     check_order(order)
     check_through(cracks, "the energy model of the section")
     model = SectionModel(gear, material, state, int(order), float(refine))
-    return _flexibility(model, tuple(cracks), tuple(missing), neighbours, solved_gears(cache))
+    return _flexibility(model, tuple(cracks), tuple(broken), neighbours, solved_gears(cache))
 
 
-def _flexibility(model, cracks, missing, neighbours, cache):
-    solve = partial(_damaged, model, cracks, missing) if cracks or missing else partial(_healthy, model)
-    return cache.get(("ritz", model, cracks, missing, neighbours), partial(solve, neighbours, cache))
+def _flexibility(model, cracks, broken, neighbours, cache):
+    solve = partial(_damaged, model, cracks, broken) if cracks or broken else partial(_healthy, model)
+    return cache.get(("ritz", model, cracks, broken, neighbours), partial(solve, neighbours, cache))
 
 
 def _healthy(model, neighbours, cache):
@@ -75,14 +77,15 @@ def _healthy(model, neighbours, cache):
     )
 
 
-def _damaged(model, cracks, missing, neighbours, cache):
+def _damaged(model, cracks, broken, neighbours, cache):
     """Flexibility with damage; that without serves the teeth further away than `reached`."""
     gear = model.gear
     healthy = _flexibility(model, (), (), neighbours, cache)
-    gone = {tooth % gear.z for tooth in missing}
-    reached = reached_teeth(gear, cracks, missing, neighbours)
+    gone, hurt = missing_teeth(gear, broken), {one.tooth % gear.z: one for one in broken}
+    reached = reached_teeth(gear, (*cracks, *broken), neighbours)
+    ends = {tooth: loaded_side(gear, broken, tooth) for tooth in reached}
     by_tooth = {tooth: tuple(crack for crack in cracks if crack.tooth % gear.z == tooth) for tooth in reached}
-    panels = {tooth: loaded_sector(model, own, cache, missing=tooth in gone) for tooth, own in by_tooth.items()}
+    panels = {tooth: loaded_sector(model, own, cache, broken=hurt.get(tooth)) for tooth, own in by_tooth.items()}
     influence, opening = join(gear, panels, loaded_sector(model, (), cache))
     teeth = [tooth for tooth in reached if tooth not in gone]
     between = opening["influence"]
@@ -92,30 +95,31 @@ def _damaged(model, cracks, missing, neighbours, cache):
         for j in teeth:
             glued = influence[i, j] - opening[i].T @ stiffness @ opening[j]
             if i == j:
-                near[i], within[i], leans[i] = _own_tooth(gear, glued)
+                near[i], within[i], leans[i] = _own_tooth(ends[i], glued)
             elif (j - i) % gear.z <= gear.z // 2:
-                far[i, j] = _spline(gear, glued)
-    arcs, matrix = _knots(gear)
-    seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t][:, :PLACES].T) for t in teeth}, between, stiffness)
+                far[i, j] = _spline(ends[i], glued, ends[j])
+    seam = SeamFaces({t: _opening(ends[t], opening[t]) for t in teeth}, between, stiffness)
     unknowns, fine = sum(p.unknowns for p in panels.values()), HATS * model.refine
     seam = seam if cracks else None
-    return Flexibility(gear, near, far, within, _limits(gear), fine, unknowns, healthy, seam, _basis(gear), leans, tuple(gone))
+    tips = {t: (end.roll_a, _limits(end), _basis(end)) for t, end in ends.items() if end is not gear}
+    return Flexibility(gear, near, far, within, _limits(gear), fine, unknowns, healthy, seam, _basis(gear), leans, gone, tips)
 
 
-def loaded_sector(model, cracks, cache=True, *, missing=False):
+def loaded_sector(model, cracks, cache=True, *, broken=None):
     """`Panel` of a sector with `cracks` under the loads at `_places`, and under eight tilted ones: at `_leans`, both ways.
 
-    A `missing` tooth has no loads.
+    The tooth may be `broken`; a missing one has no loads.
     """
     gear = model.gear
+    end, missing = loaded_side(gear, [broken], broken.tooth if broken else 0), isinstance(broken, MissingTooth)
 
     def solve():
-        rolls = np.append(_places(gear), np.repeat(roll_at_arc(gear, _leans(gear)), 2))
+        rolls = np.append(_places(end), np.repeat(roll_at_arc(gear, _leans(end)), 2))
         tilt = np.append(np.zeros(PLACES), [TILT, -TILT] * 4)
         loads = slice(0 if missing else None)
-        return panel(model, sector(gear, cracks, missing=missing, refine=model.refine), rolls[loads], tilt[loads])
+        return panel(model, sector(gear, cracks, broken=broken, refine=model.refine), rolls[loads], tilt[loads])
 
-    return solved_gears(cache).get(("ritz sector", model, cracks, missing), solve)
+    return solved_gears(cache).get(("ritz sector", model, cracks, broken), solve)
 
 
 def _limits(gear):
@@ -179,9 +183,15 @@ def _between():
     return _carry(np.linspace(-1, 1, KNOTS))
 
 
-def _spline(gear, influence):
+def _spline(gear, influence, other=None):
+    """Surface over the arcs of two flanks, that of the `other` tooth on a gear with its own tip."""
     arcs, matrix = _knots(gear)
-    return RectBivariateSpline(arcs, arcs, matrix @ influence[:PLACES, :PLACES] @ matrix.T)
+    return RectBivariateSpline(arcs, _knots(other or gear)[0], matrix @ influence[:PLACES, :PLACES] @ matrix.T)
+
+
+def _opening(gear, opening):
+    arcs, matrix = _knots(gear)
+    return CubicSpline(arcs, matrix @ opening[:, :PLACES].T)
 
 
 @keeping(64)

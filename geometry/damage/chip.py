@@ -1,0 +1,180 @@
+"""`Chip`: a tip that has broken off along a plane."""
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from ..tooth.gear import Gear, shortened
+from ..tooth.profile import arc_at, cartesian, flank
+from .given import finite, tooth_and_side
+
+LEFT = 0.5  # arc of the flank that a chip leaves, at least [m_n]
+FLAT = 1e-3  # least angle between the cut and the chord of the flank that it takes off [rad]
+
+Piece = tuple[float, Callable[[NDArray[np.float64]], NDArray[np.float64]]]
+
+
+@dataclass(frozen=True, slots=True)
+class Chip:
+    r"""A chipped tip: a plane parallel to the tooth cuts off tip and edge through the whole face width.
+
+    The plane leaves a new corner on one flank. That corner carries load as a tip corner does::
+
+              ____ tip circle
+             /   /|
+            /   / |  depth
+           /   /__|__ corner on the flank of `side`
+          /  angle \
+         /          \
+
+    Parameters
+    ----------
+    depth : float
+        Height of the tooth that is lost on the flank, from the tip circle to the corner, along the radius [mm].
+    angle : float
+        Angle of the plane from the tooth's centre line [rad]. At pi/2 the whole tip is cut off.
+    tooth : int
+        Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0.
+    side : {"loaded", "unloaded"}
+        Flank that ends at the corner.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite or out of range.
+
+    >>> Chip(depth=1.0).told(Gear(z=21, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=7.4))
+    'chip 1 mm deep at 45 degrees'
+    """
+
+    depth: float
+    angle: float = math.pi / 4
+    tooth: int = 0
+    side: str = "loaded"
+
+    nouns: ClassVar[tuple[str, str]] = ("chip", "chips")
+    called: ClassVar[str] = "chipped"
+    removes_contact: ClassVar[None] = None  # the flank is shorter, with a corner at its end
+    through: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        """Check all numbers."""
+        for name in ("depth", "angle"):
+            object.__setattr__(self, name, finite("chip", name, getattr(self, name)))
+        if not self.depth > 0:
+            raise ValueError(f"depth = {self.depth}, but it must be positive [mm]")
+        if not 0 < self.angle <= math.pi / 2:
+            raise ValueError(f"angle = {self.angle} rad, but it must lie between 0 and pi/2; angles are radians in Python")
+        object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
+
+    def cut(self, gear: Gear) -> tuple[float, str, float]:
+        """Roll length of the corner [mm]; where the cut ends: on the tip at an angle [rad], or on the flank at a roll length.
+
+        Angles are positive towards the flank of the corner. ValueError if there is no such cut.
+        """
+        radius = gear.r_a - gear.outward * self.depth
+        roll = math.sqrt(max(radius**2 - gear.r_b**2, 0.0))
+        left = float(arc_at(gear, roll) - arc_at(gear, gear.roll_f))
+        if radius < gear.r_b or left < LEFT * gear.m_n:
+            raise ValueError(
+                f"chip depth {self.depth:g} mm leaves less than {LEFT:g} modules of the flank of z = {gear.z}: give a "
+                "smaller depth"
+            )
+        (x, y), half = cartesian(*flank(gear, roll)), gear.half_thickness(gear.r_a)
+        edge = gear.r_a * np.array([math.sin(half), math.cos(half)])
+        chord = math.atan2(x - edge[0], gear.outward * (edge[1] - y))
+        if self.angle < chord + FLAT:
+            raise ValueError(
+                f"chip angle {math.degrees(self.angle):.4g} degrees, but its cut lies in the tooth of z = {gear.z} only above "
+                f"{math.degrees(chord):.4g} degrees: give a larger angle"
+            )
+        along = np.array([-math.sin(self.angle), gear.outward * math.cos(self.angle)])
+        middle, rest = x * along[0] + y * along[1], x * x + y * y - gear.r_a**2
+        reach = middle**2 - rest
+        if reach >= 0:
+            far = -middle + gear.outward * math.sqrt(reach)
+            angle = math.atan2(x + far * along[0], y + far * along[1])
+            if far > 0 and angle > -half:
+                return roll, "tip", angle
+
+        def off(other):
+            there = cartesian(*flank(gear, other)) * np.array([-1, 1]) - np.array([x, y])
+            return float(there[0] * along[1] - there[1] * along[0])
+
+        if abs(off(roll)) < 1e-12 * gear.m_n:
+            return roll, "flank", roll
+        return roll, "flank", float(brentq(off, roll, gear.roll_a))
+
+    def end_roll(self, gear: Gear, side: str) -> float:
+        """Roll length [mm] at which the flank of a side ends."""
+        roll, where, other = self.cut(gear)
+        if side == self.side:
+            return roll
+        return other if where == "flank" else gear.roll_a
+
+    def top(self, gear: Gear, side: str) -> list[Piece]:
+        """Outline from the tooth's centre line to the flank of a side: length [mm], and points ``(2, ...)`` over [0, 1].
+
+        The flank is at positive x.
+        """
+        roll, where, other = self.cut(gear)
+        half, own = gear.half_thickness(gear.r_a), side == self.side
+        corner = cartesian(*flank(gear, roll))
+        ahead = np.array([-math.sin(self.angle), gear.outward * math.cos(self.angle)])
+        middle = corner + ahead * corner[0] / math.sin(self.angle)
+        middle[0] = 0.0
+        sign = 1 if own else -1
+        if where == "flank":
+            return [_line(middle, corner if own else cartesian(*flank(gear, other)))]
+        tip = cartesian(gear.r_a, sign * other)
+        if sign * other >= 0 and own:
+            return [_arc(gear.r_a, 0.0, other), _line(tip, corner)] if other > 0 else [_line(tip, corner)]
+        if own:
+            return [_line(middle, corner)]
+        return [_arc(gear.r_a, 0.0, half)] if other >= 0 else [_line(middle, tip), _arc(gear.r_a, -other, half)]
+
+    def outline(self, gear: Gear) -> NDArray[np.float64]:
+        """Line ``(2, n)`` [mm] of the cut, in the frame of its tooth."""
+        roll, where, other = self.cut(gear)
+        ends = cartesian(*flank(gear, roll)), cartesian(*flank(gear, other)) * [-1, 1]
+        if where == "tip":
+            ends = ends[0], cartesian(gear.r_a, other)
+        return np.array(ends).T * ([[1], [1]] if self.side == "loaded" else [[-1], [1]])
+
+    def told(self, gear: Gear) -> str:
+        """Return it in words."""
+        return f"chip {self.depth:.3g} mm deep at {math.degrees(self.angle):.3g} degrees"
+
+    def doubts(self, gear: Gear) -> str:
+        """Return no warning."""
+        return ""
+
+
+def _line(start, stop):
+    away = stop - start
+
+    def place(t):
+        shape = (2, *(1,) * np.ndim(t))
+        return start.reshape(shape) + away.reshape(shape) * t
+
+    return float(np.hypot(*away)), place
+
+
+def _arc(radius, first, last):
+    return radius * abs(last - first), lambda t: cartesian(radius, first + (last - first) * t)
+
+
+def chip_of(gear: Gear, broken: Iterable[Any], tooth: int) -> Chip | None:
+    """The chip of a tooth among damage; None if it has none."""
+    return next((one for one in broken if isinstance(one, Chip) and (one.tooth - tooth) % gear.z == 0), None)
+
+
+def loaded_side(gear: Gear, broken: Iterable[Any], tooth: int) -> Gear:
+    """The gear whose loaded flanks end where that of a tooth with such damage ends."""
+    chip = chip_of(gear, broken, tooth)
+    return gear if chip is None else shortened(gear, chip.end_roll(gear, "loaded"))

@@ -1,0 +1,143 @@
+"""A chipped tip: the new corner carries load, the tip beyond it does not, and what refuses it."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.geometry.damage.chip import Chip
+from gearfe.geometry.pair.gear_pair import with_tips
+from gearfe.geometry.tooth.gear import shortened
+from gearfe.strength.fields import stressed_gears
+
+RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
+PAIR = gf.GearPair(gf.Gear(z=17, r_bore=10.9, **RACK), gf.Gear(z=38, r_bore=26.6, **RACK))
+STEEL = gf.Material(E=206e3, nu=0.3)
+FORCE = 1669.3
+PHASES = np.array([-0.1, 0.05, 0.15, 0.3, 0.7, 1.1, 1.2, 1.3, 1.35, 1.45, 1.55, 1.62])
+
+
+def case(side="pinion", **chip):
+    return gf.Case(PAIR, FORCE, STEEL, damage={side: [gf.Chip(**{"depth": 1.0} | chip)]})
+
+
+HEALTHY = case().healthy
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("side", ["pinion", "wheel"])
+def test_both_methods_agree(side):
+    """Within their estimates, at the new corner too; the pair carries nothing where the tip is gone."""
+    ritz, fe, healthy = (
+        gf.solve(one, gf.Solve(method, PHASES, error=True))
+        for one, method in ((case(side), "ritz"), (case(side), "fe"), (HEALTHY, "ritz"))
+    )
+    assert (abs(ritz.k - fe.k) <= ritz.error + fe.error).all()
+    assert_allclose(ritz.k, fe.k, rtol=3e-3)
+    gone = PHASES > 1.4 if side == "pinion" else (PHASES > 0) & (PHASES < 0.1)
+    assert (1 - ritz.k[gone] / healthy.k[gone] > 0.2).all()
+    alike = (PHASES > 0.4) & (PHASES < 1.15)
+    assert_allclose(ritz.k[alike], healthy.k[alike], rtol=3e-4)
+
+
+@pytest.mark.parametrize(
+    ("angle", "side"), [(30, "loaded"), (60, "unloaded"), (75, "loaded"), (75, "unloaded"), (90, "unloaded")]
+)
+def test_cuts_at_any_angle(angle, side):
+    """Ends of the cut lie on the outline, and both methods agree for it."""
+    chip = Chip(depth=2.0, angle=math.radians(angle), side=side)
+    one = gf.Case(PAIR, FORCE, STEEL, damage={"pinion": [chip]})
+    gear, phases = PAIR.gear_1, np.array([0.3, 1.1, 1.3, 1.5])
+    start, stop = chip.outline(gear).T
+    assert np.hypot(*start) == pytest.approx(gear.r_a - 2.0)
+    fall = math.atan2(abs(stop[0] - start[0]), stop[1] - start[1])
+    assert math.degrees(fall) == pytest.approx(angle)
+    for flank in ("loaded", "unloaded"):  # the outline runs from the centre line to the end of that flank
+        pieces = chip.top(gear, flank)
+        ends = [place(np.array([0.0, 1.0])) for _, place in pieces]
+        assert ends[0][0, 0] == pytest.approx(0.0, abs=1e-12)
+        assert np.hypot(*ends[-1][:, 1]) == pytest.approx(math.hypot(gear.r_b, chip.end_roll(gear, flank)))
+        for before, after in zip(ends[:-1], ends[1:], strict=True):
+            assert_allclose(before[:, 1], after[:, 0], atol=1e-12)
+    ritz, fe = (gf.solve(one, gf.Solve(method, phases)) for method in ("ritz", "fe"))
+    assert_allclose(ritz.k, fe.k, rtol=3e-3)
+
+
+@pytest.mark.quick
+def test_a_whole_tip_cut_off_is_a_shorter_tooth():
+    """At 90 degrees the tooth is that of a gear with a smaller tip circle, but for its flat top; a small chip changes little."""
+    cut = case(angle=math.pi / 2)
+    short = with_tips(PAIR, [cut.broken[0][0].cut(PAIR.gear_1)[0], None])
+    phases = PHASES[PHASES > 0.4]
+    want = gf.solve(replace(HEALTHY, pair=short), gf.Solve("ritz", phases))
+    assert_allclose(gf.solve(cut, gf.Solve("ritz", phases)).k, want.k, rtol=1e-3)
+    on_path = PHASES[PHASES < 1.6]
+    least = gf.solve(case(depth=1e-3), gf.Solve("ritz", on_path))
+    assert_allclose(least.k, gf.solve(HEALTHY, gf.Solve("ritz", on_path)).k, rtol=1e-4)
+
+
+def test_gap_and_stiffness_are_those_of_the_tooth_numbers():
+    """Tooth n is tooth 0 shifted by n mesh cycles, on either gear."""
+    for side in ("pinion", "wheel"):
+        first, other = (gf.solve(case(side, tooth=tooth), gf.Solve("ritz", PHASES - tooth)) for tooth in (0, 5))
+        assert_allclose(other.k, first.k, rtol=1e-9)
+
+
+@pytest.mark.slow
+def test_whole_outlines_pressed_together_agree():
+    """The independent solver with teeth of a smaller tip circle, where no other tooth is near its tip."""
+    from validation.shared.arbiter import pressing
+
+    cut = case(angle=math.pi / 2)
+    short = with_tips(PAIR, [cut.broken[0][0].cut(PAIR.gear_1)[0], None])
+    phases = PHASES[PHASES > 0.4]
+    want = pressing.pressed(short, None, FORCE / 15, phases, (206e3, 0.3))
+    got = gf.solve(cut, gf.Solve("ritz", phases, error=True))
+    print(got.k / (15e3 * want.k) - 1)
+    assert (abs(got.k - 15e3 * want.k) <= got.error + 15e3 * want.error).all()
+    assert_allclose(got.k, 15e3 * want.k, rtol=5e-3)
+
+
+def test_what_does_not_model_it_refuses_it():
+    for method in ("textbook", "published", "coupled", "ritz3d", "fe3d"):
+        with pytest.raises(ValueError, match=r"a chip with|damage with"):
+            gf.solve(case(), gf.Solve(method, 4))
+    with pytest.raises(ValueError, match="chips of modified flanks"):
+        gf.solve(replace(case(), flanks={"pinion": gf.Flank(tip_relief=0.01, tip_start_diameter=56.0)}), gf.Solve("ritz", 4))
+    with pytest.raises(ValueError, match="has a chip and has a crack"):
+        gf.Case(PAIR, FORCE, STEEL, damage={"pinion": [gf.Chip(depth=1.0, tooth=3), gf.Crack(level=0.3, tooth=3)]})
+    with pytest.raises(ValueError, match="chip in an exported mesh"):
+        gf.export_mesh("x.vtu", PAIR.gear_1, [gf.Chip(depth=1.0)])
+    with pytest.raises(ValueError, match=r"leaves less than 0\.5 modules of the flank"):
+        case(depth=6.0)
+    with pytest.raises(ValueError, match=r"chip angle 5 degrees, but its cut lies in the tooth of z = 17 only above"):
+        case(angle=math.radians(5))
+    for wrong in ({"depth": -1.0}, {"angle": 2.0}, {"tooth": 0.5}, {"depth": math.nan}):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            gf.Chip(**{"depth": 1.0} | wrong)
+
+
+def test_the_picture_has_no_such_tip():
+    pinion, _ = stressed_gears(case(angle=math.pi / 2), 1.2, 0.4)
+    x, y = pinion.points[:2]
+    angles = np.sort(np.arctan2(x, y)[np.hypot(x, y) > PAIR.gear_1.r_a - 0.5])
+    assert np.diff(angles).max() > 1.7 * 2 * math.pi / 17
+
+
+def test_a_ring_and_a_shortened_gear():
+    """A ring's chip cuts off what points inwards; `shortened` ends flanks where it is told to."""
+    ring = gf.Gear(z=84, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_rim=95.0, tip_radius=0.3, addendum=0.9)
+    pair = gf.GearPair(gf.Gear(z=31, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=11.4), ring)
+    roll = Chip(depth=0.6).cut(pair.gear_2)[0]
+    assert shortened(pair.gear_2, roll).roll_a == pytest.approx(roll)
+    assert math.hypot(roll, ring.r_b) == pytest.approx(pair.gear_2.r_a + 0.6)
+    hurt = gf.Case(pair, FORCE, STEEL, damage={"wheel": [gf.Chip(depth=0.6)]})
+    phases = np.array([0.02, 0.15, 0.5, 1.2])
+    ritz, fe, healthy = (
+        gf.solve(one, gf.Solve(method, phases)) for one, method in ((hurt, "ritz"), (hurt, "fe"), (hurt.healthy, "ritz"))
+    )
+    assert_allclose(ritz.k, fe.k, rtol=3e-3)
+    assert ritz.k[0] < 0.9 * healthy.k[0]
