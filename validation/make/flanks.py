@@ -1,6 +1,5 @@
 """The page `flanks.md`: modified flanks against CalculiX in nonlinear contact, and tip relief against transmission error."""
 
-import math
 import tempfile
 from pathlib import Path
 
@@ -13,9 +12,10 @@ from ..shared.decks import calculix, digest, installed
 from ..shared.kept_rows import kept, stored
 from ..shared.places import PAGES
 from . import flanks_three, flanks_wide
+from .flanks_wide import STEEL, relieved
 
 TABLE, PICTURE = "flanks_calculix", PAGES / "flanks_map.png"
-LINE_LOAD = 150.0  # N/mm
+LINE_LOAD, PAIR = 150.0, flanks_wide.spur_pair(20.0)  # N/mm
 CASES = (  # relief [um] of both gears, its roll length [mm], exponent, phase
     (10.0, 4.7, 1.0, 0.1), (10.0, 4.7, 1.0, 0.55), (10.0, 4.7, 1.0, 0.8), (30.0, 4.0, 1.0, 0.1), (30.0, 4.0, 1.0, 0.55),
     (30.0, 4.0, 2.0, 0.55), (10.0, 4.7, 1.0, 0.3), (30.0, 4.0, 2.0, 0.25),
@@ -23,26 +23,10 @@ CASES = (  # relief [um] of both gears, its roll length [mm], exponent, phase
 LOADS = (25.0, 50.0, 75.0, 100.0, 125.0, 150.0, 175.0, 200.0, 250.0, 300.0)  # N/mm
 
 
-def pair():
-    """Pair of this page, 24/36 of m 3, and its steel."""
-    rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
-    return gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack), gf.Gear(z=36, r_bore=20.0, **rack)), gf.Material(E=207e3, nu=0.3)
-
-
-def relieved(amount, length, exponent):
-    """Flanks with so much tip relief [um] over so much roll length [mm] on both gears."""
-    gears = pair()[0]
-    return {
-        name: gf.Flank(tip_relief=amount * 1e-3, tip_start_roll=gear.roll_a - length, tip_exponent=exponent)
-        for name, gear in (("pinion", gears.gear_1), ("wheel", gears.gear_2))
-    }
-
-
 def solved(amount, length, exponent, phase):
     """Curve of `ritz` at one phase."""
-    gears, steel = pair()
-    flanks = relieved(amount, length, exponent)
-    return gf.mesh_stiffness(gears, LINE_LOAD * 20, steel, method="ritz", phases=[phase], flanks=flanks)
+    flanks = relieved(PAIR, (amount * 1e-3, length, exponent))
+    return gf.mesh_stiffness(PAIR, LINE_LOAD * 20, STEEL, method="ritz", phases=[phase], flanks=flanks)
 
 
 def told(case):
@@ -52,9 +36,8 @@ def told(case):
 
 def deck_of(folder, case, approach):
     """Deck of a case closed by an approach [um], in a folder."""
-    gears, steel = pair()
-    options = {"flanks": relieved(*case[:3])}
-    return gf.write_contact_inp(folder / "pair.inp", gears, case[3], approach * 1e-3, LINE_LOAD, (steel, steel), **options)
+    options = {"flanks": relieved(PAIR, (case[0] * 1e-3, *case[1:3]))}
+    return gf.write_contact_inp(folder / "pair.inp", PAIR, case[3], approach * 1e-3, LINE_LOAD, (STEEL, STEEL), **options)
 
 
 def row_of(case):
@@ -81,12 +64,11 @@ def differences(case, row):
 
 def text():
     """Arguments of `page.text`."""
-    gears, steel = pair()
     lines = [
         f"""
         ## Sections beside CalculiX
 
-        A pair {gears.gear_1.z}/{gears.gear_2.z} of m 3, bores 15/20 mm, {LINE_LOAD:g} N/mm, tip relief on both gears over the
+        A pair 24/36 of m 3, bores 15/20 mm, {LINE_LOAD:g} N/mm, tip relief on both gears over the
         last millimetres of roll length; plane strain, mean pose. CalculiX: both gears meshed with their modified flanks,
         eight edges per Hertz half width, surface-to-surface contact, large displacements (`gf.write_contact_inp`).
 
@@ -113,16 +95,15 @@ def text():
         "",
     ]
     shapes = {
-        "involutes": None, "linear, 10 um over 4.7 mm": (10.0, 4.7, 1.0), "parabolic, 10 um over 4.7 mm": (10.0, 4.7, 2.0),
-        "linear, 30 um over 4 mm": (30.0, 4.0, 1.0),
+        "involutes": None, "linear, 10 um over 4.7 mm": (0.01, 4.7, 1.0), "parabolic, 10 um over 4.7 mm": (0.01, 4.7, 2.0),
+        "linear, 30 um over 4 mm": (0.03, 4.0, 1.0),
     }  # fmt: skip
     lines += [f"| relief | unloaded | {' | '.join(f'{load:g} N/mm' for load in LOADS)} |", "|---" * (2 + len(LOADS)) + "|"]
     for name, shape in shapes.items():
-        flanks = None if shape is None else relieved(*shape)
-        found = gf.transmission_error(gears, [20 * load for load in LOADS], steel, method="ritz", flanks=flanks)
+        found = gf.transmission_error(PAIR, [20 * load for load in LOADS], STEEL, method="ritz", flanks=relieved(PAIR, shape))
         spans = " | ".join(f"{1e6 * span:.2f}" for span in found.peak_to_peak)
         lines.append(f"| {name} | {1e6 * np.ptp(found.unloaded):.2f} | {spans} |")
-        if shape == (10.0, 4.7, 1.0):
+        if shape == (0.01, 4.7, 1.0):
             found.plot(PICTURE)
     lines += [
         """

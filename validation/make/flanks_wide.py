@@ -118,8 +118,7 @@ def text():
 
 def _section():
     """Spur gears with the same profile along the width: three dimensions beside the section."""
-    rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 30.0}
-    pair = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack), gf.Gear(z=36, r_bore=20.0, **rack))
+    pair = spur_pair(30.0)
     lines = [
         """
         Spur gears 24/36 of m 3, 30 mm wide, 150 N/mm, the same profile along the width, three dimensions beside the section
@@ -131,7 +130,7 @@ def _section():
     ]
     shapes = {"none": None, "linear, 10 um over 4.7 mm": (0.01, 4.7, 1.0), "parabolic, 30 um over 4 mm": (0.03, 4.0, 2.0)}
     for name, shape in shapes.items():
-        flanks = _relieved(pair, shape)
+        flanks = relieved(pair, shape)
         plane, solid = (
             gf.mesh_stiffness(pair, 4500.0, STEEL, method=method, phases=16, flanks=flanks).te for method in ("ritz", "ritz3d")
         )
@@ -142,8 +141,7 @@ def _section():
 
 def _kinks():
     """The same pair 100 mm wide in the limit of plane strain, where three dimensions and section must agree at every phase."""
-    rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 100.0}
-    pair = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack), gf.Gear(z=36, r_bore=20.0, **rack))
+    pair = spur_pair(100.0)
     lines = [
         """
         Only even loads along the width (plane strain), 100 mm wide, 64 phases: three dimensions against the section. Where a
@@ -157,7 +155,7 @@ def _kinks():
     shapes = {"none": None, "parabolic, 10 um over 4.7 mm": (0.01, 4.7, 2.0), "linear, 10 um over 4.7 mm": (0.01, 4.7, 1.0),
               "linear, 30 um over 4 mm": (0.03, 4.0, 1.0)}  # fmt: skip
     for name, shape in shapes.items():
-        flanks = _relieved(pair, shape)
+        flanks = relieved(pair, shape)
         for load in (40.0, 150.0, 400.0):
             run = {"phases": 64, "flanks": flanks}
             plane = gf.mesh_stiffness(pair, 100 * load, STEEL, method="ritz", **run)
@@ -167,7 +165,13 @@ def _kinks():
     return lines
 
 
-def _relieved(pair, shape):
+def spur_pair(width):
+    """Pair of 24/36 teeth of m 3, so wide [mm]."""
+    rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": width}
+    return gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack), gf.Gear(z=36, r_bore=20.0, **rack))
+
+
+def relieved(pair, shape):
     """Flanks with tip relief (amount [mm], roll length [mm], exponent) on both gears, or None."""
     if shape is None:
         return None

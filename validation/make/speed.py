@@ -20,10 +20,10 @@ REFERENCE = 6.0
 DEFAULTS = ("fe, refine 1", "ritz, order 4")
 
 
-def median_seconds(work, repeats=5):
+def median_seconds(work):
     """Median processor time of `work` and its last result: the clock would count what other programs do."""
     seconds = []
-    for _ in range(repeats):
+    for _ in range(5):
         started = time.process_time()
         result = work()
         seconds.append(time.process_time() - started)

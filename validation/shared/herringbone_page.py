@@ -91,8 +91,7 @@ def error_table(*, pits=False):
     columns = 5 + pits + 2 * len(methods)
     lines = [f"| pair | case | FE mean [N/um] | max | estimate | {' | '.join(names)} |", "|---" * columns + "|"]
     holes = stored("holed_cracks")
-    for pair, case in dict.fromkeys((row["pair"], row["case"]) for row in rows):
-        own = {row["method"]: row for row in rows if (row["pair"], row["case"]) == (pair, case)}
+    for (pair, case), own in _by_method(rows):
         truth = own["fe3d"]
         cells = [_error(float(own[name][f"error of {what}"])) for name in methods for what in ("mean", "max")]
         numbers = [in_newton_per_um(float(truth[name]), 5) for name in ("mean [N/m]", "max [N/m]")]
@@ -103,6 +102,12 @@ def error_table(*, pits=False):
             numbers.append(f"{100 * cut['mean']:+.3f} %" if cut else "")
         lines.append(f"| {pair} | {case} | " + " | ".join([*numbers, *cells]) + " |")
     return "\n".join(lines)
+
+
+def _by_method(rows):
+    """((pair, case), rows by method) of all pairs and cases."""
+    for key in dict.fromkeys((row["pair"], row["case"]) for row in rows):
+        yield key, {row["method"]: row for row in rows if (row["pair"], row["case"]) == key}
 
 
 def _error(value):
@@ -118,8 +123,7 @@ def drop_table():
     printed = {(row.case, row.pair): row.value for row in printed.rows}
     head = " | ".join(f"`{name}` largest | mean | tooth" for name in methods)
     lines = [f"| pair | case | printed | {head} |", "|---" * (3 + 3 * len(methods)) + "|"]
-    for pair, case in dict.fromkeys((row["pair"], row["case"]) for row in rows):
-        own = {row["method"]: row for row in rows if (row["pair"], row["case"]) == (pair, case)}
+    for (pair, case), own in _by_method(rows):
         columns = ("largest drop", "drop of mean", "drop of the damaged tooth")
         cells = [f"{100 * float(own[name][column]):.1f}" for name in methods for column in columns]
         lines.append(f"| {pair} | {case} | {printed[case, pair]:.2f} | " + " | ".join(cells) + " |")

@@ -31,9 +31,9 @@ Finite elements of these ten rows: `python -m validation herringbone --reference
 """
 
 
-def ten(method="ritz3d"):
+def ten():
     """Rows of the table of the ten rows."""
-    known, k, out = line.load(), line.ours(method)[0], []
+    known, k, out = line.load(), line.ours("ritz3d")[0], []
     want, lost, own = printed(), reductions(k), reductions(printed())
     others = {name: line.ours(name)[0] for name in ("published", "published, summed")}
     solid = line.ours("fe3d")[0]
@@ -44,7 +44,7 @@ def ten(method="ritz3d"):
             cells += [""] * 4
         else:
             j = next(places)
-            largest = 100 * (1 - known[method, pair, case] / known[method, pair, "healthy"]).max()
+            largest = 100 * (1 - known["ritz3d", pair, case] / known["ritz3d", pair, "healthy"]).max()
             cells += [f"{own[j]:.2f}", f"{lost[j]:.2f}", f"{lost[j] - own[j]:+.1f}", f"{largest:.2f}"]
         cells += [f"{100 * (one[i] / k[i] - 1):+.1f} %" for one in others.values()]
         cells.append(f"{100 * (solid[i] / want[i] - 1):+.1f} %")

@@ -7,19 +7,19 @@ from gearfe.core.files import save_figure
 from gearfe.figures.look import COLOURS, SQUASHED, look
 
 
-def plot_waves(signals, path, seconds=0.25, *, dpi=60, title=""):
-    """Draw the first `seconds` of signals by name below each other, with one scale, under a `title`."""
+def plot_waves(signals, path, *, title=""):
+    """Draw the first quarter of a second of signals by name below each other, with one scale, under a `title`."""
     figure = Figure(figsize=(9, 1.7 * len(signals) + 0.4), layout="constrained")
     for axes, (name, one) in zip(
         np.atleast_1d(figure.subplots(len(signals), sharex=True, sharey=True)), signals.items(), strict=True
     ):
-        values = one.values[: round(seconds * one.rate)]
+        values = one.values[: round(0.25 * one.rate)]
         axes.plot(np.arange(values.size) / one.rate, values, linewidth=0.7, color=COLOURS[0])
         axes.set_title(name, fontsize=9)
         axes.set_ylabel(one.unit)
     axes.set_xlabel("time [s]")
     figure.suptitle(title, fontsize=10)
-    return save_figure(figure, path, dpi=dpi)
+    return save_figure(figure, path, dpi=60)
 
 
 def plot_phases(portraits, unit="m", path=None, *, title=""):

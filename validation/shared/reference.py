@@ -59,10 +59,10 @@ def healthy_pair(row):
     return pair, gf.Material(E=row["E"], nu=0.3)
 
 
-def healthy(row, *, phases=None, **options):
+def healthy(row, **options):
     """Mean, max, min stiffness [N/(mm um)] without extended contact; phases in the middle of 32 equal parts."""
     pair, steel = healthy_pair(row)
-    phases = (np.arange(32) + 0.5) / 32 if phases is None else phases
+    phases = (np.arange(32) + 0.5) / 32
     k = gf.mesh_stiffness(pair, row["line_load"], steel, phases=phases, extended=False, **options).k / 1e6
     return np.array([k.mean(), k.max(), k.min()])
 

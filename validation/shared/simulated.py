@@ -55,10 +55,10 @@ def record(made, seconds, rate, settle, start=None):
     return whole.part(slice(first, first + round(seconds * rate)))
 
 
-def signal(response, channel, name=None):
+def signal(response, channel):
     """A channel as a signal."""
     rate = 1 / float(response.time[1] - response.time[0])
-    return gf.Signal(np.asarray(response[channel], dtype=float), rate, response.unit(channel), name or channel)
+    return gf.Signal(np.asarray(response[channel], dtype=float), rate, response.unit(channel), channel)
 
 
 def spectrum(one):
@@ -66,9 +66,9 @@ def spectrum(one):
     return gf.spectrum(replace(one, values=one.values - one.values.mean()))
 
 
-def noisy(one, level, seed=0):
+def noisy(one, level):
     """The signal with Gaussian noise of `level` times its standard deviation."""
-    noise = level * one.values.std() * np.random.default_rng(seed).standard_normal(one.values.size)
+    noise = level * one.values.std() * np.random.default_rng(0).standard_normal(one.values.size)
     return replace(one, values=one.values + noise)
 
 

@@ -60,9 +60,9 @@ def compound(damaged):
     return gf.build_machine(gf.load_scene("compound_planetary"), "crack50" if damaged else None, phases=64, method="ritz")
 
 
-def stiff(made, factor=100.0):
-    """The machine with all its springs so many times stiffer, at the same damping ratios."""
-    return replace(made, springs=tuple(replace(s, k=factor * s.k, c=math.sqrt(factor) * s.c) for s in made.springs))
+def stiff(made):
+    """The machine with all its springs 100 times stiffer, at the same damping ratios."""
+    return replace(made, springs=tuple(replace(s, k=100 * s.k, c=10 * s.c) for s in made.springs))
 
 
 def shaken(made, amplitude=40e-6):

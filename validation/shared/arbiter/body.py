@@ -99,7 +99,7 @@ class Body:
         along = points[:, chain[-1]] - points[:, chain[0]]
         normal = np.array([along[1], -along[0]]) / math.hypot(*along)
         sides = [
-            np.concatenate([nodes[:-1], [self._edges[min(a, b), max(a, b)] for a, b in zip(nodes[:-1], nodes[1:], strict=True)]])
+            np.concatenate([nodes[:-1], [self._middle(*ends) for ends in zip(nodes[:-1], nodes[1:], strict=True)]])
             for nodes in (chain.tolist(), double.tolist())
         ]
         return (*(np.array(side, dtype=int) for side in sides), normal)

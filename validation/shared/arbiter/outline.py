@@ -6,6 +6,8 @@ a pitch deviation turns a tooth. The fillet is moved by what the form point lack
 """
 
 import math
+import re
+from dataclasses import fields
 from functools import lru_cache
 
 import numpy as np
@@ -15,20 +17,8 @@ from scipy.optimize import brentq
 from .cutting import Space
 
 FILLET, FLANK = 260, 90  # nodes of the splines through cut points
-ALLOWED = (
-    *(
-        "tip_relief",
-        "root_relief",
-        "tip_exponent",
-        "root_exponent",
-        "crowning",
-        "slope",
-        "pitch",
-        "tip_rounding",
-        "tip_chamfer",
-        "both_sides",
-    ),
-    *(f"{end}_start_{how}" for end in ("tip", "root") for how in ("diameter", "roll", "angle")),
+KNOWN = re.compile(
+    "(tip|root)_(relief|exponent|start_.*)|crowning|slope|pitch|tip_(rounding|chamfer)|both_sides|end_(exponent|length)"
 )
 
 
@@ -251,11 +241,7 @@ def _start(outline, end):
 
 def _check(flank):
     """Refuse what this arbiter knows nothing of."""
-    if flank is None:
-        return
-    for name in flank.__slots__:
-        value = getattr(flank, name)
-        if name not in ALLOWED and value != type(flank).__dataclass_fields__[name].default and np.any(value):
-            if name in ("end_exponent", "end_length"):
-                continue
-            raise ValueError(f"Flank.{name} = {value!r}, but the arbiter knows only {', '.join(ALLOWED)}")
+    for one in () if flank is None else fields(flank):
+        value = getattr(flank, one.name)
+        if not KNOWN.fullmatch(one.name) and value != one.default and np.any(value):
+            raise ValueError(f"Flank.{one.name} = {value!r}, but the arbiter knows only {KNOWN.pattern}")

@@ -67,20 +67,23 @@ class Press:
 
     def placed(self, own, stand, radius, angle, approach):
         """Points (x, y) of gear `own` [mm] after an approach."""
-        turn = (stand.turn_1, stand.turn_2)[own]
-        turn, tooth = turn.reshape(turn.shape + (1,) * (np.ndim(radius) - turn.ndim)), np.reshape(stand.tooth, (-1, 1))
-        angle = angle - self.outlines[own].pitch(tooth).reshape(turn.shape)
-        turned = turn + self.mirror[own] * angle + self.rates[own] * approach
+        turn, pitch = self._turned(own, stand, radius)
+        turned = turn + self.mirror[own] * (angle - pitch) + self.rates[own] * approach
         return radius * np.sin(turned), radius * np.cos(turned) + self.centres[own]
 
     def seen(self, own, stand, x, y, approach):
         """Radius and angle of points in the frame of gear `own`'s tooth after an approach."""
-        turn = (stand.turn_1, stand.turn_2)[own]
-        turn, tooth = turn.reshape(turn.shape + (1,) * (np.ndim(x) - turn.ndim)), np.reshape(stand.tooth, (-1, 1))
+        turn, pitch = self._turned(own, stand, x)
         y = y - self.centres[own]
         angle = self.mirror[own] * (np.arctan2(x, y) - turn - self.rates[own] * approach)
         angle = (angle + np.pi) % (2 * np.pi) - np.pi
-        return np.hypot(x, y), angle + self.outlines[own].pitch(tooth).reshape(turn.shape)
+        return np.hypot(x, y), angle + pitch
+
+    def _turned(self, own, stand, values):
+        """Angles of teeth's centre-lines and their pitch deviations [rad], with the axes of `values`."""
+        turn = (stand.turn_1, stand.turn_2)[own]
+        shape = turn.shape + (1,) * (np.ndim(values) - turn.ndim)
+        return turn.reshape(shape), self.outlines[own].pitch(stand.tooth).reshape(shape)
 
     def outside(self, own, stand, radius, angle, approach):
         """By what angle points of gear `own` lie outside of the other outline, and their radius about the other centre."""

@@ -159,10 +159,8 @@ def hats(s):
     """Gauss places ``(q,)`` between nodes `s` and the weights ``(q, n)`` of hats with unit resultant."""
     step = np.diff(s)
     places = (s[:-1, None] + step[:, None] * (GAUSS + 1) / 2).ravel()
-    falling = (WEIGHT / 2 * (1 - GAUSS) / 2)[None, :] * step[:, None]
-    rising = (WEIGHT / 2 * (1 + GAUSS) / 2)[None, :] * step[:, None]
-    weights = np.zeros((places.size, s.size))
-    rows = np.arange(places.size).reshape(step.size, -1)
-    for i in range(step.size):
-        weights[rows[i], i], weights[rows[i], i + 1] = falling[i], rising[i]
+    weights, at = np.zeros((step.size, GAUSS.size, s.size)), np.arange(step.size)
+    for node, sign in ((at, -1), (at + 1, 1)):
+        weights[at, :, node] = (WEIGHT / 2 * (1 + sign * GAUSS) / 2) * step[:, None]
+    weights = weights.reshape(places.size, -1)
     return places, weights / weights.sum(axis=0)
