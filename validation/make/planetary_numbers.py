@@ -24,18 +24,9 @@ def stage():
 
 @cache
 def lined():
-    """The scene with the N pits of a level on one line of contact, as the articles' L = 2 b - N l has them.
-
-    On the pitch circle, evenly over the width, of the size that the scene assumes; the scene itself has rows of five on one, two
-    and three lines.
-    """
+    """The scene with the cases that have the N pits of a level on one line, as the articles' L = 2 b - N l has them."""
     own, pair = scene(NAME), scene(NAME).pairs["sun_planet"]
-    width, damage = pair.pair.gear_1.b, {}
-    for case in CASES:
-        pits = pair.damage[case]["pinion"]
-        places = (np.arange(len(pits)) + 0.5) / len(pits) * width
-        row = [replace(pits[0], radius=pair.pair.pitch_radius_1, z=float(z)) for z in places]
-        damage[case] = pair.damage[case] | {"pinion": row}
+    damage = {case: pair.damage[f"{case}_line"] for case in CASES}
     return replace(own, pairs=own.pairs | {"sun_planet": replace(pair, damage=damage)})
 
 
