@@ -15,7 +15,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.app.cli import main
-from gearfe.core.files import suffixes
+from gearfe.core.files import PART, suffixes
 from gearfe.flexibility.finite_elements import fe
 from gearfe.stiffness import cache
 from gearfe.stiffness.flexibility_file import read_flexibility, write_flexibility
@@ -63,7 +63,7 @@ def test_a_killed_writer_leaves_the_old_file_or_a_new_one(tmp_path):
             "one whole length"
         )  # those state when they were written
     left = [path.name for path in tmp_path.iterdir() if path not in targets]
-    assert all(name.startswith(".x-") for name in left), "hidden, beside it, never in its place"
+    assert all(name.startswith(PART) for name in left), "hidden, beside it, never in its place"
 
 
 FULL = """
@@ -204,3 +204,16 @@ run(work)
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=ENVIRONMENT, check=False)
     assert done.returncode == 128 + signal.SIGTERM
     assert not list(tmp_path.iterdir())
+
+
+def test_a_pdf_embeds_fonts_that_publishers_accept(tmp_path):
+    from matplotlib.figure import Figure
+
+    from gearfe.core.files import save_figure
+
+    figure = Figure()
+    figure.suptitle("k")
+    save_figure(figure, tmp_path / "k.pdf", 50)
+    content = (tmp_path / "k.pdf").read_bytes()
+    assert b"/Type3" not in content
+    assert b"/TrueType" in content or b"/Type0" in content

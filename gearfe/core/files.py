@@ -147,7 +147,10 @@ def save_figure(figure, path, dpi):
                 text.set_text(words)
             if "$" in words:
                 text.set_parse_math("\\mathdefault" in words)  # a name of a file is no formula; a number of an axis may be
-        with _drawing, written(path) as name:  # the fonts of matplotlib are shared by all threads
+        import matplotlib
+
+        embedded = {"pdf.fonttype": 42, "ps.fonttype": 42}  # publishers reject fonts of type 3
+        with _drawing, matplotlib.rc_context(embedded), written(path) as name:  # fonts are shared by all threads
             figure.savefig(name, dpi=dpi)
     return figure
 
