@@ -80,7 +80,7 @@ def test_losses_by_pits_in_the_scenes_are_those_of_the_table():
     rows = table_rows.rows_of(TABLES / "assumptions.csv")
     for scene in ("planetary_pitting", "helical_pitting"):
         told = next(one["depends"] for one in gf.load_scene(scene).assumptions if "largest loss" in one["depends"])
-        numbers = sorted(float(one) for one in re.findall(r"(\d+\.\d+)(?= %| and)", told))
+        numbers = sorted(float(one) for one in re.findall(r"(\d+\.\d+)(?= %| and)", told.split(". ")[0]))
         found = {
             row["change"].split(":")[0]: float(row["value"]) for row in rows if row["scene"] == scene and "pits" in row["change"]
         }
