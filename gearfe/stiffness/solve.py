@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, Unpack, overload
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.case import NAMES, SIDES, Case, CaseOptions, case_of
 from ..core.checks import checked_refine, is_number, one_of, truth
@@ -15,6 +14,7 @@ from ..core.frozen import frozen
 from ..core.material import Material, check_state
 from ..core.threads import one_thread
 from ..flexibility.solved import SolvedGears, solved_gears
+from ..geometry.aliases import Floats
 from ..geometry.pair.gear_pair import GearPair
 from .curve import StiffnessCurve
 from .methods import METHODS, Method
@@ -25,7 +25,7 @@ from .plausible import check_plausible
 from .pose import SHIFT, in_pose
 from .turns import over_turns
 
-Loads = list[float] | tuple[float, ...] | NDArray[np.float64]
+Loads = list[float] | tuple[float, ...] | Floats
 Materials = Material | tuple[Material, Material] | None
 
 
