@@ -325,8 +325,8 @@ def mesh_stiffness(
     >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), b=20.0)
     >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
     >>> curve = gf.mesh_stiffness(pair, force=2000.0, material=gf.Material(E=207e3, nu=0.25), method="ritz", phases=32)
-    >>> print(f"{1e-6 * curve.k.mean():.0f} N/um in the mean, from {1e-6 * curve.k.min():.0f} to {1e-6 * curve.k.max():.0f}")
-    314 N/um in the mean, from 244 to 351
+    >>> print(f"{1e-6 * curve.k.mean():.0f} N/um on average, from {1e-6 * curve.k.min():.0f} to {1e-6 * curve.k.max():.0f}")
+    314 N/um on average, from 244 to 351
     """
     return solve(*split_arguments("mesh_stiffness", pair, force, material, torque, options))
 

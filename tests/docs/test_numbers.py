@@ -55,7 +55,7 @@ def mean(pair, force=2000.0, **options):
 
 
 def loss(phases, pair, **crack):
-    """What a 2 mm crack takes at these phases [%]: where one pair carries, in the mean, at the worst phase."""
+    """What a 2 mm crack takes at these phases [%]: where one pair carries, on average, at the worst phase."""
     healthy, cracked = (solved(pair, phases=phases, damage=d) for d in (None, {"pinion": [gf.Crack(length=2.0, **crack)]}))
     before, after = healthy.zones(), cracked.zones()
     return 100 * np.array([*(1 - after[name] / before[name] for name in ("single", "mean")), (1 - cracked.k / healthy.k).max()])
