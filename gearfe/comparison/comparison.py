@@ -188,7 +188,7 @@ class Comparison:
         first, *others = (row for row in self.rows() if (row.pair, row.case, row.zone) == (*key, "mean"))
         doubt = f" ± {in_newton_per_um(first.k * first.estimate, 2)}" if math.isfinite(first.estimate) else ""
         errors = ", ".join(f"{row.method} {100 * row.error:+.1f} %" for row in others)
-        text = f"{which}healthy mesh stiffness {in_newton_per_um(first.k)}{doubt} N/um in the mean by {first.method}"
+        text = f"{which}healthy mesh stiffness {in_newton_per_um(first.k)}{doubt} N/um on average by {first.method}"
         return f"{text}; {errors}" if errors else text
 
     @property

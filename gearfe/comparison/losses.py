@@ -144,7 +144,7 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
     """One sentence on what damage takes; `said`, `kind`, `found`, `doubt` of `told_damage`, `kind_of`, `loss`, `loss_errors`.
 
     >>> headline("2 mm crack at 60 degrees", "cracked", {"single": 0.158, "mean": 0.0951}, {"single": 0.0021})
-    '2 mm crack at 60 degrees: the mesh is 15.8 ± 0.3 % softer where the cracked tooth carries alone; 9.5 % in the mean'
+    '2 mm crack at 60 degrees: the mesh is 15.8 ± 0.3 % softer where the cracked tooth carries alone; 9.5 % on average'
     """
     alone = next((name for name in ALONE if name in found), None)
     zone = None if kind == "chipped" else alone  # a chipped tooth carries alone where its flank is whole
@@ -152,7 +152,7 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
     where = where.replace("carries", "would carry") if kind == "missing" else where
     most = percent_with_doubt(found[zone or LARGEST], doubt.get(zone or LARGEST, math.nan))
     return (
-        f"{said}: the mesh is {most} softer {where}; {percent_with_doubt(found['mean'], doubt.get('mean', math.nan))} in the mean"
+        f"{said}: the mesh is {most} softer {where}; {percent_with_doubt(found['mean'], doubt.get('mean', math.nan))} on average"
     )
 
 

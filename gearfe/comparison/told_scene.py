@@ -156,5 +156,5 @@ def told_supports(curve: StiffnessCurve) -> str:
     part, k_teeth = float(curve.lte_supports.mean() / curve.lte.mean()), curve.without_supports().k.mean()
     return (
         f"shafts and springs take {100 * part:.0f} % of the deflection, and are in k; "
-        f"teeth and bodies alone have {in_newton_per_um(k_teeth)} N/um in the mean"
+        f"teeth and bodies alone have {in_newton_per_um(k_teeth)} N/um on average"
     )

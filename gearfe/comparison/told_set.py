@@ -94,7 +94,7 @@ def told_set(case: PlanetaryCase) -> str:
     errors = f", {off} of {case.planets} off their places" if off else ""
     sun = "floating" if case.floating else "held at its axis"
     return (
-        f"{case.planets} planets at {places} degrees{pin}{errors}; {case.force:g} N a mesh in the mean, "
+        f"{case.planets} planets at {places} degrees{pin}{errors}; {case.force:g} N a mesh on average, "
         f"{case.force * case.planets * case.gears.sun.r_b * 1e-3:.4g} N m on the sun; sun {sun}, ring {_ring(case.ring)}"
     )
 

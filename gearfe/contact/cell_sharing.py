@@ -6,9 +6,9 @@ Many contact problems, one for each phase, are solved at once: what is done cell
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotrs
 
+from ..geometry.aliases import Floats
 from .joined_lines import FLOOR, JoinedLines
 from .pair_contact import OVERLAP
 from .sharing import share
@@ -23,7 +23,7 @@ SLOPE = 1e-4  # relative change of the line load by which the slope of the local
 class Shared(NamedTuple):
     """Forces on the cells, then on the faces [N]; approach [mm]; tangent stiffness d load / d approach [N/mm]."""
 
-    force: NDArray
+    force: Floats
     approach: float
     tangent: float
 

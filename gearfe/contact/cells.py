@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.aliases import Floats
 from ..geometry.mesh.outline import spaced
 from ..geometry.pair.contacts import touching
 from ..geometry.pair.gear_pair import GearPair
@@ -36,18 +37,18 @@ class Cells:
 
     half: NDArray[np.int64]
     order: NDArray[np.int64]
-    z: NDArray
-    width: NDArray
-    depth: NDArray
-    nominal: NDArray
-    roll_1: NDArray
-    roll_2: NDArray
-    gap: NDArray
+    z: Floats
+    width: Floats
+    depth: Floats
+    nominal: Floats
+    roll_1: Floats
+    roll_2: Floats
+    gap: Floats
     corner: NDArray[np.int64]
-    floor: NDArray
-    radius: NDArray
-    load: NDArray = None  # type: ignore[assignment]  # None until the contact is solved
-    pressure: NDArray = None  # type: ignore[assignment]
+    floor: Floats
+    radius: Floats
+    load: Floats = None  # type: ignore[assignment]  # None until the contact is solved
+    pressure: Floats = None  # type: ignore[assignment]
 
     def some(self, which: NDArray | slice) -> "Cells":
         """Those of `which`, a mask, slice or numbers."""

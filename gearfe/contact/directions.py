@@ -8,8 +8,8 @@ has another torque, and the tooth yields to it along and across its own involute
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..geometry.aliases import Floats
 from ..geometry.pair.contacts import approach
 from ..geometry.tooth.side import side
 
@@ -22,9 +22,9 @@ class Direction(NamedTuple):
     points along the involute's normal, and along the tangent away from the gear's centre.
     """
 
-    rate: NDArray
-    turns: NDArray
-    parts: NDArray
+    rate: Floats
+    turns: Floats
+    parts: Floats
 
 
 def met(contact, at, roll, host):

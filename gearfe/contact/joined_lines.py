@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 
 from ..flexibility.halfspace import pair_kernel, pair_slope, strip
 from ..flexibility.hertz import half_width
+from ..geometry.aliases import Floats
 
 SMOOTH = 8.0  # half widths over which the line load is averaged before the width of the strip follows it
 FLOOR = 1e-9  # least load of a cell, in parts of the whole load, where its logarithm is taken
@@ -43,14 +44,14 @@ class System(NamedTuple):
         End faces in which loads are mirrored, as of `bodies.mirrors_of`; as many in all systems solved together.
     """
 
-    matrix: NDArray
-    gap: NDArray
-    ends: tuple[NDArray, NDArray]
+    matrix: Floats
+    gap: Floats
+    ends: tuple[Floats, Floats]
     line: NDArray[np.int64]
-    radius: NDArray
+    radius: Floats
     block: NDArray[np.int64] | None = None
     faces: Any = None
-    floor: NDArray | None = None
+    floor: Floats | None = None
     mirrors: Any = ()
 
 

@@ -6,7 +6,6 @@ modified flank has a kink within the contact (`gearfe.contact.kinks`).
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -14,10 +13,9 @@ from scipy.linalg import block_diag
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, peak_pressure
 from ..flexibility.section_contact import Solved
-from ..geometry.pair.contacts import Touch, touching
-from ..geometry.pair.gear_pair import with_tips
 from ..geometry.pair.modified import flank_contacts
 from ..geometry.tooth.profile import arc_at
+from .broken_teeth import with_broken
 from .directions import leaning
 from .kinks import kink_rows, near_kink
 from .rows import LEAST, RESOLVED, SHARP, Row, Wanted, corner_rows, finest_hat
@@ -55,43 +53,6 @@ def _aligned(rows):
         out["roll_1"][k, size:], out["roll_2"][k, size:], out["gap"][k, size:] = row.roll_1[-1], row.roll_2[-1], np.nan
     zero = np.zeros(out["gap"].shape)
     return out | {"coefficient": zero, "tilt": zero, "radius": zero + 1}
-
-
-def with_broken(points, pair, flexibility, extended):
-    """Contacts of a pair with missing teeth and chipped tips, and ends of the path ``(2, pairs)`` [mm].
-
-    A missing tooth has an infinite gap. The flank of a chipped one ends at its corner. ValueError if no pair is left at a phase.
-    """
-    path = np.tile(np.array(pair.path)[:, None], points.order.size)
-    points = _chipped(points, pair, flexibility, extended, path)
-    gone = np.zeros(points.order.size, dtype=bool)
-    for gear, own, teeth in zip((pair.gear_1, pair.gear_2), flexibility, (points.order, -points.order), strict=True):
-        gone |= np.isin(teeth % gear.z, [tooth % gear.z for tooth in getattr(own, "missing", ())])
-    if not gone.any():
-        return points, path
-    gap = np.where(gone, np.inf, points.gap)
-    if not np.isfinite(gap).any(axis=1).all():
-        raise ValueError(
-            "at some phases no teeth but a missing one are near each other: leave contact off the path on (extended = True), or "
-            "take a pair with a larger contact ratio"
-        )
-    return replace(points, gap=gap, corner_gap=np.where(gone, np.inf, points.corner_gap)), path
-
-
-def _chipped(points, pair, flexibility, extended, path):
-    """Contacts in which flanks end at the corners of chips; the ends of their path are put into `path`."""
-    cut = [getattr(own, "tips", {}) for own in flexibility]
-    if not any(cut):
-        return points
-    found = {name: getattr(points, name).copy() for name in Touch._fields}
-    for k, order in enumerate(points.order.tolist()):
-        ends = [tips.get(tooth % own.gear.z) for tips, own, tooth in zip(cut, flexibility, (order, -order), strict=True)]
-        if any(ends):
-            short = with_tips(pair, [end and end[0] for end in ends])
-            path[:, k] = short.path
-            for name, values in touching(short, points.nominal[:, k], extended=extended)._asdict().items():
-                found[name][..., k] = values
-    return replace(points, **found)
 
 
 class PairContact:
@@ -157,10 +118,10 @@ class PairContact:
         return Solved(points.order, closing, tangent, line, pressure, *marked, unloaded, left_out=doubt)
 
     def problems(self, line_load, phases, possible, corners, kink, tilt):
-        """Contact problems of some phases under a load [N/mm] as of `contacts_at`, and their rows of hats by phase and column.
+        """Contact problems of some phases under a load [N/mm], see `contacts_at`, and their rows of hats by phase and column.
 
-        `possible`, `kink` and `tilt` ``(phases, pairs)``: pairs that may touch, pairs on a kink, and as of `line_contacts`;
-        `corners` as of `corners`.
+        `possible` and `kink` ``(phases, pairs)`` mark pairs that may touch and pairs on a kink. `tilt` is an argument of
+        `line_contacts`, and `corners` is the result of `PairContact.corners`.
         """
         (corner, zone, width), chosen, finest = corners, np.zeros((len(possible), 1), dtype=bool), self.finest(line_load)
         chosen[phases] = True

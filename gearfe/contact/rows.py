@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import hat_logarithm
 from ..flexibility.plane import towards
+from ..geometry.aliases import Floats
 from ..geometry.kept import keeping
 from ..geometry.pair.contacts import TIP
 from ..geometry.tooth.profile import arc_at, roll_at_arc
@@ -34,12 +35,12 @@ class Row(NamedTuple):
     `fillet`: whether a hat stands in a fillet into which the mate's tip presses.
     """
 
-    roll_1: NDArray
-    roll_2: NDArray
-    gap: NDArray
-    influence: NDArray
-    turn_1: NDArray
-    turn_2: NDArray
+    roll_1: Floats
+    roll_2: Floats
+    gap: Floats
+    influence: Floats
+    turn_1: Floats
+    turn_2: Floats
     fillet: NDArray[np.bool_]
 
 

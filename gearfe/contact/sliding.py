@@ -88,7 +88,7 @@ def left_out(contact, line, closing, beyond):
     Of line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``; `closing` ``(phases,)`` is how far the
     load moves the gears [mm]. What cracks add far away, or in thin teeth, is unsure, too.
     """
-    points, (start, end) = contact.found, contact.pair.path
+    points, (start, end) = contact.found, contact.path
     off = (line > 0) & ((points.nominal < start) | (points.nominal > end))
     softer = _cut_away(contact, line) + UNSURE * np.abs(contact.thinner) * line
     softer = softer + _cracks_beyond(contact, line) + _cracks_in_thin_teeth(contact, line)

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import cumulative_trapezoid
 
 from ..core.material import Material
+from ..geometry.aliases import Floats
 from ..geometry.tooth.flank_form import FlankForm
 from ..geometry.tooth.profile import fillet, flank, tangent_point
 from ..geometry.tooth.side import place
@@ -39,7 +40,7 @@ class Thinning:
         self.stretch, self.shear = material.plane_modulus(state), material.shear_modulus
         self._tables: dict[int, tuple[NDArray, NDArray]] = {}
 
-    def between(self, roll: NDArray, tooth: int) -> NDArray:
+    def between(self, roll: Floats, tooth: int) -> Floats:
         """Difference ``(n, n)`` between loads at roll lengths ``(n,)`` [mm] on one tooth."""
         height, moment, lever, across, along = self._loads(roll)
         heights, integrals = self._table(tooth)
@@ -51,7 +52,7 @@ class Thinning:
         straight = np.outer(along, along) / (2 * self.stretch) + 0.6 * np.outer(across, across) / self.shear
         return 1.5 * bending / self.stretch + straight * thin
 
-    def alone(self, roll: ArrayLike, teeth: ArrayLike) -> NDArray:
+    def alone(self, roll: ArrayLike, teeth: ArrayLike) -> Floats:
         """Difference ``(..., n)`` of loads at roll lengths ``(..., n)`` on `teeth` ``(n,)``, each at its own place."""
         rolls, out = np.asarray(roll, dtype=float), np.zeros(np.shape(roll))
         for column, tooth in enumerate(np.asarray(teeth).tolist()):
@@ -100,7 +101,7 @@ class Thinning:
         return self._tables[key]
 
 
-def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple[list[Thinning], NDArray]:
+def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple[list[Thinning], Floats]:
     """`Thinning` of both gears, none without flanks, and what pairs yield more at `points`, a `Contacts` [mm per N/mm]."""
     gears = [Thinning(form, material, state) for form, material in zip(flanks or (), materials, strict=False)]
     rolls = points.roll_1, points.roll_2
@@ -109,7 +110,7 @@ def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple
     )
 
 
-def unmodelled(case: Any, found: Any) -> NDArray:
+def unmodelled(case: Any, found: Any) -> Floats:
     """By what k of a `Contact3D` is too high because its teeth have their full thickness ``(phases,)`` [N/m].
 
     By virtual work the lines of load q close further by ``sum q**2 dS dz / F``, with dS of the section.

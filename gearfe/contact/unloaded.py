@@ -24,9 +24,8 @@ def least_gap(contact, found):
     half, order, nominal, z, width, floor = (
         np.array([getattr(c, n)[k] for c, k in zip(found, best, strict=True)]) for n in names
     )
-    slope = (
-        math.tan(contact.beta_b) * np.sign([last - first for first, last in contact.bands])[half]
-    )  # of the abscissa, down by z
+    # the abscissa decreases by `slope` for each mm of z
+    slope = math.tan(contact.beta_b) * np.sign([last - first for first, last in contact.bands])[half]
     low, high, gap = -width / 2, width / 2, np.zeros(0)
     for _ in range(ROUNDS):
         steps = np.linspace(low, high, FINE, axis=1)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..core.steps import part, steps
 from ..flexibility.solved import solved_gears
+from ..geometry.aliases import Floats
 from ..geometry.damage.hollow import check_hollows
 from .bodies import bodies_of, energy_bodies
 from .cells import Cells
@@ -41,19 +42,19 @@ class Contact3D:
     of the hubs give way [mm], the mean over the loads. `error` contains what is unsure of `Carried`.
     """
 
-    phase: NDArray
-    k: NDArray
-    approach: NDArray
+    phase: Floats
+    k: Floats
+    approach: Floats
     order: NDArray[np.int64]
-    load: NDArray
+    load: Floats
     cells: tuple[Cells, ...]
     dofs: tuple[int, int]
     closed: tuple[int, ...] = ()
     fillet: tuple[int, ...] = ()
-    error: NDArray | None = None
-    unloaded: NDArray | None = None
-    k_tangent: NDArray | None = None
-    supports: NDArray | None = None
+    error: Floats | None = None
+    unloaded: Floats | None = None
+    k_tangent: Floats | None = None
+    supports: Floats | None = None
 
 
 def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, error=False, cache=True):

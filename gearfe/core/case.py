@@ -325,12 +325,13 @@ def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Any, ...], ...], .
         cracks.append(weakens)
         pits.append(removes)
         broken.append(tuple(dict.fromkeys(defect for defect in own if isinstance(defect, BROKEN))))
-        _check_broken(gear, own, broken[-1])
+        _check_broken(gear, defects)
     return tuple(cracks), tuple(pits), tuple(broken)
 
 
-def _check_broken(gear, defects, broken):
-    """ValueError for other damage of a broken tooth, chips that cannot be, and two missing teeth side by side."""
+def _check_broken(gear, defects):
+    """ValueError for other damage of a broken tooth, invalid chips, and two missing teeth side by side."""
+    broken = [defect for defect in defects if isinstance(defect, BROKEN)]
     gone = sorted({one.tooth % gear.z for one in broken if isinstance(one, MissingTooth)})
     for one in broken:
         if isinstance(one, Chip):

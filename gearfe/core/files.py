@@ -65,10 +65,10 @@ def written(path):
 
 
 def new_file(path):
-    """Name of a new empty file in the folder of `path`, its suffix in small letters: some libraries know no others.
+    """Name of a new empty file in the folder of `path`, its suffix in small letters, which some libraries require.
 
-    Its rights are those of any new file of this process. (`tempfile.mkstemp` gives fewer, and what they should be can be asked
-    only by changing them, for all threads.)
+    It has the access rights of any new file of this process. `tempfile.mkstemp` gives fewer rights. The usual rights can be read
+    only by changing them for all threads.
     """
     path = Path(path)
     try:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..flexibility.finite_elements.folds import check_folds, unfolded
 from ..flexibility.finite_elements.hexahedron import ORDER, TWENTY
 from ..flexibility.finite_elements.tetrahedron import nodes_of, second_order
+from ..geometry.aliases import Floats
 from ..geometry.mesh.holed_drawing import on_outline
 from ..geometry.mesh.holes import Holed
 from ..geometry.mesh.solid import Solid
@@ -30,7 +31,7 @@ class Part:
     Every face of `faces` is named by its corners ``(4 or 3, k)``.
     """
 
-    points: NDArray[np.float64]
+    points: Floats
     cells: NDArray[np.int64]
     held: NDArray[np.int64]
     faces: dict[str, NDArray[np.int64]]
@@ -89,7 +90,7 @@ def _check_strips(gear, off, strips):
             )
 
 
-def placed(part: Part, points: NDArray[np.float64], *, mirrored: bool = False) -> Part:
+def placed(part: Part, points: Floats, *, mirrored: bool = False) -> Part:
     """A body with its nodes at `points`; `mirrored` if they are a mirror image of its own."""
     cells = part.cells[MIRRORED[len(part.cells)]] if mirrored else part.cells
     return replace(part, points=points, cells=cells)

@@ -49,7 +49,8 @@ def plot_spectra(
     for axes, (name, spectrum) in zip(rows, spectra.items(), strict=True):
         axes.semilogy(spectrum.frequency, spectrum.values, linewidth=0.8, color=COLOURS[0])
         axes.set_ylim(1e-6 * largest, 2 * largest)  # common axes: the first would decide for all
-        axes.set_ylabel(f"{name} [{spectrum.unit}]")
+        axes.set_ylabel(f"[{spectrum.unit}]")
+        axes.set_title(name, loc="right", fontsize=9, pad=3)
         for value in (lines or {}).values():
             axes.axvline(value, linestyle=":", linewidth=0.7, color="gray", zorder=0)
     if title:

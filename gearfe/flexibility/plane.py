@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..geometry.aliases import Floats
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import arc_at
@@ -18,7 +19,7 @@ FURTHER = 1  # teeth beyond those that can share load with a damaged one that ar
 BELOW = 0.1  # how far below the tip the third of these places is [m_n]
 
 
-def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike) -> NDArray[np.float64]:
+def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike) -> Floats:
     """How a tooth yields across its normal, from the smooth flexibility under loads tilted by `TILT` either way.
 
     With f = cos(d) n + sin(d) t a load yields ``S_nn cos(d)**2 + S_nt sin(2 d) + S_tt sin(d)**2`` along itself.
@@ -69,10 +70,10 @@ class SeamFaces:
     """
 
     opening: dict[int, Any]
-    influence: NDArray[np.float64]
-    stiffness: NDArray[np.float64]
+    influence: Floats
+    stiffness: Floats
 
-    def at(self, arc: ArrayLike, teeth: Sequence[int] | NDArray[np.int64]) -> NDArray[np.float64]:
+    def at(self, arc: ArrayLike, teeth: Sequence[int] | NDArray[np.int64]) -> Floats:
         """Opening ``(..., contacts, n)`` under unit loads at `arc` ``(..., contacts)`` [mm] on `teeth`.
 
         It is zero for teeth that were not solved.
@@ -122,18 +123,18 @@ class Flexibility:
     gear: Gear
     near: dict[int, Any]
     far: dict[tuple[int, int], Any]
-    own: dict[int, NDArray[np.float64]]
+    own: dict[int, Floats]
     limits: tuple[float, float]
     fine: float = 1.0
     dofs: int = 0
     healthy: "Flexibility | None" = None
     seam: SeamFaces | None = None
     basis: Any = None
-    leans: dict[int, NDArray[np.float64]] = field(default_factory=dict)
+    leans: dict[int, Floats] = field(default_factory=dict)
     missing: tuple[int, ...] = ()
     tips: dict[int, tuple[float, tuple[float, float], Any]] = field(default_factory=dict)
 
-    def within(self, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[int]) -> list[NDArray[np.float64]]:
+    def within(self, rolls: Sequence[Floats], teeth: Sequence[int]) -> list[Floats]:
         """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth, for each of both."""
         if self.basis is None and self.healthy is None:
             return singly(self, rolls, teeth)
@@ -152,7 +153,7 @@ class Flexibility:
             out.append(smooth)
         return out
 
-    def yields_across(self, roll: NDArray[np.float64], tooth: int) -> NDArray[np.float64] | None:
+    def yields_across(self, roll: Floats, tooth: int) -> Floats | None:
         """S_nt and S_tt of `leaning` ``(2, ...)`` [mm per N/mm] at roll lengths of a tooth; None if they are not known."""
         leans = self.leans.get(tooth % self.gear.z, self._whole().leans.get(0))
         if leans is None:
@@ -164,7 +165,7 @@ class Flexibility:
         """Limits and basis of a tooth's flank."""
         return self.tips.get(tooth % self.gear.z, (0.0, self.limits, self.basis))[1:]
 
-    def clipped(self, arc: NDArray[np.float64], teeth: ArrayLike) -> NDArray[np.float64]:
+    def clipped(self, arc: Floats, teeth: ArrayLike) -> Floats:
         """Arcs ``(..., n)`` on `teeth` ``(n,)``, moved into the limits of their splines [mm]."""
         low, high = np.array([self._end(tooth)[0] for tooth in np.asarray(teeth).tolist()]).reshape(-1, 2).T
         return np.minimum(np.maximum(arc, low), high)
@@ -172,7 +173,7 @@ class Flexibility:
     def _whole(self):
         return self if self.healthy is None else self.healthy
 
-    def matrix(self, roll: NDArray[np.float64], teeth: ArrayLike) -> NDArray[np.float64]:
+    def matrix(self, roll: Floats, teeth: ArrayLike) -> Floats:
         """Flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on `teeth` ``(n,)``.
 
         Contacts on one tooth get no influence on each other here: see `within`. Cracks are glued shut: see `SeamFaces`.
@@ -217,7 +218,7 @@ def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.b
     return ~np.isin(teeth % z, list(faces.opening)), float(most)
 
 
-def singly(flexible: Any, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[int]) -> list[NDArray[np.float64]]:
+def singly(flexible: Any, rolls: Sequence[Floats], teeth: Sequence[int]) -> list[Floats]:
     """What `Flexibility.within` gives, of a gear that is known at single places: S between two places is the mean of both.
 
     That of the place half-way, as long as S is straight over a contact.
@@ -228,13 +229,13 @@ def singly(flexible: Any, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[
 
 def towards(
     flexible: Flexibility,
-    smooth: NDArray[np.float64],
-    roll: NDArray[np.float64],
+    smooth: Floats,
+    roll: Floats,
     tooth: int,
-    force: NDArray[np.float64],
-    torque: NDArray[np.float64],
+    force: Floats,
+    torque: Floats,
     local: float,
-) -> NDArray[np.float64]:
+) -> Floats:
     """Smooth flexibility ``(..., n, n)`` [mm per N/mm] between contacts on one tooth whose forces are not along its normals.
 
     Parameters

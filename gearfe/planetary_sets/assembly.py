@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..flexibility.hertz import contact_modulus
+from ..geometry.aliases import Floats
 from .balance import Problem, balance
 from .case import PlanetaryCase
 from .crack_contacts import crack_contacts
@@ -24,9 +25,9 @@ class Bodies(NamedTuple):
     `faces` are the cracks, by the gear's name as of `PlanetaryCase`.
     """
 
-    sun: NDArray
-    planet: NDArray
-    ring: NDArray
+    sun: Floats
+    planet: Floats
+    ring: Floats
     rim: Rim
     faces: dict[Any, Faces]
 
@@ -42,17 +43,17 @@ class Position(NamedTuple):
     of its cracks. `shut`: whether faces of a crack touch.
     """
 
-    loads: NDArray
-    closing: NDArray
-    rim: NDArray
-    gap: NDArray
+    loads: Floats
+    closing: Floats
+    rim: Floats
+    gap: Floats
     turn: float
-    orbit: NDArray
+    orbit: Floats
     pairs: list[tuple[int, int, int, int, float]]
-    on_ring: NDArray
-    lugs: NDArray
-    whole: NDArray
-    opened: NDArray
+    on_ring: Floats
+    lugs: Floats
+    whole: Floats
+    opened: Floats
     shut: bool
 
 
@@ -64,7 +65,7 @@ class _Block(NamedTuple):
     planet: int
     at: slice
     teeth: tuple[NDArray[np.int64], NDArray[np.int64]]
-    spread: tuple[NDArray, NDArray]
+    spread: tuple[Floats, Floats]
 
 
 class Set:

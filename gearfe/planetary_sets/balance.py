@@ -11,11 +11,11 @@ at the forces themselves.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
 from scipy.optimize import nnls
 
 from ..flexibility.hertz import half_width
+from ..geometry.aliases import Floats
 
 STEPS, SINGLE = 40, 400  # most steps of Newton and the active set, changed all at once; then one by one
 HOLD = 1e-11  # of the load, by mm: springs on all motions, so that a planet out of mesh stays somewhere
@@ -30,16 +30,16 @@ class Problem(NamedTuple):
     `gap`, `coefficient`, `radius`, `modulus` and `tilt` ``(n,)`` as of `gearfe.contact.sharing.line_contact`.
     """
 
-    flexibility: NDArray
-    gap: NDArray
-    coefficient: NDArray
-    radius: NDArray
-    modulus: NDArray
-    tilt: NDArray
-    closing: NDArray
-    load: NDArray
+    flexibility: Floats
+    gap: Floats
+    coefficient: Floats
+    radius: Floats
+    modulus: Floats
+    tilt: Floats
+    closing: Floats
+    load: Floats
 
-    def with_more(self, flexibility: NDArray, closing: NDArray) -> "Problem":
+    def with_more(self, flexibility: Floats, closing: Floats) -> "Problem":
         """The same with m more contacts, without gaps and logarithms: `flexibility` ``(n + m, n + m)`` is all that they yield.
 
         `closing` ``(n + m, motions)``.
@@ -50,7 +50,7 @@ class Problem(NamedTuple):
         return self._replace(flexibility=flexibility, closing=closing, **values)
 
 
-def balance(problem: Problem) -> tuple[NDArray, NDArray]:
+def balance(problem: Problem) -> tuple[Floats, Floats]:
     """Forces ``(n,)`` [N/mm] and motions of a `Problem`.
 
     Contacts that would pull are left out and those that would overlap are taken in, all at once; where that does not settle, one

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from ..contact.pair_contact import OVERLAP
+from ..geometry.aliases import Floats
 from .cracked import Faces
 from .whole_gear import PLACES
 
@@ -19,13 +20,13 @@ class CrackContacts(NamedTuple):
     those of the ring.
     """
 
-    more: NDArray
-    by_loads: NDArray
-    ease: NDArray
+    more: Floats
+    by_loads: Floats
+    ease: Floats
     touch: NDArray[np.bool_]
     ring: slice
 
-    def overlap(self, opened: NDArray) -> bool:
+    def overlap(self, opened: Floats) -> bool:
         """Whether faces that may touch overlap."""
         return bool(opened[self.touch].min() < -OVERLAP * np.abs(opened).max())
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
+from ..geometry.aliases import Floats
 from ..geometry.mesh.periodic_sector import periodic_sector
 from .whole_gear import PLACES, WholeGear, in_chain, sector_stiffness
 
@@ -30,9 +31,9 @@ class CrackedTooth(NamedTuple):
 
     tooth: int
     side: NDArray[np.int64]
-    sides: NDArray
-    faces: NDArray
-    loads: NDArray
+    sides: Floats
+    faces: Floats
+    loads: Floats
     touch: NDArray[np.bool_]
 
 
@@ -44,12 +45,12 @@ class Faces(NamedTuple):
     `released` ``(e, z, PLACES)`` is what its support adds to Q.
     """
 
-    stiffness: NDArray
-    by_teeth: NDArray
+    stiffness: Floats
+    by_teeth: Floats
     touch: NDArray[np.bool_]
-    edge: NDArray
-    pads: NDArray
-    released: NDArray
+    edge: Floats
+    pads: Floats
+    released: Floats
 
 
 def cracked_teeth(whole: WholeGear, cracks: Any, refine: float) -> tuple[CrackedTooth, ...]:

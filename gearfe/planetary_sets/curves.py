@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..core.files import save
 from ..core.units import NEWTON_PER_UM
 from ..figures.set_plot import draw_curves
-from ..geometry.aliases import StrPath
+from ..geometry.aliases import Floats, StrPath
 from .rim import rim_angles, rim_moved
 from .set_file import MESHES, content
 
@@ -59,19 +59,19 @@ class SetCurves:
         positions at which faces of a crack touch. ``"seconds_flexibility"``, ``"seconds_contact"``: time taken [s].
     """
 
-    position: NDArray
-    force: NDArray
-    k: NDArray
-    k_alone: NDArray
-    rim: NDArray
-    gap: NDArray
-    te: NDArray
-    orbit: NDArray
-    pair_force: NDArray
+    position: Floats
+    force: Floats
+    k: Floats
+    k_alone: Floats
+    rim: Floats
+    gap: Floats
+    te: Floats
+    orbit: Floats
+    pair_force: Floats
     tooth: NDArray[np.int64]
     order: NDArray[np.int64]
-    ring_angle: NDArray
-    ring_moved: NDArray
+    ring_angle: Floats
+    ring_moved: Floats
     meta: dict[str, Any] = field(default_factory=dict)
 
     def __repr__(self):
@@ -81,7 +81,7 @@ class SetCurves:
         return f"<SetCurves: {self.force.shape[2]} planets, {self.position.size} positions, {told}, K_gamma {self.K_gamma:.4g}>"
 
     @property
-    def share(self) -> NDArray:
+    def share(self) -> Floats:
         """Load of each mesh over the mean load of its kind ``(2, p, planets)``: 1 where all planets carry the same."""
         return self.force / self.force.mean(axis=2, keepdims=True)
 
@@ -91,7 +91,7 @@ class SetCurves:
         return float(self.share.max())
 
     @property
-    def k_without_rim(self) -> NDArray:
+    def k_without_rim(self) -> Floats:
         """`k` without the share of `rim` [N/m]: for machines in which the ring is a body on springs of its own."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(self.k > 0, self.force / (self.force / self.k - self.rim), 0.0)
@@ -105,7 +105,7 @@ class SetCurves:
         return draw_curves(self, path, dpi=dpi)
 
     @classmethod
-    def of(cls, of: Any, meshes: Any, position: NDArray, found: list[Any], meta: dict[str, Any]) -> "SetCurves":
+    def of(cls, of: Any, meshes: Any, position: Floats, found: list[Any], meta: dict[str, Any]) -> "SetCurves":
         """From solved positions, `gearfe.planetary_sets.assembly.Position`."""
         case, p = of.case, len(found)
         width, n = case.width, case.planets

@@ -18,7 +18,7 @@ from ..decks.deck import held_nodes
 from ..decks.pressed import Sections, pressing, read_rows, write_lines
 from ..flexibility.finite_elements.fe import EDGES
 from ..flexibility.finite_elements.one_tooth import edge_lengths
-from ..geometry.aliases import StrPath
+from ..geometry.aliases import Floats, StrPath
 from ..geometry.mesh.outline import stations
 from ..geometry.tooth.profile import arc_at
 from .case import PlanetaryCase
@@ -38,9 +38,9 @@ class SetDeck:
 
     case: PlanetaryCase
     held: list[NDArray[np.int64]]
-    place: list[NDArray]
+    place: list[Floats]
     rim: NDArray[np.int64]
-    around: NDArray
+    around: Floats
     angle: float
 
     def forces(self, path: StrPath) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from ..contact.pair_contact import PairContact
 from ..contact.sliding import bounded
 from ..flexibility.energy.ritz.plane import flexibility
 from ..flexibility.section_contact import Solved
+from ..geometry.aliases import Floats
 from ..geometry.pair.contacts import near_pitches
 from .faults import faults
 from .standing import DIGITS, Standing
@@ -32,15 +33,15 @@ class Contacts(NamedTuple):
     up to `reach` beyond it may close.
     """
 
-    flexibility: NDArray
-    gap: NDArray
-    coefficient: NDArray
-    radius: NDArray
-    tilt: NDArray
-    roll_1: NDArray
-    roll_2: NDArray
-    turn_1: NDArray
-    turn_2: NDArray
+    flexibility: Floats
+    gap: Floats
+    coefficient: Floats
+    radius: Floats
+    tilt: Floats
+    roll_1: Floats
+    roll_2: Floats
+    turn_1: Floats
+    turn_2: Floats
     order: NDArray[np.int64]
     least: float
     reach: float
@@ -90,7 +91,7 @@ class Meshes:
         differs = faults(self.case, bool(inner), planet, int(self._firsts[inner][planet]))[2]
         return inner, planet, differs, None if differs else self.case.flanks.get(("planet", planet))
 
-    def at(self, i: int, loads: NDArray, reach: NDArray) -> list[list[Met]]:
+    def at(self, i: int, loads: Floats, reach: Floats) -> list[list[Met]]:
         """`Met` of all meshes at position i by ``[inner][planet]``, for loads [N/mm] and approaches [mm] ``(2, planets)``."""
         return [[self._met(i, k, p, float(loads[k, p]), float(reach[k, p])) for p in range(self.case.planets)] for k in (0, 1)]
 

@@ -88,11 +88,11 @@ def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, i
     if case not in known:
         raise ValueError(f"no case {case!r} in the set of scene {scene.name}; it has {', '.join(known) or 'none'}")
     one, two = outer.damage.get(case, {}), inner.damage.get(case, {})
-    kinds = {type(own) for found in (*one.values(), *two.values()) for own in found}
-    other = sorted(kind.__name__.lower() for kind in kinds - {Crack})
+    hurt = [own for found in (*one.values(), *two.values()) for own in found]
+    other = sorted({own.nouns[0] for own in hurt if not isinstance(own, Crack)})
     if other:
         raise ValueError(
-            f"case {case!r} has a {' and a '.join(other)}, but the section of a set knows cracks only: choose a case of cracks"
+            f"case {case!r} has a {' and a '.join(other)}, but the section of a set has cracks only: choose a case of cracks"
         )
     both = one.get("wheel", [])
     ring_side = [replace(crack, side=_opposite(crack.side)) for crack in two.get("pinion", [])]

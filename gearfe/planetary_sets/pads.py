@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..flexibility.finite_elements.elasticity import GAUSS_3
 from ..flexibility.hertz import half_plane, hat_logarithm
+from ..geometry.aliases import Floats
 from .rim_supports import RimSupports
 from .whole_gear import PLACES, WholeGear
 
@@ -28,10 +29,10 @@ class Pads:
     `moved` are the edge's displacements by harmonic, as of `WholeGear.loose`.
     """
 
-    load: NDArray
-    close: NDArray
-    turns: NDArray
-    compliance: NDArray
+    load: Floats
+    close: Floats
+    turns: Floats
+    compliance: Floats
     moved: NDArray[np.complex128]
 
 

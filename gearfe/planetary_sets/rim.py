@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.aliases import Floats
 from .cracked import CrackedTooth, Faces, faces_of
 from .pads import Pads, among, by_teeth, pads_on
 from .rim_supports import RimBed, RimSupports, check_support
@@ -42,7 +43,7 @@ class Rim(NamedTuple):
     """
 
     whole: WholeGear
-    more: NDArray
+    more: Floats
     pads: Pads | None = None
     reaction: NDArray = NONE_3
     moves: NDArray = NONE_3
@@ -121,7 +122,7 @@ def _moves(gear):
     return np.array([cos * x + sin * y, cos * y - sin * x, np.broadcast_to(turn, (gear.z, PLACES))])
 
 
-def rim_moved(rim: Rim, loads: NDArray, tractions: NDArray, whole: NDArray) -> NDArray:
+def rim_moved(rim: Rim, loads: Floats, tractions: NDArray, whole: NDArray) -> Floats:
     """Displacement ``(nodes, 2)`` of the rim's nodes, outwards and clockwise [mm]; their angles are those of `rim_angles`.
 
     Of a ring on pads under `loads` ``(z, PLACES)`` on the teeth and `tractions` ``(p,)`` of the pads [N/mm], moved as a `whole`
@@ -138,7 +139,7 @@ def rim_moved(rim: Rim, loads: NDArray, tractions: NDArray, whole: NDArray) -> N
     return moved + np.column_stack([sin * x + cos * y, cos * x - sin * y + gear.held * turn])
 
 
-def rim_angles(whole: WholeGear) -> NDArray:
+def rim_angles(whole: WholeGear) -> Floats:
     """Angles of all nodes of the rim, clockwise from the centre-line of tooth 0 [rad]."""
     sectors = 2 * math.pi / whole.gear.z * np.arange(whole.gear.z)
     return (sectors[:, None] + whole.angle).ravel()

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..core.checks import truth, whole
 from ..core.record import settle, settle_numbers
+from ..geometry.aliases import Floats
 from ..geometry.tooth.gear import Gear
 
 MANY, FURTHEST = 200, 1e4  # pads; angle of the first [rad]
@@ -93,16 +94,16 @@ class RimSupports:
             raise ValueError(f"rim supports: count = {self.count}, but so few of these do not hold the ring: give 3 or more")
 
     @property
-    def middles(self) -> NDArray:
+    def middles(self) -> Floats:
         """Angles of the pads' middles, clockwise from the ring's tooth 0 [rad]."""
         return self.first + np.linspace(0, 2 * math.pi, self.count, endpoint=False)
 
-    def ends(self, gear: Gear) -> NDArray:
+    def ends(self, gear: Gear) -> Floats:
         """Angles of both ends of all pads on the rim of a ring [rad]."""
         reach = self.width / (2 * gear.held)
         return np.concatenate([self.middles - reach, self.middles + reach])
 
-    def covers(self, gear: Gear, places: NDArray) -> NDArray[np.bool_]:
+    def covers(self, gear: Gear, places: Floats) -> NDArray[np.bool_]:
         """Whether `places` ``(2, n)`` on the rim lie on a pad, its ends included."""
         away = np.arctan2(*places)[:, None] - self.middles + math.pi
         return np.abs(away % (2 * math.pi) - math.pi).min(axis=1) < self.width / (2 * gear.held) + 1e-9

@@ -14,6 +14,7 @@ from ..core.steps import steps
 from ..decks.contact_deck import posed
 from ..figures.set_plot import draw_set
 from ..flexibility.finite_elements.elasticity import Body
+from ..geometry.aliases import Floats
 from ..geometry.mesh.outline import stations
 from ..geometry.tooth.profile import cartesian
 from .curves import SetCurves
@@ -33,10 +34,10 @@ class Shape(NamedTuple):
     stress at the nodes [MPa].
     """
 
-    place: NDArray
-    moved: NDArray
+    place: Floats
+    moved: Floats
     triangles: NDArray[np.int64]
-    stress: NDArray
+    stress: Floats
 
 
 def plot_planetary_set(
@@ -76,7 +77,7 @@ def plot_planetary_set(
     return draw_set(shapes, supports, path, magnified=magnified, dpi=dpi)
 
 
-def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[list[Shape], NDArray | None]]:
+def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[list[Shape], Floats | None]]:
     """At each of these positions, by their numbers: `Shape` of every gear, and where the ring is held ``(2, n)`` [mm].
 
     The latter is None if it is held all around; pads turn with the ring, since the carrier stands still. Each gear is meshed and
@@ -90,7 +91,7 @@ def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[lis
     made = []
     for k, same in enumerate(steps(list(zip(*bodies, strict=True)))):
         made.append(_shapes(case, same, [[side for side in one if side["body"] == k] for one in sides]))
-    pads: list[NDArray | None] = [None] * len(bodies)
+    pads: list[Floats | None] = [None] * len(bodies)
     if case.ring != "held":
         pads = [cartesian(1.03 * case.ring_gear.r_rim, case.ring.middles + there[-1][3]) for there in bodies]
     return [(list(one), held) for one, held in zip(zip(*made, strict=True), pads, strict=True)]

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.checks import numbers
+from ..geometry.aliases import Floats
 
 if TYPE_CHECKING:
     from ..geometry.pair.planetary import PlanetarySet
@@ -33,13 +34,13 @@ class Standing:
     planet's tooth 0.
     """
 
-    outer: NDArray
-    inner: NDArray
+    outer: Floats
+    inner: Floats
     planet: NDArray[np.int64]
     ring: NDArray[np.int64]
 
 
-def assembled(set_: "PlanetarySet", angles: ArrayLike) -> NDArray:
+def assembled(set_: "PlanetarySet", angles: ArrayLike) -> Floats:
     """Planets' angles, checked [rad].
 
     ValueError if teeth do not fit there, or neighbours touch; the message gives the nearest angles that fit.
@@ -63,7 +64,7 @@ def assembled(set_: "PlanetarySet", angles: ArrayLike) -> NDArray:
     return places
 
 
-def standing(set_: "PlanetarySet", angles: NDArray, position: ArrayLike) -> Standing:
+def standing(set_: "PlanetarySet", angles: Floats, position: ArrayLike) -> Standing:
     """`Standing` of a set whose sun is turned by `position` ``(n,)`` of its pitches.
 
     At position 0 planet 0 and the sun are at mesh phase 0, with tooth 0 of both; ring tooth 0 is that of the newest pair of
@@ -99,7 +100,7 @@ def _turn_2(pair, nominal):
     return pair.turn(middle)[1] - pair.outward * (nominal - middle) / pair.gear_2.r_b
 
 
-def tooth_angles(set_: "PlanetarySet", angles: NDArray, stand: Standing) -> tuple[float, NDArray, float]:
+def tooth_angles(set_: "PlanetarySet", angles: Floats, stand: Standing) -> tuple[float, Floats, float]:
     """Clockwise angles of tooth 0 of sun, planets ``(planets,)`` and ring [rad] at the first position of `stand`."""
     sun_planet, planet_ring = set_.sun_planet, set_.planet_ring
     sun = angles[0] + _turn_1(sun_planet, sun_planet.path[0] + stand.outer[0, 0] * sun_planet.p_bt)
@@ -108,7 +109,7 @@ def tooth_angles(set_: "PlanetarySet", angles: NDArray, stand: Standing) -> tupl
     return float(sun), planets, float(at_ring - 2 * math.pi / set_.ring.z * stand.ring[0])
 
 
-def directions(set_: "PlanetarySet", angles: NDArray) -> tuple[NDArray, NDArray]:
+def directions(set_: "PlanetarySet", angles: Floats) -> tuple[Floats, Floats]:
     """Unit forces ``(2, planets)`` on the planets, along x and y: of the sun, and of the ring."""
     cos, sin = np.cos(angles), np.sin(angles)
 

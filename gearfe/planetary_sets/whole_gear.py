@@ -27,6 +27,7 @@ from ..core.material import Material
 from ..flexibility.condense import condense
 from ..flexibility.finite_elements.elasticity import GAUSS_3, LEAF, Body, edge_nodes, edge_shapes
 from ..flexibility.solved import solved_gears
+from ..geometry.aliases import Floats
 from ..geometry.mesh.periodic_sector import periodic_sector
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import arc_at, flank, flank_normal, roll_at_arc
@@ -53,7 +54,7 @@ class WholeGear:
     stiffness: NDArray[np.complex128]
     push: NDArray[np.complex128]
     bed: NDArray[np.complex128]
-    angle: NDArray
+    angle: Floats
 
     @property
     def edge(self) -> int:
@@ -68,7 +69,7 @@ class WholeGear:
         """
         return np.fft.irfft(np.conj(self.push.transpose(0, 2, 1)) @ inverse @ self.push, n=self.gear.z, axis=0)
 
-    def held(self) -> NDArray:
+    def held(self) -> Floats:
         """`between` loads with the edge held."""
         return self.between(self.held_inverse())
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..dynamics.machine.mesh_excitation import harmonics
 from ..dynamics.machine.springs import Spring
 from ..dynamics.machine.tables import Machine
+from ..geometry.aliases import Floats
 from .curves import SetCurves
 from .rim_supports import RimBed, RimSupports
 
@@ -167,7 +167,7 @@ def _still(machine):
     )
 
 
-def ring_springs(case: Any) -> NDArray:
+def ring_springs(case: Any) -> Floats:
     """Stiffness of a rigid ring on the bed or the pads of a `PlanetaryCase` in x, y and its turn [N/m, N m/rad]; inf: rigid.
 
     Of n pads, radial k_r and tangential k_t: ``n (k_r + k_t) / 2`` and ``n k_t R**2``; of a bed the same with its length for n.

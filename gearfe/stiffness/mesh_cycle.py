@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.case import SIDES, Case
 from ..flexibility.plane import FURTHER
+from ..geometry.aliases import Floats
 from ..geometry.pair.contacts import neighbours_of
 from .curve import StiffnessCurve, joined
 from .limits import check_count
@@ -84,7 +84,7 @@ class MeshCycle:
         """Mesh cycles after which the pair repeats: 1, the teeth of a gear, or the hunting period."""
         return math.lcm(1, *(part.period for part in self.parts))
 
-    def sampled(self, name: str = "k") -> NDArray[np.float64]:
+    def sampled(self, name: str = "k") -> Floats:
         """``k`` [N/m], ``lte`` [m] or ``unloaded`` [m] at the samples of all `cycles`, ``(cycles phases,)``."""
         n, size = self.phases, self.cycles * self.phases
         healthy = _values(self.healthy, name)

@@ -13,6 +13,7 @@ from ..core.material import Material
 from ..flexibility.energy.closed import coupled
 from ..flexibility.energy.closed.beam import Components
 from ..flexibility.plane import singly
+from ..geometry.aliases import Floats
 from ..geometry.tooth.gear import Gear
 from .methods import METHODS, SUMS, having
 
@@ -203,7 +204,7 @@ class OwnMatrix:
         return np.where(on[..., :, None] & on[..., None, :], values, 0.0)
 
 
-def _on_flank(gear: Gear, roll: NDArray) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def _on_flank(gear: Gear, roll: NDArray) -> tuple[Floats, NDArray[np.bool_]]:
     """Roll lengths brought onto the flank where they are beside it, and which were on it."""
     roll = np.asarray(roll, dtype=float)
     low, high = sorted((gear.roll_f, gear.roll_a))
@@ -211,7 +212,7 @@ def _on_flank(gear: Gear, roll: NDArray) -> tuple[NDArray[np.float64], NDArray[n
     return np.clip(np.nan_to_num(roll, nan=low), low, high), (roll > low - slack) & (roll < high + slack)
 
 
-def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> NDArray[np.float64]:
+def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Floats:
     """What a user's function gives, if it is real, finite and symmetric and has the shape; else a ValueError that names it."""
     try:
         returned = work()

@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.checks import numbers, one_of
+from ..geometry.aliases import Floats
 from ..geometry.pair.gear_pair import GearPair
 from .limits import check_count, check_range
 from .turns import check_length, cycles_in
@@ -16,7 +16,7 @@ SPANS = ("cycle", "tooth", "revolution", "hunting")
 LONG = SPANS[2:]  # of many cycles
 
 
-def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0, teeth: Iterable[int] = (0,)) -> NDArray[np.float64]:
+def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0, teeth: Iterable[int] = (0,)) -> Floats:
     """Phases ``(n,)`` of a number of them over a `span`, or those given; an engagement lasts ``eps_alpha + overlap`` cycles.
 
     Those of the `span` ``tooth`` are of the engagements of all tooth pairs of these numbers.

@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, Unpack, overload
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.case import NAMES, SIDES, Case, CaseOptions, case_of
 from ..core.checks import checked_refine, is_number, one_of, truth
@@ -15,6 +14,7 @@ from ..core.frozen import frozen
 from ..core.material import Material, check_state
 from ..core.threads import one_thread
 from ..flexibility.solved import SolvedGears, solved_gears
+from ..geometry.aliases import Floats
 from ..geometry.pair.gear_pair import GearPair
 from .curve import StiffnessCurve
 from .methods import METHODS, Method
@@ -25,7 +25,7 @@ from .plausible import check_plausible
 from .pose import SHIFT, in_pose
 from .turns import over_turns
 
-Loads = list[float] | tuple[float, ...] | NDArray[np.float64]
+Loads = list[float] | tuple[float, ...] | Floats
 Materials = Material | tuple[Material, Material] | None
 
 
@@ -325,8 +325,8 @@ def mesh_stiffness(
     >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), b=20.0)
     >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
     >>> curve = gf.mesh_stiffness(pair, force=2000.0, material=gf.Material(E=207e3, nu=0.25), method="ritz", phases=32)
-    >>> print(f"{1e-6 * curve.k.mean():.0f} N/um in the mean, from {1e-6 * curve.k.min():.0f} to {1e-6 * curve.k.max():.0f}")
-    314 N/um in the mean, from 244 to 351
+    >>> print(f"{1e-6 * curve.k.mean():.0f} N/um on average, from {1e-6 * curve.k.min():.0f} to {1e-6 * curve.k.max():.0f}")
+    314 N/um on average, from 244 to 351
     """
     return solve(*split_arguments("mesh_stiffness", pair, force, material, torque, options))
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from ..aliases import Floats
 from ..tooth.gear import Gear, shortened
 from ..tooth.profile import arc_at, cartesian, flank
 from .given import finite, tooth_and_side
@@ -16,7 +16,7 @@ from .given import finite, tooth_and_side
 LEFT = 0.5  # arc of the flank that a chip leaves, at least [m_n]
 FLAT = 1e-3  # least angle between the cut and the chord of the flank that it takes off [rad]
 
-Piece = tuple[float, Callable[[NDArray[np.float64]], NDArray[np.float64]]]
+Piece = tuple[float, Callable[[Floats], Floats]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +138,7 @@ class Chip:
             return [_line(middle, corner)]
         return [_arc(gear.r_a, 0.0, half)] if other >= 0 else [_line(middle, tip), _arc(gear.r_a, -other, half)]
 
-    def outline(self, gear: Gear) -> NDArray[np.float64]:
+    def outline(self, gear: Gear) -> Floats:
         """Line ``(2, n)`` [mm] of the cut, in the frame of its tooth."""
         roll, where, other = self.cut(gear)
         ends = cartesian(*flank(gear, roll)), cartesian(*flank(gear, other)) * [-1, 1]

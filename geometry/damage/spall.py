@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from ..aliases import Floats
 from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
 from .hollow import doubts, in_circle, on_line, profile
@@ -98,7 +99,7 @@ class Spall:
         along, across = (tuple(sorted({-half, self.corner - half, half - self.corner, half})) for half in self.axes)
         return along, across
 
-    def outline(self, gear: Gear) -> NDArray[np.float64]:
+    def outline(self, gear: Gear) -> Floats:
         """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth."""
         return profile(gear, self)
 
@@ -122,14 +123,14 @@ class Spall:
             (away[0] <= 0) & (away[1] <= 0) & ((beside[0] ** 2 + beside[1] ** 2 <= self.corner**2) | (beside[0] * beside[1] == 0))
         )
 
-    def span(self, u: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def span(self, u: Floats) -> tuple[Floats, Floats]:
         """Heights z [mm] between which it lies at `u` along the profile from its centre [mm]; equal where it does not."""
         beside = np.maximum(np.abs(u) - self.axes[0] + self.corner, 0.0)
         half = self.axes[1] - self.corner + np.sqrt(np.maximum(self.corner**2 - beside**2, 0.0))
         half = np.where(np.abs(u) <= self.axes[0], half, 0.0)
         return self.z - half, self.z + half
 
-    def edge(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def edge(self) -> tuple[Floats, Floats]:
         """Its outline: places along the profile and along the width from its centre [mm]."""
         turn = np.linspace(0, 2 * math.pi, 4 * QUARTER, endpoint=False) + math.pi / 4 / QUARTER
         unit = np.array([np.cos(turn), np.sin(turn)])
@@ -137,7 +138,7 @@ class Spall:
         u, w = np.column_stack([out, out[:, 0]])
         return u, w
 
-    def drawn(self, centre: NDArray[np.float64], axes: NDArray[np.float64]) -> list[tuple[str, NDArray[np.float64]]]:
+    def drawn(self, centre: Floats, axes: Floats) -> list[tuple[str, Floats]]:
         """Its outline in space, from its `centre` and half `axes` ``(3, 2)``: lines, and arcs by their ends and centres."""
         inner = 1 - self.corner / np.array(self.axes)
         out = []
@@ -150,7 +151,7 @@ class Spall:
                 out.append(("line", np.array([ends[1], following])))
         return [(kind, centre[:, None] + axes @ places.T) for kind, places in out]
 
-    def along(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def along(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[Floats, Floats]:
         """Where lines ``(p + t dp, q + t dq)``, in units of the half sides, are in it: from t to t, equal where nowhere."""
         rounded = self.corner / np.array(self.axes)
         p, q, dp, dq = np.broadcast_arrays(p, q, dp, dq)

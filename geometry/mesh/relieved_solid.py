@@ -3,14 +3,14 @@
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..aliases import Floats
 from ..tooth.gear import Gear
 from ..tooth.modified import FlankForm
 from .relieved import bend
 
 
-def relieved_points(points: NDArray[np.float64], gear: Gear, form: FlankForm, teeth: Iterable[int]) -> NDArray[np.float64]:
+def relieved_points(points: Floats, gear: Gear, form: FlankForm, teeth: Iterable[int]) -> Floats:
     """Nodes of a gear in its own frame with the loaded flanks of some teeth modified.
 
     As in `geometry.mesh.relieved.relieved`, section by section: each node of such a tooth turns by ``C / r_b``, C the material

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
+from ..aliases import Floats
 from ..checks import is_finite
 from .gear import Gear
 
@@ -31,7 +32,7 @@ class LeadForm:
             degree = {"kx": min(3, len(rolls) - 1), "ky": min(3, len(heights) - 1)}
             self._grid = RectBivariateSpline(rolls, heights, amounts, **degree)
 
-    def removed(self, roll: NDArray, z: NDArray, derivative: int) -> NDArray[np.float64]:
+    def removed(self, roll: NDArray, z: NDArray, derivative: int) -> Floats:
         """Removed at roll lengths and heights [mm], or its derivative by the roll length."""
         flank, n = self.flank, derivative
         span = self.high - self.low

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import make_interp_spline
 
+from ..aliases import Floats
 from .gear import Gear
 from .profile import arc_at, cartesian, fillet, fillet_length, flank, form_point, lengths, roll_at_arc, root_curve
 
@@ -26,10 +27,10 @@ class Place(NamedTuple):
     length on the flank).
     """
 
-    roll: NDArray[np.float64]
-    angle: NDArray[np.float64]
-    arm: NDArray[np.float64]
-    lean: NDArray[np.float64]
+    roll: Floats
+    angle: Floats
+    arm: Floats
+    lean: Floats
 
 
 @lru_cache(maxsize=256)
@@ -47,7 +48,7 @@ def on_fillet(gear: Gear, roll: ArrayLike) -> NDArray[np.bool_]:
     return gear.outward * (np.asarray(roll) - gear.roll_f) < 0
 
 
-def side(gear: Gear, roll: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def side(gear: Gear, roll: ArrayLike) -> tuple[Floats, Floats]:
     """Radius [mm] and angle [rad] of places on the loaded side of a tooth, fillet included."""
     roll = np.asarray(roll, dtype=float)
     low = on_fillet(gear, roll)

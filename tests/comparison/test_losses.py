@@ -119,7 +119,7 @@ def test_terminal_report_and_python_say_the_same(found, scene, capsys):
     assert main(["compare", str(scene), "--cases", "--phases", "16"]) == 0
     told = capsys.readouterr().out
     single, mean = re.findall(r"(\d+\.\d) ±", found.headline)
-    assert f"{mean} % in the mean" in told
+    assert f"{mean} % on average" in told
     assert float(single) > float(mean)
 
 
@@ -135,7 +135,7 @@ def test_losses_of_known_curves():
     assert_allclose([lost["double"], lost["single"], lost["most at a phase"]], [0.1, 0.2, 0.2], rtol=1e-12)
     assert_allclose(lost["mean"], (5 * 30 + 3 * 40) / (5 * 300 + 3 * 200), rtol=1e-12)
     assert headline("a crack", "cracked", lost, {}).endswith(
-        "20.0 % softer where the cracked tooth carries alone; 12.9 % in the mean"
+        "20.0 % softer where the cracked tooth carries alone; 12.9 % on average"
     )
 
 

@@ -37,7 +37,7 @@ def test_coarser_meshes_are_stiffer(key):
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("name", pairs_three.pairs())
 def test_the_energy_model_is_near_the_hexahedra_as_the_page_states(name, case):
-    """Within 0.24 % in the mean and 0.64 % at a phase, faces of cracks that are pressed together left out."""
+    """Within 0.24 % on average and 0.64 % at a phase, faces of cracks that are pressed together left out."""
     k, apart = pairs_three.model_curve(pairs_three.pairs()[name][1], case)
     away = (k / KNOWN[name, case, MAIN]["k"] - 1)[apart]
     assert abs(away.mean()) < 0.00245

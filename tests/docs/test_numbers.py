@@ -55,7 +55,7 @@ def mean(pair, force=2000.0, **options):
 
 
 def loss(phases, pair, **crack):
-    """What a 2 mm crack takes at these phases [%]: where one pair carries, in the mean, at the worst phase."""
+    """What a 2 mm crack takes at these phases [%]: where one pair carries, on average, at the worst phase."""
     healthy, cracked = (solved(pair, phases=phases, damage=d) for d in (None, {"pinion": [gf.Crack(length=2.0, **crack)]}))
     before, after = healthy.zones(), cracked.zones()
     return 100 * np.array([*(1 - after[name] / before[name] for name in ("single", "mean")), (1 - cracked.k / healthy.k).max()])
@@ -167,7 +167,7 @@ def test_width_and_helix(pair):
     pairs = [changed(beta=radians(beta)) for beta in (5, 15, 30)]
     section, whole = ([solved(one, method=method, phases=32).k for one in pairs] for method in ("ritz", "ritz3d"))
     stiff = [100 * (flat.mean() / full.mean() - 1) for flat, full in zip(section, whole, strict=True)]
-    says("faq.md", "it is {} % too stiff in the mean, at 15 degrees {} %, at 30 degrees {} %", *stiff)
+    says("faq.md", "it is {} % too stiff on average, at 15 degrees {} %, at 30 degrees {} %", *stiff)
     swings = [100 * np.ptp(k) / k.mean() for k in (section[1], *whole[1:])]
     says(
         "faq.md",

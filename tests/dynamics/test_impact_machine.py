@@ -108,3 +108,11 @@ def test_unknown_keys_are_named(tmp_path):
     path.write_text(text.replace("n_planets = 3", "n_planets = 3\nrunout_mm = 0.1"))
     with pytest.raises(ValueError, match=r"\[machine\]: unknown key 'runout_mm'"):
         gf.load_scene(path)
+
+
+def test_the_impact_law_of_a_helical_pair_refuses_spur_gears(tmp_path):
+    path = gf.new_scene(tmp_path / "my.toml", teeth=(17, 38), module=3.0)
+    machine = '[machine]\nmodel = "helical_pair"\nspeed_rpm = 2400.0\ntorque_Nm = 40.0\ncontact = "impact"\n'
+    path.write_text(f"{path.read_text()}\n{machine}")
+    with pytest.raises(ValueError, match="needs a helix angle"):
+        gf.build_machine(gf.load_scene(path))

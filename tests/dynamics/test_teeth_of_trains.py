@@ -64,6 +64,35 @@ def test_damage_is_in_the_meshes_of_its_body_in_a_compound_train(name):
     assert machine.stage_of(machine.faults[0].gear).name == ("stage 1" if "1" in name else "stage 2")
 
 
+WHOLE = {  # teeth that are broken are so in all meshes of their body
+    "sun": ({"gear": "sun", "tooth": 4}, {"sun_planet1", "sun_planet2", "sun_planet3"}),
+    "planet 2": ({"gear": "planet", "tooth": 5, "body": "planet2"}, {"sun_planet2", "planet_ring2"}),
+    "ring": ({"gear": "ring", "tooth": 7}, {"planet_ring1", "planet_ring2", "planet_ring3"}),
+}
+
+
+@pytest.mark.parametrize("name", WHOLE)
+@pytest.mark.parametrize("kind", ["missing_tooth", "chip"])
+def test_broken_teeth_are_in_the_meshes_of_their_body(kind, name):
+    row, meshes = WHOLE[name]
+    row = row | {"case": "broken"} | ({"depth_mm": 1.0, "angle_deg": 60.0} if kind == "chip" else {})
+    given = read_tables("planetary_pitting")[1]["machine"] | {"contact": "linear", "backlash_um": 200.0}
+    broken = scene("planetary_pitting", machine=given, **{kind: [row]})
+    machine = gf.build_machine(broken, "broken", phases=8, method="ritz")
+    assert damaged(machine) == meshes
+    assert [(fault.gear, fault.tooth) for fault in machine.faults] == [(row.get("body", row["gear"]), row["tooth"])]
+
+
+@pytest.mark.parametrize(("contact", "message"), [("linear", "backlash_um"), ("impact", "has whole teeth only")])
+def test_a_contact_that_cannot_open_or_break_refuses_a_missing_tooth(contact, message):
+    """Before anything is solved: `flat_machine` is what checks a scene."""
+    given = read_tables("planetary_pitting")[1]["machine"] | {"contact": contact}
+    broken = scene("planetary_pitting", machine=given, missing_tooth=[{"case": "broken", "gear": "sun", "tooth": 4}])
+    for build in (flat_machine, gf.build_machine):
+        with pytest.raises(ValueError, match=message):
+            build(broken, "broken")
+
+
 def test_a_planet_s_crack_is_open_in_one_mesh_and_pressed_shut_in_the_other():
     """The crack is on the flank that the sun loads: in the mesh with the ring its faces slide, and push each other."""
     machine = gf.build_machine(scene("planetary_pitting", {"gear": "planet", "level": 0.5}), "x", phases=16, method="ritz")

@@ -204,7 +204,7 @@ PAIRS = {
 
 @pytest.mark.parametrize("name", PAIRS)
 def test_below_three_percent_of_finite_elements(name):
-    """At every phase, not only in the mean; standard racks, solid bodies."""
+    """At every phase, not only on average; standard racks, solid bodies."""
     one, two, material, line_load = PAIRS[name]
     *rungs, reference = ladder(gf.GearPair(one, two), line_load * WIDTH, material)
     for rung in rungs:

@@ -66,12 +66,16 @@ def test_cuts_at_any_angle(angle, side):
     assert_allclose(ritz.k, fe.k, rtol=3e-3)
 
 
+def cut_off():
+    """A chip of 90 degrees, the pair with that smaller tip circle, and phases at which no other tooth is near its tip."""
+    cut = case(angle=math.pi / 2)
+    return cut, with_tips(PAIR, [cut.broken[0][0].cut(PAIR.gear_1)[0], None]), PHASES[PHASES > 0.4]
+
+
 @pytest.mark.quick
 def test_a_whole_tip_cut_off_is_a_shorter_tooth():
     """At 90 degrees the tooth is that of a gear with a smaller tip circle, but for its flat top; a small chip changes little."""
-    cut = case(angle=math.pi / 2)
-    short = with_tips(PAIR, [cut.broken[0][0].cut(PAIR.gear_1)[0], None])
-    phases = PHASES[PHASES > 0.4]
+    cut, short, phases = cut_off()
     want = gf.solve(replace(HEALTHY, pair=short), gf.Solve("ritz", phases))
     assert_allclose(gf.solve(cut, gf.Solve("ritz", phases)).k, want.k, rtol=1e-3)
     on_path = PHASES[PHASES < 1.6]
@@ -91,9 +95,7 @@ def test_whole_outlines_pressed_together_agree():
     """The independent solver with teeth of a smaller tip circle, where no other tooth is near its tip."""
     from validation.shared.arbiter import pressing
 
-    cut = case(angle=math.pi / 2)
-    short = with_tips(PAIR, [cut.broken[0][0].cut(PAIR.gear_1)[0], None])
-    phases = PHASES[PHASES > 0.4]
+    cut, short, phases = cut_off()
     want = pressing.pressed(short, None, FORCE / 15, phases, (206e3, 0.3))
     got = gf.solve(cut, gf.Solve("ritz", phases, error=True))
     print(got.k / (15e3 * want.k) - 1)

@@ -82,8 +82,11 @@ def test_what_does_not_model_it_refuses_it():
         gf.solve(case(), gf.Solve("ritz", [0.84], extended=False))
     with pytest.raises(ValueError, match="of neighbours only one"):
         gf.Case(PAIR, FORCE, STEEL, damage={"pinion": [gf.MissingTooth(), gf.MissingTooth(tooth=16)]})
-    with pytest.raises(ValueError, match="is missing and has a crack"):
-        gf.Case(PAIR, FORCE, STEEL, damage={"pinion": [gf.MissingTooth(tooth=3), gf.Crack(level=0.3, tooth=3)]})
+    for side in ("pinion", "wheel"):
+        with pytest.raises(ValueError, match=r"^tooth 3 of .* is missing and has a crack"):
+            gf.Case(PAIR, FORCE, STEEL, damage={side: [gf.MissingTooth(tooth=3), gf.Crack(level=0.3, tooth=3)]})
+        with pytest.raises(ValueError, match=r"^teeth 4 and 5 of"):
+            gf.Case(PAIR, FORCE, STEEL, damage={side: [gf.MissingTooth(tooth=5), gf.MissingTooth(tooth=4)]})
     with pytest.raises(ValueError, match="missing tooth in an exported mesh"):
         gf.export_mesh("x.vtu", PAIR.gear_1, [gf.MissingTooth()])
     with pytest.raises(ValueError, match="whole number"):

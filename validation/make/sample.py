@@ -12,6 +12,7 @@ import gearfe as gf
 from ..shared import kept_rows, page
 from ..shared.places import TABLES
 from ..shared.table_rows import rows_of, write_table
+from . import sample_three
 
 TABLE = TABLES / "sample.csv"
 FIRST, COUNT = 84_000, 100  # seeds from here on; none was looked at while the methods were made
@@ -68,10 +69,14 @@ def row(seed):
 HOW = """
 What is asked of pairs that were drawn at random from seeds that nobody had looked at: do two methods differ by less than both
 estimates together, and each from a finer solution by less than its own? A pair is covered if all of its phases are; a solve that
-fails counts as not covered. `python -m validation sample` computes the rows.
+fails counts as not covered. `python -m validation sample` computes the rows of the section, `... sample --reference` those in
+three dimensions.
 """
 
-THREE = "Pairs in three dimensions: [sample_three.md](sample_three.md)."
+
+def reference():
+    """Compute the rows in three dimensions, each of which takes minutes."""
+    sample_three.rows(again=True)
 
 
 def run(again=True):
@@ -86,13 +91,15 @@ def run(again=True):
         if found is not None:
             rows.append(found)
             write_table(TABLE, FIELDS, [row.values() for row in rows])
-    page.write("sample", answer(rows), HOW, section(rows), [THREE])
+    solid = sample_three.rows()
+    page.write("sample", answer(rows, solid), HOW, section(rows), sample_three.section(solid))
 
 
-def answer(rows):
+def answer(rows, solid):
     """The first line."""
-    covered = (f"{_count(rows, f'{name}_covered')} pairs for `{name}`" for name in ("ritz", "fe"))
-    return f"In the section in {' and '.join(covered)}."
+    (three, brute), count = sample_three.covered(solid)
+    plane = " and ".join(f"{_count(rows, f'{name}_covered')} pairs for `{name}`" for name in ("ritz", "fe"))
+    return f"In the section in {plane}, in three dimensions in {three} of {count} for `ritz3d` and {brute} of {count} for `fe3d`."
 
 
 def section(rows):

@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...core.checks import whole
 from ...core.record import ranged
+from ...geometry.aliases import Floats
 from .modes import natural_frequencies
 from .tables import Machine
 
@@ -41,8 +42,8 @@ class Campbell:
         By rising speed.
     """
 
-    speed: NDArray
-    natural: NDArray
+    speed: Floats
+    natural: Floats
     orders: dict[str, float]
     crossings: tuple[Crossing, ...]
 

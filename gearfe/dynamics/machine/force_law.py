@@ -16,6 +16,7 @@ from scipy.interpolate import PchipInterpolator
 from ...core.case import Case
 from ...core.material import Material
 from ...core.record import settle
+from ...geometry.aliases import Floats
 from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.curve import StiffnessCurve, joined
 from ...stiffness.solve import PairOptions, Solve, solve, split_arguments
@@ -52,13 +53,13 @@ class ForceLaw:
         The law as the table that integrators look up.
     """
 
-    phase: NDArray
-    load: NDArray
-    depth: NDArray
-    tangent: NDArray
+    phase: Floats
+    load: Floats
+    depth: Floats
+    tangent: Floats
     pairs: NDArray[np.int64]
     force: float
-    unloaded: NDArray | None = None
+    unloaded: Floats | None = None
     secant: Secant = field(init=False)
 
     def __post_init__(self) -> None:
@@ -121,7 +122,7 @@ class ForceLaw:
             None if unloaded is None else unloaded[order],
         )
 
-    def __call__(self, depth: ArrayLike, phase: ArrayLike) -> NDArray:
+    def __call__(self, depth: ArrayLike, phase: ArrayLike) -> Floats:
         """Force [N] at depths [m] and phases, 0 where flanks are apart (depth below 0). A cycle goes on periodically."""
         phase = np.asarray(phase, dtype=float)
         return self.secant(phase % 1.0 if self.periodic else phase, depth)[0] * np.maximum(depth, 0.0)
@@ -132,7 +133,7 @@ class ForceLaw:
         ends = self.phase[0] + 1 - self.phase[-1]
         return bool(0 < ends <= 1.5 * np.diff(self.phase).max() and self.phase[0] >= 0)
 
-    def at(self, force: float) -> tuple[NDArray, NDArray]:
+    def at(self, force: float) -> tuple[Floats, Floats]:
         """Phases of the table, and the secant stiffness [N/m] under a constant `force` [N] there."""
         k, depths = self.secant.k, self.secant.depths
         depth = np.array([np.interp(force, row * depths, depths) for row in k])
@@ -172,7 +173,7 @@ def _secant(deep, tangent, pairs, load, depth):
 
 def force_law(
     pair: GearPair | Case,
-    forces: Sequence[float] | NDArray,
+    forces: Sequence[float] | Floats,
     material: Material | tuple[Material, Material] | None = None,
     *,
     force: float | None = None,

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...core.checks import truth, whole
 from ...core.record import settle, settle_numbers, settle_row
+from ...geometry.aliases import Floats
 from ...geometry.checks import is_finite
 from ...stiffness.curve import StiffnessCurve
 from .contact_law import LAWS, Law, law_of
@@ -69,7 +70,7 @@ class GearMesh:
     """
 
     name: str
-    row: NDArray
+    row: Floats
     stiffness: Stiffness
     frequency: float = 0.0
     phase: float = 0.0
@@ -85,7 +86,7 @@ class GearMesh:
     push: bool = False
     backlash: float = 0.0
     film: float = 1.0
-    friction: tuple[tuple[NDArray, Table], ...] = ()
+    friction: tuple[tuple[Floats, Table], ...] = ()
     gap: float = 0.0
     law: Law | None = None
     contact: Law = field(init=False)
@@ -186,11 +187,11 @@ class GearMesh:
         """Its errors, and its gap as one that stays."""
         return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
 
-    def k(self, t: ArrayLike) -> NDArray:
+    def k(self, t: ArrayLike) -> Floats:
         """Stiffness at times `t` [N/m^power], never below zero."""
         return self.at_phase(self.phase + self.frequency * np.asarray(t, dtype=float))
 
-    def at_phase(self, phase: NDArray) -> NDArray:
+    def at_phase(self, phase: Floats) -> Floats:
         """Stiffness at running phases."""
         out = self.cycle(phase - np.floor(phase)) + changed(self.changes, phase)
         return np.maximum(out, 0.0) if self.changes else out
@@ -207,7 +208,7 @@ class GearMesh:
             k, bend = k + np.where(inside, more, 0.0), bend + np.where(inside, rise, 0.0)
         return np.maximum(k, 0.0), np.where(k > 0, bend, 0.0)
 
-    def e(self, t: ArrayLike) -> tuple[NDArray, NDArray]:
+    def e(self, t: ArrayLike) -> tuple[Floats, Floats]:
         """Mesh error with the gap, and its rate, at times `t` [m], [m/s]."""
         t = np.asarray(t, dtype=float)
         phase, out, rate = self.phase + self.frequency * t, np.zeros(t.shape), np.zeros(t.shape)
@@ -224,7 +225,7 @@ class GearMesh:
         """Mesh cycles after which the stiffness repeats: 1, or the common multiple of the damaged bodies' tooth numbers."""
         return math.lcm(1, *(int(z) for z, _, _ in self.changes))
 
-    def entries(self, duration: float) -> list[NDArray]:
+    def entries(self, duration: float) -> list[Floats]:
         """Times [s] up to `duration` at which each damaged tooth is at phase 0 of this mesh (list of arrays, one per damage)."""
         out = []
         for z, first, _ in self.changes:

@@ -88,6 +88,8 @@ def pitted_helical(
         If the gears are spur gears, a pit lies below the base circle, `density` or `backlash` is not positive, `damping`, `depth`
         or `zeta` is negative or not finite, or `speed` or `torque` is not finite.
     """
+    if not pair.gear_1.beta:
+        raise ValueError("the impact law of a helical pair needs a helix angle, but beta = 0: use contact = 'linear'")
     width = min(pair.gear_1.b, pair.gear_2.b)
     radii = pair.curvature_radii(pair.pitch_phase)
     helix = math.cos(pair.gear_1.beta_b)  # radii of curvature across the contact line

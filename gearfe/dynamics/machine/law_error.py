@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ...core.case import Case
 from ...core.material import Material
+from ...geometry.aliases import Floats
 from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.solve import PairOptions, split_arguments
 from .force_law import ForceLaw, law_of
@@ -137,7 +138,7 @@ def _part(law, phases, loads):
     return ForceLaw(law.phase[phases], law.load[loads], law.depth[at], law.tangent[at], law.pairs[at], law.force, unloaded)
 
 
-def _off(fewer: ForceLaw, law: ForceLaw, phases: NDArray[np.int64], loads: NDArray[np.int64]) -> NDArray:
+def _off(fewer: ForceLaw, law: ForceLaw, phases: NDArray[np.int64], loads: NDArray[np.int64]) -> Floats:
     """How far the force of a law of fewer loads or phases is off at some of those of the whole one, over the force."""
     exact = law.load[loads]
     return np.asarray(np.abs(fewer(law.depth[np.ix_(phases, loads)], law.phase[phases, None]) / exact - 1))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.record import check_named, ranged, settle_numbers
+from ...geometry.aliases import Floats
 from ...geometry.pair.gear_pair import GearPair
 from .springs import Spring
 
@@ -85,14 +86,14 @@ class Layout:
         sizes = {"theta": "inertia", "tilt_x": "across", "tilt_y": "across"}
         self.mass = np.array([getattr(body, sizes.get(dof, "mass")) for body in bodies for dof in body.dofs.split()])
 
-    def unit(self, name: str, dof: str) -> NDArray:
+    def unit(self, name: str, dof: str) -> Floats:
         """Row of one degree of freedom."""
         check_named("degree of freedom", f"{name}.{dof}", self.place)
         row = np.zeros(len(self.dofs))
         row[self.place[f"{name}.{dof}"]] = 1.0
         return row
 
-    def point(self, name: str, direction: ArrayLike, arm: ArrayLike = (0.0, 0.0, 0.0)) -> NDArray:
+    def point(self, name: str, direction: ArrayLike, arm: ArrayLike = (0.0, 0.0, 0.0)) -> Floats:
         """Row of the displacement along `direction` of the point at `arm` [m] from a body's centre; missing dofs do not move."""
         check_named("body", name, self.bodies)
         direction, arm = np.append(direction, np.zeros(3))[:3], np.append(arm, np.zeros(3))[:3]
@@ -136,7 +137,7 @@ class Layout:
         helix: float = 0.0,
         internal: bool = False,
         height: float = 0.0,
-    ) -> NDArray:
+    ) -> Floats:
         """Row of the mesh in which body `one` pushes body `two`.
 
         The transverse line of action leaves the pitch point at ``sense t cos(alpha) + e sin(alpha)``: e points from the centre of
@@ -176,7 +177,7 @@ class Layout:
 
     def rubbing(
         self, one: str, two: str, *, angle: float, alpha: float, sense: int = 1, internal: bool = False
-    ) -> tuple[NDArray, NDArray, NDArray]:
+    ) -> tuple[Floats, Floats, Floats]:
         """Rows of friction of such a mesh: across the line of action, and the turning of either body per lever arm [m].
 
         The first pulls body `one` back where its flank slides forward, towards the line of action turned by +90 degrees.

@@ -9,9 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...core.checks import numbers, whole
 from ...core.record import ranged, settle, settle_numbers, settle_row
+from ...geometry.aliases import Floats
 
 # of a load: a number, times and values, or a function of an array of times
-History = float | tuple[ArrayLike, ArrayLike] | Callable[[NDArray], ArrayLike]
+History = float | tuple[ArrayLike, ArrayLike] | Callable[[Floats], ArrayLike]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +37,7 @@ class Load:
     """
 
     name: str
-    row: NDArray
+    row: Floats
     value: History
 
     def __post_init__(self) -> None:
@@ -47,7 +48,7 @@ class Load:
         elif not callable(self.value):
             settle_numbers(self, f"load {self.name}", "value")
 
-    def __call__(self, t: ArrayLike) -> NDArray:
+    def __call__(self, t: ArrayLike) -> Floats:
         """Value at times `t`."""
         value: Any = self.value
         if isinstance(value, tuple):
@@ -58,7 +59,7 @@ class Load:
         return values
 
     @property
-    def breaks(self) -> NDArray:
+    def breaks(self) -> Floats:
         """Times at which the history bends or jumps [s]."""
         return np.unique(self.value[0]) if isinstance(self.value, tuple) else np.empty(0)
 
@@ -84,7 +85,7 @@ def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
 
 def pulses(
     base: float, peak: float, period: float, width: float, count: int, *, start: float = 0.0, rise: float = 0.1
-) -> tuple[NDArray, NDArray]:
+) -> tuple[Floats, Floats]:
     """History of a load that rises from `base` to `peak` for `width` seconds every `period` seconds, `count` times.
 
     Each flank of a pulse takes the part `rise` of its width. For `Load`.

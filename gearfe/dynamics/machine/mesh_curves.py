@@ -4,9 +4,10 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...core.checks import numbers
+from ...geometry.aliases import Floats
 from ...stiffness.curve import StiffnessCurve
 from .force_law import ForceLaw
 from .phase_table import SMOOTH, Table, smooth_table, table
@@ -17,21 +18,21 @@ FINE = 1024  # samples per cycle that curves on uneven phases are brought to
 class Samples(NamedTuple):
     """Stiffness `k` [N/m^power] at phases, of what is no `StiffnessCurve`: contact coefficients, or curves of other programs."""
 
-    phase: NDArray
-    k: NDArray
+    phase: Floats
+    k: Floats
 
 
 Curve = StiffnessCurve | Samples  # stiffness over the phase
 
 
-Stiffness = float | NDArray | Curve | ForceLaw | Table  # what `GearMesh` takes
+Stiffness = float | Floats | Curve | ForceLaw | Table  # what `GearMesh` takes
 Change = tuple[float, float, Table]  # cycles until it returns, the first of them, and the change over the phase from there on
 ALIKE = 1e-6  # of a mesh cycle, of a cell: how far samples of two curves are apart that count as the same
 
 
 def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[Table, Any], Any] = Table.__call__) -> Any:
     """Sum of all changes at running phases, or of another `value` of their tables."""
-    running: NDArray = np.asarray(phase, dtype=float)
+    running: Floats = np.asarray(phase, dtype=float)
     out = np.zeros(running.shape)
     for z, first, change in changes:
         tooth_phase = tooth_phase_of(running, z, first, change.start)
@@ -47,7 +48,7 @@ def tooth_phase_of(running, z, first, start):
     return on - z * np.floor(on / z) + start
 
 
-def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> NDArray | None:
+def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> Floats | None:
     """Coefficients ``(count, 4)`` of the sum of changes in cells from a running phase on; None if their cells are others."""
     out = np.zeros((count, 4))
     for z, first, change in changes:

@@ -15,8 +15,8 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...geometry.aliases import Floats
 from ...stiffness.curve import StiffnessCurve
 from .mesh_curves import Samples
 
@@ -86,7 +86,7 @@ def harmonics(error: Any, frequency: float, phase: float) -> list[tuple[float, f
     return out
 
 
-def _samples(error: Any) -> tuple[float, int, NDArray]:
+def _samples(error: Any) -> tuple[float, int, Floats]:
     """First phase, number of mesh cycles and equally spaced values of a tabulated error."""
     if not isinstance(error, (Samples, Sequence, np.ndarray)):
         raise ValueError(f"profile = {error!r}, but give an amplitude [m], samples over a mesh cycle, or Samples(phase, error)")

@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...geometry.aliases import Floats
 from .modes import natural_frequencies
 from .tables import Machine
 
@@ -25,12 +26,12 @@ class ModalEnergy:
         Part of the kinetic energy by degree of freedom.
     """
 
-    frequencies: NDArray
-    modes: NDArray
-    strain: dict[str, NDArray]
-    kinetic: dict[str, NDArray]
+    frequencies: Floats
+    modes: Floats
+    strain: dict[str, Floats]
+    kinetic: dict[str, Floats]
 
-    def participation(self, row: ArrayLike) -> NDArray:
+    def participation(self, row: ArrayLike) -> Floats:
         """Modal participation factors ``modes.T @ row`` of a load along a row ``(n,)``, such as that of a mesh.
 
         A harmonic force F along it moves mode j by ``F participation[j] / (w_j**2 - w**2)``.
@@ -78,7 +79,7 @@ def modal_energy(machine: Machine) -> ModalEnergy:
     members = [(s.name, s.row, s.k) for s in machine.springs] + list(
         zip((m.name for m in machine.meshes), machine.G, k, strict=True)
     )
-    energy: dict[str, NDArray] = {}
+    energy: dict[str, Floats] = {}
     for name, row, stiffness in members:
         energy[name] = energy.get(name, np.zeros(len(frequencies))) + stiffness * np.abs(row @ modes) ** 2
     total = np.sum(list(energy.values()), axis=0)

@@ -3,16 +3,17 @@
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg import eigh
 
+from ...geometry.aliases import Floats
 from .tables import Machine
 from .turning_frame import frame_terms
 
 RIGID = 1e-12  # of the largest squared frequency: below it a mode is a rigid-body mode
 
 
-def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tuple[NDArray, NDArray]:
+def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tuple[Floats, Floats]:
     """Natural frequencies and modes without damping, meshes at their mean stiffness (of a `ForceLaw` the tangent one).
 
     Parameters
@@ -48,7 +49,7 @@ def _whirling(machine, K):
     return np.where(values.imag[order] < math.sqrt(RIGID) * top, 0.0, values.imag[order]) / (2 * math.pi), modes
 
 
-def modal(K: NDArray, mass: NDArray) -> tuple[NDArray, NDArray]:
+def modal(K: Floats, mass: Floats) -> tuple[Floats, Floats]:
     """Squared angular frequencies, exactly 0 for rigid-body modes, and modes of unit modal mass.
 
     Raises

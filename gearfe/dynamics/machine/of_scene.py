@@ -74,21 +74,10 @@ def build_machine(
             f"loads = {tuple(loads)}: the impact law has a coefficient and no curves under loads; take contact = 'linear'"
         )
     if contact == "impact":
-        for name, pair in scene.pairs.items():
-            if pair.flanks or pair.misalignment:
-                raise ValueError(
-                    f"[pair.{name}] has flanks or misalignment, but the impact law is of involutes without deviations: use "
-                    "contact = 'linear'"
-                )
         return with_scene_errors(scene, build(scene, case))
     if not len(loads) or not all(math.isfinite(multiple) and multiple > 0 for multiple in loads):
         raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")
     play = scene.machine.get("backlash_um")
-    if not play and any(pair.case(case).missing for pair in scene.pairs.values() if case in pair.damage):
-        raise ValueError(
-            "[machine] backlash_um: a missing tooth lets the contact open, so that the machine needs a backlash; give one, "
-            "such as backlash_um = 100.0"
-        )
     forces = own_forces(build(scene, case, phases=ROUGH, method=method, loads=None))
     several = {name: ([force * multiple for multiple in loads], force) for name, force in forces.items()}
     out = build(scene, case, phases=phases, method=method, loads=several)
@@ -120,7 +109,30 @@ def _builder(scene, case):
         raise ValueError(f"[machine] contact = 'impact': the model {model!r} has linear contact only")
     if scene.machine.get("bodies") and model not in STATED:
         raise ValueError(f"[machine.bodies]: the model {model!r} takes masses and inertias from its gears; leave the table out")
+    _check_contact(scene, case, contact)
     return MACHINES[model][contact], contact
+
+
+def _check_contact(scene, case, contact):
+    """ValueError for flanks and broken teeth that the contact of a machine does not model."""
+    hurt = {name: pair.case(case) for name, pair in scene.pairs.items() if case in pair.damage}
+    if contact == "impact":
+        for name, pair in scene.pairs.items():
+            if pair.flanks or pair.misalignment:
+                raise ValueError(
+                    f"[pair.{name}] has flanks or misalignment, but the impact law is of involutes without deviations: use "
+                    "contact = 'linear'"
+                )
+            if name in hurt and any(hurt[name].broken):
+                raise ValueError(
+                    f"[pair.{name}] has a broken tooth in case {case!r}, but the impact law has whole teeth only: use "
+                    "contact = 'linear'"
+                )
+    elif not scene.machine.get("backlash_um") and any(one.missing for one in hurt.values()):
+        raise ValueError(
+            "[machine] backlash_um: a missing tooth lets the contact open, so that the machine needs a backlash; give one, "
+            "such as backlash_um = 100.0"
+        )
 
 
 def with_flanks(machine):

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...geometry.aliases import Floats
+
 SMOOTH = 5  # samples of a period at least that slopes of fourth order are made of
 
 
@@ -22,7 +24,7 @@ class Table:
 
     start: float
     width: float
-    cells: NDArray
+    cells: Floats
 
     @property
     def end(self) -> float:
@@ -40,7 +42,7 @@ class Table:
         (a, b, c, d), u = self._cubic(phase)
         return (a + u * (b + u * (c + u * d))).T
 
-    def slope(self, phase: ArrayLike) -> NDArray:
+    def slope(self, phase: ArrayLike) -> Floats:
         """Derivative by the phase, at phases as of a call."""
         (_, b, c, d), u = self._cubic(phase)
         return ((b + u * (2 * c + 3 * u * d)) / self.width).T
@@ -69,13 +71,13 @@ def _cubics(values, slope):
     return np.stack([values[:-1], left, 3 * rise - 2 * left - right, left + right - 2 * rise], axis=1)
 
 
-def smooth_table(values: NDArray) -> Table:
+def smooth_table(values: Floats) -> Table:
     """`Table` of one cycle through equally spaced `values`, `SMOOTH` or more, with `smooth_slopes`."""
     slope = smooth_slopes(values)
     return Table(0.0, 1 / values.size, _cubics(np.append(values, values[0]), np.append(slope, slope[0])))
 
 
-def smooth_slopes(values: NDArray) -> NDArray:
+def smooth_slopes(values: Floats) -> Floats:
     """Slopes, per cell, of cubics through equally spaced samples of one period.
 
     Those of the quartic through five samples, held within::

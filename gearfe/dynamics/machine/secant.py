@@ -4,7 +4,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from ...geometry.aliases import Floats
 
 TINY = 1e-30  # depth [m]: a mesh just touching
 
@@ -29,14 +31,14 @@ class Secant:
     start: float
     width: float
     deepest: float
-    k: NDArray
+    k: Floats
 
     @property
     def end(self) -> float:
         """Phase of the last row."""
         return self.start + self.width * (len(self.k) - 1)
 
-    def __call__(self, phase: ArrayLike, depth: ArrayLike) -> tuple[NDArray, NDArray]:
+    def __call__(self, phase: ArrayLike, depth: ArrayLike) -> tuple[Floats, Floats]:
         """Secant stiffness [N/m] at phases from `start` to `end` and depths [m], and its derivative by the depth [N/m2]."""
         row = np.clip((np.asarray(phase, dtype=float) - self.start) / self.width, 0.0, len(self.k) - 1)
         last, deep = self.k.shape[1] - 1, np.maximum(np.asarray(depth, dtype=float), 0.0)
@@ -61,7 +63,7 @@ class Secant:
         return Secant(-1.0, 1.0, self.deepest, np.tile(self.k[1:-2].mean(axis=0), (3, 1)))
 
     @property
-    def depths(self) -> NDArray:
+    def depths(self) -> Floats:
         """Depth of each column [m]."""
         return self.deepest * np.linspace(0.0, 1.0, self.k.shape[1]) ** 2
 

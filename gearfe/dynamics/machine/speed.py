@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...core.record import settle
+from ...geometry.aliases import Floats
 from .loads import rising
 
 
@@ -41,7 +42,7 @@ class Speed:
 
     times: Sequence[float]
     factors: Sequence[float]
-    knots: NDArray = field(init=False)
+    knots: Floats = field(init=False)
 
     def __post_init__(self) -> None:
         """Integrate; ValueError if times do not rise, or factors are negative or all zero."""
@@ -52,11 +53,11 @@ class Speed:
         settle(self, knots=np.stack([times, factors, turned], axis=1))
         self.knots[:, 2] -= float(self.turned(0.0))
 
-    def __call__(self, t: ArrayLike) -> NDArray:
+    def __call__(self, t: ArrayLike) -> Floats:
         """Factor at times `t`."""
         return np.interp(np.asarray(t, dtype=float), self.knots[:, 0], self.knots[:, 1])
 
-    def turned(self, t: ArrayLike) -> NDArray:
+    def turned(self, t: ArrayLike) -> Floats:
         """Time in which the nominal speed turns the gears as far as they have turned at times `t` [s]."""
         return turned(self.knots, np.asarray(t, dtype=float))
 

@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
-from numpy.typing import NDArray
-
 from ...core.record import settle_numbers, settle_row
+from ...geometry.aliases import Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,7 +11,7 @@ class Spring:
     """A linear spring and damper along a row: force ``k row @ q + c row @ v`` against it [N/m, N s/m or per rad]."""
 
     name: str
-    row: NDArray
+    row: Floats
     k: float
     c: float = 0.0
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...core.checks import numbers
 from ...core.record import settle, settle_numbers
+from ...geometry.aliases import Floats
 from .contact_law import depth, force, parameters, slopes
 from .gear_mesh import GearMesh
 from .loads import Load
@@ -73,7 +74,7 @@ class Machine:
     """
 
     dofs: tuple[str, ...]
-    mass: NDArray
+    mass: Floats
     springs: tuple[Spring, ...]
     meshes: tuple[GearMesh, ...]
     loads: tuple[Load, ...] = ()
@@ -83,11 +84,11 @@ class Machine:
     spin: float = 0.0
     rotors: dict[str, float] = field(default_factory=dict)
     faults: tuple[Fault, ...] = ()
-    K: NDArray = field(init=False)
-    C: NDArray = field(init=False)
-    G: NDArray = field(init=False)
+    K: Floats = field(init=False)
+    C: Floats = field(init=False)
+    G: Floats = field(init=False)
     law: dict[str, NDArray[Any]] = field(init=False)
-    frame: NDArray = field(init=False)
+    frame: Floats = field(init=False)
 
     def __post_init__(self) -> None:
         """Assemble; ValueError for masses that are not positive, springs that are negative, or rows of another length."""
@@ -127,7 +128,7 @@ class Machine:
         notes = "".join(f"<tr><td>{escape(str(k))}</td><td>{escape(str(v))}</td></tr>" for k, v in (rows | self.notes).items())
         return f"<table><caption>{escape(repr(self))}</caption>{notes}</table>"
 
-    def row(self, name: str) -> NDArray:
+    def row(self, name: str) -> Floats:
         """Unit row of a degree of freedom.
 
         Raises
@@ -139,7 +140,7 @@ class Machine:
             raise ValueError(f"no degree of freedom {name!r}; there are {', '.join(self.dofs)}")
         return np.eye(len(self.dofs))[self.dofs.index(name)]
 
-    def turned(self, t: ArrayLike) -> NDArray:
+    def turned(self, t: ArrayLike) -> Floats:
         """Time in which the nominal speed turns the gears as far as they have turned at times `t` [s]: what angles follow."""
         return np.asarray(t, dtype=float) if self.speed is None else self.speed.turned(t)
 
@@ -161,7 +162,7 @@ class Machine:
         stage = self.stages[-1]
         return stage, stage.fault or stage.turning, stage.turning
 
-    def mean_stiffness(self) -> NDArray:
+    def mean_stiffness(self) -> Floats:
         """Mean of each mesh's stiffness over its healthy cycle ``(m,)`` [N/m^power]."""
         return np.array([m.cycle.mean for m in self.meshes])
 
@@ -182,7 +183,7 @@ class Machine:
         k, c = slopes(np.asarray(x), np.zeros(len(mean)), mean, self.law, bend)
         return self.K + self.G.T @ (k[:, None] * self.G), self.C + self.G.T @ (c[:, None] * self.G), k, c
 
-    def _mean_at(self, x: NDArray) -> tuple[NDArray, NDArray]:
+    def _mean_at(self, x: Floats) -> tuple[Floats, Floats]:
         """`mean_stiffness` at compressions `x` (m,), which matter to a `ForceLaw`, and its derivative by the depth."""
         mean, bend = self.mean_stiffness(), np.zeros(len(self.meshes))
         for i, mesh in enumerate(self.meshes):
@@ -195,7 +196,7 @@ class Machine:
         """Whether the force of a mesh is no straight line over its compression: a power, or a `ForceLaw`."""
         return bool((self.law["power"] != 1).any()) or any(mesh.secants for mesh in self.meshes)
 
-    def working(self) -> NDArray | None:
+    def working(self) -> Floats | None:
         """Compressions of the meshes at rest ``(m,)`` [m], about which their forces are taken as straight; None if they are."""
         gaps = np.array([mesh.gap for mesh in self.meshes])
         if not self.curved and not gaps.any():
@@ -207,15 +208,15 @@ class Machine:
         touching = np.array([bool(mesh.secants) or not self.curved for mesh in self.meshes])
         return np.where(touching & ~free & (depth(x, self.law) == 0), TOUCH, x)
 
-    def compressions(self, q: NDArray[Any]) -> NDArray:
+    def compressions(self, q: NDArray[Any]) -> Floats:
         """Compressions of the meshes ``(m,)`` [m] at displacements ``(n,)``, errors disregarded."""
         return self.G @ q - np.array([mesh.gap for mesh in self.meshes])
 
-    def load(self, t: float = 0.0) -> NDArray:
+    def load(self, t: float = 0.0) -> Floats:
         """Sum of the loads at time `t` ``(n,)``."""
         return sum((load.row * float(load(t)) for load in self.loads), np.zeros(len(self.dofs)))
 
-    def rest(self, t: float | None = None) -> NDArray:
+    def rest(self, t: float | None = None) -> Floats:
         """Displacements ``(n,)`` under the loads of time `t` (0 if None) at the mean mesh stiffnesses, errors disregarded.
 
         Rigid-body motions are left out (least squares).

@@ -4,10 +4,11 @@ import re
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.signal import cont2discrete, lfilter, ss2tf
 
 from ...core.record import ranged
+from ...geometry.aliases import Floats
 from ...signal.series import Signal
 from .response import Response
 
@@ -19,7 +20,7 @@ def housing_signal(
     sensor: float = 0.0,
     places: Sequence[float] | None = None,
     carrier: float | None = None,
-    window: Callable[[NDArray], ArrayLike] | None = None,
+    window: Callable[[Floats], ArrayLike] | None = None,
     modes: Sequence[tuple[float, float, float]] = (),
 ) -> Signal:
     """Sum of the planets' mesh forces, weighted by how near each planet is to a sensor that stands still; or its acceleration.
@@ -115,7 +116,7 @@ def _answer(force, rate, frequency, zeta, mass):
     return lfilter(above[0], below, force - force[0])
 
 
-def ring_window(radius: float, bending: float, foundation: float) -> Callable[[NDArray], NDArray]:
+def ring_window(radius: float, bending: float, foundation: float) -> Callable[[Floats], Floats]:
     """Window for `housing_signal`: how a thin ring on an elastic foundation gives at the sensor to a planet elsewhere.
 
     The radial displacement at an angle phi from a radial force, over that under the force, of a ring whose centre line keeps its

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
+from ...geometry.aliases import Floats
 from ...signal.series import Signal
 
 
-def phase_portrait(signal: Signal, velocity: Signal | None = None) -> tuple[NDArray, NDArray]:
+def phase_portrait(signal: Signal, velocity: Signal | None = None) -> tuple[Floats, Floats]:
     """Displacement and velocity at every sample, for a plot of one over the other.
 
     Parameters

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...core.files import Content, save_as, suffix_of
 from ...figures.inline import line_svg
+from ...geometry.aliases import Floats
 from ...signal.series import Signal
 from ..machine.contact_law import force, sided_force
 from ..machine.tables import Machine
@@ -47,11 +48,11 @@ class Response:
     """
 
     machine: Machine
-    time: NDArray
-    states: NDArray
-    basis: NDArray
+    time: Floats
+    states: Floats
+    basis: Floats
     stats: dict[str, Any] = field(default_factory=dict)
-    filtered: NDArray | None = None
+    filtered: Floats | None = None
 
     def __post_init__(self) -> None:
         """Raise ValueError for times, states and filtered channels of different lengths."""
@@ -99,7 +100,7 @@ class Response:
         self._dof(head, name)
         return ("rad" if head.endswith((".theta", ".tilt_x", ".tilt_y")) else "m") + KINDS.get(tail, "")
 
-    def __getitem__(self, name: str) -> NDArray:
+    def __getitem__(self, name: str) -> Floats:
         """Channel `name` ``(t,)``."""
         head, _, tail = name.partition(" ")
         if head in MESH and tail in self._meshes:
@@ -111,16 +112,16 @@ class Response:
         return states @ self.basis[dof + (n if tail == "velocity" else 0)]
 
     @property
-    def q(self) -> NDArray:
+    def q(self) -> Floats:
         """Displacements ``(t, n)``."""
         return self.states @ self.basis[: len(self.machine.dofs)].T
 
     @property
-    def v(self) -> NDArray:
+    def v(self) -> Floats:
         """Velocities ``(t, n)``."""
         return self.states @ self.basis[len(self.machine.dofs) :].T
 
-    def mesh(self, kind: str = "force") -> NDArray:
+    def mesh(self, kind: str = "force") -> Floats:
         """Compression [m], stiffness [N/m^power] or force [N] of all meshes ``(t, m)``."""
         if kind not in MESH:
             raise ValueError(f"kind = {kind!r}, but it must be one of {', '.join(MESH)}")
@@ -129,7 +130,7 @@ class Response:
             return np.split(self.filtered[:, 3 * len(self.machine.dofs) :], 3, axis=1)[which]
         return mesh_channels(self.machine, self.time, self.q, self.v)[which]
 
-    def accelerations(self) -> NDArray:
+    def accelerations(self) -> Floats:
         """Accelerations ``(t, n)``, from the equations of motion."""
         if self.filtered is not None:
             n = len(self.machine.dofs)

@@ -139,8 +139,8 @@ def simulate(
     >>> machine = gf.single_mesh(1.0, wave, frequency=1000.0, force=1000.0, zeta=0.05)
     >>> run = gf.simulate(machine, 0.2, rate=20000.0)
     >>> force = run["force mesh"][2000:]  # without what the start sets off
-    >>> print(f"{force.min():.0f} to {force.max():.0f} N are carried, {force.mean():.0f} N in the mean")
-    913 to 1052 N are carried, 1000 N in the mean
+    >>> print(f"{force.min():.0f} to {force.max():.0f} N are carried, {force.mean():.0f} N on average")
+    913 to 1052 N are carried, 1000 N on average
     """
     duration, start, rtol = (
         ranged("duration", duration, " s", above=0.0),

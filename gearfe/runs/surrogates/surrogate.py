@@ -60,7 +60,7 @@ class Surrogate:
         """One line: ranges and error."""
         ranges = ", ".join(f"{name} {low:g} to {high:g}" for name, (low, high) in self.space.ranges.items())
         mean, worst = (100 * self.error[name] for name in ("mean", "worst"))
-        accuracy = f"on {self.error['cases']} fresh cases off by {mean:.2g} % in the mean, {worst:.2g} % at worst"
+        accuracy = f"on {self.error['cases']} fresh cases off by {mean:.2g} % on average, {worst:.2g} % at worst"
         return f"<Surrogate of ritz: {ranges}; {accuracy}>"
 
     def k(self, phase: ArrayLike, **point: float) -> Floats:

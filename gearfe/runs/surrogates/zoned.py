@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...geometry.aliases import Floats
 from ...stiffness.curve import StiffnessCurve
 
-DEGREE = 8  # of the polynomial of a piece: written so, curves of 21/31 pairs are off by 0.005 % in the mean
+DEGREE = 8  # of the polynomial of a piece: written so, curves of 21/31 pairs are off by 0.005 % on average
 ROUND = 0.05  # part of the zone of more pairs at each of its ends in which k still bends: a piece of its own
 SHORTEST = 0.1  # of a cycle: shorter zones of more or fewer pairs are not parted
 SEARCH = 8  # phases a round in the search for a break

@@ -1,0 +1,45 @@
+"""Contacts of missing teeth and chipped tips."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..geometry.pair.contacts import Touch, touching
+from ..geometry.pair.gear_pair import with_tips
+
+
+def with_broken(points, pair, flexibility, extended):
+    """Contacts of a pair with missing teeth and chipped tips, and ends of the path ``(2, pairs)`` [mm].
+
+    A missing tooth has an infinite gap. The flank of a chipped one ends at its corner. ValueError if no pair is left at a phase.
+    """
+    path = np.tile(np.array(pair.path)[:, None], points.order.size)
+    points = _chipped(points, pair, flexibility, extended, path)
+    gone = np.zeros(points.order.size, dtype=bool)
+    for gear, own, teeth in zip((pair.gear_1, pair.gear_2), flexibility, (points.order, -points.order), strict=True):
+        gone |= np.isin(teeth % gear.z, [tooth % gear.z for tooth in getattr(own, "missing", ())])
+    if not gone.any():
+        return points, path
+    gap = np.where(gone, np.inf, points.gap)
+    if not np.isfinite(gap).any(axis=1).all():
+        raise ValueError(
+            "at some phases no teeth but a missing one are near each other: leave contact off the path on (extended = True), or "
+            "take a pair with a larger contact ratio"
+        )
+    return replace(points, gap=gap, corner_gap=np.where(gone, np.inf, points.corner_gap)), path
+
+
+def _chipped(points, pair, flexibility, extended, path):
+    """Contacts in which flanks end at the corners of chips; the ends of their path are put into `path`."""
+    cut = [getattr(own, "tips", {}) for own in flexibility]
+    if not any(cut):
+        return points
+    found = {name: getattr(points, name).copy() for name in Touch._fields}
+    for k, order in enumerate(points.order.tolist()):
+        ends = [tips.get(tooth % own.gear.z) for tips, own, tooth in zip(cut, flexibility, (order, -order), strict=True)]
+        if any(ends):
+            short = with_tips(pair, [end and end[0] for end in ends])
+            path[:, k] = short.path
+            for name, values in touching(short, points.nominal[:, k], extended=extended)._asdict().items():
+                found[name][..., k] = values
+    return replace(points, **found)

@@ -1,0 +1,225 @@
+"""A part of the page `sample`: pairs in three dimensions, estimates of `fe3d` and `ritz3d`, how far both are from finer ones.
+
+All three solutions of a pair are one row, of one code: a contact law that changes would show as an error that no estimate means.
+"""
+
+import itertools
+import math
+import time
+import warnings
+
+import numpy as np
+
+import gearfe as gf
+from gearfe.contact.wide_contact import STEP
+from gearfe.flexibility.energy.ritz.solid import axial_degree
+from gearfe.geometry.damage.crack import crack_path
+
+from ..shared.kept_rows import kept
+from ..shared.solid_pair import solid_contact
+
+TABLE = "sample_three"
+# by kind: first seed, teeth of the pinion, of the wheel (of a ring: more than the pinion), width [m_n], resolution of `fe3d`,
+# pairs from that seed on
+KINDS = {
+    "narrow": (95_000, (12, 15), (12, 16), (2.0, 6.0), 0.7, 2),
+    "wide": (96_000, (12, 13), (12, 14), (10.0, 20.0), 0.8, 2),
+    "ring": (97_000, (12, 13), (20, 21), (3.0, 8.0), 0.7, 2),
+    "crack": (98_000, (12, 14), (12, 15), (3.0, 6.0), 0.7, 3),
+}  # none of these seeds was looked at while the methods were made
+MISSED = (("narrow", 95_008), ("crack", 98_000), ("crack", 98_008))  # of the first ten of each kind: once missed by an estimate
+PHASES = 5
+FINE = {"order": 4, "refine": 1.25}  # of `ritz3d`, the reference of both errors
+FURTHER = 4  # axial degrees more in it
+ASKED = {
+    "difference of the two": ("fe3d", "ritz3d"),
+    "`fe3d` against the finer": ("fe3d", "fine"),
+    "`ritz3d` against the finer": ("ritz3d", "fine"),
+}
+TEXT = f"""
+## In three dimensions
+
+Each pair is solved by the energy model (`ritz3d`, its defaults) and by hexahedra of both whole gears (`fe3d`,
+resolution {KINDS["narrow"][4]:g}, of the wide {KINDS["wide"][4]:g}), both with `error=True`, at {PHASES} random phases, and by a
+finer energy model: order {FINE["order"]} instead of 3, {FINE["refine"]:g} times the resolution, {FURTHER} axial degrees more,
+half the cell length. The three are of one code in each row of `tables/{TABLE}.jsonl`, each of one to seven minutes.
+Kinds: external pairs of b/m 2 to 6 (narrow), of b/m 10 to 20 (wide), rings,
+cracks of 20 to 60 % (over the whole width or 30 to 70 % of it, on pinion, wheel or ring); 12 to 34 teeth, modules 1, 2, 4, six
+of ten helical (5 to 28 degrees). Of ten pairs of each kind that were solved once, those that an earlier version's estimates
+missed are kept ({", ".join(f"{kind} {seed}" for kind, seed in MISSED)}) and, of the others, the first two or three seeds:
+shares below are of harder pairs than random ones. When all forty were solved, by the version before, `ritz3d` covered 40 and
+`fe3d` 38 of them.
+"""
+SETTLED = """
+The constants of the estimates (`wide_curves`) are published ones or 2. What they compare was settled on other seeds,
+which do not count here, with one exception: that cells at the corners of undercut mates have to begin where these touch was
+seen on narrow 95008 of this sample (0.62 % off, said 0.36 %). An earlier sample, before cells of modules below 2 mm were made
+shorter, covered 25 of 29 pairs.
+
+Shared by all three: the contact lines, the half-space and the eight hats across a flank, whose error no estimate sees;
+CalculiX judges it in [three.md](three.md).
+"""
+
+
+def drawn(kind, seed):
+    """Pair, line load [N/mm], damage and phases of a seed; ValueError where no such gears exist."""
+    rng, (_, first, second, widths, *_) = np.random.default_rng(seed), KINDS[kind]
+    m = float(rng.choice([1.0, 2.0, 4.0]))
+    beta = math.radians(rng.uniform(5, 28)) if rng.random() < 0.6 else 0.0
+    rack = {"m_n": m, "alpha_n": math.radians(rng.choice([17.5, 20.0, 22.5])), "b": float(m * rng.uniform(*widths))}
+    z_1, more = int(rng.integers(*first, endpoint=True)), int(rng.integers(*second, endpoint=True))
+    ring = kind == "ring" or (kind == "crack" and rng.random() < 0.3)
+    z_2 = z_1 + max(more, 20) if ring else more
+    x_1, x_2 = float(rng.uniform(0.0, 0.5)), 0.0 if ring else float(rng.uniform(0.0, 0.3))
+    turn = [z / (2 * math.cos(beta)) for z in (z_1, z_2)]
+    bore = [float(rng.uniform(0.35, 0.8)) * (t - 1.25 + x) * m for t, x in zip(turn, (x_1, x_2), strict=True)]
+    held = {"r_rim": (turn[1] + 1.25 + float(rng.uniform(2, 6))) * m, "addendum": 0.8} if ring else {"r_bore": bore[1]}
+    one = gf.Gear(z=z_1, x=x_1, r_bore=bore[0], beta=beta, tip_radius=0.2, **rack)
+    two = gf.Gear(z=z_2, x=x_2, beta=beta if ring else -beta, tip_radius=0.2, **held, **rack)
+    pair, load = gf.GearPair(one, two), m * float(10 ** rng.uniform(1.3, 2.3))
+    share = rng.random(PHASES)
+    if kind != "crack":
+        return pair, load, None, np.sort(share)
+    width = None
+    if rng.random() < 0.5:
+        part = float(rng.uniform(0.3, 0.7)) * one.b
+        width = (0.0, part) if rng.random() < 0.5 else (one.b - part, one.b)
+    crack = gf.Crack(level=float(rng.uniform(0.2, 0.6)), angle=math.radians(rng.uniform(35, 60)), width=width)
+    contact = pair.eps_alpha + one.b * math.sin(beta) / (math.pi * m)
+    return pair, load, {str(rng.choice(["pinion", "wheel"])): [crack]}, np.sort(0.1 + share * (contact - 0.2))
+
+
+def row(kind, seed):
+    """What is kept of a pair: k, estimates, the finer solution at each phase; why not, if a method refuses."""
+    pair, load, damage, phases = drawn(kind, seed)
+    case, run = (pair, load * pair.gear_1.b, gf.Material()), {"phases": phases, "damage": damage, "error": True, "cache": False}
+    out = {"kind": kind, "pair": named(pair, damage), "load": load, "phase": phases.tolist()}
+    try:
+        energy, seconds = timed(lambda: gf.mesh_stiffness(*case, method="ritz3d", **run))
+        fine, fine_seconds = timed(lambda: finest(*case, damage, phases))
+        brute, brute_seconds = timed(lambda: gf.mesh_stiffness(*case, method="fe3d", refine=KINDS[kind][4], **run))
+    except RuntimeError as error:
+        return out | {"failed": str(error)}
+    out |= {"fine": fine.tolist(), "ritz3d": energy.k.tolist(), "ritz3d_error": energy.error.tolist(), "fe3d": brute.k.tolist()}
+    out |= {"fe3d_error": brute.error.tolist(), "coarser": brute.meta["error_refine"], "dofs": brute.meta["dofs"]}
+    return out | {"seconds": [round(value, 1) for value in (seconds, fine_seconds, brute_seconds)]}
+
+
+def timed(work):
+    """What `work` gives and its seconds of the processor."""
+    started = time.process_time()
+    found = work()
+    return found, time.process_time() - started
+
+
+def finest(pair, force, material, damage, phases):
+    """K [N/m] by the energy model of higher order, on finer triangles and half the cells, with more functions along the width."""
+    cracks = tuple(tuple((damage or {}).get(name, ())) for name in ("pinion", "wheel"))
+    axial, step = axial_degree(pair.gear_1.b, pair.gear_1.m_n) + FURTHER, STEP * pair.gear_1.m_n / 2
+    return solid_contact(pair, force, material, phases, cracks=cracks, axial=axial, step=step, cache=False, **FINE).k
+
+
+def named(pair, damage):
+    """A pair in words."""
+    one, two = pair.gear_1, pair.gear_2
+    text = f"{one.z}/{two.z}{' ring' if two.internal else ''}, {math.degrees(abs(one.beta)):.0f} degrees, "
+    text += f"b/m {one.b / one.m_n:.1f}"
+    for gear, (crack,) in (damage or {}).items():
+        low, high = crack.width or (0.0, one.b)
+        text += f", {gear} cracked {100 * crack.level:.0f} %" + (f" over {(high - low) / one.b:.2f} b" if crack.width else "")
+    return text
+
+
+def seeds(kind):
+    """Seeds of a kind: the first that give gears, and those once missed."""
+    first, count = KINDS[kind][0], KINDS[kind][5]
+    found = itertools.islice((seed for seed in itertools.count(first) if _possible(kind, seed)), count)
+    return sorted({*found, *(seed for own, seed in MISSED if own == kind)})
+
+
+def _possible(kind, seed):
+    """Whether a seed gives gears that exist, mesh, and bear their crack."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            pair, _, damage, _ = drawn(kind, seed)
+            for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2)):
+                for crack in (damage or {}).get(name, ()):
+                    crack_path(gear, crack)
+    except ValueError:
+        return False
+    return True
+
+
+def judged(found):
+    """By what is asked: which phases of a row are covered; none if a method failed."""
+    if "failed" in found:
+        return {name: np.zeros(1, dtype=bool) for name in ASKED}
+    away = np.array([np.abs(np.subtract(found[one], found[two])) for one, two in ASKED.values()])
+    own = [np.array(found[f"{name}_error"]) for name in ("fe3d", "ritz3d")]
+    return {name: gap <= said for name, gap, said in zip(ASKED, away, (own[0] + own[1], *own), strict=True)}
+
+
+def rows(again=False):
+    """All rows; `again`: compute them again."""
+    every = [(kind, seed) for kind in KINDS for seed in seeds(kind)]
+    return [kept(TABLE, f"{kind} {seed}", lambda kind=kind, seed=seed: row(kind, seed), again) for kind, seed in every]
+
+
+def covered(found):
+    """Pairs that `ritz3d` and `fe3d` cover at every phase, and how many there are."""
+    said = [judged(one) for one in found]
+    return [sum(bool(one[name].all()) for one in said) for name in reversed(ASKED)][:2], len(said)
+
+
+def section(found):
+    """Lines of the page, from `rows`."""
+    parts = [*TEXT.strip().splitlines(), "", *_counts(found), "", *_misses(found), "", *_spread(found), ""]
+    return [*parts, *SETTLED.strip().splitlines()]
+
+
+def _counts(rows):
+    """Lines of the table of what is covered: phases and pairs, of each kind and of all."""
+    out = ["| | " + " | ".join(ASKED) + " |", "|---|" + "---|" * len(ASKED)]
+    for kind in (*KINDS, "all"):
+        own = [judged(one) for one in rows if kind in (one["kind"], "all")]
+        if own:
+            phases = [np.concatenate([one[name] for one in own]) for name in ASKED]
+            pairs = [sum(bool(one[name].all()) for one in own) for name in ASKED]
+            cells = (f"{n} of {len(own)} pairs, {p.sum()} of {p.size} phases" for n, p in zip(pairs, phases, strict=True))
+            out.append(f"| {kind} | " + " | ".join(cells) + " |")
+    return out
+
+
+def _misses(rows):
+    """Every phase that is not covered."""
+    out = []
+    for one in rows:
+        if "failed" in one:
+            out.append(f"- {one['row']}, {one['pair']}: {one['failed']}")
+            continue
+        phases = np.array(one["phase"])
+        for name, good in judged(one).items():
+            for phase in phases[~good]:
+                at = one["phase"].index(phase)
+                first, second = ASKED[name]
+                said = sum(one[f"{m}_error"][at] for m in ASKED[name] if m != "fine") / one["fine"][at]
+                gap = abs(one[first][at] - one[second][at]) / one["fine"][at]
+                out.append(f"- {one['row']}, {one['pair']}, phase {phase:.3f}: {name} {100 * gap:.3f} %, said {100 * said:.3f} %")
+    return ["Not covered:" if out else "Nothing is left uncovered.", "", *out] if out else ["Nothing is left uncovered."]
+
+
+def _spread(rows):
+    """Table of differences and estimates, the largest of the phases of each pair, in percent."""
+    out = ["| in percent of k | median | 95th percentile | worst | of the pair |", "|---|---|---|---|---|"]
+    rows = [one for one in rows if "failed" not in one]
+    asked = [("`fe3d` against `ritz3d`", "fe3d", "ritz3d")]
+    asked += [("error of `fe3d`", "fe3d", "fine"), ("its estimate", "fe3d_error", None)]
+    asked += [("error of `ritz3d`", "ritz3d", "fine"), ("its estimate", "ritz3d_error", None)]
+    for text, one, other in asked:
+        away = [np.abs(np.array(row[one]) - (np.array(row[other]) if other else 0.0)) / np.array(row["fine"]) for row in rows]
+        values = 100 * np.array([a.max() for a in away])
+        worst = rows[int(values.argmax())]
+        spread = f"{np.median(values):.3f} | {np.quantile(values, 0.95):.3f} | {values.max():.3f}"
+        out.append(f"| {text} | {spread} | {worst['pair']}, {worst['row']} |")
+    return out
