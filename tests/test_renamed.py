@@ -70,7 +70,7 @@ def test_former_keys_are_none_of_today():
 
 
 def test_former_options_of_the_command_work(capsys):
-    run = ["planetary_pitting", "--forces", "1000", "--phases", "4"]
+    run = ["planetary_pitting", "--forces", "1000", "--phases", "8"]
     assert main(["te", *run]) == 0
     printed = capsys.readouterr()
     assert main(["stiffness", *run]) == 0

@@ -159,7 +159,7 @@ def test_help_names_every_method(capsys):
         main(["stiffness", "--help"])
     text = capsys.readouterr().out
     for row in ROWS:
-        assert f"{row.name:10s} {row.about}; {row.cost}" in text
+        assert f"{row.name:19s} {row.about}; {row.cost}" in text
 
 
 # one's own flexibility
