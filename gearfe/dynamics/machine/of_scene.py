@@ -77,12 +77,15 @@ def build_machine(
         return with_scene_errors(scene, build(scene, case))
     if not len(loads) or not all(math.isfinite(multiple) and multiple > 0 for multiple in loads):
         raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")
-    forces = own_forces(build(scene, case, phases=ROUGH, method=method, loads=None))
+    rough = build(scene, case, phases=ROUGH, method=method, loads=None)
+    forces = own_forces(rough)
+    play = [pair_backlash(scene, mesh.stiffness.meta["scene_pair"]) for mesh in rough.meshes]
     several = {name: ([force * multiple for multiple in loads], force) for name, force in forces.items()}
     out = build(scene, case, phases=phases, method=method, loads=several)
     stated = {name: pair.force for name, pair in scene.pairs.items() if name in forces}
     out = replace(out, notes=out.notes | {"mesh forces at rest [N]": forces, "loads stated for the pairs [N]": stated})
-    return with_scene_errors(scene, with_flanks(with_play(scene, out)))
+    meshes = tuple(replace(mesh, backlash=own or mesh.backlash) for mesh, own in zip(out.meshes, play, strict=True))
+    return with_scene_errors(scene, with_flanks(replace(out, meshes=meshes)))
 
 
 def flat_machine(scene: Scene, case: str | None = None) -> Machine:
@@ -132,17 +135,6 @@ def _check_contact(scene, case, contact):
             "[machine] backlash_um: a missing tooth lets the contact open, so that the machine needs a backlash; give one, "
             "such as backlash_um = 100.0"
         )
-
-
-def with_play(scene, machine):
-    """The machine with the backlash of each of its meshes."""
-    return replace(
-        machine,
-        meshes=tuple(
-            replace(mesh, backlash=pair_backlash(scene, mesh.stiffness.meta["scene_pair"]) or mesh.backlash)
-            for mesh in machine.meshes
-        ),
-    )
 
 
 def with_flanks(machine):
