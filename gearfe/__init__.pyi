@@ -61,6 +61,7 @@ from .dynamics.motion.portrait import poincare_section as poincare_section
 from .dynamics.motion.response import Response as Response
 from .dynamics.motion.simulate import simulate as simulate
 from .dynamics.motion.steady import steady_state as steady_state
+from .exchange.rexs import import_rexs as import_rexs
 from .figures.campbell_plot import plot_campbell as plot_campbell
 from .figures.contact_plot import plot_contact as plot_contact
 from .figures.pair_plot import plot_pair as plot_pair

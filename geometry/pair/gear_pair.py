@@ -37,7 +37,7 @@ class GearPair:
     gear_1, gear_2 : Gear
         Pinion and wheel or ring, of the same basic rack and helix angle.
     a : float, optional
-        Centre distance [mm]; default: the one without backlash.
+        Centre distance [mm]; default: the one without backlash of teeth without allowance.
 
     Raises
     ------

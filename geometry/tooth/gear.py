@@ -46,6 +46,9 @@ class Gear:
     addendum, dedendum, rack_tip_radius : float
         Addendum, dedendum and radius of the rounded tip of the basic rack [m_n]. A tip radius larger than the full
         rounding of the tool's tip cannot be cut: it is capped there, with a warning.
+    E_sn : float
+        Normal tooth thickness allowance at the reference circle [mm] (DIN 3967); negative: a thinner tooth, cut with the profile
+        shift `x_E`. Tip circle and centre distance without backlash stay those of `x`.
     z_cutter : int
         Of a ring: number of teeth of the pinion-type cutter that generates its fillet. The cutter has no profile shift and the
         same tip radius.
@@ -77,6 +80,7 @@ class Gear:
     rack_tip_radius: float = 0.38
     r_rim: float | None = None
     z_cutter: int = 20
+    E_sn: float = 0.0
 
     def __post_init__(self) -> None:
         """Reject gears that cannot be cut, and cap the rack tip radius."""
@@ -143,7 +147,7 @@ class Gear:
         from .profile import cutter_tip_radius
 
         cap = cutter_tip_radius(self) if self.internal else self.full_tip_radius
-        if cap <= 0:
+        if cap <= 0 and not self.internal:
             raise ValueError(
                 f"dedendum = {self.dedendum} m_n at alpha_n = {math.degrees(self.alpha_n):.4g} degrees: the rack tooth "
                 f"is pointed before its tip; give dedendum < {math.pi / 4 / math.tan(self.alpha_n):.4g}"
@@ -205,6 +209,11 @@ class Gear:
         return math.tan(self.beta) / self.r
 
     @property
+    def x_E(self) -> float:  # noqa: N802  # the symbol of ISO 21771
+        """Generating profile shift coefficient [m_n]: `x` plus what the tooth thickness allowance `E_sn` requires of the tool."""
+        return self.x + self.outward * self.E_sn / (2 * self.m_n * math.tan(self.alpha_n))
+
+    @property
     def r(self) -> float:
         """Reference radius [mm]."""
         return self.z * self.m_t / 2
@@ -222,7 +231,7 @@ class Gear:
     @property
     def r_f(self) -> float:
         """Root radius [mm]."""
-        return self.r - (self.outward * self.dedendum - self.x) * self.m_n
+        return self.r - (self.outward * self.dedendum - self.x_E) * self.m_n
 
     @property
     def p_bt(self) -> float:
@@ -255,7 +264,7 @@ class Gear:
     @property
     def base_half_angle(self) -> float:
         """Half angle of the tooth on the base circle [rad] (of a ring: of its flanks extended to it)."""
-        tooth = (math.pi / 2 + 2 * self.x * math.tan(self.alpha_n)) / self.z + inv(self.alpha_t)
+        tooth = (math.pi / 2 + 2 * self.x_E * math.tan(self.alpha_n)) / self.z + inv(self.alpha_t)
         return math.pi / self.z - tooth if self.internal else tooth
 
     def half_thickness(self, radius: float) -> float:

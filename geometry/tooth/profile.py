@@ -54,7 +54,7 @@ def _rack_tip(gear):
     """Centre (xi, eta) of the rack tip rounding in the transverse section, from the pitch line [mm]."""
     rho = gear.rack_tip_radius
     xi = math.pi / 4 - (gear.dedendum - rho) * math.tan(gear.alpha_n) - rho / math.cos(gear.alpha_n)
-    return max(xi, 0.0) * gear.m_t, (gear.x - gear.dedendum + rho) * gear.m_n
+    return max(xi, 0.0) * gear.m_t, (gear.x_E - gear.dedendum + rho) * gear.m_n
 
 
 def fillet(gear, phi):
@@ -86,7 +86,7 @@ def _cutter(gear):
     the full rounding of its tip.
     """
     base = gear.r_b * gear.z_cutter / gear.z
-    tooth = 2 * gear.x * math.tan(gear.alpha_n) / (gear.z - gear.z_cutter) + inv(gear.alpha_t)
+    tooth = 2 * gear.x_E * math.tan(gear.alpha_n) / (gear.z - gear.z_cutter) + inv(gear.alpha_t)
     alpha_0 = inverse_inv(tooth)
     pitch, ring = base / math.cos(alpha_0), gear.r_b / math.cos(alpha_0)
     tip = gear.r_f - (ring - pitch)

@@ -16,7 +16,7 @@ from gearfe.scene.load import scene_of
 from gearfe.scene.schema import scene_schema, shown
 
 RACK = {"m_n_mm": 2.0, "alpha_n_deg": 20.0, "b_mm": 20.0, "material": "steel", "beta_deg": 0.0, "x": 0.0, "z_cutter": 20}
-RACK |= {"addendum": 1.0, "dedendum": 1.25, "rack_tip_radius": 0.2}
+RACK |= {"E_sn_um": 0.0, "addendum": 1.0, "dedendum": 1.25, "rack_tip_radius": 0.2}
 RELIEF = {"relief_um": 5.0, "start_roll_mm": 8.0, "exponent": 1.0}
 WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
     "title": "whole",

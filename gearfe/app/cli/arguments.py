@@ -5,7 +5,7 @@ import os
 from functools import partial
 
 from ...stiffness.methods import NAMES, described, having
-from . import filling, sets, shell, signals, tools
+from . import exchange, filling, sets, shell, signals, tools
 from . import verbs as run
 
 SIGNALS = (".csv", ".txt", ".mat", ".npz", ".h5", ".wav", ".uff", ".tdms", ".parquet", ".lvm")  # as of gearfe.core.files
@@ -208,6 +208,13 @@ def main(argv=None):
         type=float,
     )
     add("--ring", "the wheel is an internal gear")
+    add = verb(
+        "import", exchange.import_file, "write a scene of a gear unit of another program, with what its file lacks as assumptions"
+    )
+    add("kind", "format of the file: REXS 1.0 to 2.0.0, as XML, JSON or zip", choices=("rexs",))
+    add("file FILE", "the file: .rexs, .rexsj or .zip")
+    add("--load-case N", "load case of its load spectrum (default: 1)", default=1)
+    add("-o --output FILE", "the new scene (default: its name with .toml, in the present folder)")
     add = verb("check", tools.check, "say in words what a scene holds, and how each case would be solved")
     add("scene SCENE", "a .toml file, or a built-in scene (see 'gearfe scenes')")
     add("--picture FILE", "draw a pair with its damage to scale: .png, .svg or .pdf")
