@@ -1,4 +1,4 @@
-"""What may hold the rim of a ring: an elastic bed, or pads of some width."""
+"""Supports of the rim of a ring: an elastic foundation, or pads of some width."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ MANY, FURTHEST = 200, 1e4  # pads; angle of the first [rad]
 
 @dataclass(frozen=True, slots=True)
 class RimBed:
-    """An elastic bed around the whole outer edge of a ring, for example a press fit or a soft sleeve.
+    """Elastic foundation around the whole outer edge of a ring, for example a press fit or a soft sleeve.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class RimBed:
     tangential: float
 
     def __post_init__(self) -> None:
-        """Refuse a bed on which a ring turns freely."""
+        """Reject a foundation on which a ring rotates freely."""
         remedy = "; for a rim that is held give ring = 'held'"
         settle_numbers(self, "rim bed", "radial tangential", " N/mm^3", above=0.0, remedy=remedy)
 
@@ -74,7 +74,7 @@ class RimSupports:
     pushes: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse pads of impossible sizes, and pads that do not hold the ring."""
+        """Reject pads of impossible sizes, and pads that do not hold the ring."""
         if not 1 <= whole("rim supports: count", self.count) <= MANY:
             raise ValueError(
                 f"rim supports: count = {self.count}, but give 1 to {MANY}: a ring that nothing holds moves away, and more pads "
@@ -104,7 +104,7 @@ class RimSupports:
         return np.concatenate([self.middles - reach, self.middles + reach])
 
     def covers(self, gear: Gear, places: Floats) -> NDArray[np.bool_]:
-        """Whether `places` ``(2, n)`` on the rim lie on a pad, its ends included."""
+        """Return which `places` ``(2, n)`` on the rim lie on a pad, its ends included."""
         away = np.arctan2(*places)[:, None] - self.middles + math.pi
         return np.abs(away % (2 * math.pi) - math.pi).min(axis=1) < self.width / (2 * gear.held) + 1e-9
 

@@ -22,8 +22,8 @@ from ...stiffness.curve import StiffnessCurve, joined
 from ...stiffness.solve import PairOptions, Solve, solve, split_arguments
 from .secant import Secant
 
-ROWS, COLUMNS = 1024, 64  # of a law as a table: rows in a mesh cycle, depths
-BETWEEN = 7  # extra phases solved between two, where a pair comes in or leaves between them at any of the loads
+ROWS, COLUMNS = 1024, 64  # size of a law's table: rows in a mesh cycle, depths
+BETWEEN = 7  # further phases solved between two if the number of pairs in contact changes there at any load
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,14 +183,14 @@ def force_law(
     span: str = "cycle",
     **options: Unpack[PairOptions],
 ) -> ForceLaw:
-    """Law of force of a gear pair, for machines: its contact solved under several loads, closer where pairs come in or leave.
+    """Compute the load-dependent force law of a gear pair for dynamic models: its contact solved under several loads.
 
     Parameters
     ----------
     pair : GearPair or Case
     forces : sequence of float
         Loads along the line of action [N], up to the largest that the mesh will see. Each 1.4 times the one before gives
-        accelerations within about 1 % of those of ever more loads, each twice the one before within 3 %.
+        is 1.4 times the one before for accelerations within about 1 % of those of more loads; a ratio of 2 gives 3 %.
     material : Material or (Material, Material)
     force : float, optional
         The load at which the mesh works on average, see `ForceLaw`; default: that in the middle.
@@ -200,7 +200,7 @@ def force_law(
     span : {"cycle", "tooth"}
         ``tooth`` for the law of a damaged tooth (`gearfe.dynamics.machine.tooth_damage.ToothDamage`).
     **options
-        As of `mesh_stiffness`: ``method``, ``damage``, ``flanks`` and so on.
+        Options of `mesh_stiffness`: ``method``, ``damage``, ``flanks`` and so on.
 
     Returns
     -------
@@ -209,7 +209,7 @@ def force_law(
     Raises
     ------
     ValueError
-        If an input is impossible; the message says which.
+        If an input is impossible; the message states which.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""How a machine answers a harmonic force: receptance, mobility and accelerance between two of its coordinates."""
+"""Frequency response of a machine: receptance, mobility and accelerance between two of its coordinates."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -66,7 +66,7 @@ def frequency_response(
         raise ValueError("frequencies: give a row of finite numbers of Hz, 0 or more")
     out, at = _row(machine, heard), _row(machine, driven)
     K, C, _, _ = machine.linear(machine.working())
-    scale = 1 / np.sqrt(machine.mass)  # so that 1 has one meaning for displacements and angles
+    scale = 1 / np.sqrt(machine.mass)  # scaled, so that displacements and angles have one magnitude
     K, C = (scale[:, None] * matrix * scale for matrix in (K, C))
     answer = np.empty(f.size, dtype=complex)
     for i, w in enumerate(2 * np.pi * f):

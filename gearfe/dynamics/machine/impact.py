@@ -81,7 +81,7 @@ def impact_helical(scene, case):
 
 
 def pits_of(damage):
-    """Pits on one pinion tooth of a case of damage, which is all the impact law knows.
+    """Return the pits on one pinion tooth of a case of damage; the impact law models no other damage.
 
     Raises
     ------

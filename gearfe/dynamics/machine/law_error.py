@@ -1,4 +1,4 @@
-"""How far a law of force may be off between its loads and phases, as leaving some out tells, and one of as many as it needs."""
+"""Interpolation error of a mesh force law, and a law refined until this error is small."""
 
 from dataclasses import dataclass, replace
 from typing import Unpack
@@ -13,13 +13,13 @@ from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.solve import PairOptions, split_arguments
 from .force_law import ForceLaw, law_of
 
-FIRST = 5, 32  # loads and phases that `converged_force_law` begins with
-ROUNDS = 6  # times it takes more of them, at most
+FIRST = 5, 32  # initial loads and phases of `converged_force_law`
+ROUNDS = 6  # maximum number of refinements
 
 
 @dataclass(frozen=True, slots=True)
 class LawError:
-    """Errors of a law of force, over the force: largest ones, and root mean squares over phases and loads.
+    """Interpolation errors of a mesh force law, relative to the force: maximum and RMS over phases and loads.
 
     `loads` between the loads solved, `phases` between the phases, `loads_rms` and `phases_rms` likewise.
     """
@@ -139,7 +139,7 @@ def _part(law, phases, loads):
 
 
 def _off(fewer: ForceLaw, law: ForceLaw, phases: NDArray[np.int64], loads: NDArray[np.int64]) -> Floats:
-    """How far the force of a law of fewer loads or phases is off at some of those of the whole one, over the force."""
+    """Return the relative force error of a law of fewer loads or phases at some of those of the whole one."""
     exact = law.load[loads]
     return np.asarray(np.abs(fewer(law.depth[np.ix_(phases, loads)], law.phase[phases, None]) / exact - 1))
 

@@ -1,4 +1,4 @@
-"""`Load`: what acts on a machine from outside, constant or over time."""
+"""`Load`: external load of a machine, constant or over time."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from ...core.checks import numbers, whole
 from ...core.record import ranged, settle, settle_numbers, settle_row
 from ...geometry.aliases import Floats
 
-# of a load: a number, times and values, or a function of an array of times
+# value of a load: a number, times and values, or a function of an array of times
 History = float | tuple[ArrayLike, ArrayLike] | Callable[[Floats], ArrayLike]
 
 
@@ -65,7 +65,7 @@ class Load:
 
 
 def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
-    """Times [s] and values of a history; ValueError unless they are finite and as many, and the times rise.
+    """Return times [s] and values of a history; ValueError unless they are finite, equal in number, and the times rise.
 
     With `strict` False two times may be equal.
     """

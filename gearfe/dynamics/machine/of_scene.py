@@ -1,4 +1,4 @@
-"""From a scene to its machine: the table of models that `build_machine` reads, and the errors a scene states.
+"""Machine of a scene: the table of models that `build_machine` uses, and the errors of a scene.
 
 A model is one file that states its bodies, stages and springs and a function ``(scene, case, **options) -> Machine`` of it, and
 one row here.
@@ -89,7 +89,7 @@ def build_machine(
 
 
 def flat_machine(scene: Scene, case: str | None = None) -> Machine:
-    """The machine of a scene with a constant mesh stiffness, for its frequencies and faults; nothing is solved.
+    """Return the machine of a scene with constant mesh stiffness, for its frequencies and faults; nothing is solved.
 
     ValueError if `build_machine` refuses it.
     """
@@ -98,7 +98,7 @@ def flat_machine(scene: Scene, case: str | None = None) -> Machine:
 
 
 def _builder(scene, case):
-    """Function that builds the machine of a scene, and its contact."""
+    """Return the function that builds the machine of a scene, and its contact."""
     if not scene.machine:
         raise ValueError(f"scene {scene.name} has no [machine] table: add one with model, speed_rpm and torque_Nm")
     if case is not None and not any(case in pair.damage for pair in scene.pairs.values()):
@@ -138,7 +138,7 @@ def _check_contact(scene, case, contact):
 
 
 def with_flanks(machine):
-    """The machine with the unloaded transmission error of modified flanks in the meshes whose curves or laws have one."""
+    """Return the machine with the unloaded transmission error of modified flanks in the meshes that have one."""
     errors = {
         mesh.name: _unloaded(mesh.stiffness)
         for mesh in machine.meshes
@@ -158,7 +158,7 @@ def _unloaded(curve):
 
 
 def with_scene_errors(scene, machine):
-    """The machine with the errors that its scene states: of the driven stage, the last one."""
+    """Return the machine with the errors that its scene states: those of the driven stage, the last one."""
     keys = ("profile_error_um", "runout_um", "misplaced_um", "misplaced_y_um")
     profile, runout, *shift = (1e-6 * scene.machine.get(key, 0.0) for key in keys)
     if not (profile or runout or any(shift)):

@@ -1,4 +1,4 @@
-"""What functions of one gear and one loaded tooth are given: checked before any work, placed, and as nodal forces."""
+"""Inputs of functions of one gear and one loaded tooth: checked before any work, placed, and as nodal forces."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What the closed forms share: an itemised tooth flexibility, and Sainsot's gear-body polynomials."""
+"""Common parts of the closed forms: an itemised tooth flexibility, and Sainsot's gear-body polynomials."""
 
 import math
 from dataclasses import dataclass

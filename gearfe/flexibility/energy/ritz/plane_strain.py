@@ -1,7 +1,7 @@
-"""What the polynomials of a sector's section miss near the tip corner and at the tips of cracks, known in plane strain.
+"""Plane-strain correction of the coarse section mesh of `ritz3d` near tip corners and crack tips.
 
-The section's triangles of `panel3d` are coarser than those of `ritz`, which takes the singular fields of loads out. In plane
-strain both are cheap, and their difference is what `solid` adds.
+The section's triangles of `panel3d` are coarser than those of `ritz`, which removes the singular fields of loads. In plane strain
+both are cheap, and `solid` adds their difference.
 """
 
 from dataclasses import replace
@@ -25,9 +25,9 @@ FURTHER, HIGHEST = 3, 8  # orders more of the polynomials compared with at crack
 
 
 def missing(model, section, *, cubic=False, cache=True):
-    """What the polynomials of a healthy `section` miss between the hats ``(PLACES, PLACES)`` [mm per N/mm].
+    """Return the flexibility that a healthy `section` lacks between the hats ``(PLACES, PLACES)`` [mm per N/mm].
 
-    `cubic` is as of `panel3d.section_of`.
+    `panel3d.section_of` describes `cubic`.
     """
     gear, material = model.gear, model.material
     healthy = plane_panel(model, section, cubic)
@@ -37,7 +37,7 @@ def missing(model, section, *, cubic=False, cache=True):
 
 
 def missing_at_cracks(model, sections, *, points=None, cubic=False):
-    """What the polynomials of a section with cracks miss more than those of the healthy one [mm per N/mm].
+    """Return the flexibility that a section with cracks lacks beyond that of the healthy section [mm per N/mm].
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def missing_at_cracks(model, sections, *, points=None, cubic=False):
     points : ndarray, optional
         Vertices of the section with the cracks, if they are elsewhere; its faces keep their directions.
     cubic : bool
-        Of `panel3d.section_of`.
+        See `panel3d.section_of`.
 
     Returns
     -------
@@ -68,7 +68,7 @@ def missing_at_cracks(model, sections, *, points=None, cubic=False):
 
 
 def completed(missed, cracks):
-    """Opening ``(k, k)`` of the points of the faces under unit forces on them that belongs to `missing_at_cracks`.
+    """Return the opening ``(k, k)`` of points of the faces under unit forces on them that belongs to `missing_at_cracks`.
 
     The hats reach what is missed at a crack's tip by bending the tooth: by one field for each of the `cracks`. The least opening
     that goes with these fields is added. Faces that are pressed shut then lose what was added to the hats. The logarithm of a
