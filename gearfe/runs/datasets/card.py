@@ -1,4 +1,4 @@
-"""The data card: what a data set holds, how it was made and split, how wrong it may be, and what it does not model."""
+"""Data card of a data set: contents, generation, split, estimated errors and neglected effects."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -14,7 +14,7 @@ from .windows import samples_of
 if TYPE_CHECKING:
     from .opened import Dataset
 
-SILENT = 1e-4  # of the level of a fault: below, a healthy machine is silent
+SILENT = 1e-4  # a healthy machine below this part of a fault's level counts as silent
 FILTERED = """\
 filter: simulated at a whole multiple of this rate, as fine as the machine asks for, then brought down by a linear-phase filter
   without delay, half of the amplitude at {half:g} Hz, 53 dB less from 1.16 times that on; where the rate itself is as fine, one
@@ -116,7 +116,7 @@ def _errors(labels):
 
 
 def _levels(labels):
-    """Levels by class and sensor; says so where a healthy machine is silent, as a perfectly equal one is."""
+    """Return the table of levels by class and sensor, with a note if a healthy machine is silent because all teeth are equal."""
     if labels is None:
         return ""
     sensors = list(dict.fromkeys(labels["sensor"]))
