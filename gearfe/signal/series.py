@@ -90,7 +90,7 @@ class Signal:
         return 2 * math.pi * self.shaft_frequency * self.time
 
     def part(self, start: int, stop: int) -> "Signal":
-        """The samples from `start` to before `stop`, with their angles."""
+        """Return the samples from `start` to before `stop`, with their angles."""
         inside = slice(start, stop)
         return replace(self, values=self.values[inside], angle=None if self.angle is None else self.angle[inside])
 
@@ -103,7 +103,7 @@ class Signal:
         tolerance: float | None = None,
         harmonics: int = 1,
     ) -> dict[str, float]:
-        """Condition indicators by the names of `gearfe.signal.indicators.SOURCES`, which states their formulae.
+        """Compute condition indicators by the names of `gearfe.signal.indicators.SOURCES`, which states their formulae.
 
         Parameters
         ----------
@@ -124,7 +124,7 @@ class Signal:
 
 
 def decimate(signal: Signal, rate: float) -> Signal:
-    """The signal at a lower rate, filtered first so that nothing above half of it folds down.
+    """Return the signal at a lower rate, after an anti-aliasing filter.
 
     A linear-phase filter without delay (`scipy.signal.resample_poly`, Kaiser's window): half of the amplitude is left at half
     the new rate, 53 dB are taken off from 1.16 of it on. The ends, ten new samples long, see a record that goes on as a line.

@@ -14,7 +14,7 @@ from .spectrum import Spectrum, amplitudes, noise_bins
 
 
 def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spectrum:
-    """One-sided amplitude spectrum: a sine of amplitude A on a bin gives A there.
+    """Compute the one-sided amplitude spectrum: a sine of amplitude A on a bin gives A there.
 
     The mean is taken out first and stands at 0 Hz. With ``hann`` a line between two bins is up to 15 % too low (scalloping),
     with ``flattop`` 0.1 %, with ``boxcar`` 36 %; ``boxcar`` keeps the energy,
@@ -54,7 +54,7 @@ def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spect
 def power_spectral_density(
     signal: Signal, *, resolution: float | None = None, window: str | tuple[Any, ...] = "hann"
 ) -> Spectrum:
-    """One-sided power spectral density by Welch's mean over half-overlapping segments; it integrates to the variance.
+    """Compute the one-sided power spectral density (PSD) by Welch's mean over half-overlapping segments.
 
     Its unit is ``(unit)^2/Hz``.
 

@@ -1,4 +1,4 @@
-"""Where the lines of a planetary stage lie in what a sensor on its ring or housing receives."""
+"""Sidebands of a planetary stage at a fixed sensor on its ring or housing (planet-pass modulation)."""
 
 import math
 
@@ -18,7 +18,7 @@ def stage_lines(
     equal: bool = True,
     **highest: int,
 ) -> dict[str, float]:
-    """Frequencies of a planetary stage with a fixed ring and equally spaced planets, as a sensor that stands still finds them.
+    """Return the frequencies of a planetary stage with fixed ring and equally spaced planets at a fixed sensor.
 
     Planet p is at the angle ``2 pi (f_c t + p / N)`` and is heard through a window over that angle, whose harmonics j up to
     `window` shift its lines by j f_c. Its forces are those of planet 0 at another time: multiples n of the mesh frequency

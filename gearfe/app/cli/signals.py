@@ -1,4 +1,4 @@
-"""The verb ``gearfe signal``: channels of files, what they show by frequency, and what a gear shows by its turns."""
+"""Verb ``gearfe signal``: channels of files, their spectra, and the condition indicators of a gear."""
 
 from dataclasses import replace
 
@@ -38,7 +38,7 @@ def signal(arguments):
 
 
 def _told(one):
-    """One line on a record: samples, rate, length, and the turns of its shaft."""
+    """Return one line on a record: samples, rate, length, and revolutions of its shaft."""
     import numpy as np
 
     text = f"{one.name}: {one.values.size} samples at {one.rate:.7g} Hz, {one.duration:.4g} s"
@@ -55,7 +55,7 @@ def _told(one):
 
 
 def _print_channels(arguments):
-    """What each file holds."""
+    """Print the channels of each file."""
     from ...signal.found import ANGLES, TIMES
     from ...signal.signal_file import channels
 
@@ -75,7 +75,7 @@ def _print_channels(arguments):
 
 
 def _read(arguments):
-    """The chosen channel of every file by name, with the angle of the shaft or its frequency if they are known."""
+    """Read the chosen channel of every file by name, with the angle of the shaft or its frequency if known."""
     from ...core.steps import steps
     from ...signal.signal_file import read_signals
 
@@ -98,7 +98,7 @@ def _read(arguments):
 
 
 def _draw(one, arguments):
-    """Cepstrum and spectrogram of the last case."""
+    """Draw cepstrum and spectrogram of the last case."""
     from ...figures.vibration_plots import plot_cepstrum, plot_spectrogram
     from ...signal.time_frequency import cepstrum, spectrogram
 
@@ -110,7 +110,7 @@ def _draw(one, arguments):
 
 
 def _draw_orders(signals, arguments):
-    """Spectra by turns of the shaft, with the lines of the gear's mesh if its teeth are given."""
+    """Draw order spectra of the shaft, with the lines of the gear's mesh if its teeth are given."""
     from ...figures.vibration_plots import plot_spectra
     from ...signal.orders import order_spectrum
     from ...signal.spectral_lines import expected_lines

@@ -1,4 +1,4 @@
-"""Verbs around the computing: a page of a scene, a scene to start from, completion, what this machine has."""
+"""Verbs around the computation: report of a scene, new scene, completion, computer."""
 
 import os
 
