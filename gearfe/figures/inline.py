@@ -5,12 +5,12 @@ from html import escape
 
 import numpy as np
 
-SIZE = (340, 130)  # of the picture [px]
+SIZE = (340, 130)  # size of the picture [px]
 FRAME = (44, 8, 8, 30)  # left, right, top, bottom [px]
 
 
 def line_svg(x, y, x_name, y_name, *, largest=800):
-    """An ``<svg>`` element of one line, y over x ``(n,)``, with the ends of both axes named; of at most `largest` points."""
+    """Return an ``<svg>`` element of one line, y over x ``(n,)``, with the ends of both axes named; at most `largest` points."""
     x, y = (np.asarray(values, dtype=float)[:: max(1, math.ceil(len(values) / largest))] for values in (x, y))
     (wide, tall), (left, right, top, bottom) = SIZE, FRAME
     across, up = (_scale(v, length) for v, length in ((x, wide - left - right), (y, tall - top - bottom)))
@@ -32,6 +32,6 @@ def line_svg(x, y, x_name, y_name, *, largest=800):
 
 
 def _scale(values, length):
-    """Values from 0 to `length`; all the same: in the middle."""
+    """Scale values from 0 to `length`; constant values to the middle."""
     low, high = np.nanmin(values), np.nanmax(values)
     return np.full(values.shape, length / 2) if high == low else (values - low) / (high - low) * length

@@ -1,4 +1,4 @@
-"""The check of the tables of a file against a schema, with messages that name file, table, key and value as typed."""
+"""Check of the tables of a file against a schema, with messages that state file, table, key and value as typed."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -106,7 +106,7 @@ def fits(value: Any, kind: str, count: int | None = None) -> bool:
 
 
 def _wrong(key, value):
-    """What the schema says against a value; empty if it is permitted."""
+    """Return the message on a value that the schema does not permit; empty if it is permitted."""
     if not fits(value, key.type, key.count):
         return f": expected {key.expected}{_limit(value)}"
     if key.distinct and not 0 < len(set(value)) == len(value):

@@ -95,7 +95,7 @@ def _force(row, radii, force):
 
 
 def _errors(file, pins, count):
-    """By planet how far its pin stands off, outwards and clockwise [mm]."""
+    """Return pin position errors by planet, outwards and clockwise [mm]."""
     out, said = [(0.0, 0.0)] * count, {}
     for name, row in pins.items():
         planet = _planet(file, f"pin.{name}", "planet", row["planet"], count)

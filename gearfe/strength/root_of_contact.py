@@ -1,4 +1,4 @@
-"""Root stress along the width under the load that the contact of a pair puts on a tooth."""
+"""Root stress along the width under the load of the contact of a pair."""
 
 from numbers import Integral
 
@@ -29,7 +29,7 @@ def root_stress_of_contact(
     half_width: float | None = None,
     refine: float = 1.0,
 ) -> RootStress:
-    """Root stress along the width of one tooth under its part of the contact of a pair, as it is shared along the line.
+    """Compute the root stress along the width of one tooth under its share of the contact load of a pair.
 
     The loads of the other tooth pairs are left out. Heights count from the end that touches first. The load of the tooth is that
     of its cells, line by line; over the face it goes straight from cell to cell.
