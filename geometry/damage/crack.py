@@ -1,4 +1,4 @@
-"""`Crack`: a root crack of one tooth, where it starts, how it runs, and how far it is open along the width."""
+"""`Crack`: a root crack of one tooth: start, path, and open part along the width."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from .given import finite, tooth_and_side
 TANGENTS = {"30deg": math.pi / 6, "60deg": math.pi / 3}  # with the centre-line of the tooth
 STARTS = (*TANGENTS, "root", "middle")
 SLACK = 1e-9  # rounding of the open part of a crack
-SHORTEST = 1e-4  # length of a crack in modules; k falls by 1e-5 by it, and meshes cannot be that small
+SHORTEST = 1e-4  # length of the shortest crack [m_n]: k falls by 1e-5, and meshes are not finer
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,12 +99,12 @@ class Crack:
 
     @property
     def even(self) -> bool:
-        """Whether it is as deep at every height between its ends."""
+        """True if it has the same depth at every height between its ends."""
         return len(set(self.ends)) == 1
 
     @property
     def bends(self) -> bool:
-        """Whether it has turned at the tooth's centre-line: its path is not straight."""
+        """True if its path has a kink at the tooth's centre-line."""
         return self.turning and self.level is not None and self.level > 0.5
 
     def outline(self, gear: Gear) -> Floats:
@@ -121,7 +121,7 @@ class Crack:
         return f"{path_length(gear, self):.3g} mm crack {angle} (level {self.level:.3g})"
 
     def _warning(self, gear: Gear) -> str:
-        """What to warn of when it meets its gear: nothing."""
+        """Return no warning."""
         return ""
 
 
@@ -212,7 +212,7 @@ def front(crack, b, z):
 
 @lru_cache(maxsize=256)
 def start_arc(gear, crack):
-    """Where the crack starts, as arc of `gearfe.geometry.tooth.profile.root_curve` [mm]."""
+    """Return the start of the crack as an arc of `gearfe.geometry.tooth.profile.root_curve` [mm]."""
     if crack.start == "root":
         return 0.0
     if crack.start == "middle":
@@ -294,7 +294,7 @@ def check_apart(gear, cracks):
 
 
 def check_single(gear, cracks):
-    """Raise ValueError if a body has two cracks on one side of a tooth, even beside each other along the width."""
+    """Raise ValueError if a body has two cracks on one side of a tooth, also at different heights."""
     if len({(crack.tooth % gear.z, crack.side) for crack in cracks}) < len(cracks):
         raise ValueError(f"two cracks on one side of a tooth of a body of b = {gear.b:g} mm; only one can be meshed")
 

@@ -1,4 +1,4 @@
-"""A gear as a small drawing in a page (SVG), for notebooks: an outline, nothing computed from it."""
+"""Small drawing of a gear (SVG) for notebooks; nothing is computed from it."""
 
 import math
 
@@ -8,7 +8,7 @@ from .profile import cartesian, fillet_length, flank, root_curve
 
 
 def outline_points(gear, *, points=5):
-    """Closed transverse outline of all teeth ``(2, n)`` [mm], coarsely: for drawings only."""
+    """Return the closed transverse outline of all teeth ``(2, n)`` [mm], coarsely: for drawings only."""
     rise = np.linspace(0.0, fillet_length(gear), points), np.linspace(gear.roll_f, gear.roll_a, points)
     radius, angle = (np.concatenate(pair) for pair in zip(root_curve(gear, rise[0]), flank(gear, rise[1]), strict=True))
     radius, angle = np.concatenate([radius, radius[::-1]]), np.concatenate([-angle, angle[::-1]])
@@ -44,7 +44,7 @@ def gear_svg(*placed, size=140):
 
 
 def gear_html(gear):
-    """Table of a gear's numbers beside its drawing."""
+    """Return a table of a gear's numbers with its drawing."""
     rows = {
         "teeth z": gear.z,
         "normal module": f"{gear.m_n:g} mm",
@@ -59,7 +59,7 @@ def gear_html(gear):
 
 
 def pair_html(pair):
-    """Table of a pair's numbers beside its drawing, in mesh at the pitch point's phase."""
+    """Return a table of a pair's numbers with its drawing, in mesh at the pitch point's phase."""
     pinion, wheel = pair.gear_1, pair.gear_2
     turns = pair.turn(pair.path[0] + pair.pitch_phase * pair.p_bt)
     rows = {
