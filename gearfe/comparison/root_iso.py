@@ -65,7 +65,7 @@ def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRo
     if why := _beyond(pair):
         raise ValueError(f"ISO 6336-3 is here for external spur pairs with a contact ratio between 1 and 2, but {why}")
     gear = pair.gear_1 if side == "pinion" else pair.gear_2
-    z, alpha, dedendum, tip, m_n = gear.z, gear.alpha_n, gear.dedendum, gear.tip_radius, gear.m_n
+    z, alpha, dedendum, tip, m_n = gear.z, gear.alpha_n, gear.dedendum, gear.rack_tip_radius, gear.m_n
     cut = math.pi / 4 - dedendum * math.tan(alpha) - (1 - math.sin(alpha)) * tip / math.cos(alpha)  # E, in modules as all below
     g, theta = tip - dedendum + gear.x_E, math.pi / 6
     for _ in range(50):

@@ -153,9 +153,9 @@ def _set(scene: Scene) -> Iterator[str]:
 
 def told_supports(curve: StiffnessCurve) -> str:
     """How much of the deflection is that of shafts and springs, in words; empty if the hubs are held rigidly."""
-    if curve.lte_supports is None:
+    if curve.support_deflection is None:
         return ""
-    part, k_teeth = float(curve.lte_supports.mean() / curve.lte.mean()), curve.without_supports().k.mean()
+    part, k_teeth = float(curve.support_deflection.mean() / curve.deflection.mean()), curve.without_supports().k.mean()
     return (
         f"shafts and springs take {100 * part:.0f} % of the deflection, and are in k; "
         f"teeth and bodies alone have {in_newton_per_um(k_teeth)} N/um on average"

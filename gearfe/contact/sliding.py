@@ -81,9 +81,9 @@ def bounded(contact, line_load):
 def left_out(contact, line, closing, beyond):
     """Part of the approach ``(phases,)`` that is unsure: bent teeth also move along each other, and chamfers take material.
 
-    A tooth's tip bends across its centre-line, so that a part tan(alpha_w) of the approach is movement u along the flanks. On the
-    path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where the
-    flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
+    A tooth's tip bends across its centre-line, so that a part tan(alpha_wt) of the approach is movement u along the flanks. On
+    the path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where
+    the flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
 
     Of line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``; `closing` ``(phases,)`` is how far the
     load moves the gears [mm]. What cracks add far away, or in thin teeth, is unsure, too.
@@ -96,7 +96,7 @@ def left_out(contact, line, closing, beyond):
         return np.zeros(closing.size)
     closed = closing[:, None] - beyond
     stiff = np.where(line > 0, line / np.maximum(closed, 1e-3 * closing[:, None]), 0.0)
-    u, gap = math.tan(contact.pair.alpha_w) * closing[:, None], np.where(off, np.maximum(points.gap, 0.0), 0.0)
+    u, gap = math.tan(contact.pair.alpha_wt) * closing[:, None], np.where(off, np.maximum(points.gap, 0.0), 0.0)
     changed = np.where(off, (np.sqrt(2 * contact.radius * gap) * u + u**2 / 2) / contact.radius, 0.0)
     changed = np.minimum(changed, np.where(off, closed, 0.0))  # no gap is unsure by more than it is closed
     return (stiff * (changed + softer)).sum(axis=1) / stiff.sum(axis=1) / closing

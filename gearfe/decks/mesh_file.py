@@ -69,7 +69,7 @@ def export_mesh(
     cracks, pits = split(damage)
     for one in damage:
         if isinstance(one, BROKEN):
-            raise ValueError(f"a {one.nouns[0]} in an exported mesh, which has whole teeth only: leave it out")
+            raise ValueError(f"a {one._nouns[0]} in an exported mesh, which has whole teeth only: leave it out")
     cells = cells or ("tetrahedra" if pits or teeth is not None else "hexahedra")
     if cells not in KINDS:
         raise ValueError(f"cells = {cells!r}, but they are one of {', '.join(KINDS)}")
@@ -86,7 +86,7 @@ def _tets(gear, pits, cracks, teeth, refine):
 
 def _hexes(gear, pits, cracks, teeth, refine):
     if pits:
-        noun = pits[0].nouns[1]
+        noun = pits[0]._nouns[1]
         raise ValueError(
             f"damage has {noun}, but hexahedra have none: {noun} are cut out of tetrahedra only: use cells = 'tetrahedra'"
         )

@@ -80,8 +80,8 @@ def _extended(gear, row, start, at, exponent):
 
 def _profile_crowning(reader, one, out, gear, row, name):
     tip, root = (one.number(f"profile_crowning_at_{end}", "mm") or 0.0 for end in ("tip", "root"))
-    _add(out, "crowning_um", UM * root)
-    _add(out, "slope_um", UM * (tip - root))
+    _add(out, "profile_crowning_um", UM * root)
+    _add(out, "profile_slope_um", UM * (tip - root))
 
 
 def _profile_slope(reader, one, out, gear, row, name):
@@ -90,7 +90,7 @@ def _profile_slope(reader, one, out, gear, row, name):
         value = float(listed[0])
     if value:
         reader.assume(f"gear {name}: profile slope removes material at the tip", "positive sign; REXS does not state the rule")
-        _add(out, "slope_um", UM * value)
+        _add(out, "profile_slope_um", UM * value)
 
 
 def _ends(gear):
@@ -104,15 +104,15 @@ def _helix_crowning(reader, one, out, gear, row, name):
         amount = one.number(f"helix_crowning_amount_{face}", "mm") or 0.0
         at = one.number(f"coordinate_where_helix_crowning_is_specified_{face}", "mm")
         amounts[place] = amount * ((row["b_mm"] / 2 / at) ** 2 if at else 1.0)
-    _add(out, "lead_crowning_um", UM * amounts[0])
-    _add(out, "lead_slope_um", UM * (amounts[1] - amounts[0]))
+    _add(out, "helix_crowning_um", UM * amounts[0])
+    _add(out, "helix_slope_um", UM * (amounts[1] - amounts[0]))
 
 
 def _helix_slope(reader, one, out, gear, row, name):
     value = one.number("helix_slope", "mm")
     if value:
         reader.assume(f"gear {name}: helix slope removes material at z = b", "positive sign; REXS does not state the rule")
-        _add(out, "lead_slope_um", UM * value)
+        _add(out, "helix_slope_um", UM * value)
 
 
 def _end_relief(face):

@@ -126,18 +126,18 @@ class GearReader:
 
     def _tool(self, gear, tool, row, name, scale):
         stated = {}
-        for key, quantity in (("dedendum", "addendum"), ("tip_radius", "tip_corner_radius")):
+        for key, quantity in (("dedendum", "addendum"), ("rack_tip_radius", "tip_corner_radius")):
             middle = "_coefficient" if key == "dedendum" else "_factor"
             if tool:
                 factor = tool.number(f"{quantity}{middle}_reference_profile")
                 length = tool.number(f"{quantity}_reference_profile", "mm") or tool.number("tip_corner_radius_cutter", "mm")
-                length = length if key == "tip_radius" or quantity == "addendum" else None
+                length = length if key == "rack_tip_radius" or quantity == "addendum" else None
                 if factor is not None or length is not None:
                     stated[key] = factor * scale if factor is not None else length / row["m_n_mm"]
         row |= stated
-        if "tip_radius" not in row:
-            row["tip_radius"], source = (0.2, "usual for rings") if gear.type == "ring_gear" else (0.38, "ISO 53, profile A")
-            self.assume(f"gear {name}: tip radius {row['tip_radius']} of the tool", f"the file states no tool; {source}")
+        if "rack_tip_radius" not in row:
+            row["rack_tip_radius"], source = (0.2, "usual for rings") if gear.type == "ring_gear" else (0.38, "ISO 53, profile A")
+            self.assume(f"gear {name}: tip radius {row['rack_tip_radius']} of the tool", f"the file states no tool; {source}")
         if tool is not None and tool.type == "cutter_wheel_tool":
             teeth = tool.number("number_of_teeth")
             row |= {"z_cutter": int(teeth)} if teeth else {}

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 
 from ..checks import is_number
+from ..renamed import renamed
 from .involute import inv
 
 LARGEST = 1e9  # of any number of a gear: a kilometre has 1e6 mm
@@ -17,6 +18,7 @@ def _base_radius(z: int, m_n: float, alpha_n: float, beta: float) -> float:
     return z * (m_n / math.cos(beta)) / 2 * math.cos(math.atan(math.tan(alpha_n) / math.cos(beta)))
 
 
+@renamed(tip_radius="rack_tip_radius")
 @dataclass(frozen=True, slots=True)
 class Gear:
     """An involute gear (symbols of ISO 21771; rack of ISO 53): external with `r_bore`, internal (a ring) with `r_rim`.
@@ -41,7 +43,7 @@ class Gear:
         Radius of an external gear's bore [mm], the inner edge of the body, which is held.
     r_rim : float
         Outside radius of a ring [mm], the outer edge of the body, which is held.
-    addendum, dedendum, tip_radius : float
+    addendum, dedendum, rack_tip_radius : float
         Addendum, dedendum and radius of the rounded tip of the basic rack [m_n]. A tip radius larger than the full
         rounding of the tool's tip cannot be cut: it is capped there, with a warning.
     E_sn : float
@@ -75,7 +77,7 @@ class Gear:
     x: float = 0.0
     addendum: float = 1.0
     dedendum: float = 1.25
-    tip_radius: float = 0.38
+    rack_tip_radius: float = 0.38
     r_rim: float | None = None
     z_cutter: int = 20
     E_sn: float = 0.0
@@ -138,8 +140,8 @@ class Gear:
             raise ValueError(
                 f"beta = {self.beta} rad, but helix angles of 60 degrees and more are not supported; angles are radians in Python"
             )
-        if self.tip_radius < 0:
-            raise ValueError(f"tip_radius = {self.tip_radius}, but it cannot be negative")
+        if self.rack_tip_radius < 0:
+            raise ValueError(f"rack_tip_radius = {self.rack_tip_radius}, but it cannot be negative")
 
     def _cap_tip_radius(self):
         from .profile import cutter_tip_radius
@@ -150,13 +152,13 @@ class Gear:
                 f"dedendum = {self.dedendum} m_n at alpha_n = {math.degrees(self.alpha_n):.4g} degrees: the rack tooth "
                 f"is pointed before its tip; give dedendum < {math.pi / 4 / math.tan(self.alpha_n):.4g}"
             )
-        if self.tip_radius > cap * (1 + 1e-12):
+        if self.rack_tip_radius > cap * (1 + 1e-12):
             warnings.warn(
-                f"tip_radius = {self.tip_radius} m_n does not fit on the tool's tip at alpha_n = "
+                f"rack_tip_radius = {self.rack_tip_radius} m_n does not fit on the tool's tip at alpha_n = "
                 f"{math.degrees(self.alpha_n):.4g} degrees; capped at the full tip radius {cap:.6g} m_n",
                 stacklevel=4,
             )
-            object.__setattr__(self, "tip_radius", cap)
+            object.__setattr__(self, "rack_tip_radius", cap)
 
     def _check_body(self):
         if self.internal:

@@ -197,7 +197,7 @@ def test_a_helical_pair_is_read(tmp_path, suffix):
     assert math.isclose(pinion.r_a, 40.0)
     assert pinion.r_bore == 15.0
     assert pinion.dedendum == 1.3
-    assert pinion.tip_radius == 0.25
+    assert pinion.rack_tip_radius == 0.25
     assert math.isclose(pinion.E_sn, -0.05 / math.cos(math.radians(20)), rel_tol=1e-6)
     assert wheel.E_sn == 0.0
     assert (pinion.x, wheel.x, math.degrees(pinion.beta)) == (0.3, 0.1, pytest.approx(12.0))

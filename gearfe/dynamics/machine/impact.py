@@ -89,7 +89,7 @@ def pits_of(damage):
         If there is other damage.
     """
     pits = list(damage.get("pinion", ()))
-    if damage.get("wheel") or not all(pit.removes_contact for pit in pits) or len({pit.tooth for pit in pits}) > 1:
+    if damage.get("wheel") or not all(pit._removes_contact for pit in pits) or len({pit.tooth for pit in pits}) > 1:
         raise ValueError("the impact law knows damage of the flank of one tooth of the pinion (sun) only: use contact = 'linear'")
     return pits
 

@@ -11,7 +11,7 @@ from gearfe.geometry.tooth.profile import flank
 
 
 def _pair(E_sn=(0.0, 0.0), beta=0.0, ring=False):
-    rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0, "tip_radius": 0.3}
+    rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0, "rack_tip_radius": 0.3}
     one = gf.Gear(z=21, x=0.2, r_bore=10.0, beta=beta, E_sn=E_sn[0], **rack)
     held = {"r_rim": 115.0, "addendum": 0.8} if ring else {"r_bore": 15.0}
     two = gf.Gear(z=63 if ring else 34, x=0.3, beta=-beta, E_sn=E_sn[1], **held, **rack)
