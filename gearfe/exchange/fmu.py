@@ -37,9 +37,9 @@ VARIABLES = (
 def write_fmu(path: StrPath, case: Case, how: Solve | None = None) -> None:
     """Write a gear pair as an FMU 2.0 for model exchange and co-simulation, with its damage.
 
-    Inputs are angles and speeds of both gears, outputs the torques on them, force, stiffness and deflection. The stiffness is that
-    of the case's load, linear between its phases, and repeats when the same teeth meet again. Back flanks have the same stiffness.
-    The FMU has the library of this computer's system and the C source.
+    Inputs are angles and speeds of both gears. Outputs are the torques on them, force, stiffness and deflection. The stiffness is
+    that of the case's load. It is linear between the phases and repeats when the same teeth meet again. Back flanks have the same
+    stiffness. The FMU contains the library for the system of this computer and the C source.
 
     Parameters
     ----------
@@ -64,9 +64,11 @@ def write_fmu(path: StrPath, case: Case, how: Solve | None = None) -> None:
         raise RuntimeError("an FMU is compiled from C: install a C compiler, such as gcc")
     table = mesh_table(case, how)
     pair, play = case.pair, 1e-3 * max(case.pair.backlash, 0.0)
-    numbers = {"ROWS": table.phase.size, "PHASES": table.phase.size // table.cycles, "Z_1": pair.gear_1.z}
+    numbers: dict[str, float] = {"ROWS": table.phase.size, "PHASES": table.phase.size // table.cycles, "Z_1": pair.gear_1.z}
     numbers |= {"R_1": 1e-3 * pair.gear_1.r_b, "R_2": 1e-3 * pair.gear_2.r_b, "BACKLASH": play if play > 1e-9 else 0.0}
-    body = "\n".join([*(f"#define {name} {value!r}" for name, value in numbers.items()), _array("K", table.k), _array("E", table.unloaded)])
+    body = "\n".join(
+        [*(f"#define {name} {value:.17g}" for name, value in numbers.items()), _array("K", table.k), _array("E", table.unloaded)]
+    )
     guid = hashlib.sha256(body.encode()).hexdigest()[:32]
     source = f'#define GUID "{guid}"\n{body}\n' + resources.files(__package__).joinpath("fmu.c").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder, written(path) as name:
@@ -88,7 +90,9 @@ def _system() -> str:
 
 def _compiled(compiler, source, folder):
     """Shared library of the source."""
-    library = folder / f"gear_pair{'.dll' if platform.system() == 'Windows' else '.dylib' if platform.system() == 'Darwin' else '.so'}"
+    library = (
+        folder / f"gear_pair{'.dll' if platform.system() == 'Windows' else '.dylib' if platform.system() == 'Darwin' else '.so'}"
+    )
     (folder / "gear_pair.c").write_text(source, encoding="utf-8")
     command = [compiler, "-shared", "-fPIC", "-O2", "-o", str(library), str(folder / "gear_pair.c"), "-lm"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -100,7 +104,8 @@ def _compiled(compiler, source, folder):
 def _description(name, guid, backlash):
     """``modelDescription.xml``."""
     root = ElementTree.Element(
-        "fmiModelDescription", fmiVersion="2.0", modelName=name, guid=guid, generationTool="gearfe", variableNamingConvention="flat",
+        "fmiModelDescription", fmiVersion="2.0", modelName=name, guid=guid, generationTool="gearfe",
+        variableNamingConvention="flat",
         generationDateAndTime=datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"), numberOfEventIndicators="0",
     )  # fmt: skip
     for kind in ("ModelExchange", "CoSimulation"):
@@ -111,14 +116,19 @@ def _description(name, guid, backlash):
         ElementTree.SubElement(units, "Unit", name=unit)
     variables = ElementTree.SubElement(root, "ModelVariables")
     for reference, (variable, causality, unit, text) in enumerate(VARIABLES):
-        kind = {"input": {"variability": "continuous"}, "parameter": {"variability": "tunable"}, "output": {"variability": "continuous"}}
-        one = ElementTree.SubElement(
-            variables, "ScalarVariable", name=variable, valueReference=str(reference), causality=causality, description=text, **kind[causality]
-        )  # fmt: skip
+        kind = {
+            "input": {"variability": "continuous"},
+            "parameter": {"variability": "tunable"},
+            "output": {"variability": "continuous"},
+        }
+        stated = {"name": variable, "valueReference": str(reference), "causality": causality, "description": text}
+        one = ElementTree.SubElement(variables, "ScalarVariable", stated | kind[causality])
         start = {} if causality == "output" else {"start": repr(backlash) if variable == "backlash" else "0"}
         ElementTree.SubElement(one, "Real", unit=unit, **start)
-    outputs = ElementTree.SubElement(ElementTree.SubElement(root, "ModelStructure"), "Outputs")
-    for index, (_, causality, _, _) in enumerate(VARIABLES, 1):
-        if causality == "output":
-            ElementTree.SubElement(outputs, "Unknown", index=str(index))
+    structure = ElementTree.SubElement(root, "ModelStructure")
+    for part in ("Outputs", "InitialUnknowns"):
+        unknown = ElementTree.SubElement(structure, part)
+        for index, (_, causality, _, _) in enumerate(VARIABLES, 1):
+            if causality == "output":
+                ElementTree.SubElement(unknown, "Unknown", index=str(index))
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True)

@@ -41,13 +41,13 @@ def write_rexs(path: StrPath, scene: Scene, curves: Mapping[str, StiffnessCurve]
     for name in curves or ():
         scene.pair(name)
     unit = _Unit(scene, curves or {})
-    root = ElementTree.Element(
-        "model", version=VERSION, applicationId="gearfe", applicationVersion="1", date=datetime.now(UTC).isoformat(timespec="seconds")
-    )  # fmt: skip
+    date = datetime.now(UTC).isoformat(timespec="seconds")
+    root = ElementTree.Element("model", version=VERSION, applicationId="gearfe", applicationVersion="1", date=date)
     relations, components = (ElementTree.SubElement(root, kind) for kind in ("relations", "components"))
     for number, relation in enumerate(unit.relations, 1):
-        order = {"order": str(relation.order)} if relation.order else {}
-        one = ElementTree.SubElement(relations, "relation", id=str(number), type=relation.type, **order)
+        one = ElementTree.SubElement(relations, "relation", id=str(number), type=relation.type)
+        if relation.order:
+            one.set("order", str(relation.order))
         for role, other in relation.refs.items():
             ElementTree.SubElement(one, "ref", id=str(other), role=role, hint=unit.components[other - 1].type)
     for component in unit.components:
@@ -109,14 +109,19 @@ class _Unit:
         if (name, gear) in self.gears:
             return self.gears[name, gear]
         shaft = self._add("shaft", f"shaft of {name}")
-        edge = {"outer": 2 * gear.held if not gear.internal else 2.1 * gear.held, "inner": 0.0 if not gear.internal else 2 * gear.held}
+        edge = {
+            "outer": 2 * gear.held if not gear.internal else 2.1 * gear.held,
+            "inner": 0.0 if not gear.internal else 2 * gear.held,
+        }
         ends = {f"{side}_diameter_{end}": (value, "mm") for side, value in edge.items() for end in ("begin", "end")}
         section = self._add("shaft_section", "", u_coordinate_on_shaft=(0.0, "mm"), length=(gear.b, "mm"), **ends)
         body = {"inner_diameter": (2 * gear.held, "mm")} if not gear.internal else {}
         own = self._add(
-            "ring_gear" if gear.internal else "cylindrical_gear", name, number_of_teeth=(gear.z, "none"), normal_module=(gear.m_n, "mm"),
+            "ring_gear" if gear.internal else "cylindrical_gear", name, number_of_teeth=(gear.z, "none"),
+            normal_module=(gear.m_n, "mm"),
             helix_angle_reference_diameter=(math.degrees(gear.beta), "deg"), face_width=(gear.b, "mm"),
-            tip_diameter=(2 * gear.r_a, "mm"), root_diameter=(2 * gear.r_f, "mm"), u_coordinate_on_shaft=(gear.b / 2, "mm"), **body,
+            tip_diameter=(2 * gear.r_a, "mm"), root_diameter=(2 * gear.r_f, "mm"),
+            u_coordinate_on_shaft=(gear.b / 2, "mm"), **body,
         )  # fmt: skip
         self._relate("assembly", assembly=self.unit, part=shaft)
         self._relate("assembly", assembly=shaft, part=section)
@@ -126,19 +131,26 @@ class _Unit:
             self._relate("assembly", assembly=own, part=rim)
         self._flanks(own, gear)
         if material not in self.materials:
-            self.materials[material] = self._add("material", "", elastic_modulus=(material.E, "N / mm^2"), poisson_ratio=(material.nu, "none"))
+            self.materials[material] = self._add(
+                "material", "", elastic_modulus=(material.E, "N / mm^2"), poisson_ratio=(material.nu, "none")
+            )
         self._relate("reference", origin=own, referenced=self.materials[material])
         self.gears[name, gear] = own
         return own
 
     def _flanks(self, own, gear):
         shape = {
-            "addendum_coefficient_reference_profile": (gear.dedendum, "none"), "tip_radius_factor": (gear.tip_radius, "none"),
+            "addendum_coefficient_reference_profile": (gear.dedendum, "none"),
+            "tip_radius_factor": (gear.rack_tip_radius, "none"),
             "dedendum_coefficient_reference_profile": (gear.addendum, "none"),
         }  # fmt: skip
         teeth = {"number_of_teeth": (gear.z_cutter, "none")} if gear.internal else {"normal_module": (gear.m_n, "mm")}
         tool = self._add("cutter_wheel_tool" if gear.internal else "rack_shaped_tool", "", **shape, **teeth)
-        cut = {"generated_addendum_modification_coefficient": (gear.x_E, "none")} if gear.E_sn else {"machining_allowance": (0.0, "mm")}
+        cut = (
+            {"generated_addendum_modification_coefficient": (gear.x_E, "none")}
+            if gear.E_sn
+            else {"machining_allowance": (0.0, "mm")}
+        )
         settings = self._add("cylindrical_gear_manufacturing_settings", "", **cut)
         sides = {}
         for side in ("left", "right"):
