@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-NONE = 1e-9  # of the power of the motor that counts as none
+NONE = 1e-9  # part of the motor's power that counts as none
 
 
 class Link(NamedTuple):
-    """What connects two shafts: the second turns `ratio` times as fast as the first."""
+    """Connection of two shafts: the second rotates `ratio` times as fast as the first."""
 
     name: str
     one: str

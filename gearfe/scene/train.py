@@ -17,7 +17,7 @@ from .reading import check_known
 
 Row = dict[str, Any]
 ALONE = ("bearing", "motor", "load", "coupling", "stage")  # tables that scenes without a gearbox do not have
-PART = 1e-9  # of a torque or a length that counts as none
+PART = 1e-9  # part of a length that counts as none
 
 
 class TrainStage(NamedTuple):
@@ -51,8 +51,8 @@ class TrainShaft:
         Positions [mm].
     radial, axial, damping : tuple of float
         By bearing [N/m], [N/m], [N s/m]; empty: not given.
-    kinds : tuple of dict
-        By bearing the row of its table ``[bearing.NAME]``; empty: not given.
+    kinds : dict of str to dict
+        Rows of the tables ``[bearing.NAME]`` of its bearings.
     """
 
     sections: tuple[Section, ...]
@@ -63,7 +63,7 @@ class TrainShaft:
     radial: tuple[float, ...] = ()
     axial: tuple[float, ...] = ()
     damping: tuple[float, ...] = ()
-    kinds: tuple[Row, ...] = ()
+    kinds: dict[str, Row] = field(default_factory=dict)
 
     @property
     def length(self) -> float:
@@ -153,6 +153,20 @@ def train_of(file: str, rows: Row, gears: dict[str, Gear], materials: dict[str, 
     return out
 
 
+def thrusts_of(train: Train, gears: dict[str, Gear]) -> dict[str, float]:
+    """Axial force on each gear of the pairs between shafts [N], along z.
+
+    A positive helix angle is a right-hand helix (ISO 21771): a driver of it that rotates counter-clockwise is pushed along z.
+    """
+    out: dict[str, float] = {}
+    for link in train.links:
+        if link.name in train.pairs:
+            one, two, _ = train.pairs[link.name]
+            push = math.copysign(train.forces[link.name] * math.tan(gears[one].beta_b), train.speeds[link.one] * gears[one].beta)
+            out[one], out[two] = out.get(one, 0.0) + push, out.get(two, 0.0) - push
+    return out
+
+
 def _is_gearbox(file, rows, shafts):
     if (rows["machine"] or {}).get("model") != "gearbox":
         for kind in [*(kind for kind in ALONE if rows[kind]), *(["shaft"] if shafts else [])]:
@@ -211,7 +225,7 @@ def _held(file, where, row, rows, made):
     radial = tuple(1e6 * k for k in row["bearings_N_per_um"] or ())
     axial = tuple(1e6 * k for k in row["bearings_axial_N_per_um"] or ()) or (radial and (radial[0], 0.0))
     damping = tuple(1e3 * c for c in row["bearings_Ns_per_mm"] or ())
-    kinds = tuple(rows["bearing"][kind] for kind in row["bearings"] or ())
+    kinds = {kind: rows["bearing"][kind] for kind in row["bearings"] or ()}
     return replace(made, bearings=tuple(row["bearings_at_mm"]), radial=radial, axial=axial, damping=damping, kinds=kinds)
 
 
@@ -262,6 +276,13 @@ def _links(file, rows, gears, train):
     for name, (one, two, _) in pairs.items():
         for key, gear in (("gear_1", one), ("gear_2", two)):
             check_known(file, f"pair.{name}", key, gear, homes, "gear on a shaft")
+        hands = [math.degrees(gears[gear].beta) for gear in (one, two)]
+        if abs(hands[0] + gears[two].outward * hands[1]) > PART:
+            kind = "an internal pair has the same hand" if gears[two].internal else "an external pair has opposite hands"
+            raise ValueError(
+                f"{file} [pair.{name}]: beta_deg of {one!r} and {two!r} are {hands[0]:g} and {hands[1]:g}, but {kind}: "
+                "the axial forces on the shafts depend on them"
+            )
         out.append(Link(name, homes[one], homes[two], -gears[two].outward * gears[one].z / gears[two].z))
     names = [*(link.name for link in out), "motor", *rows["load"]]
     if twice := [name for i, name in enumerate(names) if name in names[:i]]:

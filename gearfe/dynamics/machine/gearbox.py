@@ -11,7 +11,7 @@ from ...scene.train import Train, TrainStage
 from .gear_mesh import GearMesh
 from .layout import SPACE, Body, Layout
 from .loads import Load
-from .member import Member, disc
+from .member import disc
 from .planetary import stage_phases
 from .scene_curves import Meshed, scene_machine
 from .shaft_chain import Chain, bearing_springs, chain, lumps, shaft_springs, station
@@ -45,7 +45,7 @@ def planets_of(stage: TrainStage) -> list[str]:
     return [f"{stage.gears[1]}{i + 1}" for i in range(stage.n_planets)]
 
 
-def check_bearings(scene) -> None:
+def check_bearings(scene):
     """Raise ValueError if a shaft that moves in six directions has no bearing stiffness, or if helical gears push it freely."""
     if scene.machine["dofs"] == "torsion":
         return
@@ -57,7 +57,7 @@ def check_bearings(scene) -> None:
             raise ValueError(f"{where} bearings_axial_N_per_um = [0, 0]: no bearing locates the shaft along its axis; give one")
 
 
-def gearbox(scene, stiffness, damage) -> Machine:
+def gearbox(scene, stiffness, damage):
     """`Machine` of a scene with a `Train`.
 
     Parameters
@@ -138,7 +138,7 @@ def _stations(scene, chains):
     return out
 
 
-def _disc(scene, gear) -> Member:
+def _disc(scene, gear):
     return disc(scene.gears[gear], scene.machine["density_kg_per_m3"], 0.0)
 
 
@@ -177,7 +177,7 @@ def _joints(layout: Layout, train: Train, chains: dict[str, Chain]) -> list[Spri
     return out
 
 
-def pair_phases(scene) -> dict[str, float]:
+def pair_phases(scene):
     """Phase at t = 0 of each pair between shafts, which follows from where the teeth of the gears on each shaft stand.
 
     Tooth 0 of the first gear of the motor's shaft stands at 0; tooth 0 of a driven gear meets tooth 0 of its driver. The driving

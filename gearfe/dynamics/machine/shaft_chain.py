@@ -1,6 +1,7 @@
 """Shafts of a gearbox as a chain of stations: lumped masses between exact massless pieces of Timoshenko's beam."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -9,8 +10,6 @@ from ...core.supports.beam import Section, pieces_between
 from ...scene.train import TrainShaft
 from .layout import SPACE, Body, Layout
 from .springs import Spring
-
-NEAR = 1e-9  # of the length of a shaft: two places that are one station
 
 
 class Chain(NamedTuple):
@@ -40,8 +39,8 @@ def chain(name: str, shaft: TrainShaft, places: dict[str, float]) -> Chain:
     return Chain(shaft, nodes.tolist(), names, pieces)
 
 
-def lumps(made: Chain, density: float) -> list[tuple[float, float, float]]:
-    """Mass [kg], polar and diametral moment of inertia [kg m2] of the shaft at each station: half of each piece beside it.
+def lumps(made: Chain, density: float) -> list[list[float]]:
+    """Mass [kg], polar and diametral moment of inertia [kg m2] of the shaft at each station: half of each adjacent piece.
 
     A half piece is a uniform rod from its station on: its diametral moment of inertia has the part ``m l**2 / 3``.
     """
@@ -50,7 +49,8 @@ def lumps(made: Chain, density: float) -> list[tuple[float, float, float]]:
         half, second = 0.5e-3 * length, 1e-12 * section.second_moment
         mass = density * 1e-6 * section.area * half
         out[i : i + 2] += mass, 2 * density * second * half, density * second * half + mass * half**2 / 3
-    return [tuple(row) for row in out.tolist()]
+    rows: list[list[float]] = out.tolist()
+    return rows
 
 
 def shaft_springs(layout: Layout, made: Chain, name: str, damping: float) -> list[Spring]:
@@ -95,6 +95,6 @@ def bearing_springs(layout: Layout, made: Chain, name: str, zeta: float = 0.02) 
     return out
 
 
-def station(name: str, lump: tuple[float, float, float], dofs: str) -> Body:
+def station(name: str, lump: Sequence[float], dofs: str) -> Body:
     """`Body` of a station."""
     return Body(name, lump[0], lump[1], dofs, lump[2])
