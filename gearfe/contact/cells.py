@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from ..geometry.aliases import Floats
 from ..geometry.mesh.outline import spaced
+from ..geometry.pair.broken import touching_each
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.modified import first_touch
-from .broken_teeth import touching_each
 from .pieces import cut
 
 BESIDE = 0.25  # modules from an end face: edge contact

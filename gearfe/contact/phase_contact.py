@@ -9,10 +9,10 @@ import numpy as np
 
 from ..core.steps import steps
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
+from ..geometry.pair.broken import broken_at, pair_at
 from ..geometry.pair.contacts import TIP
 from ..geometry.pair.lines import bands_of
 from .bodies import between, faces_of, mirrors_of
-from .broken_teeth import broken_at, pair_at
 from .cell_sharing import SharedLines
 from .cells import SETTLED, TIMES, Cells, carrying, cells_of
 from .corner import CornerLaw, in_fillet, plain_radius

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.kept import keeping
+from ..geometry.pair.broken import touching_each
 from ..geometry.pair.contacts import FORM, end_corners, near_pitches, touching
 from ..geometry.pair.lines import covered
-from .broken_teeth import touching_each
 
 SAMPLES = 400  # of the gap beyond the path, over a base pitch
 PARTS = 4  # straight parts of a line beyond the path, where pits are looked for

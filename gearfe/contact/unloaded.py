@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from ..geometry.pair.broken import touching_each
 from ..geometry.pair.modified import first_touch
-from .broken_teeth import touching_each
 
 FINE, ROUNDS = 9, 2  # places along the cell with the least gap, and how often they are looked for more closely
 

@@ -129,8 +129,8 @@ ROWS = (
     ),
     Method(
         "ritz3d", "converged energy model of gears of finite width: helical, herringbone, pits", "solid",
-        "gearfe.flexibility.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="any", pits=True, broken=True, faces=FACES,
-        error=True, extended=True, flanks=True, order=3, kept="process",
+        "gearfe.flexibility.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="any", pits=True, broken=True,
+        faces=FACES, error=True, extended=True, flanks=True, order=3, kept="process",
     ),
     Method(
         "fe", "finite elements of the transverse section, the independent reference", "section",

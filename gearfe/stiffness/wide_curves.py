@@ -37,8 +37,8 @@ def solid_curves(row, case, how, phase):
     h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the coarser, with p of `ORDER`; times `SAFETY`.
     The estimate at a phase is that of k there, or, because that can vanish by chance, the mean of those at the fixed phases of
     one base pitch about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not enter. What the laws
-    of contact leave out is added: `estimate.MODEL`, sliding along cracked teeth at corners, and movement where no contact on the path
-    carries (`PhaseContact`).
+    of contact leave out is added: `estimate.MODEL`, sliding along cracked teeth at corners, and movement where no contact on the
+    path carries (`PhaseContact`).
 
     `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
     """

@@ -10,20 +10,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..damage.crack import check_apart, check_single, meshed_path, mirrored, start_arc
 from ..damage.chip import chip_of
+from ..damage.crack import check_apart, check_single, meshed_path, mirrored, start_arc
 from ..damage.missing import missing_teeth
 from ..tooth.gear import Gear
-from ..tooth.profile import arc_at, cartesian, fillet_length, flank, lengths, roll_at_arc, root_curve, root_half_angle
+from ..tooth.profile import cartesian, lengths
 from .mesher import quadrangulate
 from .outline import spaced
+from .tooth_pieces import GROWTH, half_tooth, no_tooth, quarters
 
 # edge lengths in modules: loaded flanks, their tip corner, their fillets, other fillets, teeth beside them, all others,
 # largest crack edge, crack tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
 ATTEMPTS = tuple((finer, algorithm) for own in ((5, 6), (8,)) for finer in (1.0, 1.07, 1.15, 1.24, 1.4, 1.6) for algorithm in own)
 # finer, gmsh's algorithm: it may leave triangles, or fold quads; 8 comes last: it does not always give the same mesh
-GROWTH = 0.4  # of the edge length per length, away from fine places
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +133,7 @@ def _attempt(gear, teeth, damage, patches, size, algorithm):
     outline, flanks, fillets, marks = _rim(gear, draft, size, teeth, (mouths, broken), patches)
     rim = abs(gear.r_f - gear.held)  # two quads through it at least: with one a ring's section is 0.2 ... 0.5 % too stiff
     count = max(8, math.ceil(math.pi * gear.held / min(rim / 2, 3 * size["far"])))
-    turn = _quarters(np.linspace(0.0, 2 * math.pi, count + 1))
+    turn = quarters(np.linspace(0.0, 2 * math.pi, count + 1))
     bore = draft.add(gear.held * np.array([np.sin(turn), np.cos(turn)]), closed=True)
     body, tops, cuts = list(outline), [], []
     for tooth, tooth_cracks in sorted(damaged.items()):
@@ -179,11 +179,6 @@ class _Draft:
         return np.stack([nodes[:, :2], nodes[:, 1:]], axis=1).reshape(-1, 2).T
 
 
-def _quarters(values):
-    """Every interval cut in four."""
-    return np.interp(np.arange(4 * len(values) - 3) / 4, np.arange(len(values)), values)
-
-
 def _mouths(gear, size, found):
     """By side of a cracked tooth: arc where the parting line starts and the edge length there [mm]."""
     ends = {crack.side: (start_arc(gear, crack), lengths(meshed_path(gear, crack))[-1]) for _, crack in found}
@@ -202,10 +197,10 @@ def _rim(gear, draft, size, teeth, damage, patches):
         loaded = side == "loaded" and owner in teeth
         chip = chip_of(gear, broken, owner)
         if owner in gone:
-            pieces = _no_tooth(gear, size)
+            pieces = no_tooth(gear, size)
         else:
             cut = chip and (chip.end_roll(gear, side), chip.top(gear, side))
-            pieces = _half(gear, size, away, loaded, mouths.get(owner, {}).get(side), patches.get(owner, ()), cut)
+            pieces = half_tooth(gear, size, away, loaded, mouths.get(owner, {}).get(side), patches.get(owner, ()), cut)
         below = 1 + next((k for k, piece in enumerate(pieces) if piece[0] == "flank"), 0)
         sign = 1 if side == "loaded" else -1
         for k, (name, radius, angle, params) in list(enumerate(pieces))[::sign]:
@@ -221,53 +216,6 @@ def _rim(gear, draft, size, teeth, damage, patches):
             if name == "fillet":
                 marks[owner, side] = last if sign > 0 else draft.lines[added[0] - 1][0]
     return lines, flanks, fillets, marks
-
-
-def _no_tooth(gear, size):
-    """`_half` of a missing tooth: root circle."""
-    count = max(2, math.ceil(math.pi / gear.z * gear.r_f / (2 * size["root"])))
-    angle = _quarters(np.linspace(0.0, math.pi / gear.z, count + 1))
-    return [("root", np.full(angle.size, gear.r_f), angle, angle)]
-
-
-def _tip(gear, edge, corner, cut):
-    """Pieces of `_half` from the tip's middle to the end of the flank."""
-    if cut is None:
-        width = gear.half_thickness(gear.r_a) * gear.r_a
-        tip = _quarters(spaced(0.0, width, 2 * edge, [(width, width, 2 * corner)], 1, GROWTH)) / gear.r_a
-        return [("tip", np.full(tip.size, gear.r_a), tip, tip)]
-    out = []
-    for length, place in cut[1]:
-        at = _quarters(spaced(0.0, length, 2 * edge, [(length, length, 2 * corner)], 1, GROWTH)) / length
-        x, y = place(at)
-        out.append(("tip", np.hypot(x, y), np.arctan2(x, y), at))
-    return out
-
-
-def _half(gear, size, away, own, mouth, patches, cut=None):
-    """Half a tooth from tip middle to root middle: pieces (name, radius, angle, parameter), four places for each line.
-
-    A `cut` is the roll length at which the flank ends below the tip circle, and `Chip.top`.
-    """
-    edge = size["flank"] if own else size["near"] if away <= 1 else size["far"]
-    corner, last = min(edge, size["corner"]) if own else edge, gear.roll_a if cut is None else cut[0]
-    start, stop = arc_at(gear, gear.roll_f), arc_at(gear, last)
-    fine = [(stop, stop, 2 * corner), *([(a, b, 2 * s) for a, b, s in patches] if own else [])]
-    rolls = roll_at_arc(gear, spaced(start, stop, 2 * edge, fine, 1, GROWTH))[::-1]
-    rolls[[0, -1]] = last, gear.roll_f
-    rolls = _quarters(rolls)
-    below, top = -gear.r_f * (math.pi / gear.z - root_half_angle(gear)), fillet_length(gear)
-    root = size["fillet"] if away == 0 else size["root"]
-    out = [*_tip(gear, edge, corner, cut), ("flank", *flank(gear, rolls), rolls)]
-    mark, fine = (below, []) if mouth is None else (mouth[0], [(mouth[0], mouth[0], 2 * mouth[1])])
-    fine += [
-        (top + a - start, top + min(b - start, 0.0), 2 * s) for a, b, s in (patches if own else ()) if a < start - 1e-6 * gear.m_n
-    ]
-    for name, low, high in (("root" if mouth is None else "fillet", mark, top), ("root", below, mark)):
-        if high - low > 1e-6 * gear.m_n:
-            arcs = _quarters(spaced(low, high, 2 * root, fine, 1, GROWTH)[::-1])
-            out.append((name, *root_curve(gear, arcs), arcs))
-    return out
 
 
 def _cut(gear, draft, size, tooth, found, mouths, marks):
@@ -287,9 +235,7 @@ def _cut(gear, draft, size, tooth, found, mouths, marks):
     cos, sin = math.cos(2 * math.pi * tooth / gear.z), math.sin(2 * math.pi * tooth / gear.z)
     for k, (path, number, places, sizes) in enumerate(chain):
         length = math.dist(*path.T)
-        part = _quarters(
-            spaced(0.0, length, 2 * size["crack"], [(0, 0, 2 * sizes[0]), (length, length, 2 * sizes[1])], 1, GROWTH)
-        )
+        part = quarters(spaced(0.0, length, 2 * size["crack"], [(0, 0, 2 * sizes[0]), (length, length, 2 * sizes[1])], 1, GROWTH))
         x, y = (np.interp(part, [0.0, length], row) for row in path)
         final = marks[tooth, "unloaded"] if k == len(chain) - 1 else None
         new = draft.add(np.array([cos * x + sin * y, cos * y - sin * x]), first=last, last=final)

@@ -40,7 +40,7 @@ class WholeGear:
     gear : Gear
         Bore or rim are held over the whole width, the end faces free.
     damage : tuple of (Crack, MissingTooth or Chip)
-        The faces of cracks are kept from passing through each other, zone by zone (`gearfe.flexibility.finite_elements.crack_zones`).
+        The faces of cracks are kept from passing through each other, zone by zone (`finite_elements.crack_zones`).
     neighbours : int
         How many following teeth may carry load at the same time.
     degree : int, optional
