@@ -81,9 +81,9 @@ def bounded(contact, line_load):
 def left_out(contact, line, closing, beyond):
     """Part of the approach ``(phases,)`` that is unsure: bent teeth also move along each other, and chamfers take material.
 
-    A tooth's tip bends across its centre-line, so that a part tan(alpha_w) of the approach is movement u along the flanks. On the
-    path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where the
-    flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
+    A tooth's tip bends across its centre-line, so that a part tan(alpha_wt) of the approach is movement u along the flanks. On
+    the path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where
+    the flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
 
     Of line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``; `closing` ``(phases,)`` is how far the
     load moves the gears [mm]. What cracks add far away, or in thin teeth, is unsure, too.
@@ -102,7 +102,7 @@ def left_out(contact, line, closing, beyond):
 
 def _changed(contact, radius, gap, closed, closing):
     """By how much gaps off the path are unsure, see `left_out`: at most what they are `closed` by [mm]."""
-    u = math.tan(contact.pair.alpha_w) * closing
+    u = math.tan(contact.pair.alpha_wt) * closing
     return np.minimum((np.sqrt(2 * radius * np.maximum(gap, 0.0)) * u + u**2 / 2) / radius, closed)
 
 

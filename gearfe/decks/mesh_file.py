@@ -80,7 +80,7 @@ def export_mesh(
 def _tets(gear, pits, seams, teeth, refine):
     cracks, broken = seams
     for one in broken:
-        raise ValueError(f"tetrahedra have no {one.nouns[0]}: use cells = 'hexahedra', without holes")
+        raise ValueError(f"tetrahedra have no {one._nouns[0]}: use cells = 'hexahedra', without holes")
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
         raise ValueError("tetrahedra have at most one crack, through the whole width: use cells = 'hexahedra', without holes")
     return holed_part(holed_sector(gear, pits, *cracks, teeth=teeth, refine=refine))
@@ -88,7 +88,7 @@ def _tets(gear, pits, seams, teeth, refine):
 
 def _hexes(gear, pits, seams, teeth, refine):
     if pits:
-        noun = pits[0].nouns[1]
+        noun = pits[0]._nouns[1]
         raise ValueError(
             f"damage has {noun}, but hexahedra have none: {noun} are cut out of tetrahedra only: use cells = 'tetrahedra'"
         )

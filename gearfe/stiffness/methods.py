@@ -152,12 +152,14 @@ ROWS = (
         variants=True, flanks=True, crack_models=("constant", "straight", "parabola"),
     ),
     Method(
-        "published", "closed form: the beams of the article, as printed and corrected, plain sum of tooth pairs", "sum",
-        "gearfe.flexibility.energy.closed.published", "milliseconds", cracks="through", pits=True, rings="printed", faces=FACES,
+        "herringbone_article", "closed form: the beams of the article, as printed and corrected, plain sum of tooth pairs", "sum",
+        "gearfe.flexibility.energy.closed.herringbone_article", "milliseconds", cracks="through", pits=True,
+        rings="printed", faces=FACES,
         variants=True, flanks=True, crack_models=("constant",),
     ),
 )  # fmt: skip
 METHODS = {row.name: row for row in ROWS}
+FORMER = {"published": "herringbone_article"}  # former names of methods
 NAMES = ("auto", *METHODS)
 SUMS = tuple(row.name for row in ROWS if row.kind == "sum")
 RING_FOUNDATIONS = {  # variants `foundation` that say what a ring's body does
@@ -167,9 +169,19 @@ RING_FOUNDATIONS = {  # variants `foundation` that say what a ring's body does
 }
 
 
+def current(name: Any) -> Any:
+    """Return the present name of a method, with a DeprecationWarning for a former one; anything else unchanged."""
+    if isinstance(name, str) and name in FORMER:
+        from ..geometry.renamed import warn_renamed  # here: it loads numpy, and the command's help needs none
+
+        warn_renamed(f"method {name!r}", repr(FORMER[name]))
+        return FORMER[name]
+    return name
+
+
 def described():
     """One line of text for each method: its name, what it is, what it costs."""
-    return "\n".join(f"  {row.name:10s} {row.about}; {row.cost}" for row in ROWS)
+    return "\n".join(f"  {row.name:19s} {row.about}; {row.cost}" for row in ROWS)
 
 
 def having(what, kind=None):

@@ -81,12 +81,12 @@ def _curve(found, meta, case):
         phase=found.phase,
         k=found.k,
         k_tangent=found.k_tangent,
-        lte=1e-3 * (found.approach - found.unloaded),
+        deflection=1e-3 * (found.approach - found.unloaded),
         order=found.order[used],
         force=found.load[:, used],
         pressure=1e6 * pressure[:, used],
         unloaded=1e-3 * found.unloaded if case.forms is not None or found.unloaded.any() else None,
-        lte_supports=None if found.supports is None else 1e-3 * found.supports,
+        support_deflection=None if found.supports is None else 1e-3 * found.supports,
         meta=meta,
     )
 

@@ -35,9 +35,9 @@ class MissingTooth:
 
     tooth: int = 0
 
-    nouns: ClassVar[tuple[str, str]] = ("missing tooth", "missing teeth")
-    called: ClassVar[str] = "missing"
-    removes_contact: ClassVar[None] = None  # it removes the whole tooth
+    _nouns: ClassVar[tuple[str, str]] = ("missing tooth", "missing teeth")
+    _adjective: ClassVar[str] = "missing"
+    _removes_contact: ClassVar[None] = None  # it removes the whole tooth
     through: ClassVar[bool] = True
     side: ClassVar[str] = "loaded"
 
@@ -50,11 +50,11 @@ class MissingTooth:
         x, y = cartesian(*flank(gear, np.linspace(gear.roll_f, gear.roll_a, 24)))
         return np.array([np.append(x, -x[::-1]), np.append(y, y[::-1])])
 
-    def told(self, gear: Gear) -> str:
+    def _description(self, gear: Gear) -> str:
         """Return it in words."""
         return "missing tooth"
 
-    def doubts(self, gear: Gear) -> str:
+    def _warning(self, gear: Gear) -> str:
         """Return no warning."""
         return ""
 

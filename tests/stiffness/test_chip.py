@@ -104,7 +104,7 @@ def test_whole_outlines_pressed_together_agree():
 
 
 def test_what_does_not_model_it_refuses_it():
-    for method in ("textbook", "published", "coupled"):
+    for method in ("textbook", "herringbone_article", "coupled"):
         with pytest.raises(ValueError, match=r"a chip with|damage with"):
             gf.solve(case(), gf.Solve(method, 4))
     with pytest.raises(ValueError, match="chips of modified flanks"):
@@ -131,7 +131,7 @@ def test_the_picture_has_no_such_tip():
 
 def test_a_ring_and_a_shortened_gear():
     """A ring's chip cuts off what points inwards; `shortened` ends flanks where it is told to."""
-    ring = gf.Gear(z=84, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_rim=95.0, tip_radius=0.3, addendum=0.9)
+    ring = gf.Gear(z=84, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_rim=95.0, rack_tip_radius=0.3, addendum=0.9)
     pair = gf.GearPair(gf.Gear(z=31, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=11.4), ring)
     roll = Chip(depth=0.6).cut(pair.gear_2)[0]
     assert shortened(pair.gear_2, roll).roll_a == pytest.approx(roll)
