@@ -3,7 +3,7 @@
 from .comparison.compare import compare as compare
 from .comparison.model_file import read_model as read_model
 from .comparison.own_model import PairModel as PairModel
-from .comparison.pattern import face_load as face_load
+from .comparison.pattern import face_load_distribution as face_load_distribution
 from .comparison.root_iso import IsoRootStress as IsoRootStress
 from .comparison.root_iso import iso_root_stress as iso_root_stress
 from .core.case import Case as Case
@@ -24,18 +24,18 @@ from .dynamics.machine.force_law import ForceLaw as ForceLaw
 from .dynamics.machine.force_law import force_law as force_law
 from .dynamics.machine.frequency_response import frequency_response as frequency_response
 from .dynamics.machine.gear_mesh import GearMesh as GearMesh
-from .dynamics.machine.gear_pair import gear_pair as gear_pair
+from .dynamics.machine.gear_pair import gear_pair_machine as gear_pair_machine
 from .dynamics.machine.helical_pair import pitted_helical as pitted_helical
 from .dynamics.machine.herringbone_planetary import herringbone_planetary as herringbone_planetary
 from .dynamics.machine.law_error import LawError as LawError
+from .dynamics.machine.law_error import converged_force_law as converged_force_law
 from .dynamics.machine.law_error import law_error as law_error
-from .dynamics.machine.law_error import law_within as law_within
 from .dynamics.machine.layout import Body as Body
 from .dynamics.machine.layout import Layout as Layout
 from .dynamics.machine.loads import Load as Load
 from .dynamics.machine.loads import pulses as pulses
 from .dynamics.machine.member import Member as Member
-from .dynamics.machine.member import disc as disc
+from .dynamics.machine.member import gear_member as gear_member
 from .dynamics.machine.mesh_curves import Samples as Samples
 from .dynamics.machine.mesh_errors import with_errors as with_errors
 from .dynamics.machine.mesh_excitation import mesh_excitation as mesh_excitation
@@ -61,6 +61,7 @@ from .dynamics.motion.portrait import poincare_section as poincare_section
 from .dynamics.motion.response import Response as Response
 from .dynamics.motion.simulate import simulate as simulate
 from .dynamics.motion.steady import steady_state as steady_state
+from .exchange.rexs import import_rexs as import_rexs
 from .figures.campbell_plot import plot_campbell as plot_campbell
 from .figures.contact_plot import plot_contact as plot_contact
 from .figures.pair_plot import plot_pair as plot_pair
@@ -100,8 +101,8 @@ from .runs.surrogates.fit import fit_surrogate as fit_surrogate
 from .runs.surrogates.surrogate import Surrogate as Surrogate
 from .runs.sweeps.effects import curve_bands as curve_bands
 from .runs.sweeps.effects import main_effects as main_effects
+from .runs.sweeps.effects import roc_auc as roc_auc
 from .runs.sweeps.effects import sobol_indices as sobol_indices
-from .runs.sweeps.effects import told_apart as told_apart
 from .runs.sweeps.run import plan_sweep as plan_sweep
 from .runs.sweeps.run import sweep as sweep
 from .runs.sweeps.runs import Runs as Runs
@@ -122,7 +123,7 @@ from .signal.orders import synchronous_average as synchronous_average
 from .signal.series import Signal as Signal
 from .signal.series import decimate as decimate
 from .signal.series import integrate as integrate
-from .signal.shaft_speed import with_own_speed as with_own_speed
+from .signal.shaft_speed import with_estimated_speed as with_estimated_speed
 from .signal.signal_file import read_signal as read_signal
 from .signal.signal_file import read_signals as read_signals
 from .signal.spectra import envelope as envelope

@@ -45,6 +45,7 @@ def told_gear(gear: Gear) -> str:
     """
     helix = f"helix {math.degrees(gear.beta):.4g} degrees" if gear.beta else "spur"
     shift = f", profile shift {gear.x:g}" if gear.x else ""
+    shift += f", tooth thickness allowance {1e3 * gear.E_sn:g} um (cut with x_E = {gear.x_E:.4g})" if gear.E_sn else ""
     held = f"{'rim' if gear.internal else 'bore'} of {2 * (gear.r_rim or gear.r_bore or 0.0):.4g}"
     return (
         f"{gear.z} teeth{' (ring)' if gear.internal else ''}, module {gear.m_n:g} mm, {math.degrees(gear.alpha_n):.4g} degrees, "
@@ -56,9 +57,10 @@ def told_gear(gear: Gear) -> str:
 def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
     pair, case = chosen.pair, chosen.case()
     across = f", overlap ratio {case.overlap():.3f}" if case.runs != "spur" else ""
+    play = f", backlash {1e3 * pair.backlash:.4g} um along the line of action" if pair.backlash > 1e-6 * pair.gear_1.m_n else ""
     yield (
         f"pair {name}: {pair.gear_1.z} and {pair.gear_2.z} teeth, {pair.a:.5g} mm apart, "
-        f"contact ratio {pair.eps_alpha:.3f}{across}; {told_load(chosen)}"
+        f"contact ratio {pair.eps_alpha:.3f}{across}{play}; {told_load(chosen)}"
     )
     if case.runs == "herringbone":
         groove = f" with a groove of {chosen.groove:g} mm" if chosen.groove else ""
@@ -167,9 +169,9 @@ def _set(scene: Scene) -> Iterator[str]:
 
 def told_supports(curve: StiffnessCurve) -> str:
     """How much of the deflection is that of shafts and springs, in words; empty if the hubs are held rigidly."""
-    if curve.lte_supports is None:
+    if curve.support_deflection is None:
         return ""
-    part, k_teeth = float(curve.lte_supports.mean() / curve.lte.mean()), curve.without_supports().k.mean()
+    part, k_teeth = float(curve.support_deflection.mean() / curve.deflection.mean()), curve.without_supports().k.mean()
     return (
         f"shafts and springs take {100 * part:.0f} % of the deflection, and are in k; "
         f"teeth and bodies alone have {in_newton_per_um(k_teeth)} N/um on average"

@@ -17,7 +17,7 @@ from gearfe.scene.load import scene_of
 from gearfe.scene.schema import scene_schema, shown
 
 RACK = {"m_n_mm": 2.0, "alpha_n_deg": 20.0, "b_mm": 20.0, "material": "steel", "beta_deg": 0.0, "x": 0.0, "z_cutter": 20}
-RACK |= {"addendum": 1.0, "dedendum": 1.25, "tip_radius": 0.2}
+RACK |= {"E_sn_um": 0.0, "addendum": 1.0, "dedendum": 1.25, "rack_tip_radius": 0.2}
 RELIEF = {"relief_um": 5.0, "start_roll_mm": 8.0, "exponent": 1.0}
 WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
     "title": "whole",
@@ -31,18 +31,17 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
     "pair": {
         "stage": {
             "gear_1": "sun", "gear_2": "ring", "force_N": 2000.0, "a_mm": 62.0, "face": "spur", "groove_mm": 0.0,
-            "F_beta_um": 5.0, "f_sigma_beta_um": 0.0, "f_sigma_delta_um": 0.0, "bearing_span_mm": 60.0,
+            "F_beta_x_um": 5.0, "f_sigma_beta_um": 0.0, "f_sigma_delta_um": 0.0, "bearing_span_mm": 60.0,
         }
     },
     "flank": {
         "relieved": {
             "gear": "sun", "pair": "stage", **{f"tip_{key}": value for key, value in (RELIEF | {"start_roll_mm": 11.0}).items()},
-            "root_relief_um": 0.0, "root_exponent": 1.0, "crowning_um": 3.0, "lead_crowning_um": 3.0, "lead_slope_um": 0.0,
-            "twist_um": 0.0, "end_relief_um": [5.0, 5.0], "end_length_mm": [2.0, 2.0], "end_exponent": 2.0, "slope_um": 0.0,
-            "table_roll_mm": [0.0, 12.0], "table_removed_um": [0.0, 2.0], "pitch_um": [0.0, 1.0] * 10 + [0.0],
-            "wear_roll_mm": [0.0, 12.0], "wear_um": [0.0, 2.0], "tip_rounding_mm": 0.0, "tip_chamfer_mm": 0.0,
-            "tooth_scale": [1.0, 1.1] * 10 + [1.0],
-            "eccentricity_um": 0.0, "eccentric_tooth": 0.0, "both_sides": False,
+            "root_relief_um": 0.0, "root_exponent": 1.0, "profile_crowning_um": 3.0, "helix_crowning_um": 3.0, "helix_slope_um":
+            0.0, "twist_um": 0.0, "end_relief_um": [5.0, 5.0], "end_length_mm": [2.0, 2.0], "end_exponent": 2.0,
+            "profile_slope_um": 0.0, "table_roll_mm": [0.0, 12.0], "table_removed_um": [0.0, 2.0], "pitch_um": [0.0, 1.0] * 10 +
+            [0.0], "wear_roll_mm": [0.0, 12.0], "wear_um": [0.0, 2.0], "tip_rounding_mm": 0.0, "tip_chamfer_mm": 0.0,
+            "tooth_scale": [1.0, 1.1] * 10 + [1.0], "eccentricity_um": 0.0, "eccentric_tooth": 0.0, "both_sides": False,
         }
     },
     "support": {

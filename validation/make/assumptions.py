@@ -55,7 +55,7 @@ def changed(one):
         yield name, {"changes": [{} if g.internal else {"r_bore": factor * g.r_bore} for g in gears]}
     yield "force halved", {"force": one.force / 2}
     yield "force doubled", {"force": 2 * one.force}
-    yield "rack tip radius 0.25", {"changes": [{} if g.internal else {"tip_radius": 0.25} for g in gears]}
+    yield "rack tip radius 0.25", {"changes": [{} if g.internal else {"rack_tip_radius": 0.25} for g in gears]}
     ring = gears[1]
     if ring.internal:
         yield "rim one module thicker", {"changes": ({}, {"r_rim": ring.r_rim + ring.m_n})}
