@@ -11,7 +11,7 @@ from ...scene.train import Train, TrainStage
 from .gear_mesh import GearMesh
 from .layout import SPACE, Body, Layout
 from .loads import Load
-from .member import disc
+from .member import gear_member
 from .planetary import stage_phases
 from .scene_curves import Meshed, scene_machine
 from .shaft_chain import Chain, bearing_springs, chain, lumps, shaft_springs, station
@@ -139,7 +139,7 @@ def _stations(scene, chains):
 
 
 def _disc(scene, gear):
-    return disc(scene.gears[gear], scene.machine["density_kg_per_m3"], 0.0)
+    return gear_member(scene.gears[gear], scene.machine["density_kg_per_m3"], 0.0)
 
 
 def _ends(train):
