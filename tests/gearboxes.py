@@ -38,9 +38,9 @@ TWO_STAGE = scene(
     },
     motor=end("one", slope_Nms_per_rad=0.05),
     load={"brake": end("three", inertia_kgm2=0.3, slope_Nms_per_rad=0.4)},
-    machine={"model": "gearbox", "speed_rpm": 1500.0, "torque_Nm": 30.0, "dofs": "six", "damping_s": 3e-6},
+    machine={"model": "gearbox", "speed_rpm": 1500.0, "torque_Nm": 30.0, "dofs": "six", "damping_per_stiffness_s": 3e-6},
 )  # fmt: skip
-RING = gear(84, 2.0, 22.0, x=-0.4617, addendum=0.859, tip_radius=0.2, r_rim_mm=95.0)
+RING = gear(84, 2.0, 22.0, x=-0.4617, addendum=0.859, rack_tip_radius=0.2, r_rim_mm=95.0)
 RING.pop("r_bore_mm")
 PLANETARY = scene(
     {"a": gear(25, 2.0, 20.0), "b": gear(50, 2.0, 20.0), "sun": gear(21, 2.0, 22.0), "planet": gear(31, 2.0, 22.0), "ring": RING},

@@ -108,7 +108,7 @@ class Plain:
         self.G[i[4], i[3]] -= momentum
 
     def shafts(self):
-        beta = self.t["machine"].get("damping_s", 2e-6)
+        beta = self.t["machine"].get("damping_per_stiffness_s", 2e-6)
         for name, shaft in self.t["shaft"].items():
             ends = np.cumsum([0.0, *shaft["lengths_mm"]])
             bores = shaft.get("bores_mm", [0.0] * len(shaft["lengths_mm"]))
@@ -293,7 +293,7 @@ def test_response_is_that_of_the_plain_equations(name):
     rows = np.array([g for _, _, g, _ in plain.meshes])
     means, amplitudes, turns = (np.array([stiffness(kind)[i] for _, kind, *_ in plain.meshes]) for i in range(3))
     rates, starts = np.array([rate for *_, rate in plain.meshes]), np.array([phases[mesh] for mesh, *_ in plain.meshes])
-    beta = made.machine["damping_s"]
+    beta = made.machine["damping_per_stiffness_s"]
 
     def slope(t, u):
         q, v = u[:n], u[n:]

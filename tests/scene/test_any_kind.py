@@ -111,7 +111,7 @@ WHOLE_GEARBOX = PLANETARY | {  # every key of these that stands in no other scen
         for name, row in PLANETARY["shaft"].items()
     },
     "load": {"brake": end("out", at_mm=120.0, slope_Nms_per_rad=0.1), "pump": end("two", torque_Nm=5.0)},
-    "machine": PLANETARY["machine"] | {"dofs": "six", "density_kg_per_m3": 7800.0, "damping_s": 1e-6},
+    "machine": PLANETARY["machine"] | {"dofs": "six", "density_kg_per_m3": 7800.0, "damping_per_stiffness_s": 1e-6},
 }  # fmt: skip
 ELSE = [
     3, -1, 0, 10**9, 10**5000, -(10**30), 1e300, math.nan, -math.inf, True, "", "21", "sun", [], [1], [[]], ["x"], [True, False],

@@ -78,7 +78,7 @@ def gearbox(scene, stiffness, damage):
     layout = Layout([*_stations(scene, chains), *_ends(train), *_planets(scene)])
     springs = []
     for name, made in chains.items():
-        springs += shaft_springs(layout, made, f"shaft {name}", run["damping_s"])
+        springs += shaft_springs(layout, made, f"shaft {name}", run["damping_per_stiffness_s"])
         springs += bearing_springs(layout, made, f"bearing {name}") if run["dofs"] == "six" else []
     springs += _joints(layout, train, chains)
     meshes = [*_parallel(scene, layout, stiffness, damage), *_planetary(scene, layout, chains, (stiffness, damage))]
@@ -211,7 +211,11 @@ def _parallel(scene, layout, stiffness, damage):
         row = layout.pair_mesh(one, two, pair, angle, sense=sense, helix=-sense * math.tan(pair.gear_1.beta_b))
         fields: dict[str, Any] = {"teeth": (pair.gear_1.z, pair.gear_2.z), "damage": damage[link.name]}
         fields |= {"phase": phases[link.name], "frequency": abs(speed) * pair.gear_1.z / (2 * math.pi)}
-        out.append(GearMesh(link.name, row, stiffness[link.name], beta=scene.machine["damping_s"], **fields))
+        out.append(
+            GearMesh(
+                link.name, row, stiffness[link.name], damping_per_stiffness=scene.machine["damping_per_stiffness_s"], **fields
+            )
+        )
     return out
 
 
@@ -251,7 +255,10 @@ def _planetary(scene, layout, chains, curves):
                 KINDS, stage.pairs, (r_sun * (sun - carrier) + planet, -planet - r_ring * carrier), strict=True
             ):
                 mesh = f"{pair}{i + 1}"
-                more = fields[f"{kind}{i + 1}"] | {"beta": scene.machine["damping_s"], "damage": damage[mesh]}
+                more = fields[f"{kind}{i + 1}"] | {
+                    "damping_per_stiffness": scene.machine["damping_per_stiffness_s"],
+                    "damage": damage[mesh],
+                }
                 out.append(GearMesh(mesh, sense * row, stiffness[pair], **more))
     return out
 
