@@ -52,6 +52,8 @@ class Contact3D:
         Phases at which faces of cracks are in contact, and at which a tip is in its mate's fillet.
     error : ndarray, shape (phases,), or None
         Differences of k from those of longer cells and of coarser bodies [N/m], with the `unsure` part of `Carried`.
+    off_path : ndarray, shape (phases,)
+        Uncertainty of k if no contact on the path carries load [N/m]; it is not part of `error`.
     supports : ndarray, shape (phases,), or None
         Deflection of the supports of the hubs, its mean weighted with the loads [mm].
     """
@@ -69,6 +71,7 @@ class Contact3D:
     unloaded: Floats | None = None
     k_tangent: Floats | None = None
     supports: Floats | None = None
+    off_path: Floats | None = None
 
 
 def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, error=False, cache=True):
@@ -179,5 +182,5 @@ def _solved(contact, phase, bodies):
     supports = None if contact.hubs is None else np.array([loaded.given for loaded in carried])
     unsure = k * np.array([loaded.unsure for loaded in carried])
     details = {"closed": closed, "fillet": fillet, "unloaded": unloaded, "k_tangent": tangent, "supports": supports}
-    details["error"] = unsure
+    details |= {"error": unsure, "off_path": k * np.array([loaded.off_path for loaded in carried])}
     return Contact3D(phase, k, approach, orders, load, cells, dofs, **details)

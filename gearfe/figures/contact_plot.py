@@ -42,7 +42,7 @@ def plot_contact(
     path : path, optional
         Picture file; its suffix decides (png, svg, pdf).
     pits : sequence of Pit
-        Pits of the pinion; only the line of their own tooth pair is interrupted by them.
+        Pits of the pinion; they interrupt only the line of their tooth pair.
     title : str
         Title: scene, pair, case.
     """

@@ -129,8 +129,8 @@ ROWS = (
     ),
     Method(
         "ritz3d", "converged energy model of gears of finite width: helical, herringbone, pits", "solid",
-        "gearfe.flexibility.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="any", pits=True, faces=FACES,
-        error=True, extended=True, flanks=True, order=3, kept="process",
+        "gearfe.flexibility.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="any", pits=True, broken=True,
+        faces=FACES, error=True, extended=True, flanks=True, order=3, kept="process",
     ),
     Method(
         "fe", "finite elements of the transverse section, the independent reference", "section",
@@ -139,8 +139,8 @@ ROWS = (
     ),
     Method(
         "fe3d", "finite elements of whole gears of finite width, the independent reference", "solid",
-        "gearfe.stiffness.cache:solved_solid", "minutes", converged=True, cracks="any", pits=True, faces=FACES, error=True,
-        extended=True, flanks=True, kept="disk",
+        "gearfe.stiffness.cache:solved_solid", "minutes", converged=True, cracks="any", pits=True, broken=True, faces=FACES,
+        error=True, extended=True, flanks=True, kept="disk",
     ),
     Method(
         "coupled", "closed form: tapered beams on a common annulus, neighbours coupled; healthy external gears", "section",

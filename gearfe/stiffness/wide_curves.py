@@ -37,7 +37,7 @@ def solid_curves(row, case, how, phase):
     ``r**p`` times that of the coarser, with p of `ORDER`, times `SAFETY`. The estimate at a phase is that of k there or the mean
     of those at the fixed phases of one base pitch about it (`estimate.fixed_phases`), whichever is larger. Other phases of the
     list have no effect. The model error of the contact laws is added: `estimate.MODEL`, and sliding along cracked teeth at
-    corners (`PhaseContact`).
+    corners, and motion if no contact on the path carries load (`PhaseContact`).
 
     `pressure` is the largest of each pair's contact line without tip corners; nan if only corners touch.
     """
@@ -114,7 +114,7 @@ def _doubt(case, phase, found, options, brute):
     apart = np.abs(phase[:, None] - fixed)
     within = (np.abs((apart + 0.5) % 1 - 0.5) if healthy else apart) <= MEAN + 1e-9
     doubt = np.maximum(away[: phase.size], (within * at_fixed).sum(axis=1) / within.sum(axis=1))
-    return doubt + MODEL * found.k, ratio
+    return doubt + found.off_path + MODEL * found.k, ratio
 
 
 def _bodies(how):
@@ -146,7 +146,7 @@ def _coarser(case, phase, options, how):
     raise failed
 
 
-def _finer_section(how, gear, material, cracks=(), **options):
+def _finer_section(how, gear, material, damage=(), **options):
     """Return a gear with a finer section."""
-    flexibility = solved_solid(gear, material, cracks, refine=how.refine, cache=how.cache, tell=how.tell, **options)
-    return finer_section(flexibility, material, cracks, refine=how.refine, cache=how.cache)
+    flexibility = solved_solid(gear, material, damage, refine=how.refine, cache=how.cache, tell=how.tell, **options)
+    return finer_section(flexibility, material, damage, refine=how.refine, cache=how.cache)

@@ -1,7 +1,8 @@
 """`MissingTooth`: a tooth that has broken off."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -56,3 +57,8 @@ class MissingTooth:
     def _warning(self, gear: Gear) -> str:
         """Return no warning."""
         return ""
+
+
+def missing_teeth(gear: Gear, damage: Iterable[Any]) -> tuple[int, ...]:
+    """Numbers of the missing teeth among damage."""
+    return tuple(one.tooth % gear.z for one in damage if isinstance(one, MissingTooth))

@@ -12,8 +12,8 @@ import threading
 
 import numpy as np
 
-# Largest coordinate that gmsh sees, and the decimals of coordinates: its tolerances are absolute, and what it does with points on
-# one circle hangs on their last digits, so gears that differ in size alone have to look the same to it.
+# Largest coordinate that gmsh sees, and the decimals of coordinates: its tolerances are absolute, and its result
+# for points on one circle depends on their last digits. Gears of different size must have equal coordinates in it.
 SEEN, DECIMALS = 50.0, 8
 
 TOUCHED = [getattr(signal, name) for name in ("SIGILL", "SIGFPE", "SIGBUS", "SIGSEGV", "SIGPIPE") if hasattr(signal, name)]
