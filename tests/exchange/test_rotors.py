@@ -20,7 +20,7 @@ def test_opentorsion_has_the_natural_frequency_of_the_pair():
     """Two gears on their mesh: ``omega^2 = k (r_b1^2 / I_1 + r_b2^2 / I_2)``, which the machine of gearfe has too."""
     k, (r_1, r_2), (i_1, i_2) = float(gf.solve(CASE).k.mean()), (1e-3 * PAIR.gear_1.r_b, 1e-3 * PAIR.gear_2.r_b), (2e-4, 9e-4)
     parent, discs = ElasticGear(0, 0.0, r_1), [Disk(0, i_1), Disk(1, i_2)]
-    assembly = Assembly([], discs, elastic_gear_elements=[parent, ElasticGear(1, 0.0, r_2, k=k * r_1**2, parent=parent)])
+    assembly = Assembly([], discs, elastic_gear_elements=[parent, ElasticGear(1, 0.0, r_2, k=k * r_1**2, c=0.0, parent=parent)])
     found = np.sqrt(np.abs(assembly.undamped_modal_analysis()[0]).max()) / (2 * math.pi)
     mass = 1 / (r_1**2 / i_1 + r_2**2 / i_2)
     machine = gf.single_mesh(mass, k, 1000.0, force=2000.0)
