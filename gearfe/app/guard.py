@@ -34,13 +34,13 @@ class Limits:
         while self.seen and now - next(iter(self.seen.values()))[-1] > AWAY:
             self.seen.popitem(last=False)
         if address not in self.seen and len(self.seen) >= self.users:
-            return f"{self.users} users are here, as many as this server takes: please try again in some minutes"
+            return f"{self.users} users are connected, the maximum of this server: please try again in some minutes"
         times = self.seen.setdefault(address, deque())
         self.seen.move_to_end(address)
         while times and now - times[0] > MINUTE:
             times.popleft()
         if len(times) >= self.tasks:
-            return f"{self.tasks} tasks a minute is what this server takes from one address: please wait a little"
+            return f"{self.tasks} tasks per minute is the maximum of this server for one address: please wait a little"
         times.append(now)
         return ""
 

@@ -240,7 +240,7 @@ def _chosen(scene, pair, case, given):
         scene, pair = None, scene
     if isinstance(pair, (Case, GearPair)):
         if scene is not None or case is not None:
-            raise ValueError("a pair of your own has no scene and no case: leave them out, and give its damage as damage=")
+            raise ValueError("a user-defined pair has no scene and no case: leave them out, and give its damage as damage=")
         return _own(pair, given)
     stated = [name for name, value in given.items() if value not in (None, 0.0)]
     if stated:
@@ -258,7 +258,7 @@ def _own(pair, given):
     load = [given.get(name) for name in ("force", "torque")]
     if isinstance(pair, GearPair) and (given.get("material") is None or load == [None, None]):
         raise ValueError(
-            "a pair of your own needs its load and material: force= [N] or torque= [N m], and material=Material(...)"
+            "a user-defined pair needs its load and material: force= [N] or torque= [N m], and material=Material(...)"
         )
     case = case_of(pair, **given)
     if len(case.forces) > 1:
@@ -292,9 +292,9 @@ def why_not(row: Method, case: Case, solid: str) -> str:
     if pair.gear_2.internal and row.rings != "yes":
         return f"not for rings: it {RING_FOUNDATIONS[row.rings]}"
     if row.name == "fe3d" and solid:
-        return "takes minutes for each gear; ask for it: --reference fe3d (reference='fe3d')"
+        return "takes minutes for each gear; use --reference fe3d (reference='fe3d')"
     if row.kind == "solid":
-        return "nothing changes along the width; of narrow teeth ask for it: --reference ritz3d (reference='ritz3d')"
+        return "a two-dimensional model is sufficient here; for narrow gears use --reference ritz3d (reference='ritz3d')"
     if solid and row.kind == "section":
         return f"a transverse section, but {solid}"
     return "for healthy gears only" if case.damaged and not row.cracks else "left out"

@@ -43,7 +43,7 @@ class Pattern:
         ]
         if self.corners:
             lines.append(
-                f"a tip corner carries at {self.corners} of {count} phases: pressure there is beyond Hertz's and not told"
+                f"a tip corner carries at {self.corners} of {count} phases: its pressure is beyond Hertz's theory and not printed"
             )
         return "\n".join(lines)
 

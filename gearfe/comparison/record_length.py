@@ -33,13 +33,13 @@ def too_short(seconds, needed):
     """Return the remedy for a record of `seconds` if `needed` seconds resolve the lines; empty if it is long enough.
 
     >>> too_short(0.3, 1.2001)
-    '0.3 s are too short to part the lines of the fault from those beside them: record 1.21 s or longer'
+    '0.3 s cannot resolve the fault sidebands: record at least 1.21 s'
     """
     if seconds >= needed * (1 - 1e-3):
         return ""
     digit = 10.0 ** (math.floor(math.log10(needed)) - 2)
     longer = math.ceil(needed / digit - 1e-6) * digit
-    return f"{seconds:.3g} s are too short to part the lines of the fault from those beside them: record {longer:.3g} s or longer"
+    return f"{seconds:.3g} s cannot resolve the fault sidebands: record at least {longer:.3g} s"
 
 
 def _beside(line, comb):

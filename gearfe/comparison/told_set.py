@@ -116,7 +116,7 @@ def _taken(curves, healthy):
         loss = np.where((curves.k > 0) & (healthy.k > 0), 1 - curves.k / healthy.k, -np.inf)
     k, at, planet = np.unravel_index(int(loss.argmax()), loss.shape)
     most, kind = 100 * loss[k, at, planet], MESHES[int(k)].replace("-", " and ")
-    return f"the damage takes up to {most:.1f} % of k of {kind}, planet {planet}"
+    return f"the damage reduces k by up to {most:.1f} % in the mesh of {kind}, planet {planet}"
 
 
 def _mean(k: Floats) -> float:

@@ -31,7 +31,7 @@ FLOOR = 5.0  # times its noise floor at least is a line; the largest of five bin
 RANGE = 1e-4  # smaller lines, relative to the rms of a record, are lost in any recorder (80 dB; 16 bits have 96 dB)
 PULSES = 2  # harmonics of the fault at least in an envelope: pulses of a tooth have many, run-out and misplaced planets one
 RISE = 2.0  # times the healthy machine's at least is a line of a fault
-WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "turns of the gear", "f_carrier": "carrier frequency"}
+WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "shaft frequency", "f_carrier": "carrier frequency"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ class Analysis:
             return ""
         against = f" or {RISE:g} times the healthy one" if len(self.spectra) > 1 else ""
         least = f"{FLOOR:g} times the noise around it, {RANGE:g} of the record's rms{against}"
-        return "\n\n".join(filter(None, (f"no more than {least}: {', '.join(hidden)}", self.too_short)))
+        return "\n\n".join(filter(None, (f"lines not shown, below {least}: {', '.join(hidden)}", self.too_short)))
 
     def envelope(self):
         """`Demodulated` of the last case at the fault frequency, and in a sentence the lines that stand out of its envelope.

@@ -252,7 +252,7 @@ def _check_member(archive, member):
         version = npy.read_magic(file)
         shape, _, dtype = (npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0)(file)
         if not dtype.hasobject and math.prod(shape) * dtype.itemsize > member.file_size - file.tell():
-            raise ValueError(f"{member.filename} says it is {dtype} {list(shape)}, more than its {member.file_size} bytes")
+            raise ValueError(f"{member.filename} states {dtype} {list(shape)}, more than its {member.file_size} bytes")
 
 
 def read_mat(path):

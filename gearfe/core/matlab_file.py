@@ -91,7 +91,7 @@ def variables(data: bytes) -> dict[str, Any]:
     file.take(2)
     if version >> 8 != 1:
         version_text = "7.3, but holds no HDF5" if version >> 8 == 2 else f"{version >> 8} of the format, but 1 is known"
-        raise ValueError(f"it says version {version_text}: it is damaged")
+        raise ValueError(f"its version is {version_text}: it is damaged")
     out = {}
     while file.left():
         kind, content = file.element()
@@ -116,7 +116,7 @@ def _unpacked(packed):
     except zlib.error as error:
         raise ValueError(f"a compressed variable is damaged: {error}") from error
     if len(held) != count or not worker.eof:
-        raise ValueError("a compressed variable has another length than it says")
+        raise ValueError("a compressed variable has another length than stated")
     return kind, _Bytes(held, packed.order)
 
 

@@ -118,7 +118,7 @@ def write_contact_inp(
             raise ValueError("damage of a section's deck, which has none: give face = 'spur' or 'helical' for three dimensions")
         if any(form.wide for form in case.forms or ()):
             raise ValueError(
-                "flanks that change along the width, or misalignment, of a section, which knows no width: give face = 'spur' "
+                "flanks that change along the width, or misalignment, of a section, which is two-dimensional: give face = 'spur' "
                 "or 'helical' for three dimensions"
             )
         return write_contact_section(path, case, phase, approach, how)

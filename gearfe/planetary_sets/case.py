@@ -85,7 +85,7 @@ class PlanetaryCase:
         settle(self, pairs=(self.gears.sun_planet, self.gears.planet_ring))
         if self.gears.sun.beta:
             raise ValueError(
-                f"beta = {math.degrees(self.gears.sun.beta):.4g} degrees, but a section knows spur gears only: give beta = 0"
+                f"beta = {math.degrees(self.gears.sun.beta):.4g} degrees, but a section models spur gears only: give beta = 0"
             )
         n = self.gears.n_planets
         even = 2 * math.pi / n * np.arange(n)
@@ -162,7 +162,7 @@ class PlanetaryCase:
     def _check_faults(self):
         for name, flank in self.flanks.items():
             if flank.wide:
-                raise ValueError(f"flanks of {name!r} change along the width, but a section knows none: leave that out")
+                raise ValueError(f"flanks of {name!r} change along the width, but a section is two-dimensional: leave that out")
             if flank.eccentricity and name not in ("sun", "ring"):
                 raise ValueError(f"eccentricity of {name!r}: give that of a planet as pitch deviations")
             flank.on(self.gear_of(name))
@@ -193,5 +193,5 @@ class PlanetaryCase:
         planets["errors"] = any(map(any, self.errors))
         for name, has in planets.items():
             if count != self.planets and has and name not in changed:
-                raise ValueError(f"{count} planets, but {name} are those of {self.planets}: give {name} anew")
+                raise ValueError(f"{count} planets, but {name} are those of {self.planets}: give {name} again")
         return replace(self, **({"errors": None} if count != self.planets else {}) | changed)

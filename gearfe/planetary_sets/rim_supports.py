@@ -86,7 +86,7 @@ class RimSupports:
         if abs(self.first) > FURTHEST:
             raise ValueError(f"rim supports: first = {self.first:g} rad, but give an angle within {FURTHEST:g} rad")
         if not self.tangential > 0:
-            raise ValueError("rim supports: tangential = 0 N/mm, but then nothing takes the ring's torque: give more than 0")
+            raise ValueError("rim supports: tangential = 0 N/mm, but then nothing supports the ring's torque: give more than 0")
         settle(self, pushes=truth("rim supports: pushes", self.pushes))
         if self.pushes and self.radial:
             raise ValueError("rim supports: pads that only push have no radial force: give radial = 0")

@@ -151,7 +151,7 @@ def _still(machine):
         raise ValueError(f"the machine has no body {BODY!r}: give ring = 'body'")
     place = machine.dofs.index(turn)
     if not machine.K[place, place] > 0:
-        raise ValueError("the ring of this machine turns freely: a ring in k stands still; give ring = 'body'")
+        raise ValueError("the ring of this machine rotates freely, but a ring in k is fixed: give ring = 'body'")
     stays = np.array([not dof.startswith(f"{BODY}.") for dof in machine.dofs])
 
     def cut(rows):
@@ -212,5 +212,5 @@ def _without_body(machine, curves, inner):
     with np.errstate(divide="ignore", invalid="ignore"):
         left = np.where(curves.k[1] > 0, curves.force[1] / curves.k[1] - moved, 1.0)
         if (left <= 0).any():
-            raise ValueError("the springs of the ring move a mesh by more than it gives way in the set: give ring = 'in k'")
+            raise ValueError("the springs of the ring deflect a mesh more than the whole set does: give ring = 'in k'")
         return np.array([curves.k[0], np.where(curves.k[1] > 0, curves.force[1] / left, 0.0)])

@@ -112,7 +112,7 @@ def _tooth(found):
 def _methods(found):
     """Return the `Table` of the used methods with their descriptions and errors."""
     used = dict.fromkeys(name for comparison in found.comparisons.values() for name in comparison.curves)
-    closed = "a closed form: no estimate of its own, its error is that of the table"
+    closed = "a closed form without estimate; the table has its error"
     error = {False: closed, True: "can be refined to the limit"}
     rows = [(row.name, row.about, error[row.converged] + "; estimated from coarser solves" * (row.converged and bool(row.error)))
             for name in used if (row := METHODS.get(name))]  # fmt: skip

@@ -138,7 +138,7 @@ def _words(rows):
 
 
 def text(references, rows, beside=None):
-    """Return rows as Markdown, with sources, tolerances and reasons below; `beside`: additional words on verdicts, by case."""
+    """Return rows as Markdown, with sources, tolerances and reasons below; `beside` has remarks on verdicts by case."""
     cells, notes = [], []
     for reference in references:
         mark = ""

@@ -75,7 +75,7 @@ def _hdf_values(item):
         raise ValueError(f"the values of {item.name!r} stand {kind}, which are not read: copy them into this one")
     stored = item.id.get_storage_size()
     if item.nbytes > MOST_PACKED * (stored + 1024):
-        raise ValueError(f"{item.name!r} says it has {item.nbytes} bytes, but {stored} are stored, which cannot become so many")
+        raise ValueError(f"{item.name!r} states {item.nbytes} bytes, but only {stored} are stored")
     return item[()]
 
 

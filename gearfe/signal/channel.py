@@ -87,7 +87,7 @@ def _one(path, name, values, where=""):
     same = [math.isclose(number, numbers[0]) for number in numbers[1:]]
     if not (all(same) or (values[0] is not None and any(same))):
         listed = f"{' and '.join(f'{number:g}' for number in numbers)} Hz{f' ({where})' if where else ''}"
-        raise ValueError(f"{path}: {name} is given as {listed}; say which holds by {name}=")
+        raise ValueError(f"{path}: {name} is given as {listed}; choose one by {name}=")
     return next(iter(numbers), None)
 
 

@@ -37,7 +37,7 @@ class Found:
     def take_clock(self, path: Any, name: str, kind: Any, seconds: NDArray[Any], depth: int) -> None:
         """Set times of a clock or dates as the time [s] from the first one, for any column name, and warn of that."""
         if self.axes(TIMES):
-            self.other.append(f"{name!r} (of a clock, beside {self.axes(TIMES)[0]!r})")
+            self.other.append(f"{name!r} (of a clock, in addition to {self.axes(TIMES)[0]!r})")
             return
         taken = name if plain(name) in TIMES else "time"
         self.vectors[taken], self.units[taken] = seconds, "s"

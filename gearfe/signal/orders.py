@@ -31,7 +31,7 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
     step = np.diff(angle)
     if step.min() < SLOWEST * step.mean():
         raise ValueError(
-            f"{signal.name}: the shaft slows down to {step.min() * signal.rate:.3g} turns/s from {step.mean() * signal.rate:.3g} "
+            f"{signal.name}: the shaft slows down to {step.min() * signal.rate:.3g} Hz from {step.mean() * signal.rate:.3g} "
             "on average; cut out where it stands or starts"
         )
     needed = math.ceil(1 / step.min() - 1e-6)
@@ -42,7 +42,7 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
         raise ValueError(f"samples_per_turn = {count}, but {signal.name} has {needed} where it is slowest: give at least that")
     turns = math.floor(angle[-1] + 1 / count + 1e-9)
     if turns < 1 or angle.size < 6:
-        raise ValueError(f"{signal.name} covers {angle[-1]:.3g} turns with {angle.size} samples; one whole turn is needed")
+        raise ValueError(f"{signal.name} covers {angle[-1]:.3g} revolutions with {angle.size} samples; one revolution is needed")
     grid = np.minimum(np.arange(turns * count) / count, angle[-1])
     return make_interp_spline(angle, signal.values, k=5)(grid).reshape(turns, count)
 

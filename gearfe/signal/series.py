@@ -66,7 +66,7 @@ class Signal:
             i = falls[0]
             raise ValueError(
                 f"{self.name}: the angle must rise, but sample {i + 1} has {angle[i + 1]:g} rad after {angle[i]:g}; "
-                "an encoder that starts anew every turn needs numpy.unwrap"
+                "an encoder that restarts every revolution needs numpy.unwrap"
             )
         object.__setattr__(self, "angle", angle)
 

@@ -89,7 +89,7 @@ def with_estimated_speed(
         turned = turned - _lag(signal, order, turned, size)
     back = np.flatnonzero(np.diff(turned) <= 0)
     if back.size:
-        raise ValueError(f"{signal.name}: the angle found turns back at {signal.time[back[0]]:.3g} s: {LOOK}")
+        raise ValueError(f"{signal.name}: the estimated angle reverses at {signal.time[back[0]]:.3g} s: {LOOK}")
     return replace(signal, angle=turned - turned[0], shaft_frequency=None)
 
 

@@ -84,9 +84,7 @@ def with_speed_record(signal: Signal, speed: Signal, *, ratio: float = 1.0) -> S
     _check_together(signal, speed)
     low = int(np.argmin(speed.values))
     if not speed.values[low] > 0:
-        raise ValueError(
-            f"{speed.name}: {speed.values[low]:g} {speed.unit} at sample {low}, but orders need a shaft that turns on"
-        )
+        raise ValueError(f"{speed.name}: {speed.values[low]:g} {speed.unit} at sample {low}, but orders need a rotating shaft")
     turns = np.cumsum((speed.values[1:] + speed.values[:-1]) / 2) * SPEEDS[speed.unit] / speed.rate
     return replace(signal, angle=2 * np.pi * shaft_ratio(ratio) * np.append(0.0, turns), shaft_frequency=None)
 

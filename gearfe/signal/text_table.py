@@ -182,7 +182,7 @@ def _table(path, rows, way, count):
 
 
 def _by_cell(path, rows, way, count):
-    """As `_table`, cell by cell: with marks between thousands, commas between quotes and empty cells, of which it warns."""
+    """Return `_table` cell by cell: with thousands separators, commas in quotes and empty cells, with a warning."""
     cells = [way.cells(line, count) for _, line in rows]
     table = [[way.value(cell) for cell in row] for row in cells]
     for (i, line), row in zip(rows, table, strict=True):

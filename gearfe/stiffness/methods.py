@@ -164,8 +164,8 @@ NAMES = ("auto", *METHODS)
 SUMS = tuple(row.name for row in ROWS if row.kind == "sum")
 RING_FOUNDATIONS = {  # treatment of a ring's body by variants `foundation`
     "external": "has no foundation for a ring: the ring's body is left out",
-    "none": "is taken without foundations",
-    "printed": "takes the ring's foundation as its article prints it, by the formula of discs with h = 1",
+    "none": "is computed without foundations",
+    "printed": "has the printed foundation of the ring, by the formula of discs with h = 1",
 }
 
 
@@ -215,7 +215,7 @@ def fitted(method, case):
         left_out.append(f"{method} is the transverse section: {case.runs} teeth are taken as spur teeth {width:g} mm wide{less}")
     if row.kind != "solid" and any(held.tilts for held in case.held or () if held):
         changed["supports"] = {name: held and held.untilted() for name, held in case.supports.items()}
-        left_out.append(f"{method} knows no width: shafts give way, but do not tilt their gears")
+        left_out.append(f"{method} is two-dimensional: shafts deflect, but do not tilt their gears")
     if pair.gear_2.internal and row.rings in RING_FOUNDATIONS:
         variants = {"foundation": row.rings}
         left_out.append(f"{method} {RING_FOUNDATIONS[row.rings]}")

@@ -69,10 +69,11 @@ def _damage(row, case, method):
 
 def _flanks(row, case, method):
     if case.forms is not None and not row.flanks:
-        yield f"modified flanks with {method}, which takes involutes only: use {having('flanks')}"
+        yield f"modified flanks with {method}, which models involutes only: use {having('flanks')}"
     if row.kind == "section" and any(form.wide for form in case.forms or ()):
         yield (
-            f"flanks that change along the width, or misalignment, with {method}, which knows no width: use method = 'ritz3d', "
+            f"flanks that change along the width, or misalignment, with {method}, which is two-dimensional: "
+            "use method = 'ritz3d', "
             "'fe3d' or a plain sum"
         )
 

@@ -136,7 +136,7 @@ class Solve:
         if isinstance(self.method, OwnFlexibility):
             model = self.method
             row = Method(
-                str(model.name), "a model of one's own", "section", "", "", extended=model.extended, flanks=True, own=model
+                str(model.name), "a user-defined model", "section", "", "", extended=model.extended, flanks=True, own=model
             )
             return row, "asked for"
         if self.method != "auto":

@@ -28,7 +28,7 @@ def check_tilt(case, method):
     for name, held in zip(("pinion", "wheel"), case.held or (None, None), strict=True):
         if held is not None and held.tilts:
             raise ValueError(
-                f"the {name}'s support tilts it under a force, with method = {method!r}, which knows no width: use method = "
+                f"the {name}'s support tilts it under a force, with method = {method!r}, which is two-dimensional: use method = "
                 "'ritz3d' or 'fe3d', or give a Support without coupling to leave the tilt out"
             )
 

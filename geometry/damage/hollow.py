@@ -81,7 +81,7 @@ def warning_of(gear, hollow, size):
     if not takes_all(gear, hollow):
         return ""
     return (
-        f"{hollow._nouns[0]} with {size} mm takes the whole flank of z = {gear.z}: nothing of it is left to carry, but the "
+        f"{hollow._nouns[0]} with {size} mm removes the whole flank of z = {gear.z}: no flank is left to carry load, only the "
         f"{hollow._nouns[0]}'s floor, {hollow.depth:g} mm lower; lengths are in mm"
     )
 

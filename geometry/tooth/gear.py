@@ -141,7 +141,7 @@ class Gear:
                 f"beta = {self.beta} rad, but helix angles of 60 degrees and more are not supported; angles are radians in Python"
             )
         if self.rack_tip_radius < 0:
-            raise ValueError(f"rack_tip_radius = {self.rack_tip_radius}, but it cannot be negative")
+            raise ValueError(f"rack_tip_radius = {self.rack_tip_radius}, but it must be at least 0")
 
     def _cap_tip_radius(self):
         from .profile import cutter_tip_radius

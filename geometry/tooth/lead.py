@@ -67,7 +67,7 @@ def two_ends(flank: Any) -> list[tuple[float, float]]:
         out.append((float(values[0]), float(values[1])))
     for amount, length, exponent in zip(*out, strict=True):
         if amount and not length > 0:
-            raise ValueError(f"end_relief = {amount:g} mm with end_length = {length:g} mm: say over what length, > 0 [mm]")
+            raise ValueError(f"end_relief = {amount:g} mm with end_length = {length:g} mm: give a length > 0 [mm]")
         if exponent < 1:
             raise ValueError(f"end_exponent = {exponent:g}, but a relief needs an exponent >= 1")
     return out

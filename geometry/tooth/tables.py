@@ -36,7 +36,7 @@ def worn(given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Wear over roll lengths: a `table` of depths; ValueError if material has grown."""
     rolls, depths = table("wear", given)
     if min(depths) < 0:
-        raise ValueError(f"wear: depth {min(depths):g} mm, but wear takes material away: give depths from 0 on")
+        raise ValueError(f"wear: depth {min(depths):g} mm, but wear removes material: give depths from 0")
     return rolls, depths
 
 

@@ -122,7 +122,7 @@ def test_command_line(tmp_path, capsys):
     text = capsys.readouterr().out
     assert "mesh frequencies [Hz]: 168, 182" in text
     assert "| mean amplitude of the first sidebands " in text
-    assert "0.3 s are too short to part the lines of the fault from those beside them: record 2.86 s or longer" in text
+    assert "0.3 s cannot resolve the fault sidebands: record at least 2.86 s" in text
     assert "\nlonger: --duration 2.86\n" in text
     assert out.stat().st_size > 1000
     assert plot.stat().st_size > 10000

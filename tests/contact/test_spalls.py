@@ -159,7 +159,7 @@ def test_errors_name_the_kind(options, message):
 
 def test_a_spall_that_takes_the_whole_flank_is_warned_of():
     with (
-        pytest.warns(UserWarning, match="spall with sides of 30 x 90 mm takes the whole flank of z = 21"),
+        pytest.warns(UserWarning, match="spall with sides of 30 x 90 mm removes the whole flank of z = 21"),
         pytest.raises((ValueError, RuntimeError)),
     ):
         solved(replace(SPALL, sides=(30.0, 90.0), depth=1.0), phases=[0.8])

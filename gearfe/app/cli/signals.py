@@ -16,7 +16,7 @@ def signal(arguments):
         return
     for option in ("teeth", "orders"):
         if getattr(arguments, option) is not None and arguments.shaft is None and arguments.tacho is None:
-            raise ValueError(f"--{option} needs the turns of that gear's shaft: give --shaft HZ or --tacho COLUMN")
+            raise ValueError(f"--{option} needs the shaft frequency of that gear: give --shaft HZ or --tacho COLUMN")
     if arguments.pulses < 1:
         raise ValueError(f"--pulses {arguments.pulses}: a tachometer gives one or more in a turn")
     with working("reading"):
@@ -31,7 +31,7 @@ def signal(arguments):
         from ...signal.gear_indicators import gear_indicator_table, tabulate_gear_indicators
 
         table = gear_indicator_table(signals, arguments.teeth)
-        print(f"\ngear of {arguments.teeth} teeth, from the average of its turns\n\n{tabulate_gear_indicators(table)}")
+        print(f"\ngear of {arguments.teeth} teeth, from its synchronous average (TSA)\n\n{tabulate_gear_indicators(table)}")
     _draw(list(signals.values())[-1], arguments)
     if arguments.orders:
         _draw_orders(signals, arguments)
@@ -46,12 +46,12 @@ def _told(one):
         return text
     turns = float(one.angle[-1] - one.angle[0]) / (2 * np.pi)
     if turns < 2:
-        return f"{text}; shaft {turns:.2g} turns"
+        return f"{text}; shaft: {turns:.2g} revolutions"
     whole = np.interp(one.angle[0] + 2 * np.pi * np.arange(int(turns) + 1), one.angle, one.time)
     speed = 1 / np.diff(whole)
-    text += f"; shaft {speed.min():.4g} to {speed.max():.4g} turns per second, {turns:.1f} turns"
+    text += f"; shaft: {speed.min():.4g} to {speed.max():.4g} Hz, {turns:.1f} revolutions"
     smeared = (speed.max() - speed.min()) * turns > speed.mean()  # the first order leaves its bin
-    return f"{text}; lines are smeared in Hz, not by turns (--orders)" if smeared else text
+    return f"{text}; lines are smeared over Hz, but sharp over orders (--orders)" if smeared else text
 
 
 def _print_channels(arguments):
@@ -91,7 +91,7 @@ def _read(arguments):
             raise ValueError(f"{file}: {len(channels)} channels, {', '.join(map(repr, channels))}: choose one by --column")
         (channel,) = channels.values()
         if channel.name in out:
-            raise ValueError("two files have the same name: their cases could not be told apart; rename one")
+            raise ValueError("two files have the same name: their cases could not be distinguished; rename one")
         turns = {"shaft_frequency": arguments.shaft} if arguments.shaft is not None and channel.angle is None else {}
         out[channel.name] = replace(channel, **turns)
     return out

@@ -148,7 +148,7 @@ def compare(arguments):
     table = result.table(digits=5 if several else 4)
     print(table)
     if several and (text := printed_text(scene, result)):
-        print(f"\nas printed, and after the stated corrections, beside `herringbone_article` and {reference}\n\n{text}")
+        print(f"\nas printed, and after the stated corrections, compared with `herringbone_article` and {reference}\n\n{text}")
     for text in () if several else printed_stiffness(scene, *result.subject):
         print(text)
     print()

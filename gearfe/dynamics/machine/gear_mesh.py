@@ -139,11 +139,11 @@ class GearMesh:
                 f"mesh {self.name}: law = {law!r} is not in LAWS of gearfe.dynamics.machine.contact_law: add its row there"
             )
         if self.law and (self.power != 1 or self.depth):
-            raise ValueError(f"mesh {self.name}: power and depth besides law = {law!r}, which has parameters of its own")
+            raise ValueError(f"mesh {self.name}: power and depth besides law = {law!r}, which has its own parameters")
         if power != 1 and self.backlash == 0:
             raise ValueError(f"mesh {self.name}: power = {power} needs a backlash > 0 (inf: no back flank)")
         if power != 1 and isinstance(self.stiffness, ForceLaw):
-            raise ValueError(f"mesh {self.name}: power = {power} besides a law of force, which says itself how force rises")
+            raise ValueError(f"mesh {self.name}: power = {power} besides a force law, which defines the force itself")
 
     def _changes(self, healthy: Table, name: str = "k") -> tuple[Change, ...]:
         """Return differences of `name` by damage from a `healthy` cycle; for curves with `every` also from damage before them."""

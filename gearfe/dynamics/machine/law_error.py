@@ -63,7 +63,7 @@ def law_error(law: ForceLaw) -> LawError:
     (True, True)
     """
     if law.load.size < 3 or law.phase.size < 4:
-        raise ValueError(f"{law!r}: its error is told from three loads and four phases or more; solve it for more")
+        raise ValueError(f"{law!r}: its error estimate needs three loads and four phases or more; solve it for more")
     loads, phases = np.arange(law.load.size), np.arange(law.phase.size)
     inner = loads[1:-1:2]
     fewer = _part(law, phases, np.setdiff1d(loads, inner))
@@ -128,7 +128,7 @@ def converged_force_law(
         phases = phases if found.phases_rms <= error else 2 * phases
     raise RuntimeError(
         f"{law!r} may be off by {found.loads_rms:.2g} between its loads and {found.phases_rms:.2g} between its phases, over "
-        f"the force; asked for were {error:g}: allow more, or make a law by gf.force_law"
+        f"the force; the limit was {error:g}: allow more, or make a law by gf.force_law"
     )
 
 

@@ -112,7 +112,7 @@ def _builder(scene, case):
     if contact not in MACHINES[model]:
         raise ValueError(f"[machine] contact = 'impact': the model {model!r} has linear contact only")
     if scene.machine.get("bodies") and model not in STATED:
-        raise ValueError(f"[machine.bodies]: the model {model!r} takes masses and inertias from its gears; leave the table out")
+        raise ValueError(f"[machine.bodies]: the model {model!r} computes masses and inertias from its gears: omit the table")
     _check_contact(scene, case, contact)
     return MACHINES[model][contact], contact
 

@@ -45,7 +45,7 @@ def compared(response):
             told["other"] += _other(mesh, own, some.time[-1] - some.time[0])
     if told["above"]:
         warnings.warn(
-            f"forces above the loads solved: {'; '.join(told['above'])}. Beyond them a law goes on with its tangent: give it "
+            f"forces above the loads solved: {'; '.join(told['above'])}. Beyond them a law continues with its tangent: give it "
             "larger loads (gf.force_law, or loads= of gf.build_machine)",
             stacklevel=4,
         )
@@ -89,7 +89,7 @@ def _other(mesh, own, seconds):
     low, high, mean = float(means.min()), float(means.max()), abs(float(own.mean()))
     if mean < IDLE * stated or max(high / stated - 1, 1 - low / stated) <= OTHER:
         return []
-    swing = f", {low:.4g} to {high:.4g} N by turns" if high - low > OTHER * stated else ""
+    swing = f", {low:.4g} to {high:.4g} N alternately" if high - low > OTHER * stated else ""
     return [
         f"{mesh.name} {mean:.4g} N on average{swing}, its stiffness is that of {stated:.4g} N{_holds(mesh.stiffness, stated)}"
     ]

@@ -49,7 +49,7 @@ class _Announcer(event.Listener):
     def on_start(self, event):
         if self.tell:
             tell, self.tell = self.tell, None
-            tell("compiling the integrator of vibration, which takes about 10 s once; the result is kept on the disk")
+            tell("compiling the vibration integrator, about 10 s once; the result is stored on disk")
 
     def on_end(self, event):
         pass

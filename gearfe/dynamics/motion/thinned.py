@@ -56,7 +56,7 @@ def thinned(pieces, counts):
 
 
 def thinned_pieces(pieces, counts):
-    """As `thinned`, piece by piece."""
+    """Return the result of `thinned` in pieces."""
     for count in counts[:-1]:
         pieces = _filtered(pieces, count, SHORT, SHORT_PASSED)
     return _filtered(pieces, counts[-1], REACH, PASSED)

@@ -100,7 +100,7 @@ def _split(plan):
         return f"{shares}. By operation: no two sides share a combination of speed and torque, and none a condition."
     return (
         f"{shares}. By condition: all windows of one simulated machine, with all sensors and noise, lie on one side. Sides share "
-        "combinations of speed and torque; what is asked of a classifier is another machine at a known operation."
+        "combinations of speed and torque; a classifier should be tested with another machine at a known operation."
     )
 
 
@@ -136,7 +136,7 @@ def _levels(labels):
     out = f"Median rms before noise, without the mean.\n\n{table}"
     if silent:
         out += f"\n\n**Of the healthy machine {', '.join(silent)} hears nothing**: it is perfectly equal all round, so that any "
-        out += "fault is told by its mere presence. Let `[scatter]` make machines differ, for instance in `machine.runout_um`."
+        out += "fault is detected by its presence. Let `[scatter]` make machines differ, for instance in `machine.runout_um`."
     return out
 
 

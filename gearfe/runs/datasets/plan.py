@@ -139,7 +139,7 @@ def _check(plan):
         raise ValueError("no fault, so that there is nothing to learn: give one [[fault]] or more")
     names = [sensor["name"] for sensor in plan.sensor]
     if not names or len(set(names)) < len(names):
-        raise ValueError(f"[[sensor]] names {names!r}: give one sensor or more, each with a name of its own")
+        raise ValueError(f"[[sensor]] names {names!r}: give one sensor or more, each with another name")
     _check_split(plan.split)
     _check_scatter(plan)
     _check_scenes(plan)

@@ -130,7 +130,7 @@ def check_same(folder: Any, stored: Mapping[str, Any], about: Mapping[str, Any],
         )
     versions = list(_differences(stored["made"], about["made"]))
     if versions and not mixed:
-        hint = "" if mixed is None else ", or go on with mixed = True (--mixed): each row says which made it"
+        hint = "" if mixed is None else ", or continue with mixed = True (--mixed): each row states its version"
         raise ValueError(
             f"{folder} was begun by another program, with {'; '.join(versions)}: finish it with that, or give a new folder{hint}"
         )

@@ -33,7 +33,7 @@ class Field(NamedTuple):
 
 KINDS = {  # types of columns; list: any length, json: as JSON text
     "number": "numbers", "whole": "whole numbers of 64 bits", "truth": "True and False", "text": "texts",
-    "list": "lists of numbers", "json": "what JSON can say",
+    "list": "lists of numbers", "json": "values of JSON",
 }  # fmt: skip
 
 
@@ -237,7 +237,7 @@ def read(folder: StrPath, columns: Sequence[str] | None = None, where: Any = Non
     try:
         found = shards.to_table(columns=list(columns) if columns is not None else None, filter=condition)
     except (pa.ArrowNotImplementedError, pa.ArrowTypeError) as error:
-        raise ValueError(f"where = {condition}: {_line(error)}; a column is compared with values of its own kind") from error
+        raise ValueError(f"where = {condition}: {_line(error)}; compare a column with values of its type") from error
     except (OSError, pa.ArrowInvalid) as error:
         raise _damaged(_first_damaged(folder), error) from error
     for name, value in where.items() if isinstance(where, Mapping) and not found.num_rows else ():
@@ -262,7 +262,7 @@ def _line(error):
 
 
 def _damaged(file, error):
-    return ValueError(f"{file} is damaged: {_line(error)}; delete it, and what it held is computed anew")
+    return ValueError(f"{file} is damaged: {_line(error)}; delete it, and its contents are computed again")
 
 
 def _first_damaged(folder):

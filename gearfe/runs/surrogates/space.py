@@ -61,13 +61,13 @@ class Space:
         if given.keys() != self.ranges.keys():
             unknown, missing = set(given) - set(self.ranges), [name for name in self.ranges if name not in given]
             wrong = f"{sorted(unknown)[0]!r} is none of its inputs" if unknown else f"no value of {missing[0]!r}"
-            raise ValueError(f"{wrong}: this surrogate is asked by {', '.join(f'{name} = ...' for name in self.ranges)}")
+            raise ValueError(f"{wrong}: this surrogate needs {', '.join(f'{name} = ...' for name in self.ranges)}")
         out = []
         for name, (low, high) in self.ranges.items():
             value = given[name]
             if not is_number(value) or not low <= value <= high:
                 raise ValueError(
-                    f"{name} = {value!r}, but this surrogate was fitted from {low:g} to {high:g} and knows nothing outside: give "
+                    f"{name} = {value!r}, but this surrogate was fitted from {low:g} to {high:g} and is invalid outside: give "
                     "a value within, fit another, or ask mesh_stiffness"
                 )
             if name in WHOLE and value != int(value):

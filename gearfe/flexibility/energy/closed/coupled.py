@@ -62,7 +62,9 @@ def section_loads(gear, roll, height):
 
 
 def shear_parts(half, slope, shear, normal, moment):
-    """Shear stress ``tau = A (h**2 - x**2) + B + C x`` across a beam whose half thickness h changes by `slope` = h' per height.
+    """Return A, B, C of the shear stress ``A (h**2 - x**2) + B + C x`` across a beam of half thickness h.
+
+    The faces have the slope h'.
 
     With ``sigma = M x / I + N / (2 h)``, equilibrium along the beam, ``d sigma / dy + d tau / dx = 0``, and faces free of load,
     ``tau = +-h' sigma`` at ``x = +-h``, leave::
