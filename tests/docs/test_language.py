@@ -64,7 +64,11 @@ def summaries():
 OPEN = {"howto/app.md", "howto/dataset.md", "howto/fast.md", "howto/signals.md", "howto/simulate.md", "howto/surrogate.md"}
 PAGES = [
     ROOT / "README.md",
-    *(page for page in sorted(SITE.glob("**/*.md")) if "_made" not in page.parts and page.relative_to(SITE).as_posix() not in OPEN),
+    *(
+        page
+        for page in sorted(SITE.glob("**/*.md"))
+        if "_made" not in page.parts and page.relative_to(SITE).as_posix() not in OPEN
+    ),
 ]
 
 
@@ -89,4 +93,5 @@ def test_help_has_short_sentences_and_no_banned_phrase():
         with contextlib.redirect_stdout(texts), contextlib.suppress(SystemExit):
             main([verb, "--help"])
     blocks = re.split(r"\n(?=\s*\n| {2}\S)|(?<=\S) {2,}(?=\S)", texts.getvalue())
-    assert not [fault for block in blocks for fault in faults(" ".join(block.split()))]
+    blocks = (" ".join(block.split()) for block in blocks if not re.match(r"(usage: )?gearfe \w+ \[", block.strip()))
+    assert not [fault for block in blocks for fault in faults(block)]
