@@ -92,6 +92,6 @@ def test_help_has_short_sentences_and_no_banned_phrase():
     for verb in verbs:
         with contextlib.redirect_stdout(texts), contextlib.suppress(SystemExit):
             main([verb, "--help"])
-    blocks = re.split(r"\n(?=\s*\n| {2}\S)|(?<=\S) {2,}(?=\S)", texts.getvalue())
+    blocks = re.split(r"\n(?=\s*\n| {2}\S|usage)|(?<=\S) {2,}(?=\S)", texts.getvalue())
     blocks = (" ".join(block.split()) for block in blocks if not re.match(r"(usage: )?gearfe \w+ \[", block.strip()))
     assert not [fault for block in blocks for fault in faults(block)]
