@@ -251,8 +251,7 @@ def analysis(found, channel=None):
     gears = {one.gear: one for one in reversed(faults)}
     main = faults[0] if faults else None
     stage = first.machine.stages[-1] if main is None else first.machine.stage_of(main.gear)
-    driven = next(one for one in first.machine.meshes if abs(abs(one.frequency) - stage.mesh) < 1e-6 * stage.mesh)
-    channel = channel or f"force {driven.name}"
+    channel = channel or f"force {_mesh_of(first.machine, stage).name}"
     rate = 1 / (first.time[1] - first.time[0])
     signals = {
         case: Signal(np.asarray(one[channel], dtype=float), rate, one.unit(channel), name=case) for case, one in found.items()
@@ -267,6 +266,12 @@ def analysis(found, channel=None):
     return analyse(signals, stage.mesh, stage.fault, turning=stage.turning, **options)
 
 
+def _mesh_of(machine, stage):
+    """Mesh of the name of a stage, else the first one of its frequency."""
+    alike = [one for one in machine.meshes if abs(abs(one.frequency) - stage.mesh) < 1e-6 * stage.mesh]
+    return next((one for one in alike if one.name == stage.name), alike[0])
+
+
 def gears_table(found):
     """`Table` of indicators of the gears of parallel stages by case of `responses`; None if the machine has one stage.
 
@@ -274,7 +279,7 @@ def gears_table(found):
     """
     machine, rows = next(iter(found.values())).machine, []
     for stage in reversed(machine.stages) if len(machine.stages) > 1 else ():
-        mesh = next(one for one in machine.meshes if abs(abs(one.frequency) - stage.mesh) < 1e-6 * stage.mesh)
+        mesh = _mesh_of(machine, stage)
         for z, (gear, turning) in zip(mesh.teeth, stage.returns.items(), strict=False) if stage.carrier is None else ():
             signals = [one.signal(f"force {mesh.name}", turning) for one in found.values()]
             if min(signal.duration for signal in signals) * turning >= 2:
