@@ -273,9 +273,9 @@ def _mesh_of(machine, stage):
 
 
 def gears_table(found):
-    """`Table` of indicators of the gears of parallel stages by case of `responses`; None if the machine has one stage.
+    """`Table` of indicators of the gears of parallel stages by case of `responses`; None of a machine with one stage.
 
-    They are those of the average over the turns of the gear, of the force of its mesh. Records of fewer than two turns have none.
+    They are those of the synchronous average of the mesh force. Records of fewer than two revolutions have none.
     """
     machine, rows = next(iter(found.values())).machine, []
     for stage in reversed(machine.stages) if len(machine.stages) > 1 else ():
