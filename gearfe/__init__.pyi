@@ -66,7 +66,11 @@ from .dynamics.motion.simulate import simulate as simulate
 from .dynamics.motion.steady import steady_state as steady_state
 from .dynamics.motion.transfer_path import through_frf as through_frf
 from .dynamics.motion.transfer_path import through_modes as through_modes
+from .exchange.fmu import write_fmu as write_fmu
+from .exchange.mesh_table import write_mesh_table as write_mesh_table
+from .exchange.outline_file import write_outline as write_outline
 from .exchange.rexs import import_rexs as import_rexs
+from .exchange.rexs_write import write_rexs as write_rexs
 from .figures.campbell_plot import plot_campbell as plot_campbell
 from .figures.contact_plot import plot_contact as plot_contact
 from .figures.pair_plot import plot_pair as plot_pair
@@ -79,6 +83,7 @@ from .geometry.damage.crack import Crack as Crack
 from .geometry.damage.missing import MissingTooth as MissingTooth
 from .geometry.damage.pit import Pit as Pit
 from .geometry.damage.spall import Spall as Spall
+from .geometry.mesh.step_file import write_step as write_step
 from .geometry.pair.flanks import Misalignment as Misalignment
 from .geometry.pair.gear_pair import GearPair as GearPair
 from .geometry.pair.planetary import PlanetarySet as PlanetarySet

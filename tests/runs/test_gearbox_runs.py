@@ -40,10 +40,12 @@ def test_a_sweep_of_the_torque_solves_each_stage_under_its_own_load(folder):
 
 def test_a_data_set_labels_the_tooth_of_its_gear(folder):
     plan = {
-        "title": "box", "scene": str(folder / "box.toml"), "phases": 16, "window": {"seconds": 0.2, "rate_Hz": 5120.0, "harmonics": 1},
+        "title": "box", "scene": str(folder / "box.toml"), "phases": 16,
+        "window": {"seconds": 0.2, "rate_Hz": 5120.0, "harmonics": 1},
         "operation": {"speed_rpm": [1500.0], "torque_Nm": [18.0]},
         "fault": [{"kind": "crack", "gear": "c", "tooth": 11, "severity": [0.4]}],
-        "sensor": [{"name": "bearing", "channel": "spring bearing down1 x"}], "split": {"train": 1.0, "validation": 0.0, "test": 0.0},
+        "sensor": [{"name": "bearing", "channel": "spring bearing down1 x"}],
+        "split": {"train": 1.0, "validation": 0.0, "test": 0.0},
     }  # fmt: skip
     gf.dataset(plan, folder / "set", workers=1)
     signals, rows = gf.open_dataset(folder / "set").windows()

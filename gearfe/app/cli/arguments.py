@@ -215,6 +215,19 @@ def main(argv=None):
     add("file FILE", "the file: .rexs, .rexsj or .zip")
     add("--load-case N", "load case of its load spectrum (default: 1)", default=1)
     add("-o --output FILE", "the new scene (default: its name with .toml, in the present folder)")
+    add = verb(
+        "export", exchange.export_file, "write a pair or a gear for other programs: FMU, lookup table, REXS, outline, solid"
+    )
+    _scene_arguments(add, count=False)
+    add("--gear", "which gear an outline or a solid has (default: pinion)", choices=("pinion", "wheel"), default="pinion")
+    add("--method", "of the stiffness (default: ritz or ritz3d)", default="auto")
+    add("--phases N", "phases per mesh cycle (default: 64)", default=64)
+    add(
+        "-o --output FILE",
+        ".fmu: the pair as an FMU 2.0; .mat, .txt: stiffness over the angle of the pinion for Simscape and Modelica; .rexs: all "
+        "gears of the scene; .dxf, .svg: outline of a gear; .step: its solid",
+        required=True,
+    )
     add = verb("check", tools.check, "say in words what a scene holds, and how each case would be solved")
     add("scene SCENE", "a .toml file, or a built-in scene (see 'gearfe scenes')")
     add("--picture FILE", "draw a pair with its damage to scale: .png, .svg or .pdf")
