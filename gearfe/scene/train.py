@@ -154,7 +154,7 @@ def train_of(file: str, rows: Row, gears: dict[str, Gear], materials: dict[str, 
 
 
 def thrusts_of(train: Train, gears: dict[str, Gear]) -> dict[str, float]:
-    """Axial force on each gear of the pairs between shafts [N], along z.
+    """Axial force on each gear of a shaft [N], along z.
 
     A positive helix angle is a right-hand helix (ISO 21771): a driver of it that rotates counter-clockwise is pushed along z.
     """
@@ -164,6 +164,10 @@ def thrusts_of(train: Train, gears: dict[str, Gear]) -> dict[str, float]:
             one, two, _ = train.pairs[link.name]
             push = math.copysign(train.forces[link.name] * math.tan(gears[one].beta_b), train.speeds[link.one] * gears[one].beta)
             out[one], out[two] = out.get(one, 0.0) + push, out.get(two, 0.0) - push
+        elif link.name in train.stages:
+            stage = train.stages[link.name]
+            force = stage.n_planets * train.forces[stage.pairs[0]] * math.tan(gears[stage.gears[0]].beta_b)
+            out[stage.gears[0]] = out.get(stage.gears[0], 0.0) + math.copysign(1.0, train.torques[link.name]) * force
     return out
 
 

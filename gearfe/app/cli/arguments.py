@@ -237,6 +237,19 @@ def main(argv=None):
     add = verb("lines", tools.lines, "table of the frequencies of a scene's machine: meshes, shafts, teeth, planets, bearings")
     add("scene SCENE", "a .toml file, or a built-in scene with a machine (see 'gearfe scenes')")
     add("-o --output FILE", "save the table: .csv, .md or .tex")
+    add = verb("modes", tools.modes, "natural frequencies in words, critical speeds and Campbell diagram of a scene's machine")
+    add("scene SCENE", "a .toml file, or a built-in scene with a machine (see 'gearfe scenes')")
+    add("--case NAME", "case of damage (default: healthy)")
+    add("--top HZ", "largest natural frequency printed [Hz] (default: 3 times the largest mesh frequency)", type=float)
+    add(
+        "--speeds",
+        "speeds over that of the scene (default: 0.5 1.5)",
+        nargs=2,
+        metavar=("LOW", "HIGH"),
+        type=float,
+        default=(0.5, 1.5),
+    )
+    add("--plot FILE", "draw the Campbell diagram: .png, .svg or .pdf")
     add = verb("schema", tools.schema, "print the JSON schema of scenes, by which an editor completes and checks their keys")
     add("--page", "print a page of all keys of scenes, studies and data sets instead, as Markdown")
     add = verb("app", tools.app, "open the live page in the browser: sliders, mesh, stiffness and transmission error")

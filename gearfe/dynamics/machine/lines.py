@@ -68,8 +68,8 @@ def _shafts(scene):
         return
     motor, speeds = scene.train.ends["motor"]["shaft"], scene.train.speeds
     for name, speed in speeds.items():
-        ratio = speeds[motor] / speed
-        origin = "[machine] speed_rpm / 60" if name == motor else f"{motor} / {abs(ratio):.6g}{'' if ratio > 0 else ', reversed'}"
+        ratio = speed / speeds[motor]
+        origin = "[machine] speed_rpm / 60" if name == motor else f"{motor} x {abs(ratio):.6g}{'' if ratio > 0 else ', reversed'}"
         yield Line(abs(speed) / (2 * math.pi), f"shaft {name}", "shaft frequency", origin)
 
 
