@@ -4,7 +4,7 @@ import os
 
 from .progress import working
 
-SPEEDS = 121  # of a Campbell diagram
+SPEEDS = 121  # number of speeds of a Campbell diagram
 
 
 def report(arguments):

@@ -41,7 +41,7 @@ def _stamp():
 
 
 class _Announcer(event.Listener):
-    """Reports once that something is being compiled."""
+    """Reports the compilation once."""
 
     def __init__(self, tell):
         self.tell = tell
@@ -49,7 +49,7 @@ class _Announcer(event.Listener):
     def on_start(self, event):
         if self.tell:
             tell, self.tell = self.tell, None
-            tell("compiling the vibration integrator, about 10 s once; the result is stored on disk")
+            tell("compiling the integrator, about 10 s once; the result is stored on disk")
 
     def on_end(self, event):
         pass
