@@ -114,7 +114,11 @@ class Solve:
         object.__setattr__(self, "method", current(self.method))
         custom = isinstance(self.method, OwnFlexibility)
         if not custom and not (isinstance(self.method, str) and self.method in METHOD_NAMES):
-            raise ValueError(f"method = {self.method!r}, but it must be one of {', '.join(METHOD_NAMES)}, or an OwnFlexibility")
+            from difflib import get_close_matches
+
+            near = get_close_matches(self.method, METHOD_NAMES, 1) if isinstance(self.method, str) else ()
+            more = f"; nearest: {near[0]}" if near else "" if isinstance(self.method, str) else ", or an OwnFlexibility"
+            raise ValueError(f"method = {self.method!r}, but it must be one of {', '.join(METHOD_NAMES)}{more}")
         for name in ("error", "extended"):
             object.__setattr__(self, name, truth(name, getattr(self, name)))
         object.__setattr__(self, "refine", checked_refine(self.refine))

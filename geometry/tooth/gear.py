@@ -113,9 +113,8 @@ class Gear:
 
     def _check_numbers(self):
         if (self.r_bore is None) == (self.r_rim is None):
-            raise ValueError(
-                f"r_bore = {self.r_bore}, r_rim = {self.r_rim}: give r_bore for an external gear or r_rim for a ring, not both"
-            )
+            found = "are both missing" if self.r_bore is None else f"= {self.r_bore} and {self.r_rim} are both given"
+            raise ValueError(f"r_bore and r_rim {found}: give r_bore for an external gear or r_rim for a ring, in mm")
         for field in fields(self):
             value = getattr(self, field.name)
             if value is None and field.name in ("r_bore", "r_rim"):
