@@ -144,7 +144,7 @@ def test_a_short_record_says_how_long_it_should_be():
 
     short = found(0.2)
     assert short.standing() == ["f_m", "2 f_m"]
-    needed = float(re.search(r"0.2 s are too short .* record ([\d.]+) s or longer", short.hidden_lines())[1])
+    needed = float(re.search(r"0.2 s cannot resolve .* record at least ([\d.]+) s", short.hidden_lines())[1])
     enough = found(needed)
     assert {"f_fault", "f_m - f_fault", "f_m + f_fault"} <= set(enough.standing())
     assert enough.too_short == ""
