@@ -46,9 +46,7 @@ def plot_train(scene: "Scene", path: str | os.PathLike[str] | None = None, *, dp
             _box(axes, left + place - made.b / 2, height, made.b, 2 * made.r_a, COLOURS[1])
             axes.annotate(f"{gear}\nz = {made.z}", (left + place, height), ha="center", va="center", fontsize=8)
         rpm = scene.train.speeds[name] * 30 / math.pi
-        axes.annotate(
-            f"{name}, {rpm:.5g} rpm", (left, height), xytext=(-6, 0), textcoords="offset points", ha="right", fontsize=8
-        )
+        axes.annotate(f"{name}, {rpm:.5g} rpm", (left, height + shaft.sections[0].diameter / 2), va="bottom", fontsize=8)
     for stage in scene.train.stages.values():
         _planets(axes, scene, stage)
     axes.set(xlabel="position along the shafts [mm]", ylabel="[mm]", title=scene.title)

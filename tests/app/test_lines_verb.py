@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.dynamics.machine.lines import scene_lines
+from gearfe.figures.train_plot import plot_train
 from gearfe.scene.load import scene_names, scene_of
 
 
@@ -32,6 +33,21 @@ def test_lines_of_a_published_train():
             assert_allclose(lines[f"ER10K of shaft {shaft}", name], order * turns, rtol=1e-9, err_msg=name)
     # one tooth of the 48 meets the same one of the 80 every lcm(48, 80) = 240 mesh cycles
     assert_allclose(lines["teeth 48 and 80", "hunting tooth frequency"], 16 / 240, rtol=1e-12)
+
+
+def test_lines_of_a_wind_turbine_gearbox(tmp_path):
+    """NREL GRC: overall ratio 81.491 as printed (NacelleSE, 750 kW); frequencies at 1800 rpm by hand from the tooth numbers."""
+    scene = gf.load_scene("nrel_grc")
+    lines, rotor = found(scene), 22.088 / 60
+    assert_allclose(lines["shaft high", "shaft frequency"] / rotor, 81.491, atol=5e-4)
+    ratios = {"low": 1 + 99 / 21, "intermediate": (1 + 99 / 21) * 82 / 23, "high": (1 + 99 / 21) * 82 / 23 * 4}
+    for shaft, ratio in ratios.items():
+        assert_allclose(lines[f"shaft {shaft}", "shaft frequency"], rotor * ratio, rtol=1e-12)
+    meshes = {"planetary": 99 * rotor, "low": 82 * rotor * ratios["low"], "high": 88 * rotor * ratios["intermediate"]}
+    for stage, value in meshes.items():
+        assert_allclose(lines[f"stage {stage}", "mesh frequency"], value, rtol=1e-12)
+    plot_train(scene, tmp_path / "box.png")
+    assert (tmp_path / "box.png").stat().st_size > 5000
 
 
 def test_lines_of_a_planetary_and_parallel_train():
