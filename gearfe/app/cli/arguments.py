@@ -155,7 +155,7 @@ def main(argv=None):
     add("--column NAME", "column, if there are several")
     add("--header TEXT", "names of the columns of a table without, 'time [s], a [m/s^2]'")
     add("--scale X", "factor on the values; --unit is then theirs", default=1.0)
-    add("--scene SCENE", "scene whose machine and speed state the frequencies of --gear")
+    add("--scene SCENE", "scene whose machine, at its speed, names the lines of the last spectrum")
     add("--gear NAME", "gear of --scene: mesh, fault, carrier and shaft frequencies and teeth that are not given")
     add("--mesh HZ", "mesh frequency", type=float)
     add("--fault HZ", "how often the faulty tooth meshes", type=float)

@@ -28,6 +28,12 @@ def signal(arguments):
     for record in signals.values():
         print(_told(record))
     _print_analysis(analysed, arguments)
+    if arguments.scene is not None:
+        from ...comparison.named_lines import named_table
+        from ...scene.load import load_scene
+
+        table, named = named_table(list(analysed.spectra.values())[-1], load_scene(arguments.scene))
+        print(f"\n{named}\n\n{table}")
     if arguments.teeth is not None:
         from ...signal.gear_indicators import gear_indicator_table, tabulate_gear_indicators
 
@@ -40,10 +46,10 @@ def signal(arguments):
 
 def _of_scene(arguments):
     """Set the frequencies and teeth that are not given to those of a gear of a scene."""
-    if (arguments.scene is None) != (arguments.gear is None):
-        raise ValueError("--scene states the machine and --gear one of its gears: give both")
-    if arguments.scene is None:
+    if arguments.gear is None:
         return
+    if arguments.scene is None:
+        raise ValueError("--gear is a gear of a scene: give --scene too")
     from ...dynamics.machine.lines import gear_lines
     from ...scene.load import load_scene
 
