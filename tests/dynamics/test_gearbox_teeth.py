@@ -9,6 +9,7 @@ from gearboxes import BRANCHING, PLANETARY, TWO_STAGE, gear
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.comparison.named_lines import named_lines
 from gearfe.comparison.vibration import analysis, gears_table, recorded
 from gearfe.dynamics.machine.gearbox import gearbox, pair_phases
 from gearfe.dynamics.machine.layout import through
@@ -123,6 +124,22 @@ def test_indicators_by_gear_point_at_the_damaged_one(records):
     assert max(grown, key=grown.get) == "a"
     report = analysis(records)
     assert any("f_r" in name for name in report.standing()), "sidebands at the rotation of the damaged gear"
+
+
+def test_lines_of_a_noisy_record_are_named(branching):
+    """Every line of ten times the local median of a bearing's force has a name; an alien line has none."""
+    run, rng = recorded(branching, 4.0, 5120.0), np.random.default_rng(1)
+    force = np.asarray(run["spring bearing in1 y"])
+    noisy = force + 0.05 * force.std() * rng.standard_normal(force.size)
+    scene = with_crack(BRANCHING)
+    lines, covered = named_lines(gf.spectrum(gf.Signal(noisy, 5120.0, "N")), scene)
+    assert len(lines) > 10
+    assert all(line.name for line in lines), [line for line in lines if not line.name]
+    print(f"{len(lines)} lines named, {100 * covered:.1f} % of the bins fit a name")
+    assert covered < 0.5
+    alien = noisy + force.std() * np.sin(2 * np.pi * 728.6 * run.time)
+    others = [line for line in named_lines(gf.spectrum(gf.Signal(alien, 5120.0, "N")), scene)[0] if not line.name]
+    assert [round(line.frequency) for line in others] == [729]
 
 
 def test_transfer_paths_agree(records):

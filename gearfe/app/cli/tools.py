@@ -69,12 +69,19 @@ def lines(arguments):
 
     if arguments.output:
         check_output(arguments.output, "table")
+    if arguments.picture:
+        check_output(arguments.picture, "picture")
     scene = load_scene(arguments.scene)
     table = lines_table(scene)
     print(f"{scene.title}\n\n{table.title}\n\n{table}")
     if arguments.output:
         table.save(arguments.output)
         print(f"written: {arguments.output}")
+    if arguments.picture:
+        from ...figures.train_plot import plot_train
+
+        plot_train(scene, arguments.picture)
+        print(f"written: {arguments.picture}")
 
 
 def modes(arguments):

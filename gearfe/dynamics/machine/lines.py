@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import NamedTuple
 
+from ...core.record import check_named
 from ...core.table import Column, Table
 from ...scene.load import Scene
 from ...signal.bearing_lines import bearing_lines
@@ -50,6 +51,33 @@ def scene_lines(scene: Scene) -> list[Line]:
     for line in found:
         out.setdefault((line.part, line.name), line)
     return sorted(out.values())
+
+
+class GearLines(NamedTuple):
+    """Frequencies of one gear [Hz]: its mesh, meshes of one of its teeth, its rotation relative to the carrier, the carrier."""
+
+    teeth: int
+    mesh: float
+    fault: float
+    turning: float
+    carrier: float | None
+
+
+def gear_lines(scene: Scene, gear: str) -> GearLines:
+    """`GearLines` of a gear of a scene's machine.
+
+    Raises
+    ------
+    ValueError
+        If the scene has no machine, or its machine no such gear.
+    """
+    check_named("gear", gear, scene.gears)
+    machine, z = flat_machine(scene), scene.gears[gear].z
+    for stage in reversed(machine.stages):
+        for body in (gear, f"{gear}1"):
+            if body in stage.returns and abs(stage.returns[body] * z / stage.mesh % 1.0 - 0.5) > 0.5 - SAME:
+                return GearLines(z, stage.mesh, stage.returns[body], stage.mesh / z, stage.carrier)
+    raise ValueError(f"gear {gear!r} is in no stage of the machine of scene {scene.name}")
 
 
 def lines_table(scene: Scene) -> Table:
