@@ -10,11 +10,12 @@ from ..dynamics.machine.mesh_excitation import harmonics
 from ..dynamics.machine.springs import Spring
 from ..dynamics.machine.tables import Machine
 from ..geometry.aliases import Floats
+from ..geometry.renamed import warn_renamed
 from .curves import SetCurves
 from .rim_supports import RimBed, RimSupports
 
 NAMES = ("sun_planet{}", "planet_ring{}")
-RINGS = ("in k", "body")
+RINGS = ("lumped", "body")
 BODY, AXES = "ring", ("x", "y", "theta")
 EVEN = 1e-6  # tolerance for equally spaced positions [mesh cycles]
 SAME = 1e-6  # relative tolerance of radii and directions
@@ -35,8 +36,8 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
         make them; without damage.
     curves : SetCurves
         Over whole mesh cycles at equally spaced positions, as many as the set takes to repeat.
-    ring : {"in k", "body"}
-        ``"in k"``: k contains all deflections of the ring gear and its supports. The ring and its inertia are removed from the
+    ring : {"lumped", "body"}
+        ``"lumped"``: k contains all deflections of the ring gear and its supports. The ring and its inertia are removed from the
         machine. ``"body"``: the ring is a body of the machine. On an elastic bed or elastic pads its springs are those of a rigid
         ring, and their deflection under the set's loads is removed from k. The rest in k is the bending of teeth and ring, also
         between the pads. A ring that is held, or on rigid pads, has no such motion: all of it stays in k, and the springs of the
@@ -65,12 +66,15 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
     """
     if not isinstance(machine, Machine) or not isinstance(curves, SetCurves):
         raise ValueError(f"with_set({machine!r}, {curves!r}), but give a Machine and what planetary_stiffness gives")
+    if ring == "in k":
+        warn_renamed('ring = "in k"', '"lumped"')
+        ring = "lumped"
     if ring not in RINGS:
-        raise ValueError(f"ring = {ring!r}, but give 'in k' or 'body': whether the ring's motion stands in k or in the machine")
+        raise ValueError(f"ring = {ring!r}, but give 'lumped' (its motion is part of k) or 'body' (of the machine)")
     cycles, case = _cycles(curves), curves.meta["case"]
     at = _places(machine, case, names)
-    machine = _still(machine) if ring == "in k" else _on_springs(machine, case)
-    k = curves.k if ring == "in k" else _without_body(machine, curves, at[1])
+    machine = _still(machine) if ring == "lumped" else _on_springs(machine, case)
+    k = curves.k if ring == "lumped" else _without_body(machine, curves, at[1])
     first, meshes = machine.meshes[at[0][0]], list(machine.meshes)
     phase = (first.phase - float(curves.position[0])) / cycles
     for inner, row in enumerate(at):
@@ -151,7 +155,7 @@ def _still(machine):
         raise ValueError(f"the machine has no body {BODY!r}: give ring = 'body'")
     place = machine.dofs.index(turn)
     if not machine.K[place, place] > 0:
-        raise ValueError("the ring of this machine rotates freely, but a ring in k is fixed: give ring = 'body'")
+        raise ValueError("the ring of this machine rotates freely, but a lumped ring is fixed: give ring = 'body'")
     stays = np.array([not dof.startswith(f"{BODY}.") for dof in machine.dofs])
 
     def cut(rows):
@@ -180,7 +184,7 @@ def ring_springs(case: Any) -> Floats:
     elif isinstance(ring, RimSupports):
         n = float(ring.count)
         if ring.pushes or ring.count < 3:
-            raise ValueError("lugs that only push, or fewer than 3 pads, are no springs of a body: give ring = 'in k'")
+            raise ValueError("lugs that only push, or fewer than 3 pads, are no springs of a body: give ring = 'lumped'")
     else:
         return np.full(3, math.inf)
     across = 1e3 * n * (ring.radial + ring.tangential) / 2
@@ -212,5 +216,5 @@ def _without_body(machine, curves, inner):
     with np.errstate(divide="ignore", invalid="ignore"):
         left = np.where(curves.k[1] > 0, curves.force[1] / curves.k[1] - moved, 1.0)
         if (left <= 0).any():
-            raise ValueError("the springs of the ring deflect a mesh more than the whole set does: give ring = 'in k'")
+            raise ValueError("the springs of the ring deflect a mesh more than the whole set does: give ring = 'lumped'")
         return np.array([curves.k[0], np.where(curves.k[1] > 0, curves.force[1] / left, 0.0)])

@@ -100,7 +100,7 @@ def _shaft(file, name, row, rows, materials):
 
 
 def _held(file, where, row, rows, made):
-    """The shaft with its bearings."""
+    """Return the shaft with its bearings."""
     for at in row["bearings_at_mm"]:
         _along(file, where, "bearings_at_mm", at, made)
     for kind in row["bearings"] or ():

@@ -94,8 +94,8 @@ def warning_together(gear, hollows):
     if (union_length(*intervals(gear, hollows, arcs)) < gear.b * (1 - 1e-9)).any():
         return ""
     return (
-        f"{len(hollows)} hollows together take the whole flank of tooth {hollows[0].tooth} of z = {gear.z}: nothing of it is "
-        "left to carry, but their floors"
+        f"{len(hollows)} hollows together remove the whole flank of tooth {hollows[0].tooth} of z = {gear.z}: no flank is "
+        "left to carry load, only their floors"
     )
 
 

@@ -165,7 +165,7 @@ def test_a_herringbone_pair_takes_misalignment():
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"end_relief": 0.01}, "say over what length"),
+        ({"end_relief": 0.01}, "give a length > 0"),
         ({"end_relief": 0.01, "end_length": 20.0}, "is 15 mm wide"),
         ({"end_relief": (0.01, 0.02, 0.03), "end_length": 2.0}, "give one finite number, or two"),
         ({"helix_crowning": 10.0}, "more than a tenth of the module"),
