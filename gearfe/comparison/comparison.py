@@ -111,7 +111,7 @@ class Comparison:
         if name not in RENAMED:
             raise AttributeError(f"a Comparison has no {name!r}")
         new, value = RENAMED[name]
-        warnings.warn(f"Comparison.{name} leaves with the next version: use {new}", DeprecationWarning, stacklevel=2)
+        warnings.warn(f"Comparison.{name} will be removed in the next version: use {new}", DeprecationWarning, stacklevel=2)
         return value(self)
 
     @property

@@ -91,7 +91,7 @@ class RimSupports:
         if self.pushes and self.radial:
             raise ValueError("rim supports: pads that only push have no radial force: give radial = 0")
         if self.count < (1 if self.radial and math.isinf(self.radial) else 2 if self.radial else 3):
-            raise ValueError(f"rim supports: count = {self.count}, but so few of these do not hold the ring: give 3 or more")
+            raise ValueError(f"rim supports: count = {self.count}, but these do not support the ring: give 3 or more")
 
     @property
     def middles(self) -> Floats:

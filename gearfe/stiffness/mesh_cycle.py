@@ -107,7 +107,7 @@ def mesh_cycle(case: Case, how: Solve | None = None, *, curve: Callable[[Case, S
     how : Solve, optional
         Its `phases` are a number per mesh cycle.
     curve : callable, optional
-        ``curve(case, how)`` is solved instead of `solve`, for example for a law of force.
+        ``curve(case, how)`` is solved instead of `solve`, for example for a force law.
 
     Returns
     -------
@@ -268,7 +268,7 @@ def _solved(curve, case, how, n, samples, position):
     found = [curve(case, replace(how, phases=np.arange(low, high) / n, span="tooth")) for low, high in spans]
     if len(found) > 1 and not all(isinstance(one, StiffnessCurve) for one in found):
         raise ValueError(
-            "a law of force over several loads is of single teeth that differ, but here all teeth of a gear do: give one load"
+            "a force law over several loads is of single teeth that differ, but here all teeth of a gear do: give one load"
         )
     if len(found) > 1:
         bare = [replace(one, order=one.order[:0], force=one.force[:, :0], pressure=one.pressure[:, :0]) for one in found]

@@ -160,7 +160,7 @@ def test_pitch_of_one_tooth_reaches_the_vibration():
 
 
 def test_several_loads_with_damage_of_both_gears():
-    """Laws of force: at the load of the curves they give the same force as curves do."""
+    """Force laws: at the load of the curves they give the same force as curves do."""
     both = scene(crack=[{"gear": "pinion", "tooth": 3}, {"gear": "wheel", "tooth": 3}])
     one, law = (gf.build_machine(both, "cracked", phases=32, loads=loads) for loads in ((1.0,), (0.8, 1.0, 1.25)))
     phase = np.arange(-4, 4, 1 / 32)

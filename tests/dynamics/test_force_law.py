@@ -1,4 +1,4 @@
-"""The law of force of a mesh: closed forms, contact solved anew at other loads and phases, and what is no law."""
+"""The force law of a mesh: closed forms, contact solved anew at other loads and phases, and what is no law."""
 
 import math
 

@@ -19,7 +19,7 @@ def signal(arguments):
         if getattr(arguments, option) is not None and arguments.shaft is None and arguments.tacho is None:
             raise ValueError(f"--{option} needs the shaft frequency of that gear: give --shaft HZ or --tacho COLUMN")
     if arguments.pulses < 1:
-        raise ValueError(f"--pulses {arguments.pulses}: a tachometer gives one or more in a turn")
+        raise ValueError(f"--pulses {arguments.pulses}: give 1 or more pulses per revolution")
     with working("reading"):
         with part("", 0.0, 0.5):
             signals = _read(arguments)

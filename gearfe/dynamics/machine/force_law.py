@@ -65,9 +65,9 @@ class ForceLaw:
     def __post_init__(self) -> None:
         """Make the table; ValueError if loads, phases or depths do not rise."""
         if self.load.size < 2 or not (np.diff(self.load) > 0).all() or not self.load[0] > 0:
-            raise ValueError(f"loads {self.load} N: a law of force needs two or more, each once and above 0")
+            raise ValueError(f"loads {self.load} N: a force law needs two or more, each once and above 0")
         if self.phase.size < 2 or not (np.diff(self.phase) > 0).all():
-            raise ValueError("a law of force needs phases that rise, two or more")
+            raise ValueError("a force law needs phases that rise, two or more")
         closing = np.diff(self.depth, axis=1, prepend=0.0)
         if not (np.isfinite(closing).all() and (closing > 0).all() and (self.tangent > 0).all()):
             i, j = np.argwhere(~((closing > 0) & (self.tangent > 0)))[0]
@@ -100,11 +100,11 @@ class ForceLaw:
         """
         if not all(isinstance(curve, StiffnessCurve) and "force_N" in curve.meta for curve in curves):
             raise ValueError(
-                "a law of force needs a list of StiffnessCurve, each with its load: mesh_stiffness(pair, [F1, F2, ...])"
+                "a force law needs a list of StiffnessCurve, each with its load: mesh_stiffness(pair, [F1, F2, ...])"
             )
         curves = sorted(curves, key=lambda loaded: float(loaded.meta["force_N"]))
         if any(curve.phase.shape != curves[0].phase.shape or not np.allclose(curve.phase, curves[0].phase) for curve in curves):
-            raise ValueError("the curves of a law of force must have the same phases: solve all loads in one call")
+            raise ValueError("the curves of a force law must have the same phases: solve all loads in one call")
         order = np.argsort(curves[0].phase, kind="stable")
         load = np.array([curve.meta["force_N"] for curve in curves], dtype=float)
         depth, tangent, pairs = (
@@ -227,7 +227,7 @@ def force_law(
 def law_of(case: Case, how: Solve, force: float | None = None) -> ForceLaw:
     """`ForceLaw` of a case under its loads, with further phases where the number of pairs in contact changes."""
     if how.span not in ("cycle", "tooth"):
-        raise ValueError(f"span = {how.span!r}, but a law of force is of a 'cycle', or of the engagement of a damaged 'tooth'")
+        raise ValueError(f"span = {how.span!r}, but a force law is of a 'cycle', or of the engagement of a damaged 'tooth'")
     curves = solve(case, how)
     law = ForceLaw.of([curve.without_supports() for curve in curves], force)
     counts = np.concatenate([law.pairs, law.pairs[:1]]) if how.span == "cycle" else law.pairs

@@ -173,11 +173,11 @@ class GearMesh:
         """`Secant` of the healthy cycle, then the change by each damage; none without a `ForceLaw`."""
         lawful = [isinstance(stiffness, ForceLaw) for stiffness in (self.stiffness, *(hurt.curve for hurt in self.damage))]
         if any(lawful) != all(lawful):
-            raise ValueError(f"mesh {self.name}: give laws of force for the healthy mesh and for all its damage, or for none")
+            raise ValueError(f"mesh {self.name}: give force laws for the healthy mesh and for all its damage, or for none")
         if not isinstance(self.stiffness, ForceLaw):
             return ()
         if not self.stiffness.periodic:
-            raise ValueError(f"mesh {self.name}: its law of force is not of one mesh cycle: make it with span='cycle'")
+            raise ValueError(f"mesh {self.name}: its force law is not of one mesh cycle: make it with span='cycle'")
         out = [self.stiffness.secant]
         for hurt, (_, first, _) in zip(self.damage, self.changes, strict=True):
             others = [(z, begin, less) for (z, begin, _), less in zip(self.changes, out[1:], strict=False)] if hurt.every else []

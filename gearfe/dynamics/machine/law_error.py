@@ -31,7 +31,7 @@ class LawError:
 
 
 def law_error(law: ForceLaw) -> LawError:
-    """Errors of a law of force between its loads and between its phases, over the force.
+    """Errors of a force law between its loads and between its phases, over the force.
 
     Every second load is left out, and the law of the others asked for the force at the depths that those left out press to; the
     same with every second phase. That is the error of a law of half as many, more than that of the law itself, which has them
@@ -83,7 +83,7 @@ def converged_force_law(
     force: float | None = None,
     **options: Unpack[PairOptions],
 ) -> ForceLaw:
-    """Law of force between two loads, solved under as many loads and at as many phases as its own error estimate asks for.
+    """Force law between two loads, solved under as many loads and at as many phases as its own error estimate asks for.
 
     Twice as many of what is worse than asked for, loads or phases, until the root mean squares of `law_error` are within
     `error`. Those are the errors of half as many: the law itself is two to five times better. With the default, accelerations of

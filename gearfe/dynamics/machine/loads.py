@@ -75,7 +75,7 @@ def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
     if times.ndim != 1 or times.shape != values.shape or not times.size:
         raise ValueError(f"{what}: give as many times as values, got shapes {times.shape} and {values.shape}")
     if not (np.isfinite(times).all() and np.isfinite(values).all()):
-        raise ValueError(f"{what}: it has a time or a value that is not finite (nan or inf)")
+        raise ValueError(f"{what}: a time or a value is not finite (nan or inf)")
     wrong = np.diff(times) <= 0 if strict else np.diff(times) < 0
     if wrong.any():
         at = int(np.argmax(wrong)) + 1

@@ -55,7 +55,7 @@ def build_machine(
     loads : sequence of float
         Loads that the contact of each pair is solved under, as multiples of the largest force of its meshes at rest, which the
         load that the scene states for the pair need not be. One of them makes stiffnesses over the phase that are true of this
-        load alone, by default of the meshes' own. Several make laws of force (`machine.force_law.ForceLaw`), for loads
+        load alone, by default of the meshes' own. Several make force laws (`machine.force_law.ForceLaw`), for loads
         that change and for resonances: ``(1 / 16, 1 / 4, 1 / 2, 1, 2)``. Their mesh forces bend where pairs come in, with
         harmonics far above the mesh frequency: `gearfe.simulate` filters them out above half of its rate. Not under the impact
         law, which has a coefficient.

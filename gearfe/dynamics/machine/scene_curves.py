@@ -85,7 +85,7 @@ def scene_curves(scene, case, options, meshes, homes):
     case : str or None
     options : dict
         As of `mesh_stiffness`, and ``loads``: by the pair's name the loads [N] it is solved under and the one it works at on
-        average. Several make laws of force, one makes curves; None: curves of teeth all alike under the load that the scene
+        average. Several make force laws, one makes curves; None: curves of teeth all alike under the load that the scene
         states. Method None makes flat curves of 1e8 N/m without solving anything, to check a machine.
     meshes : dict of str to Meshed
         By name.

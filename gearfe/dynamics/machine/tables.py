@@ -19,7 +19,7 @@ from .springs import Spring
 from .stages import Fault, Stage
 from .turning_frame import frame_terms
 
-TOUCH = 1e-12  # compression at which the tangent of a law of force without load is taken [m]
+TOUCH = 1e-12  # compression at which the tangent of a force law without load is taken [m]
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,7 +57,7 @@ def dynamic_factors(response: Response) -> dict[str, float]:
     factors = {name: dynamic / static for name, dynamic, static in loads if static > 1e-9 * max(most.max(), 1e-30)}
     if not factors:
         names = ", ".join(name for name, *_ in loads) or "of no machine"
-        raise ValueError(f"mesh {names} carries nothing at rest: it has no dynamic factor; give its load")
+        raise ValueError(f"mesh {names} is unloaded at rest and has no dynamic factor; give its load")
     return factors
 
 

@@ -18,7 +18,7 @@ class Flat(NamedTuple):
     phase `angle`. Of each load: where its knots start and end.
     `twin` is the first mesh whose stiffness is always that of a mesh. `pace` are the knots of `machine.speed.Speed`, none
     at a constant speed.
-    `secant` holds the tables of all laws of force one after the other; `shape` is, of each mesh and then of each damaged tooth,
+    `secant` holds the tables of all force laws one after the other; `shape` is, of each mesh and then of each damaged tooth,
     the place, rows and columns of its table and one over its depth [1/m], no rows where it has no law.
     """
 

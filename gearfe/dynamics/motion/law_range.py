@@ -40,7 +40,7 @@ def compared(response):
     for mesh, own in zip(machine.meshes, some.mesh().T, strict=True):
         given, most = mesh.stiffness, float(np.abs(own).max())
         if isinstance(given, ForceLaw) and most > given.load[-1]:
-            told["above"].append(f"{mesh.name} {most:.4g} N, its law of force up to {given.load[-1]:.4g} N")
+            told["above"].append(f"{mesh.name} {most:.4g} N, its force law up to {given.load[-1]:.4g} N")
         if isinstance(given, StiffnessCurve) and "force_N" in given.meta:
             told["other"] += _other(mesh, own, some.time[-1] - some.time[0])
     if told["above"]:

@@ -173,7 +173,7 @@ def lookup(flat, now, first, last, origin, h, low, share):
     """Fill in rows ``first <= i < last`` of `now`: what acts at the times ``origin + h (low + share (i - first))``.
 
     A row holds the stiffnesses, errors and rates of the errors of the meshes, then the weights of the friction rows, then the
-    loads, then, of machines with laws of force, the places in the meshes' and damaged teeth's tables by `_row`, -1 where there is
+    loads, then, of machines with force laws, the places in the meshes' and damaged teeth's tables by `_row`, -1 where there is
     none or the tooth is out of mesh. Many times at once, for a compiled function takes its time to find the tables.
     """
     cells, frequency, phases, cycle, change, rub = flat.cells, flat.frequency, flat.phase, flat.cycle, flat.change, flat.rub

@@ -56,7 +56,7 @@ def on_stubs(mesh, shaft):
         )
     if first < shaft.torque < last:
         raise ValueError(
-            f"shaft: torque = {shaft.torque:g} mm is inside of the gear, {first:g} to {last:g} mm: it leaves by a stub"
+            f"shaft: torque = {shaft.torque:g} mm is inside of the gear, {first:g} to {last:g} mm: it must leave through a stub"
         )
     radius, held, motions = np.hypot(points[0], points[1]), [], np.zeros((points.shape[1], 3, 2 * MOTIONS))
     for k, (z, stub) in enumerate(zip((0.0, gear.b), face_radii(shaft, gear.b), strict=True)):

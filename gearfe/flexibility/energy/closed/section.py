@@ -169,7 +169,7 @@ def _positive(gear, thickness, y):
     if (thickness <= 0).any():
         height = abs(y[thickness <= 0].flat[0])
         raise ValueError(
-            f"cracks and what is missing of flanks leave nothing of the tooth of z = {gear.z} at height {height:.5g} mm from the "
+            f"cracks and other damage leave no section of the tooth of z = {gear.z} at height {height:.5g} mm from the "
             "gear's axis: make them smaller, or past the centre-line use crack_model = 'straight' or 'parabola'"
         )
     return thickness
