@@ -182,7 +182,7 @@ class Case:
     def without_broken(self, what: str) -> None:
         """Raise ValueError if a tooth is missing or chipped, because `what` does not model it."""
         for one in sum(self.broken, ()):
-            raise ValueError(f"a {one._nouns[0]} in {what}, which has whole teeth only: use mesh_stiffness or compare")
+            raise ValueError(f"a {one._nouns[0]} in {what}, which is limited to unbroken teeth: use mesh_stiffness or compare")
 
     @property
     def runs(self) -> str:

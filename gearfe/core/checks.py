@@ -32,7 +32,7 @@ def whole(name: str, value: Any, least: float = -math.inf, most: int = MOST) -> 
         If it is another kind of number, ``24.0``, smaller or larger.
     """
     if is_whole(value) and value > most:
-        raise ValueError(f"{name} = {str(value)[:40]}, but at most {most} makes sense here")
+        raise ValueError(f"{name} = {str(value)[:40]}, but the maximum is {most}")
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         close = is_number(value) and math.isfinite(value) and value == int(value) and value >= least
         remedy = f": give {name} = {int(value)}" if close else "" if least == -math.inf else f" from {least} on"

@@ -107,7 +107,7 @@ def suffixes(kind, *, reading=False):
     """Return the suffixes of files that can hold `kind`."""
     known = [suffix for suffix, row in FORMATS.items() if kind in (row.reads if reading else row.writes)]
     if not known:
-        raise ValueError(f"kind = {kind!r}, but no file holds such a thing; see gearfe.core.files.FORMATS")
+        raise ValueError(f"kind = {kind!r}, which no file format supports; see gearfe.core.files.FORMATS")
     return known
 
 

@@ -125,7 +125,7 @@ def _matrix(file, depth):
     if not file.left():
         return "", np.empty((0, 0))
     if depth > DEEPEST:
-        raise ValueError(f"structs and cells stand in each other more than {DEEPEST} deep")
+        raise ValueError(f"structs and cells are nested more than {DEEPEST} deep")
     flags = _Bytes(file.element()[1].take(8), file.order).numbers(2)[0]
     kind = flags & 0xFF
     if kind not in (CELL, STRUCT, CHAR, *CLASSES):
@@ -158,7 +158,7 @@ def _matrix(file, depth):
 def _entry(file, depth):
     kind, content = file.element()
     if kind != MATRIX:
-        raise ValueError(f"an element of kind {kind} stands where an array should")
+        raise ValueError(f"an element of kind {kind} is in the place of an array")
     return _matrix(content, depth + 1)[1]
 
 

@@ -223,7 +223,7 @@ def _holed(gear: Gear, damage, strips, how) -> Part:
     """Mesh a whole gear in tets, its pits cut out or not; its damaged tooth is tooth 0 during meshing."""
     cracks, holes = split(damage)
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
-        raise ValueError("beside holes cut out a gear has at most one crack, through the whole width: leave out the others")
+        raise ValueError("a gear with holes may have one crack only, through the whole width: leave out the others")
     tooth = damage[0].tooth % gear.z if damage else 0
     turn = 2 * math.pi * tooth / gear.z
     turned = [(np.array([*posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]

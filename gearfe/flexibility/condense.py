@@ -147,7 +147,7 @@ def _eliminated(ids, matrix, stop):
         return ids, matrix
     lower, failed = dpotrf(np.asfortranarray(matrix[:gone, :gone]), lower=1, clean=0, overwrite_a=1)
     if failed:
-        raise RuntimeError("the triangles of the section fold or nearly do, or nothing holds them: change refine a little")
+        raise RuntimeError("the triangles of the section fold or nearly do, or are unsupported: change refine slightly")
     rest = np.array(matrix[gone:, gone:], order="F")
     if rest.size:
         across = dtrsm(1.0, lower, np.array(matrix[gone:, :gone], order="F"), side=1, lower=1, trans_a=1, overwrite_b=1)

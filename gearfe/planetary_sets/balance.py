@@ -129,5 +129,5 @@ def _likely(problem, unit):
     force, _ = nnls(system, right, maxiter=50 * n)
     rest = problem.closing.T @ force - problem.load
     if np.abs(rest).max() > 1e-3 * unit:
-        raise RuntimeError("no forces that only push hold this set in balance: a body has no mesh left that holds it")
+        raise RuntimeError("no compressive mesh forces balance this set: a body is unsupported")
     return force > 1e-9 * unit

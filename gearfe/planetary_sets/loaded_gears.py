@@ -36,7 +36,7 @@ def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
     of its planet is unknown.
     """
     if not isinstance(curves, SetCurves):
-        raise ValueError(f"curves = {curves!r}, but give what planetary_stiffness gives")
+        raise ValueError(f"curves = {curves!r}, but give the result of planetary_stiffness")
     if whole("at", at, 0) >= curves.position.size:
         raise ValueError(f"at = {at}, but there are {curves.position.size} positions: give 0 to {curves.position.size - 1}")
     case = curves.meta["case"]

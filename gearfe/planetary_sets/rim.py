@@ -77,7 +77,7 @@ def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: floa
     unit = scale * np.array([1.0, 1.0, 1 / gear.held])[:, None]  # scaled, so that all entries of the system have one magnitude
     system = np.block([[between, (unit * pads.turns).T], [unit * pads.turns, np.zeros((3, 3))]])
     if np.linalg.svd(unit * pads.turns, compute_uv=False)[-1] < SURE * scale:
-        raise ValueError("ring: these pads let it move without force: give more of them, or hold both directions")
+        raise ValueError("ring: it moves freely on these pads: give more pads, or support both directions")
     right = np.concatenate([across.reshape(p, n), unit * gives.reshape(3, n)])
     solved = -np.linalg.solve(system, np.hstack([right, np.eye(p + 3, p)]))
     more = teeth.reshape(n, n) + right.T @ solved[:, :n]

@@ -77,7 +77,7 @@ class RimSupports:
         """Reject pads of impossible sizes, and pads that do not hold the ring."""
         if not 1 <= whole("rim supports: count", self.count) <= MANY:
             raise ValueError(
-                f"rim supports: count = {self.count}, but give 1 to {MANY}: a ring that nothing holds moves away, and more pads "
+                f"rim supports: count = {self.count}, but give 1 to {MANY}: a ring needs a support, and more pads "
                 "are an elastic bed"
             )
         settle_numbers(self, "rim supports", "width", " mm", above=0.0, remedy=": give the arc of the rim that a pad holds")
@@ -112,9 +112,7 @@ class RimSupports:
 def check_support(support: Any, gear: Gear) -> None:
     """ValueError unless it is ``"held"``, `RimBed` or `RimSupports` whose pads find room on the rim of `gear`."""
     if not (isinstance(support, (RimBed, RimSupports)) or (isinstance(support, str) and support == "held")):
-        raise ValueError(
-            f"ring = {support!r}, but give 'held', RimBed(...) or RimSupports(...): a ring that nothing holds moves away"
-        )
+        raise ValueError(f"ring = {support!r}, but give 'held', RimBed(...) or RimSupports(...): a ring needs a support")
     rim = 2 * math.pi * gear.held
     if isinstance(support, RimSupports) and support.count * support.width > rim * (1 - 1e-9):
         raise ValueError(

@@ -65,7 +65,7 @@ def read_references(file, tables):
     names = [reference.id for reference in out]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise ValueError(f"{file}: reference id {twice[0]!r} is used twice; give each its own")
+        raise ValueError(f"{file}: reference id {twice[0]!r} is used twice; give different ids")
     return out
 
 
@@ -76,7 +76,7 @@ def _reference(file, where, row):
     places = [(printed.case, printed.pair) for printed in rows]
     twice = [place for place in places if places.count(place) > 1]
     if twice:
-        raise ValueError(f"{file} [{where}]: two rows of case {twice[0][0]!r} and pair {twice[0][1]!r}; give each its own case")
+        raise ValueError(f"{file} [{where}]: two rows of case {twice[0][0]!r} and pair {twice[0][1]!r}; give different cases")
     keep = {key: row[key] for key in ("id", "quantity", "unit", "source", "relative", "absolute", "tolerance", "trend", "note")}
     return Reference(**keep, rows=rows)
 

@@ -78,7 +78,7 @@ def _pairs(file, row, pairs, rows):
                 found.append(((one, two), gears))
     if not found:
         raise ValueError(
-            f"{file} [set]: no two pairs make it: give one with the sun as gear_1 and the planet as gear_2, and one of that "
+            f"{file} [set]: two pairs are needed: give one with the sun as gear_1 and the planet as gear_2, and one of that "
             "planet and a ring"
         )
     if len(found) > 1:

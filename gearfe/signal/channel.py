@@ -133,5 +133,5 @@ def _whole(path, name, values):
     first, last = edges[most] + 1, edges[most + 1] - 1
     raise ValueError(
         f"{path}: {name!r}: sample {bad[0]} is {values[bad[0]]}, the first of {bad.size} that are missing; cut the file to "
-        f"samples {first} to {last}, its longest whole stretch, or fill the gaps: nothing is filled unasked"
+        f"samples {first} to {last}, its longest whole stretch, or fill the gaps"
     )

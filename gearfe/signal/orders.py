@@ -33,7 +33,7 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
     if step.min() < SLOWEST * step.mean():
         raise ValueError(
             f"{signal.name}: the shaft slows down to {step.min() * signal.rate:.3g} Hz from {step.mean() * signal.rate:.3g} "
-            "on average; cut out where it stands or starts"
+            "on average; cut out standstill and start"
         )
     needed = math.ceil(1 / step.min() - 1e-6)
     count = needed if samples_per_turn is None else whole("samples_per_turn", samples_per_turn, 1)

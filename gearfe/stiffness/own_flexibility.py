@@ -178,7 +178,9 @@ class OwnGear:
         if self.given == "smooth":
             return values
         if np.linalg.eigvalsh(values).min() < -SAME * np.abs(values).max():
-            raise ValueError(f"{where}: its matrix is not positive (semi)definite, so some loads would gain work from the gear")
+            raise ValueError(
+                f"{where}: its matrix is not positive (semi)definite, so the gear would release energy under some loads"
+            )
         dent = coupled.local_remainder(self.gear, self.material, roll, state=self.state)
         return values + np.diag(dent)
 
@@ -226,13 +228,13 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Flo
     try:
         values = np.asarray(returned)
     except ValueError as error:  # rows of different lengths
-        raise ValueError(f"{where}: it gives rows that make no array, but give a matrix of numbers [mm per N/mm]") from error
+        raise ValueError(f"{where}: its rows have different lengths; give a matrix of numbers [mm per N/mm]") from error
     if values.dtype.kind not in "fiu":
         raise ValueError(f"{where}: it gives values of type {values.dtype}, but give a matrix of real numbers [mm per N/mm]")
     if values.shape != shape:
         raise ValueError(
             f"{where}: it gives an array of shape {values.shape}, but give {shape}: displacement of contact i under a "
-            "unit load at contact j (numpy.diag makes one of teeth that do not move each other)"
+            "unit load at contact j (numpy.diag is that of uncoupled teeth)"
         )
     values = values.astype(float)
     if not np.isfinite(values).all():

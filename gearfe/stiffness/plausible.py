@@ -45,7 +45,7 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
             "break: give a smaller force, a wider face or a larger module, forces in N, lengths in mm, E in MPa"
         )
     if ratio > WARN:
-        warnings.warn(f"{message}: more than teeth bear ({100 * WARN:g} %); k is that of linear elasticity", stacklevel=4)
+        warnings.warn(f"{message}: more than teeth withstand ({100 * WARN:g} %); k is that of linear elasticity", stacklevel=4)
     most, limit = _pressure(curve), DENTED * contact_modulus(materials)
     if most > limit:
         warnings.warn(

@@ -290,7 +290,7 @@ def check_apart(gear, cracks):
                 raise ValueError(f"two cracks on the {side} side of tooth {tooth}; one is enough")
             near = np.abs(_sampled(path)[:, :, None] - _sampled(other)[:, None, :])
             if np.hypot(*near).min() < 0.1 * gear.m_n:
-                raise ValueError(f"two cracks of tooth {tooth} meet: the tooth is off; make one of them shorter")
+                raise ValueError(f"two cracks of tooth {tooth} meet: the tooth breaks off; make one of them shorter")
 
 
 def check_single(gear, cracks):
@@ -334,5 +334,5 @@ def _check_inside(gear, crack, path):
     fillet_points = cartesian(*root_curve(gear, arcs)) * [[-1], [1]]
     if np.hypot(*(fillet_points - tip[:, None])).min() < margin:
         raise ValueError(
-            f"crack of {_size(crack)}: its tip reaches the opposite fillet of z = {gear.z}, the tooth is off; make it shorter"
+            f"crack of {_size(crack)}: its tip reaches the opposite fillet of z = {gear.z}, the tooth breaks off; make it shorter"
         )

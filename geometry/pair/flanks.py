@@ -83,7 +83,7 @@ def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
     )
     if abs(tilt) > STEEPEST:
         raise ValueError(
-            f"{1e3 * tilt:.4g} um of misalignment per mm of width, but gears with parallel axes bear no more than "
+            f"{1e3 * tilt:.4g} um of misalignment per mm of width, but gears with parallel axes allow at most "
             f"{1e3 * STEEPEST:g}: amounts are in mm (20 um are 0.02)"
         )
     return tilt

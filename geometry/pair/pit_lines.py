@@ -111,4 +111,4 @@ def _band(pair, gear, face, groove, middle):
         low, high = sorted((first + below, last + below))
         if low <= middle <= high:
             return Band(low, high, math.copysign(math.tan(pair.gear_1.beta_b), first - last), first + below)
-    raise ValueError(f"pits about middle = {middle:.6g} mm, but there the teeth of z = {gear.z} touch nothing")
+    raise ValueError(f"pits about middle = {middle:.6g} mm, but the teeth of z = {gear.z} have no contact there")

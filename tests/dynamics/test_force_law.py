@@ -115,7 +115,7 @@ def test_what_is_no_law_is_refused():
     one, two = curve(100.0, 1e-6, 1e8), curve(200.0, 2e-6, 1e8)
     with pytest.raises(ValueError, match="two or more"):
         gf.ForceLaw.of([one])
-    with pytest.raises(ValueError, match="two or more, each once"):
+    with pytest.raises(ValueError, match="two or more, all different"):
         gf.ForceLaw.of([one, one])
     with pytest.raises(ValueError, match="does not press the mesh deeper"):
         gf.ForceLaw.of([curve(200.0, 1e-6, 1e8), curve(100.0, 2e-6, 1e8)])

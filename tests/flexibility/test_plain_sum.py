@@ -285,7 +285,7 @@ def test_a_ring_has_beams_and_its_planet_a_foundation(formulas):
     assert_allclose(inner.total, bare.total, rtol=0)
     assert (inner.bending > 0).all()
     assert inner.bending[0] > inner.bending[1]  # nearer the tip
-    with pytest.raises(ValueError, match="does not hold for a ring"):
+    with pytest.raises(ValueError, match="is invalid for a ring"):
         formulas.components(ring, STEEL, at)
 
 

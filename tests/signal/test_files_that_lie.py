@@ -133,7 +133,7 @@ LIES = {
     "has the shape": array(6, (-1, 1), element(9, bytes(8))),
     "more than 50 deep": NESTED,
     "names of fields": array(2, (1, 1), element(5, struct.pack("<i", 0)), element(1, b"abc")),
-    "where an array should": array(1, (1, 1), element(9, bytes(8))),
+    "in the place of an array": array(1, (1, 1), element(9, bytes(8))),
     "are no numbers": array(6, (1, 1), element(9, bytes(7))),
     "are no text": array(4, (1, 1), element(9, bytes(8))),
     "letters for a text": array(4, (2, 9), element(16, b"abc")),

@@ -13,7 +13,7 @@ def _check_outputs(arguments, **kinds):
     for option, path in given.items():
         check_output(path, kinds[option])
     if len(set(given.values())) < len(given):
-        raise ValueError(f"{' and '.join(f'--{option}' for option in given)} name the same file: give each its own")
+        raise ValueError(f"{' and '.join(f'--{option}' for option in given)} name the same file: give a separate file for each")
 
 
 def _print_notes(scene):

@@ -90,10 +90,10 @@ class Shaft:
             if not (is_number(value) and 0 <= float(value) <= self.length * (1 + 1e-12)):
                 raise ValueError(f"shaft: {name.strip()} = {value!r}, but the shaft reaches from 0 to {self.length:g} mm")
         if self.bearings[0] == self.bearings[1]:
-            raise ValueError(f"shaft: both bearings at {self.bearings[0]:g} mm do not hold it: give two positions")
+            raise ValueError(f"shaft: both bearings at {self.bearings[0]:g} mm do not support it: give two positions")
         if self.integral and self.torque is None:
             raise ValueError(
-                "shaft: integral without torque, but a gear cut from its shaft is held by it: give where torque leaves"
+                "shaft: integral without torque, but an integral gear is supported by its shaft: give the position of the torque"
             )
 
     @property

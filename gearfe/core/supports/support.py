@@ -68,7 +68,7 @@ class Support:
         if not abs(self.coupling) <= (1 + 5e-10) * largest:
             raise ValueError(
                 f"support: coupling = {self.coupling:g} rad/N is more than 1 / sqrt(radial tilt) = "
-                f"{largest:g}: such springs would give energy away; take all three from a Shaft"
+                f"{largest:g}: the stiffness matrix is not positive definite; take all three from a Shaft"
             )
 
     @property

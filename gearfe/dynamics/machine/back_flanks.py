@@ -97,7 +97,7 @@ def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machin
         if not 0 < known[name].backlash < math.inf:
             raise ValueError(f"mesh {name}: backlash = {known[name].backlash} m, but back flanks need one above 0 and finite")
         if known[name].friction:
-            raise ValueError(f"mesh {name}: back flanks of their own are without friction, which this mesh has")
+            raise ValueError(f"mesh {name}: separate back flanks are frictionless, but this mesh has friction")
         if known[name].shifts:
             raise ValueError(
                 f"mesh {name}: its teeth are off their places (pitch deviations, eccentricity), and back flanks of their own "

@@ -78,7 +78,7 @@ def branch(pairs):
     cosine = (inner**2 + outer**2 - between**2) / (2 * inner * outer)
     if not -1 < cosine < 1:
         raise ValueError(
-            f"centre distances {inner:.6g}, {between:.6g}, {outer:.6g} mm make no triangle: sun, inner and outer planet"
+            f"centre distances {inner:.6g}, {between:.6g}, {outer:.6g} mm do not form a triangle of sun, inner and outer planet"
         )
     return inner, outer, math.acos(cosine)
 

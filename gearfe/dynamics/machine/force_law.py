@@ -65,7 +65,7 @@ class ForceLaw:
     def __post_init__(self) -> None:
         """Make the table; ValueError if loads, phases or depths do not rise."""
         if self.load.size < 2 or not (np.diff(self.load) > 0).all() or not self.load[0] > 0:
-            raise ValueError(f"loads {self.load} N: a force law needs two or more, each once and above 0")
+            raise ValueError(f"loads {self.load} N: a force law needs two or more, all different and above 0")
         if self.phase.size < 2 or not (np.diff(self.phase) > 0).all():
             raise ValueError("a force law needs phases that rise, two or more")
         closing = np.diff(self.depth, axis=1, prepend=0.0)

@@ -129,7 +129,7 @@ def _check_contact(scene, case, contact):
                 )
             if name in hurt and any(hurt[name].broken):
                 raise ValueError(
-                    f"[pair.{name}] has a broken tooth in case {case!r}, but the impact law has whole teeth only: use "
+                    f"[pair.{name}] has a broken tooth in case {case!r}, but the impact law is limited to unbroken teeth: use "
                     "contact = 'linear'"
                 )
     elif any(one.missing and not pair_backlash(scene, name) for name, one in hurt.items()):

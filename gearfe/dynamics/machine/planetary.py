@@ -129,7 +129,7 @@ def angles_of_planets(n_planets: int, planet_angles: Sequence[float] | None = No
         raise ValueError(f"planet_angles = {planet_angles!r}, but give {n_planets} finite angles [rad], one for each planet")
     around = np.sort(angles % (2 * math.pi))
     if n_planets > 1 and np.diff(around, append=around[0] + 2 * math.pi).min() < 1e-9:
-        raise ValueError(f"planet_angles = {planet_angles!r}, but two planets cannot stand at one angle")
+        raise ValueError(f"planet_angles = {planet_angles!r}, but two planets have the same angle")
     return angles
 
 

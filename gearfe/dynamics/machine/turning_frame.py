@@ -68,7 +68,7 @@ def frame_terms(dofs, mass, springs, spin, rotors=None):
         if (uneven > 1e-9 * np.abs(held_by).max()).any():
             which = bodies[int(np.argmax(uneven))]
             raise ValueError(
-                f"spin = {spin} rad/s: {which} is held to the ground otherwise in x than in y, which would turn; leave it 0"
+                f"spin = {spin} rad/s: {which} has different supports in x and y, which would rotate with the frame; use spin = 0"
             )
     return gyroscopic, centripetal, spin * held_by @ turn
 

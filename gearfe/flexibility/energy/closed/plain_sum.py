@@ -75,7 +75,7 @@ def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lo
     at = stations(case, phase, lost=lost, edges=edges)
     empty = np.setdiff1d(np.arange(phase.size), at.phase)
     if empty.size:
-        raise ValueError(f"no contact is left at phase {phase[empty[0]]:.6g}: damage takes the whole width; make it smaller")
+        raise ValueError(f"no contact is left at phase {phase[empty[0]]:.6g}: damage covers the whole width; make it smaller")
     teeth, outside = np.zeros(at.roll_1.shape), {}
     order = at.order[at.column]
     places = zip(gears, materials, (at.roll_1, at.roll_2), (order, -order), damage, strict=True)
