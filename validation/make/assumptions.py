@@ -20,7 +20,7 @@ BASE = "as assumed [N/m]"
 CSV = TABLES / "assumptions.csv"
 SCENES = [name for name in scene_names() if name != "herringbone_contact_line"]  # its bores are chosen, not assumed
 WIDE = 8  # phases in three dimensions
-PITTED = {"planetary_pitting": "mild", "helical_pitting": "severe"}  # scene: case whose pits are changed
+PITTED = {"planetary_pitting": "mild_rows", "helical_pitting": "severe"}  # scene: case whose pits are changed
 
 CONVENTIONS = {
     "30-degree tangent, 45 degrees": {},
