@@ -1,13 +1,14 @@
 """How much more a flank deflects because pits and spalls are recesses, not only places without contact.
 
-Contact lines end at the walls of a recess. A wall gives way there as a free end face does, where every load acts once more from its
-mirror image (`gearfe.flexibility.end_faces`), but down to the depth h of the recess only. Material below h holds what images twice as
-deep would release. A load at a distance R from an image adds::
+Contact lines end at the walls of a recess. A wall deflects as a free end face does, where every load acts once more from its
+mirror image (`gearfe.flexibility.end_faces`), but down to the depth h of the recess only. A load at a distance R from an image
+adds::
 
     psi k (1 / R - 1 / sqrt(R**2 + 4 h**2))
 
-with the half-space's k and the weight psi of an end face. The second term has no source: it is the image's field at the depth 2 h,
-which makes the sum vanish with h. Finite elements of ten layouts of recesses and CalculiX judge it (``tests/contact``).
+with the half-space's k and the weight psi of an end face. The second term is an assumption: it is the field of the image at the
+depth 2 h, and the sum vanishes with h. Finite elements of ten layouts of recesses and CalculiX lose less than this estimate
+(``tests/contact/test_missing_material.py``).
 """
 
 import math

@@ -84,7 +84,12 @@ def further():
             out[f"three repeats: {word} tells the levels apart"] = apart(found)
         else:
             out[f"three repeats: {word} does not tell the levels apart"] = not apart(found, rising=False)
-    return about_spectra() | about_impacts() | out | {"the larger the impacts, the larger the force": bool((np.diff(peaks) > 0).all())}
+    return (
+        about_spectra()
+        | about_impacts()
+        | out
+        | {"the larger the impacts, the larger the force": bool((np.diff(peaks) > 0).all())}
+    )
 
 
 def repeats():

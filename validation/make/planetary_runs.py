@@ -17,7 +17,12 @@ RATE = 10000.0  # S0: 100 000 steps in 10 s
 FINE = 256 * 280.0  # above twice the highest natural frequency, 16.5 kHz; a multiple of f_m
 OWN, ROWS, LINEAR = "impact law", "impact law, rows of five", "linear stiffness"
 STEADY = ", no pulses"
-CARRIER, FORCE, SENSOR, HOUSING = "carrier.theta acceleration", "force sun_planet1", "ring.y acceleration", "ring's forces through its window"
+CARRIER, FORCE, SENSOR, HOUSING = (
+    "carrier.theta acceleration",
+    "force sun_planet1",
+    "ring.y acceleration",
+    "ring's forces through its window",
+)
 BEARING = 1e8  # N/m, of the ring: the default of `gf.pitted_planetary`
 HIGHEST = 6  # of the fault frequency: sidebands that the bandwidth counts
 
