@@ -8,6 +8,18 @@ from typing import Any
 
 import lazy_loader
 
+RENAMED = {  # former names
+    "told_apart": "roc_auc", "with_own_speed": "with_estimated_speed", "disc": "gear_member", "gear_pair": "gear_pair_machine",
+    "face_load": "face_load_distribution", "law_within": "converged_force_law",
+}  # fmt: skip
+SYNONYMS = {  # abbreviations of the literature
+    "tvms": ("mesh_stiffness",), "gms": ("mesh_stiffness",), "te": ("transmission_error",), "lte": ("transmission_error",),
+    "ste": ("transmission_error",), "tsa": ("synchronous_average",), "psd": ("spectrum",), "fft": ("spectrum",),
+    "bpfo": ("bearing_lines",), "bpfi": ("bearing_lines",), "bsf": ("bearing_lines",), "ftf": ("bearing_lines",),
+    "med": ("deconvolve",), "mckd": ("deconvolve",), "fm0": ("gear_indicators",), "fm4": ("gear_indicators",), "na4":
+    ("gear_indicators",),
+"auc": ("roc_auc",), "loadsharing": ("mesh_stiffness",), "load_sharing": ("mesh_stiffness",),
+}  # fmt: skip
 _load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
@@ -17,11 +29,16 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("gearfe")
+    if name in RENAMED:
+        from .geometry.renamed import warn_renamed
+
+        warn_renamed(f"gearfe.{name}", RENAMED[name])
+        name = RENAMED[name]
     if name not in __all__:
         from difflib import get_close_matches
 
-        near = get_close_matches(name, __all__, cutoff=0.5) or __all__
-        raise AttributeError(f"gearfe has no {name!r}; it has {', '.join(near)}")
+        near = SYNONYMS.get(name.lower(), ()) or get_close_matches(name, __all__, cutoff=0.5)
+        raise AttributeError(f"gearfe has no {name!r}; {'nearest: ' if near else 'see dir(gearfe)'}{', '.join(near)}")
     from .core.threads import loading
 
     with loading:

@@ -60,12 +60,12 @@ def _own_cache(tmp_path_factory):
 def herringbone_stage():
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 30.0, "beta": math.radians(16)}
     sun, planet = gf.Gear(z=18, r_bore=8.0, **rack), gf.Gear(z=27, r_bore=12.0, **rack)
-    return gf.PlanetarySet(sun, planet, gf.Gear(z=72, r_rim=90.0, addendum=0.8, tip_radius=0.2, **rack), 3)
+    return gf.PlanetarySet(sun, planet, gf.Gear(z=72, r_rim=90.0, addendum=0.8, rack_tip_radius=0.2, **rack), 3)
 
 
 @pytest.fixture(scope="session")
 def spur_stage():
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
     sun, planet = gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack)
-    ring = gf.Gear(z=84, r_rim=95.0, x=-0.4617, addendum=0.859, tip_radius=0.2, **rack)
+    ring = gf.Gear(z=84, r_rim=95.0, x=-0.4617, addendum=0.859, rack_tip_radius=0.2, **rack)
     return gf.PlanetarySet(sun, planet, ring, 3, 52.0)

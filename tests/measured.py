@@ -8,9 +8,9 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.comparison.vibration import recorded
-from gearfe.dynamics.machine.gear_pair import gear_pair
+from gearfe.dynamics.machine.gear_pair import gear_pair_machine
 from gearfe.dynamics.machine.layout import Body
-from gearfe.dynamics.machine.member import disc
+from gearfe.dynamics.machine.member import gear_member
 from gearfe.dynamics.machine.mesh_curves import Samples, cycle_table
 from gearfe.dynamics.machine.scene_curves import stage_of
 from gearfe.dynamics.machine.tooth_damage import ToothDamage
@@ -120,11 +120,11 @@ def spur(speed):
     phase = np.arange(-16, math.ceil((gears.eps_alpha + 0.25) * 64) + 1) / 64
     share = np.where((phase > gears.eps_alpha - 1) & (phase < 1), 0.05, np.where((phase > 0) & (phase < gears.eps_alpha), 0.6, 1))
     broken = (ToothDamage(0, 0, Samples(phase, share * cycle_table(curve)(phase % 1.0))),)
-    made_of = [(name, disc(gear, 7850.0, 0.0)) for name, gear in (("pinion", gears.gear_1), ("wheel", gears.gear_2))]
+    made_of = [(name, gear_member(gear, 7850.0, 0.0)) for name, gear in (("pinion", gears.gear_1), ("wheel", gears.gear_2))]
     bodies = tuple(Body(name, one.mass, one.inertia, "x y theta") for name, one in made_of)
     signals = {}
     for name, damage in (("healthy", ()), ("broken", broken)):
-        made = gear_pair(
+        made = gear_pair_machine(
             gears, bodies, curve, speed=speed, torque=28.0, support={"x": 1e8, "y": 1e8}, torsion=(1e4, 0.0), zeta=0.02,
             damage=damage,
         ).with_meshes(zeta=0.05, backlash=1e-4)  # fmt: skip

@@ -31,7 +31,7 @@ def test_what_the_scene_of_the_contact_line_shows(method):
     assert own < line.POINTS
 
 
-@pytest.mark.parametrize("method", ["published", "published, summed", "textbook"])
+@pytest.mark.parametrize("method", ["herringbone_article", "herringbone_article, summed", "textbook"])
 def test_rows_of_the_scene_are_what_is_computed_now(method, tmp_path, monkeypatch):
     known = line.stored()
     monkeypatch.setattr(line, "TABLES", tmp_path)

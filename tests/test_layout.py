@@ -54,7 +54,7 @@ def test_no_public_name_is_that_of_a_module():
 
 
 def test_an_unknown_public_name_is_answered_with_the_nearest():
-    with pytest.raises(AttributeError, match="no 'mesh_stifness'; it has mesh_stiffness"):
+    with pytest.raises(AttributeError, match="no 'mesh_stifness'; nearest: mesh_stiffness"):
         gearfe.mesh_stifness  # noqa: B018
     assert dir(gearfe) == gearfe.__all__
 

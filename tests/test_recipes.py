@@ -160,7 +160,7 @@ LINES = {
     "compare": "compare my.toml --pair stage --case banded --phases 4 --refine 0.5",
     "banded": "stiffness my.toml --case banded --method textbook",
     "spalled": "stiffness my.toml --case spalled --method textbook",
-    "bent": "stiffness my.toml --pair bent --method equal --forces 2000 --phases 32",
+    "bent": "te my.toml --pair bent --method equal --forces 2000 --phases 32",
     "kept": "stiffness my.toml -o k.tsv",
 }
 ALL = """
@@ -233,7 +233,7 @@ def test_format_holds_the_curve_and_machine_has_its_frequencies(copy, told):
     head, *lines = (copy / "k.tsv").read_text(encoding="utf-8").splitlines()
     k = np.array([line.split("\t") for line in lines], dtype=float)[:, head.split("\t").index("k [N/m]")].mean()
     row = 1e-3 * np.array([PAIR.gear_1.r_b, PAIR.gear_2.r_b])
-    inertia = np.diag([gf.disc(gear, 7850.0, 0.0).inertia for gear in (PAIR.gear_1, PAIR.gear_2)])
+    inertia = np.diag([gf.gear_member(gear, 7850.0, 0.0).inertia for gear in (PAIR.gear_1, PAIR.gear_2)])
     squares = eigh(k * np.outer(row, row) + np.diag([1e5, 0.0]), inertia, eigvals_only=True)
     assert_allclose(told["frequencies"], np.sqrt(squares) / (2 * math.pi), rtol=1e-3)
 

@@ -122,7 +122,7 @@ WRONG = {  # lines of a user's program, and what mypy must say of each
     "gf.transmission_error(pair, [1.0], posed='pinion')": 'keyword argument "posed"',
     "gf.force_law(pair, [1.0, 2.0], flanks={'wheel': gf.Flank()}, refine=2.0)": "",
     "gf.force_law(pair, [1.0, 2.0], flank={})": 'keyword argument "flank"',
-    "gf.law_within(pair, 1.0, 2.0, groove='4 mm')": 'expected "float"',
+    "gf.converged_force_law(pair, 1.0, 2.0, groove='4 mm')": 'expected "float"',
     "gf.contact_pattern(pair, 1.0, face='spur', phases=[0.5])": "",
     "gf.contact_pattern(pair, 1.0, method='ritz3d')": 'keyword argument "method"',
     "gf.compare(pair, force=1.0, material=gf.Material())": "",

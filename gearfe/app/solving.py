@@ -32,7 +32,7 @@ from .state import CASE, SeveralError, read, tables_of, title_of
 QUICK, FINE, SOLID = 32, 64, 16  # phases per mesh cycle
 KEPT = 128 * 2**20  # memory of solved gears in one process [bytes]
 ALONG = {  # what changes along the width, as a section has it
-    "pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta": 0.0, "tilt_1": 0.0, "tilt_2": 0.0, "part": "all of it",
+    "pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta_x": 0.0, "tilt_1": 0.0, "tilt_2": 0.0, "part": "all of it",
 }  # fmt: skip
 STRESS = (1000, 750)  # picture [px]
 SECONDS = 0.5  # of vibration
@@ -124,15 +124,15 @@ def picture(scene: Scene) -> dict[str, Any]:
         points = outline_points(gear, points=9)
         step = (float(later[i] - starts[i]) + math.pi) % (2 * math.pi) - math.pi
         damages = [one for case in chosen.damage.values() for one in case.get(("pinion", "wheel")[i], [])]
-        hurt = [{"kind": one.nouns[0], "line": one.outline(gear).T.round(5).tolist()} for one in damages]
+        hurt = [{"kind": one._nouns[0], "line": one.outline(gear).T.round(5).tolist()} for one in damages]
         gears.append({
             "z": gear.z, "tooth": points[:, : points.shape[1] // gear.z].T.round(5).tolist(), "held": gear.held,
             "mirror": (1, pair.outward)[i], "turn": float(starts[i]), "rate": step / 0.01, "damage": hurt,
             "centre": (0.0, pair.centre_2)[i],
         })  # fmt: skip
     return {
-        "gears": gears, "pitch": pair.pitch_radius_1, "half": NEAR * pair.gear_1.m_n, "alpha": pair.alpha_w,
-        "path": [one - pair.gear_1.r_b * math.tan(pair.alpha_w) for one in pair.path], "p_bt": pair.p_bt, "r_b": pair.gear_1.r_b,
+        "gears": gears, "pitch": pair.pitch_radius_1, "half": NEAR * pair.gear_1.m_n, "alpha": pair.alpha_wt,
+        "path": [one - pair.gear_1.r_b * math.tan(pair.alpha_wt) for one in pair.path], "p_bt": pair.p_bt, "r_b": pair.gear_1.r_b,
         "told": f"centre distance {pair.a:.5g} mm, contact ratio {pair.eps_alpha:.3f}"
         + (f", overlap ratio {pair.eps_beta:.3f}" if pair.eps_beta else ""),
     }  # fmt: skip

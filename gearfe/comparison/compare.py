@@ -226,12 +226,12 @@ def damage_cycle(chosen: Case | ScenePair) -> NDArray:
 
 def _on_file(case, phase, k, tooth, estimate, seconds):
     """Curve of finite elements on file (`read_curves`) and its seconds; of the tooth pairs the damaged one alone is known."""
-    lte, nothing = case.forces[0] / k, np.full((k.size, 1), np.nan)
+    deflection, nothing = case.forces[0] / k, np.full((k.size, 1), np.nan)
     meta = {"method": "fe3d", "force_N": case.forces[0], "face": case.runs, "eps_alpha": case.pair.eps_alpha}
     meta |= {"stored": True}
     error = None if np.isnan(estimate) else estimate * k
-    order, force = np.array([case.first_tooth or 0]), (tooth * lte)[:, None]
-    return StiffnessCurve(phase, k, nothing[:, 0], lte, order, force, nothing, error, meta), seconds
+    order, force = np.array([case.first_tooth or 0]), (tooth * deflection)[:, None]
+    return StiffnessCurve(phase, k, nothing[:, 0], deflection, order, force, nothing, error, meta), seconds
 
 
 def _chosen(scene, pair, case, given):

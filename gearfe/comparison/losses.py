@@ -86,7 +86,7 @@ def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
     if phases is None:
         return curve
     rows = np.flatnonzero(np.abs(curve.phase[:, None] - phases).min(axis=1) < 1e-9)
-    names = ("phase", "k", "k_tangent", "lte", "force", "pressure", "error", "unloaded", "lte_supports")
+    names = ("phase", "k", "k_tangent", "deflection", "force", "pressure", "error", "unloaded", "support_deflection")
     arrays = {name: value for name in names if (value := getattr(curve, name)) is not None}
     return replace(curve, **{name: value[rows] for name, value in arrays.items()})
 
@@ -170,4 +170,4 @@ def rounded_up(percent: float) -> float:
 
 def tooth_stiffness(curve: StiffnessCurve, tooth: int) -> NDArray:
     """Stiffness ``(n,)`` of one tooth pair, its force over the common approach [N/m]."""
-    return curve.force[:, curve.order == tooth].sum(axis=1) / curve.lte
+    return curve.force[:, curve.order == tooth].sum(axis=1) / curve.deflection

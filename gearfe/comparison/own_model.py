@@ -114,8 +114,8 @@ def _name(model, number):
 def own_curve(name, model, pair, reference):
     """`StiffnessCurve` of an own model, as `own_models` gives it, at the phases and the load of a reference curve.
 
-    ``k_tangent = k`` and ``lte = F / k``; pressures are nan, and so are the forces of the pairs if the model gives only their
-    total. An `OwnFlexibility` gives all of it, by `solve`. ValueError if the model fails, or k has the wrong shape or is
+    ``k_tangent = k`` and ``deflection = F / k``; pressures are nan, and so are the forces of the pairs if the model gives only
+    their total. An `OwnFlexibility` gives all of it, by `solve`. ValueError if the model fails, or k has the wrong shape or is
     not finite and positive; if a file does not cover what is asked.
     """
     if isinstance(model, OwnFlexibility):
@@ -137,8 +137,8 @@ def own_curve(name, model, pair, reference):
     _hint(name, model, k, reference)
     used = touching.any(axis=0)
     nothing = np.full((k.size, np.count_nonzero(used)), np.nan)
-    lte = meta["force_N"] / k
-    return StiffnessCurve(reference.phase, k, k, lte, touch.order[used], force[:, used], nothing, meta=meta)
+    deflection = meta["force_N"] / k
+    return StiffnessCurve(reference.phase, k, k, deflection, touch.order[used], force[:, used], nothing, meta=meta)
 
 
 def _kind(model):

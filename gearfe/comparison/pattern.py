@@ -20,8 +20,8 @@ class Pattern:
     """Contact over a mesh cycle; of a damaged pair that with its damaged tooth in the middle of its engagement.
 
     `contact` as of `gearfe.contact_pattern`; `pressure` the largest of Hertz's [MPa], at `phase`, at `radius` on the pinion and
-    height `z` [mm]; `factor` the largest over the mean load per width (`face_load`); `corners` the number of phases at which a
-    tip corner carries load: pressure there is unbounded, and the largest is that of the rest.
+    height `z` [mm]; `factor` the largest over the mean load per width (`face_load_distribution`); `corners` the number of phases
+    at which a tip corner carries load: pressure there is unbounded, and the largest is that of the rest.
     """
 
     contact: Contact3D
@@ -54,7 +54,7 @@ def pattern_of(case: Case, phases: int = 24) -> Pattern:
     most = int(np.argmax([of_phase.max() for of_phase in pressures]))
     cells, at = contact.cells[most], int(np.argmax(pressures[most]))
     corners = sum(bool(((cell.corner > 0) & (cell.load > 0)).any()) for cell in contact.cells)
-    load = face_load(contact)[1]
+    load = face_load_distribution(contact)[1]
     return Pattern(
         contact, float(pressures[most][at]), float(contact.phase[most]), math.hypot(case.pair.gear_1.r_b, cells.roll_1[at]),
         float(cells.z[at]), float(load.max() / load.mean()), corners,
@@ -68,7 +68,7 @@ def render_pattern(case: Case, path: StrPath, *, title: str = "") -> Pattern:
     return pattern
 
 
-def face_load(contact: Contact3D) -> tuple[Floats, Floats]:
+def face_load_distribution(contact: Contact3D) -> tuple[Floats, Floats]:
     """Load per width along the face of a contact pattern: that of all tooth pairs together, the mean of its phases.
 
     Its largest value over its mean is the face load factor. Over a whole mesh cycle the contact lines of helical teeth pass every
@@ -90,9 +90,9 @@ def face_load(contact: Contact3D) -> tuple[Floats, Floats]:
     >>> rack = dict(m_n=3.0, alpha_n=math.radians(20), b=12.0)
     >>> pair = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack), gf.Gear(z=30, r_bore=18.0, **rack))
     >>> for askew in (0.0, 0.02):  # mm, wider open at z = b than at z = 0
-    ...     shape = gf.Misalignment(F_beta=askew)
+    ...     shape = gf.Misalignment(F_beta_x=askew)
     ...     contact = gf.contact_pattern(pair, 2000.0, gf.Material(E=207e3, nu=0.3), misalignment=shape, phases=4)
-    ...     z, load = gf.face_load(contact)
+    ...     z, load = gf.face_load_distribution(contact)
     ...     print(f"{load.mean():.0f} N/mm, face load factor {load.max() / load.mean():.2f}")
     167 N/mm, face load factor 1.02
     167 N/mm, face load factor 3.04

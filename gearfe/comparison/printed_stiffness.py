@@ -7,9 +7,9 @@ from .losses import LARGEST
 def printed_beside(scene, published, reference, drops):
     """Our values for the stiffnesses that the source of a scene prints, by id of its reference, for `judge`.
 
-    By (case, pair), case "healthy" without damage: mean stiffness [N/m] by the source's own formulas (`published`) and by the
-    `reference`, and the largest loss of stiffness [%] (`drops`). The printed errors are recomputed from the printed (corrected)
-    stiffnesses. Empty without such rows.
+    By (case, pair), case "healthy" without damage: mean stiffness [N/m] by the source's own formulas (`herringbone_article`) and
+    by the `reference`, and the largest loss of stiffness [%] (`drops`). The printed errors are recomputed from the printed
+    (corrected) stiffnesses. Empty without such rows.
     """
     ids = {"stiffness_analytical": published, "stiffness_fe": reference, "stiffness_reduction": drops}
     targets = {entry.id: {(row.case, row.pair): row.target for row in entry.rows} for entry in scene.references}
@@ -35,7 +35,7 @@ def printed_text(scene, found):
         chosen = (row for row in rows if (row.method, row.zone) == (method, zone))
         return {(row.case or "healthy", row.pair): factor * getattr(row, number) for row in chosen}
 
-    means = (by_case(method, "mean", "k") for method in ("published", reference))
+    means = (by_case(method, "mean", "k") for method in ("herringbone_article", reference))
     ours = printed_beside(scene, *means, by_case(reference, LARGEST, "loss", 100.0))
     printed = [entry for entry in scene.references if entry.id in ours]
     return text(printed, [row for entry in printed for row in judge(entry, ours[entry.id])]) if printed else ""

@@ -65,16 +65,16 @@ def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRo
     if why := _beyond(pair):
         raise ValueError(f"ISO 6336-3 is here for external spur pairs with a contact ratio between 1 and 2, but {why}")
     gear = pair.gear_1 if side == "pinion" else pair.gear_2
-    z, alpha, dedendum, tip, m_n = gear.z, gear.alpha_n, gear.dedendum, gear.tip_radius, gear.m_n
+    z, alpha, dedendum, tip, m_n = gear.z, gear.alpha_n, gear.dedendum, gear.rack_tip_radius, gear.m_n
     cut = math.pi / 4 - dedendum * math.tan(alpha) - (1 - math.sin(alpha)) * tip / math.cos(alpha)  # E, in modules as all below
-    g, theta = tip - dedendum + gear.x, math.pi / 6
+    g, theta = tip - dedendum + gear.x_E, math.pi / 6
     for _ in range(50):
         theta = 2 * g / z * math.tan(theta) - (2 / z * (math.pi / 2 - cut) - math.pi / 3)
     chord = z * math.sin(math.pi / 3 - theta) + math.sqrt(3) * (g / math.cos(theta) - tip)
     rho = tip + 2 * g**2 / (math.cos(theta) * (z * math.cos(theta) ** 2 - 2 * g))
     radius = math.hypot(gear.roll_a - (pair.eps_alpha - 1) * pair.p_bt, gear.r_b)
     at = math.acos(gear.r_b / radius)
-    gamma = (math.pi / 2 + 2 * math.tan(alpha) * gear.x) / z + math.tan(alpha) - alpha - (math.tan(at) - at)
+    gamma = (math.pi / 2 + 2 * math.tan(alpha) * gear.x_E) / z + math.tan(alpha) - alpha - (math.tan(at) - at)
     arm = (math.cos(gamma) - math.sin(gamma) * math.tan(at - gamma)) * radius / m_n
     arm += (tip - z * math.cos(math.pi / 3 - theta) - g / math.cos(theta)) / 2
     y_f = 6 * arm * math.cos(at - gamma) / (chord**2 * math.cos(alpha))

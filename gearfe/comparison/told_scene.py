@@ -11,6 +11,7 @@ from ..geometry.tooth.modified import Flank
 from ..planetary_sets.of_scene import build_set
 from ..scene.load import Scene, ScenePair
 from ..scene.schema import in_words, scene_schema
+from ..scene.train import thrusts_of
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.solve import Solve
 from .losses import told_damage
@@ -31,7 +32,7 @@ def told(scene: Scene) -> list[str]:
         lines += ["", f"gear {name}: {told_gear(gear)}"]
     for name, chosen in scene.pairs.items():
         lines += ["", *_pair(name, chosen)]
-    lines += ["", _machine(scene), *_set(scene)]
+    lines += ["", _machine(scene), *_train(scene), *_set(scene)]
     lines += [f"assumed: {note['what']}" for note in scene.assumptions]
     return lines + [f"changed: {text}" for text in scene.changed]
 
@@ -44,6 +45,7 @@ def told_gear(gear: Gear) -> str:
     """
     helix = f"helix {math.degrees(gear.beta):.4g} degrees" if gear.beta else "spur"
     shift = f", profile shift {gear.x:g}" if gear.x else ""
+    shift += f", tooth thickness allowance {1e3 * gear.E_sn:g} um (cut with x_E = {gear.x_E:.4g})" if gear.E_sn else ""
     held = f"{'rim' if gear.internal else 'bore'} of {2 * (gear.r_rim or gear.r_bore or 0.0):.4g}"
     return (
         f"{gear.z} teeth{' (ring)' if gear.internal else ''}, module {gear.m_n:g} mm, {math.degrees(gear.alpha_n):.4g} degrees, "
@@ -55,9 +57,10 @@ def told_gear(gear: Gear) -> str:
 def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
     pair, case = chosen.pair, chosen.case()
     across = f", overlap ratio {case.overlap():.3f}" if case.runs != "spur" else ""
+    play = f", backlash {1e3 * pair.backlash:.4g} um along the line of action" if pair.backlash > 1e-6 * pair.gear_1.m_n else ""
     yield (
         f"pair {name}: {pair.gear_1.z} and {pair.gear_2.z} teeth, {pair.a:.5g} mm apart, "
-        f"contact ratio {pair.eps_alpha:.3f}{across}; {told_load(chosen)}"
+        f"contact ratio {pair.eps_alpha:.3f}{across}{play}; {told_load(chosen)}"
     )
     if case.runs == "herringbone":
         groove = f" with a groove of {chosen.groove:g} mm" if chosen.groove else ""
@@ -143,6 +146,21 @@ def _machine(scene: Scene) -> str:
     return f"machine: {run['model']}, {run['speed_rpm']:g} rpm, {run['torque_Nm']:g} N m, contact by {law}"
 
 
+def _train(scene: Scene) -> Iterator[str]:
+    """Shafts of a gearbox with their speeds, and the axial forces of their gears, positive along z; torques on shafts."""
+    if scene.train is None:
+        return
+    train, thrusts = scene.train, dict.fromkeys(scene.train.shafts, 0.0)
+    for name, pushes in thrusts_of(train, scene.gears).items():
+        thrusts[train.homes[name]] += pushes
+    for name, shaft in train.shafts.items():
+        gears = ", ".join(f"{gear} at {at:g} mm" for gear, at in shaft.gears.items()) or "no gear"
+        thrust = f"; axial force of its gears {thrusts[name]:.4g} N" if abs(thrusts[name]) > 1e-9 else ""
+        yield f"  shaft {name}: {train.speeds[name] * 30 / math.pi:.6g} rpm; {gears}{thrust}"
+    ends = (f"{name} {train.torques[name]:.5g} N m at {end['shaft']}" for name, end in train.ends.items())
+    yield f"  torques on shafts: {', '.join(ends)}"
+
+
 def _set(scene: Scene) -> Iterator[str]:
     """The set of a scene."""
     if scene.set is not None:
@@ -151,9 +169,9 @@ def _set(scene: Scene) -> Iterator[str]:
 
 def told_supports(curve: StiffnessCurve) -> str:
     """How much of the deflection is that of shafts and springs, in words; empty if the hubs are held rigidly."""
-    if curve.lte_supports is None:
+    if curve.support_deflection is None:
         return ""
-    part, k_teeth = float(curve.lte_supports.mean() / curve.lte.mean()), curve.without_supports().k.mean()
+    part, k_teeth = float(curve.support_deflection.mean() / curve.deflection.mean()), curve.without_supports().k.mean()
     return (
         f"shafts and springs take {100 * part:.0f} % of the deflection, and are in k; "
         f"teeth and bodies alone have {in_newton_per_um(k_teeth)} N/um on average"

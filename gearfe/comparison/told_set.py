@@ -88,7 +88,7 @@ def told_span(positions: Floats) -> str:
 
 def told_set(case: PlanetaryCase) -> str:
     """A planetary set in words: planets, load, and what holds it."""
-    places = ", ".join(f"{one:.4g}" for one in np.degrees(case.angles).tolist())
+    places = ", ".join(f"{one:.4g}" for one in np.degrees(case.planet_angles).tolist())
     pin = "" if np.isinf(case.pin) else f", pins of {case.pin / 1e3:g} N/um"
     off = sum(1 for one in case.errors if any(one))
     errors = f", {off} of {case.planets} off their places" if off else ""

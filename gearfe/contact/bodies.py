@@ -29,17 +29,17 @@ def seen_gears(pair, face, groove):
     return out
 
 
-def seen_cracks(gear, cracks, seen, band):
-    """Cracks of a gear in the body `seen` over a band (first, last), heights counted from its first end."""
+def seen_damage(gear, damage, seen, band):
+    """Cracks and broken teeth of a gear in the body `seen` over a band (first, last), heights counted from its first end."""
     first, inwards = (0.0, 1.0) if band[0] < band[1] else (gear.b, -1.0)
-    in_band = (crack_in_band(crack, gear.b, first, first + inwards * seen.b) for crack in cracks)
-    return tuple(crack for crack in in_band if crack is not None)
+    in_band = (crack_in_band(one, gear.b, first, first + inwards * seen.b) for one in damage)
+    return tuple(one for one in in_band if one is not None)
 
 
 class Bodies(NamedTuple):
     """How the bodies of gears give: by the energy model (`energy_bodies`), by finite elements, or by a user's own model.
 
-    `flexible`: ``flexible(gear, material, cracks, neighbours=n, **shaft)`` gives a `Flexibility3D`; `coarser`, optional: the same
+    `flexible`: ``flexible(gear, material, damage, neighbours=n, **shaft)`` gives a `Flexibility3D`; `coarser`, optional: the same
     with a coarser discretisation, for an estimate of its error; `ahead`, optional: ``ahead(wanted, neighbours=n)`` gets what
     `flexible` will be called with, ``[(arguments, shaft), ...]``, before the first call.
     """
@@ -56,11 +56,11 @@ def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility
     """
 
     def of(order, less):
-        def flexible(gear, material, cracks, neighbours):
+        def flexible(gear, material, damage, neighbours):
             degree = axial_degree(gear.b, gear.m_n) if axial is None else axial
             degree -= max(2, round(degree / 4)) if less else 0
             options = {"order": order, "axial": degree, "refine": refine, "cache": cache}
-            return solve(gear, material, cracks, neighbours=neighbours, **options)
+            return solve(gear, material, damage, neighbours=neighbours, **options)
 
         return flexible
 
@@ -80,17 +80,17 @@ def bodies_of(case, bands, flexible, ahead=None):
     """
     pair, shafts = case.pair, [held if held and held.integral else None for held in case.held or (None, None)]
     seen = seen_gears(pair, case.runs, case.groove)
-    gears = list(zip((pair.gear_1, pair.gear_2), seen, case.materials, case.cracks, shafts, strict=True))
-    for gear, (body, _), _, own, _ in gears:
+    gears = list(zip((pair.gear_1, pair.gear_2), seen, case.materials, case.cracks, case.broken, shafts, strict=True))
+    for gear, (body, _), _, own, _, _ in gears:
         for crack in own:
-            if not any(seen_cracks(gear, [crack], body, band) for band in bands):
+            if not any(seen_damage(gear, [crack], body, band) for band in bands):
                 raise ValueError(f"crack open from z = {crack.width} mm: no tooth is there, but the groove of {case.groove:g} mm")
         for band in bands:
-            check_single(body, seen_cracks(gear, own, body, band))
+            check_single(body, seen_damage(gear, own, body, band))
     wanted = [
         [
-            ((body, material, seen_cracks(gear, own, body, band)), _as_seen(shaft, band), offset)
-            for gear, (body, offset), material, own, shaft in gears
+            ((body, material, seen_damage(gear, own + broken, body, band)), _as_seen(shaft, band), offset)
+            for gear, (body, offset), material, own, broken, shaft in gears
         ]
         for band in bands
     ]
@@ -120,7 +120,7 @@ def between(cells, bodies):
         group = [(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True) if half[a] == number]
         for (body, offset), sense, roll in zip(gears, (1, -1), rolls, strict=True):
             lines = [_Line(int(phase[a]), sense * int(order[a]), slice(a, b), int(start[phase[a]])) for a, b in group]
-            _add(out, body, body.basis(roll, depth + offset), lines)
+            _add(out, body, body.basis(roll, depth + offset, sense * order), lines)
     return [(matrix + matrix.T) / 2 for matrix in out]
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..geometry.aliases import Floats
 from ..geometry.mesh.outline import spaced
-from ..geometry.pair.contacts import touching
+from ..geometry.pair.broken import touching_each
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.modified import first_touch
 from .pieces import cut
@@ -71,7 +71,7 @@ class Cells:
         return out
 
 
-def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None):
+def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None, pair_of=None):
     """`Cells` of the `pieces` of some phases, and the number of the phase each belongs to ``(n,)``.
 
     Parameters
@@ -88,6 +88,8 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
         How many of these cells are taken for one: what k owes to their length.
     fine : dict of (int, int) to (float, float, float), optional
         By phase and piece: first depth, last depth, longest cell between them [mm].
+    pair_of : callable, optional
+        As of `gearfe.contact.pieces.pieces_of`.
     """
     rows, number = [], []
     for i, (group, size) in enumerate(zip(pieces, sizes, strict=True)):
@@ -105,7 +107,8 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
     roll_1, roll_2, gap = nominal.copy(), pair.mate_roll(nominal), np.zeros(z.size)
     at_corner, radius = (corner > 0) | _cut(pair, nominal), np.zeros(z.size)
     if at_corner.any():
-        roll_1[at_corner], roll_2[at_corner], gap[at_corner], corner[at_corner] = touching(pair, nominal[at_corner])[:4]
+        met = touching_each(pair_of or (lambda _: pair), order[at_corner], nominal[at_corner])
+        roll_1[at_corner], roll_2[at_corner], gap[at_corner], corner[at_corner] = met[:4]
     if flanks is not None:
         met = first_touch(pair, flanks, nominal, order, gap, z)
         roll_1, roll_2, gap, radius, corner = met.roll_1, met.roll_2, met.gap, met.radius, met.corner

@@ -15,12 +15,13 @@ import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
 from ..flexibility.energy.ritz.plane import flexibility
-from ..flexibility.energy.ritz.plane_strain import plane_hats
+from ..flexibility.energy.ritz.plane_strain import end_of, plane_hats
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
 from ..geometry.pair.contacts import TIP, end_corners, touching
+from ..geometry.pair.gear_pair import with_tips
 from ..geometry.tooth.profile import arc_at
 from ..geometry.tooth.side import on_fillet
 from .pair_contact import BEYOND, CORNER, PairContact
@@ -46,23 +47,25 @@ class CornerLaw:
         Even load [N/mm] of the width.
     further : (float, float)
         How far before the start and after the end of the path contact is looked for [mm].
+    chips : (Chip or None, Chip or None)
+        Of the teeth in contact, numbered 0.
     """
 
-    def __init__(self, pair, materials, line_load, further, *, cache=True):
-        modulus = contact_modulus(materials)
-        self.path = pair.path
-        self.inside = [_reached(pair, end, line_load, modulus) for end in (0, 1)]
+    def __init__(self, pair, materials, line_load, further, *, chips=(None, None), cache=True):
+        modulus, own = contact_modulus(materials), _chipped(pair, chips)
+        self.path = own.path
+        self.inside = [_reached(own, end, line_load, modulus) for end in (0, 1)]
         unit = modulus * pair.gear_1.m_n
         load = unit * 2.0 ** round(math.log2(line_load / unit))  # so that loads alike share a table
-        near = [_reached(pair, end, MARGIN * load, modulus) for end in (0, 1)]
+        near = [_reached(own, end, MARGIN * load, modulus) for end in (0, 1)]
         away = [pair.p_bt * 2.0 ** math.ceil(math.log2(max(a, n) / pair.p_bt)) for a, n in zip(further, near, strict=True)]
-        kept, case = solved_gears(cache), (pair, materials, load)
+        kept, case = solved_gears(cache), (pair, chips, materials, load)
         self._tables = [
             kept.get(("corner", *case, end, -n, a), partial(_table, *case, end, (-n, a), kept))
             for end, n, a in zip((0, 1), near, away, strict=True)
         ]
 
-    def ends(self, pair, cells):
+    def ends(self, cells):
         """End of the path (0 start, 1 end) whose corner each cell touches or nearly touches, -1 away from both."""
         out, middle = np.full(cells.z.size, -1), sum(self.path) / 2
         for k, sign in ((0, -1), (1, 1)):
@@ -82,6 +85,12 @@ class CornerLaw:
                 away = np.clip(sign * (nominal[at_end] - self.path[k]) * scale, low, high)
                 out[at_end] = spline.ev(np.log(np.clip(line_load[at_end], least, most)), away)
         return out
+
+
+def _chipped(pair, chips):
+    """The pair with the tips of teeth with `chips`."""
+    gears = zip((pair.gear_1, pair.gear_2), chips, strict=True)
+    return with_tips(pair, [one and one.end_roll(gear, "loaded") for gear, one in gears])
 
 
 def in_fillet(pair, roll_1, roll_2):
@@ -111,17 +120,20 @@ def _reached(pair, end, line_load, modulus):
     return float(np.abs(limit - nominal[out - 1]) + min(part, 1.0) * np.abs(nominal[1] - nominal[0]))
 
 
-def _table(pair, materials, line_load, end, span, cache):
+def _table(whole, chips, materials, line_load, end, span, cache):
     """Spline over the logarithm of the line load and the abscissa beyond an end of the path, with the limits of both.
 
     None if no corner meets the other gear at any of these abscissae.
     """
-    gears = list(zip((pair.gear_1, pair.gear_2), materials, strict=True))
-    bodies = [flexibility(gear, material, neighbours=1, cache=cache) for gear, material in gears]
+    pair, gears = _chipped(whole, chips), list(zip((whole.gear_1, whole.gear_2), materials, chips, strict=True))
+    bodies = [
+        flexibility(gear, material, broken=() if chip is None else (chip,), neighbours=1, cache=cache)
+        for gear, material, chip in gears
+    ]
     sign, limit, corner = (-1, 1)[end], pair.path[end], end_corners(pair)[end]
     c, modulus = sum(half_plane(m) for m in materials), contact_modulus(materials)
     unit = float(half_width(1.0, abs(float(pair.relative_radius(limit, pair.mate_roll(limit)))), modulus))
-    mesh = PairContact(pair, materials, bodies, [0.0], extended=True, state="plane strain")
+    mesh = PairContact(whole, materials, bodies, [0.0], extended=True, state="plane strain")
     finest = mesh.finest(line_load / LIGHT)
     finest = max(finest, LEAST * pair.gear_1.m_n) if finest else 0.0
     least = (RESOLVED * (finest or finest_hat(pair.gear_1.m_n, bodies[0].fine)) / unit) ** 2
@@ -135,7 +147,7 @@ def _table(pair, materials, line_load, end, span, cache):
     changes = np.flatnonzero(np.diff(touching(pair, limit + sign * between).corner))  # where another corner takes over
     away = np.unique(np.concatenate([away, between[changes], between[changes + 1]]))
     nominal = limit + sign * away
-    mesh = PairContact(pair, materials, bodies, (nominal - pair.path[0]) / pair.p_bt, extended=True, state="plane strain")
+    mesh = PairContact(whole, materials, bodies, (nominal - whole.path[0]) / pair.p_bt, extended=True, state="plane strain")
     column = int(np.flatnonzero(mesh.found.order == 0)[0])
     loads = line_load * LOADS
     loads = loads[loads >= least]
@@ -159,7 +171,7 @@ def _table(pair, materials, line_load, end, span, cache):
     away = away[meets]
     if away.size < 2:
         return None
-    smooth = sum(_read(*gear_material, roll[meets], cache) for gear_material, roll in zip(gears, rolls, strict=True))
+    smooth = sum(_read(*case, roll[meets], cache) for case, roll in zip(gears, rolls, strict=True))
     closing = pressed(rows, loads) - mesh.found.gap[meets, column]
     width = half_width(loads[:, None], radius[meets], modulus)
     out = (closing / loads[:, None] - smooth) / c - np.log(2 / width) - 0.5
@@ -175,7 +187,7 @@ def pressed(rows, loads):
     return closing.reshape(loads.size, len(rows))
 
 
-def _read(gear, material, roll, cache):
+def _read(gear, material, chip, roll, cache):
     """The plane's S(s, s) ``(n,)`` [mm per N/mm] at roll lengths, as the polynomials of `ritz3d` carry it."""
-    rows = carry(gear, roll)
-    return np.einsum("ni,ij,nj->n", rows, plane_hats(gear, material, cache=cache), rows)
+    rows = carry(end_of(gear, chip), roll)
+    return np.einsum("ni,ij,nj->n", rows, plane_hats(gear, material, chip, cache=cache), rows)

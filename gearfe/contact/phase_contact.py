@@ -2,12 +2,14 @@
 
 import math
 from dataclasses import replace
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
 
 from ..core.steps import steps
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
+from ..geometry.pair.broken import broken_at, pair_at
 from ..geometry.pair.contacts import TIP
 from ..geometry.pair.lines import bands_of
 from .bodies import between, faces_of, mirrors_of
@@ -19,7 +21,7 @@ from .joined_lines import System
 from .kink_law import KinkLaw
 from .pair_contact import OVERLAP
 from .pieces import beyond, gaps, pieces_of
-from .sliding import MOST, slid
+from .sliding import MOST, off_path, slid
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: the load on a shorter one would not be a line any more
 ALIKE = 1e-9  # largest difference of the cells of two halves that are solved once, in base pitches
@@ -34,7 +36,7 @@ class Carried(NamedTuple):
 
     `closed` says whether faces of a crack touched. What the supports of the hubs give way is in the approach: `given` the mean
     over the loads, so that it adds up to the approach with the rest, `least` at the cell where it is least [mm]. `unsure` is the
-    part of the approach by which contacts at corners may slide.
+    part of the approach by which contacts at corners may slide, `off_path` that of `sliding.off_path`.
     """
 
     cells: Cells
@@ -44,6 +46,7 @@ class Carried(NamedTuple):
     given: float
     least: float
     unsure: float
+    off_path: float
 
 
 class Batch(NamedTuple):
@@ -88,6 +91,7 @@ class PhaseContact:
         self.force = force
         outside = [None if held and held.integral else held for held in case.held or ()]  # other shafts are part of the bodies
         self.hubs = [held and held.hub() for held in outside] if any(outside) else None
+        self.pair_of = lru_cache(maxsize=None)(partial(pair_at, pair, case.broken))
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
         self.floors = sorted({pit.depth for gear_pits in pits for pit in gear_pits if pit.side == "loaded"})
         self.deepest = DEEPEST * pair.gear_1.m_n
@@ -103,7 +107,10 @@ class PhaseContact:
         load, self.bed = force / self.width, math.pi * self.modulus / 40
         self.reach = self.sized / self.width / self.bed
         further = self._further(self.least + 80 / (math.pi * self.modulus) * load)
-        self.law = CornerLaw(pair, materials, load, further, cache=cache) if extended else None
+        if case.missing:  # the last of the teeth beside it are this far from their path
+            further = [max(away, (2 - pair.eps_alpha) * pair.p_bt) for away in further]
+        self._laws, self._make_law = {}, partial(CornerLaw, pair, materials, load, further, cache=cache)
+        self._broken_at = partial(broken_at, pair, case.broken)
         kinked = flanks is not None and any(form.kinks for form in flanks)
         self.kinks = KinkLaw(pair, materials, load, flanks, cache=cache) if kinked else None
 
@@ -173,8 +180,8 @@ class PhaseContact:
         """`Cells` of each phase, None where there are none."""
         pieces = []
         for phase, reach, closing in zip(phases, reaches.tolist(), closings.tolist(), strict=True):
-            further = self._further(reach)
-            pieces.append(pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, further, closing))
+            away = reach - self.least if self.extended else 0.0
+            pieces.append(pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, away, closing, self.pair_of))
         sizes = []
         for group in pieces:
             length = sum(piece.last - piece.first for piece in group if not piece.floor or all(each.floor for each in group))
@@ -196,14 +203,14 @@ class PhaseContact:
         fine = {}
         if self.flanks is not None and any(form.wide for form in self.flanks):
             for _ in range(TIMES):
-                finer = carrying(*cells_of(*arguments, fine=fine), pieces, self.sized, self.bed)
+                finer = carrying(*cells_of(*arguments, fine=fine, pair_of=self.pair_of), pieces, self.sized, self.bed)
                 least = {at: FINEST * self._half_width(high - low) for at, (low, high, _) in finer.items()}
                 finer = {at: (*zone[:2], max(zone[2], least[at])) for at, zone in finer.items()}
                 finer = {at: zone for at, zone in finer.items() if zone[2] < SETTLED * (fine[at][2] if at in fine else self.step)}
                 if not finer:
                     break
                 fine |= finer
-        return cells_of(*arguments, longer=self.longer, fine=fine)
+        return cells_of(*arguments, longer=self.longer, fine=fine, pair_of=self.pair_of)
 
     def _batch(self, cells, bodies):
         """`Batch` of phases; two halves that are alike are solved once."""
@@ -236,17 +243,36 @@ class PhaseContact:
 
     def _local(self, cells):
         """Local law of the cells, as `SharedLines.solve` takes it; None if it is Hertz's everywhere."""
-        law, kinks = self.law, self.kinks
-        at = np.full(cells.z.size, -1) if law is None else law.ends(self.pair, cells)
+        laws, kinks = self._laws_at(cells), self.kinks
+        at = self._ends(cells)
         for end, form in enumerate((self.flanks or ())[::-1]):
             at[(at == end) & (form.edge is not None) & np.isin(cells.corner, (0, *TIP))] = -1  # no sharp corner there
         corner, bent = (at >= 0).any(), kinks is not None and bool(kinks.zones)
 
         def local(line_load):
-            out = law(at, cells.nominal, line_load) if corner else np.zeros(at.size)
+            out = np.zeros(at.size)
+            for law, on in laws if corner else ():
+                out += law(np.where(on, at, -1), cells.nominal, line_load)
             return out + kinks(at < 0, cells.nominal, line_load) if bent else out
 
         return local if corner or bent else None
+
+    def _laws_at(self, cells):
+        """Laws of corners, each with the cells for which it holds ``(n,)``."""
+        by_law = {}
+        for order in np.unique(cells.order).tolist() if self.extended else ():
+            chips = tuple(one and replace(one, tooth=0) for one in self._broken_at(order))
+            if chips not in self._laws:
+                self._laws[chips] = self._make_law(chips=chips)
+            by_law.setdefault(self._laws[chips], []).append(order)
+        return [(law, np.isin(cells.order, orders)) for law, orders in by_law.items()]
+
+    def _ends(self, cells):
+        """End of the path whose corner each cell touches or nearly touches, as of `CornerLaw.ends`."""
+        out = np.full(cells.z.size, -1)
+        for law, on in self._laws_at(cells):
+            out[on] = law.ends(cells)[on]
+        return out
 
     def _told(self, cells, solved, shared, alike, yields, bodies):
         """`Carried` of one phase."""
@@ -261,7 +287,8 @@ class PhaseContact:
         given = float(load @ way / load.sum()), float(way.min())
         slide, unsure = self._slid(solved, bodies, load, shared.approach, closed)
         tangent = 1 / (1 / shared.tangent - 2 * slide / load.sum())
-        return Carried(loaded, (shared.approach - slide) / cos, times * tangent * cos**2, closed, *given, unsure)
+        beyond_it = off_path(self, solved, load, radius, shared.approach)
+        return Carried(loaded, (shared.approach - slide) / cos, times * tangent * cos**2, closed, *given, unsure, beyond_it)
 
     def _slid(self, cells, bodies, load, approach, closed):
         """Part of the approach at right angles to the flanks [mm] saved by sliding, and what is unsure of the rest, relative.
@@ -272,8 +299,7 @@ class PhaseContact:
         alike = (cells.half[:, None] == cells.half) & (cells.order[:, None] == cells.order)
         open_, healthy = share * np.minimum(slide, MOST * approach)
         saved = np.minimum(open_, share * MOST * approach * (alike @ share))
-        ends = np.full(load.size, -1) if self.law is None else self.law.ends(self.pair, cells)
-        smooth = (cells.corner == 0) & (ends < 0)
+        smooth = (cells.corner == 0) & (self._ends(cells) < 0)
         unsure = np.where(smooth, healthy if closed else open_ - saved, np.abs(open_ - healthy))
         return 0.0 if closed else float(saved[smooth].sum()), float(unsure.sum() / approach)
 

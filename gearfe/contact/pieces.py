@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.kept import keeping
+from ..geometry.pair.broken import touching_each
 from ..geometry.pair.contacts import FORM, end_corners, near_pitches, touching
 from ..geometry.pair.lines import covered
 
@@ -70,8 +71,8 @@ def beyond(pair, reach):
     return tuple(float(np.interp(reach, gap, away, left=0.0)) if reach > 0 and away.size else 0.0 for away, gap in gaps(pair))
 
 
-def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0), closing=0.0):
-    """`Piece` of all contact lines of one phase that pits leave, on the path and up to `further` beyond it [mm].
+def pieces_of(pair, phase, pits, bands, beta_b, reach=0.0, closing=0.0, pair_of=None):
+    """`Piece` of all contact lines of one phase that pits leave, on the path and where gaps beyond it are below `reach` [mm].
 
     Pits deeper than `closing` take their pieces away: nothing can reach their floor. Those of others stay, on the floor. Line by
     line, from the end that touches first to the other.
@@ -82,37 +83,47 @@ def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0), closing=0.0)
         In each gear's own frame.
     bands : list
         Of `gearfe.geometry.pair.lines.bands_of`.
-    further : (float, float)
-        Of `beyond`.
     closing : float
         Normal approach [mm] that closes shallower pits.
+    pair_of : callable, optional
+        The pair with the tips of the teeth of a tooth pair, None if one is missing (`broken_teeth.pair_at`).
     """
-    start, end = pair.path
+    (start, end), further = pair.path, beyond(pair, reach)
     slope, width = math.tan(beta_b), abs(bands[0][1] - bands[0][0])
     first = math.ceil((start - further[0] - end) / pair.p_bt - phase - 1e-9)
     last = math.floor((end + further[1] - start + slope * width) / pair.p_bt - phase + 1e-9)
-    before, after = (away[0] if away.size else 0.0 for away, _ in gaps(pair))  # where corners meet a flank first
-    limits = (end + further[1], end + min(after, further[1]), end, start, start - min(before, further[0]), start - further[0])
-    at_start, at_end = (number in FORM for number in end_corners(pair))
-    rising = (  # numbers of pieces whose first or last end is at an edge that undercut leaves
-        [number for number, edge in ((2, at_start), (0, at_end)) if edge],
-        [number for number, edge in ((1, at_end), (0, at_start)) if edge],
-    )
+    pair_of = pair_of or (lambda _: pair)
+    found = {own: _limits(own, reach) for order in range(first, last + 1) if (own := pair_of(order)) is not None}
     pieces = []
     for half in range(len(bands)):
         for order in range(first, last + 1):
-            roll = start + (phase + order) * pair.p_bt
+            roll, own = start + (phase + order) * pair.p_bt, pair_of(order)
+            if own is None:
+                continue
+            limits, rising = found[own]
             for corner, low, high in _parts(roll, slope, width, limits, 1e-9 * pair.p_bt):
                 ends = (low == 0 or corner in rising[0], high == width or corner in rising[1]) if any(further) else (True, True)
                 pieces.append(Piece(half, order, roll, corner, low, high, ends))
     deep, *shallow = _by_depth(pits, closing)
-    taken = _taken(pair, deep, bands, pieces, slope)
+    taken = _taken(pair_of, deep, bands, pieces, slope)
     pieces = [part for piece, pitted in zip(pieces, taken, strict=True) for part in _left(piece, pitted, width)]
     if not shallow:
         return pieces
-    floors = [(gear, depth, _taken(pair, pitted, bands, pieces, slope)) for gear, depth, pitted in shallow]
+    floors = [(gear, depth, _taken(pair_of, pitted, bands, pieces, slope)) for gear, depth, pitted in shallow]
     pitted = [[(gear, depth, *part) for gear, depth, intervals in floors for part in intervals[k]] for k in range(len(pieces))]
     return [part for piece, above in zip(pieces, pitted, strict=True) for part in _on_floors(piece, above, width)]
+
+
+def _limits(pair, reach):
+    """Abscissae [mm] of `_parts`, and numbers of pieces whose first or last end is at an edge that undercut leaves."""
+    (start, end), further = pair.path, beyond(pair, reach)
+    before, after = (away[0] if away.size else 0.0 for away, _ in gaps(pair))  # where corners meet a flank first
+    limits = (end + further[1], end + min(after, further[1]), end, start, start - min(before, further[0]), start - further[0])
+    at_start, at_end = (number in FORM for number in end_corners(pair))
+    return limits, (
+        [number for number, edge in ((2, at_start), (0, at_end)) if edge],
+        [number for number, edge in ((1, at_end), (0, at_start)) if edge],
+    )
 
 
 def _by_depth(pits, closing):
@@ -173,8 +184,11 @@ def _left(piece, taken, width):
     return [piece._replace(first=a, last=b, ends=ends) for a, b, ends in out if b - a > 1e-6 * width]
 
 
-def _taken(pair, pits, bands, pieces, slope):
+def _taken(pair_of, pits, bands, pieces, slope):
     """Intervals of depth that pits take from each piece; beyond the path a line is bent, so it is looked at in `PARTS`."""
+    if not (any(pits) and pieces):
+        return [[] for _ in pieces]
+    pair = pair_of(pieces[0].order)
     out, (z_1, z_2) = [[] for _ in pieces], (pair.gear_1.z, pair.gear_2.z)
     teeth_1, teeth_2 = {pit.tooth % z_1 for pit in pits[0]}, {pit.tooth % z_2 for pit in pits[1]}
     pitted = [k for k, piece in enumerate(pieces) if piece.order % z_1 in teeth_1 or -piece.order % z_2 in teeth_2]
@@ -188,7 +202,8 @@ def _taken(pair, pits, bands, pieces, slope):
     rolls = nominal.copy(), pair.mate_roll(nominal)
     beyond_it = np.flatnonzero(corner)
     if beyond_it.size:
-        for gear_rolls, met in zip(rolls, touching(pair, nominal[beyond_it].ravel()), strict=False):
+        met_each = touching_each(pair_of, np.repeat(order[beyond_it], 2), nominal[beyond_it].ravel())
+        for gear_rolls, met in zip(rolls, met_each, strict=False):
             gear_rolls[beyond_it] = met.reshape(-1, 2)
     ends = np.array(bands)[half]
     z = ends[:, :1] + np.sign(ends[:, 1:] - ends[:, :1]) * depth

@@ -64,9 +64,9 @@ def slid(cells, bodies, load, radius):
         for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1[on], cells.roll_2[on]), strict=True):
             gear, z = body.gear, cells.depth[on] + offset
             arc, step = arc_at(gear, roll), STEP * gear.m_n
-            ahead, behind = (body.basis(roll_at_arc(gear, arc + side * step), z) for side in (1, -1))
+            ahead, behind = (body.basis(roll_at_arc(gear, arc + side * step), z, sense * order) for side in (1, -1))
             kernels = [one.between(sense * order, sense * order) for one in (body, body.healthy or body)]
-            fields = np.array(kernels) @ (load[on] @ body.basis(roll, z))
+            fields = np.array(kernels) @ (load[on] @ body.basis(roll, z, sense * order))
             tilt[:, on] += sense * fields @ (ahead - behind).T / (2 * step)
     return 1.5 * radius * tilt**2
 
@@ -81,9 +81,9 @@ def bounded(contact, line_load):
 def left_out(contact, line, closing, beyond):
     """Part of the approach ``(phases,)`` that is unsure: bent teeth also move along each other, and chamfers take material.
 
-    A tooth's tip bends across its centre-line, so that a part tan(alpha_w) of the approach is movement u along the flanks. On the
-    path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where the
-    flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
+    A tooth's tip bends across its centre-line, so that a part tan(alpha_wt) of the approach is movement u along the flanks. On
+    the path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where
+    the flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
 
     Of line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``; `closing` ``(phases,)`` is how far the
     load moves the gears [mm]. What cracks add far away, or in thin teeth, is unsure, too.
@@ -96,10 +96,30 @@ def left_out(contact, line, closing, beyond):
         return np.zeros(closing.size)
     closed = closing[:, None] - beyond
     stiff = np.where(line > 0, line / np.maximum(closed, 1e-3 * closing[:, None]), 0.0)
-    u, gap = math.tan(contact.pair.alpha_w) * closing[:, None], np.where(off, np.maximum(points.gap, 0.0), 0.0)
-    changed = np.where(off, (np.sqrt(2 * contact.radius * gap) * u + u**2 / 2) / contact.radius, 0.0)
-    changed = np.minimum(changed, np.where(off, closed, 0.0))  # no gap is unsure by more than it is closed
+    changed = np.where(off, _changed(contact, contact.radius, points.gap, closed, closing[:, None]), 0.0)
     return (stiff * (changed + softer)).sum(axis=1) / stiff.sum(axis=1) / closing
+
+
+def _changed(contact, radius, gap, closed, closing):
+    """By how much gaps off the path are unsure, see `left_out`: at most what they are `closed` by [mm]."""
+    u = math.tan(contact.pair.alpha_wt) * closing
+    return np.minimum((np.sqrt(2 * radius * np.maximum(gap, 0.0)) * u + u**2 / 2) / radius, closed)
+
+
+def off_path(contact, cells, load, radius, approach):
+    """Part of the `approach` [mm] of a `PhaseContact` that is unsure by what `left_out` describes.
+
+    It is zero where contact on the path carries. `load`, `radius` ``(n,)`` are those of the `Cells`.
+    """
+    on = np.flatnonzero(load > 0)
+    ends = {order: contact.pair_of(order).path for order in set(cells.order[on].tolist())}
+    start, end = np.array([ends[order] for order in cells.order[on].tolist()]).T
+    if ((cells.nominal[on] >= start) & (cells.nominal[on] <= end)).any():
+        return 0.0
+    gap = math.cos(contact.beta_b) * cells.gap[on]
+    closed = np.maximum(approach - gap, 1e-3 * approach)
+    stiff, closing = load[on] / closed, approach - gap.min()
+    return float(stiff @ _changed(contact, radius[on], gap, closed, closing) / stiff.sum() / closing)
 
 
 def _cracks_beyond(contact, line):

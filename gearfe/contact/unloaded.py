@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..geometry.pair.contacts import touching
+from ..geometry.pair.broken import touching_each
 from ..geometry.pair.modified import first_touch
 
 FINE, ROUNDS = 9, 2  # places along the cell with the least gap, and how often they are looked for more closely
@@ -30,9 +30,10 @@ def least_gap(contact, found):
     for _ in range(ROUNDS):
         steps = np.linspace(low, high, FINE, axis=1)
         at = (nominal[:, None] - slope[:, None] * steps).ravel()
-        gap = touching(contact.pair, at).gap
+        orders = np.repeat(order, FINE)
+        gap = touching_each(contact.pair_of, orders, at).gap
         if contact.flanks is not None:
-            gap = first_touch(contact.pair, contact.flanks, at, np.repeat(order, FINE), gap, (z[:, None] + steps).ravel()).gap
+            gap = first_touch(contact.pair, contact.flanks, at, orders, gap, (z[:, None] + steps).ravel()).gap
         gap, rows = gap.reshape(-1, FINE), np.arange(order.size)
         least = np.argmin(gap, axis=1)
         low, high = steps[rows, np.maximum(least - 1, 0)], steps[rows, np.minimum(least + 1, FINE - 1)]

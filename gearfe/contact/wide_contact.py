@@ -40,7 +40,8 @@ class Contact3D:
     from passing through each other; `fillet` those at which a tip presses into its mate's fillet; `error` (phases,) differences
     of k from those of longer cells and of coarser bodies [N/m], or None; `k_tangent` (phases,) ``d force / d approach`` of what
     pushes at this force [N/m]; `supports` (phases,) the part of the approach that the supports
-    of the hubs give way [mm], the mean over the loads. `error` contains what is unsure of `Carried`.
+    of the hubs give way [mm], the mean over the loads. `error` contains what is unsure of `Carried`; `off_path` (phases,) is what
+    is unsure of k where no contact on the path carries [N/m], and is not in `error`.
     """
 
     phase: Floats
@@ -56,6 +57,7 @@ class Contact3D:
     unloaded: Floats | None = None
     k_tangent: Floats | None = None
     supports: Floats | None = None
+    off_path: Floats | None = None
 
 
 def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, error=False, cache=True):
@@ -169,5 +171,5 @@ def _solved(contact, phase, bodies):
     supports = None if contact.hubs is None else np.array([loaded.given for loaded in carried])
     unsure = k * np.array([loaded.unsure for loaded in carried])
     details = {"closed": closed, "fillet": fillet, "unloaded": unloaded, "k_tangent": tangent, "supports": supports}
-    details["error"] = unsure
+    details |= {"error": unsure, "off_path": k * np.array([loaded.off_path for loaded in carried])}
     return Contact3D(phase, k, approach, orders, load, cells, dofs, **details)

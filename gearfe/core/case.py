@@ -11,7 +11,7 @@ import numpy as np
 from ..geometry.aliases import Floats
 from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import Crack, check_apart
-from ..geometry.damage.hollow import doubts_together
+from ..geometry.damage.hollow import warning_together
 from ..geometry.damage.kinds import BROKEN, Damage, by_side, split, why_wide
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.pair.flanks import Misalignment, flank_forms
@@ -182,7 +182,7 @@ class Case:
     def without_broken(self, what: str) -> None:
         """ValueError if a tooth is missing or chipped, because `what` does not model it."""
         for one in sum(self.broken, ()):
-            raise ValueError(f"a {one.nouns[0]} in {what}, which has whole teeth only: use mesh_stiffness, compare or render")
+            raise ValueError(f"a {one._nouns[0]} in {what}, which has whole teeth only: use mesh_stiffness or compare")
 
     @property
     def runs(self) -> str:
@@ -316,8 +316,8 @@ def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Any, ...], ...], .
     cracks, pits, broken = [], [], []
     for (_, sense), gear, defects in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
         hollows = [[one for one in split(defects)[1] if (one.tooth, one.side) == place] for place in _flanks(defects)]
-        together = (doubts_together(gear, found) for found in hollows)
-        for text in filter(None, (*(defect.doubts(gear) for defect in defects), *together)):
+        together = (warning_together(gear, found) for found in hollows)
+        for text in filter(None, (*(defect._warning(gear) for defect in defects), *together)):
             warnings.warn(text, stacklevel=5)
         own = [replace(defect, tooth=sense * defect.tooth) for defect in defects]
         weakens, removes = split(own)
@@ -339,7 +339,7 @@ def _check_broken(gear, defects):
         for defect in defects:
             if defect != one and (defect.tooth - one.tooth) % gear.z == 0:
                 said = "is missing" if isinstance(one, MissingTooth) else "has a chip"
-                raise ValueError(f"tooth {one.tooth} of z = {gear.z} {said} and has a {defect.nouns[0]}: give one of them")
+                raise ValueError(f"tooth {one.tooth} of z = {gear.z} {said} and has a {defect._nouns[0]}: give one of them")
     for tooth in gone:
         if (tooth + 1) % gear.z in gone:
             raise ValueError(f"teeth {tooth} and {tooth + 1} of z = {gear.z} are missing: of neighbours only one may be missing")

@@ -15,7 +15,9 @@ from ..geometry.mesh.holes import SIZES as HOLES
 from ..geometry.mesh.holes import filled, holed_sector
 from ..geometry.mesh.relieved_solid import relieved_points
 from ..geometry.mesh.solid import solid
+from ..geometry.pair.broken import pair_at
 from ..geometry.pair.contacts import FORM, Contacts, contacts
+from ..geometry.pair.contacts import touching as touching_sections
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.modified import first_touch
 from ..geometry.tooth.gear import Gear
@@ -117,6 +119,12 @@ def touching(case: Case, phase: float, approach: float) -> Touching:
         candidates = _modified(pair, candidates, heights, forms)
     out = Touching([], [], ([], []), [], [], ([], []))
     for k, order in enumerate(candidates.order.tolist()):
+        own = pair_at(pair, case.broken, order)
+        if own is None:
+            continue
+        if own != pair:
+            for name, values in touching_sections(own, candidates.nominal[:, k])._asdict().items():
+                getattr(candidates, name)[..., k] = values
         near = candidates.gap[:, k] < REACH * approach
         if not near.any():
             continue
@@ -148,24 +156,24 @@ def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float
 
     Nodes lie on modified flanks (`gearfe.geometry.mesh.relieved_solid`); axes askew are among them.
     """
-    case.without_broken("a deck")
     pair, forms, fineness = case.pair, case.forms, (how.per_width or SOLID) * how.refine
     common = min(pair.gear_1.b, pair.gear_2.b)
     touch = touching(case, phase, approach)
     parts = []
-    damage = [(*cracks, *pits) for cracks, pits in zip(case.cracks, case.pits, strict=True)]
+    damage = [tuple(sum(kinds, ())) for kinds in zip(case.cracks, case.pits, case.broken, strict=True)]
     for number, damages in enumerate(damage):
         gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
         low = -(gear.b - common) / 2
         teeth = [(1, -1)[number] * order % gear.z for order in touch.order]
-        if any(hurt.removes_contact for hurt in (damages or damage[1 - number])):  # loads change quickly along the width on both
+        if any(hurt._removes_contact for hurt in (damages or damage[1 - number])):  # loads change quickly along the width on both
             cut = [_strip(gear, touch, number, k, tooth, low, fineness) for k, tooth in enumerate(teeth)]
             body = _holed(gear, damages, cut, how)
         else:
             patches = {tooth: [_patch(gear, touch, number, k, fineness)] for k, tooth in enumerate(teeth)}
             fine = [(z, z, END * gear.b / how.layers) for z in (0.0, gear.b)]
             options = {"layer": gear.b / how.layers, "loaded": teeth, "patches": patches, "fine": fine}
-            mesh = solid(gear, cracks=tuple(damages), refine=how.refine, sizes=SIZES, **options)
+            broken = case.broken[number]
+            mesh = solid(gear, cracks=case.cracks[number], broken=broken, refine=how.refine, sizes=SIZES, **options)
             body = part_of(mesh)
             body = replace(body, faces=body.faces | {f"fillet {tooth}": faces[:4] for tooth, faces in mesh.fillets.items()})
         if forms is not None:

@@ -10,6 +10,7 @@ from ..core.files import check_output, suffix_of, written
 from ..flexibility.finite_elements.folds import check_folds
 from ..flexibility.finite_elements.one_tooth import check_gear
 from ..geometry.damage.kinds import BROKEN, NAMES, Damage, are, split
+from ..geometry.damage.missing import missing_teeth
 from ..geometry.mesh.holes import holed_sector
 from ..geometry.mesh.solid import solid
 from ..geometry.tooth.gear import Gear
@@ -31,9 +32,9 @@ def export_mesh(
 ) -> Part:
     """Write the mesh of a gear with its cracks opened and its pits cut out, without any load.
 
-    Hexahedra (20 nodes): the whole gear, cracks of the whole width or a part of it, no pits. Tetrahedra (10 nodes): a sector or
-    the whole gear, pits of one tooth as holes, at most one crack through the whole width, of the same tooth. Second order; faces
-    of a crack have nodes of their own at the same places.
+    Hexahedra (20 nodes): the whole gear, cracks of the whole width or a part of it, missing teeth and chipped tips, no pits.
+    Tetrahedra (10 nodes): a sector or the whole gear, pits of one tooth as holes, at most one crack through the whole width, of
+    the same tooth. Second order; faces of a crack have nodes of their own at the same places.
 
     Parameters
     ----------
@@ -67,33 +68,37 @@ def export_mesh(
     if not are(damage):
         raise ValueError(f"damage = {damage!r}, but give a list of {' and '.join(NAMES)} of this gear, [] for none")
     cracks, pits = split(damage)
-    for one in damage:
-        if isinstance(one, BROKEN):
-            raise ValueError(f"a {one.nouns[0]} in an exported mesh, which has whole teeth only: leave it out")
+    broken = tuple(one for one in damage if isinstance(one, BROKEN))
     cells = cells or ("tetrahedra" if pits or teeth is not None else "hexahedra")
     if cells not in KINDS:
         raise ValueError(f"cells = {cells!r}, but they are one of {', '.join(KINDS)}")
-    part = (_tets if cells == "tetrahedra" else _hexes)(gear, pits, cracks, teeth, refine)
+    part = (_tets if cells == "tetrahedra" else _hexes)(gear, pits, (cracks, broken), teeth, refine)
     _write(path, suffix, part, KINDS[cells])
     return part
 
 
-def _tets(gear, pits, cracks, teeth, refine):
+def _tets(gear, pits, seams, teeth, refine):
+    cracks, broken = seams
+    for one in broken:
+        raise ValueError(f"tetrahedra have no {one._nouns[0]}: use cells = 'hexahedra', without holes")
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
         raise ValueError("tetrahedra have at most one crack, through the whole width: use cells = 'hexahedra', without holes")
     return holed_part(holed_sector(gear, pits, *cracks, teeth=teeth, refine=refine))
 
 
-def _hexes(gear, pits, cracks, teeth, refine):
+def _hexes(gear, pits, seams, teeth, refine):
     if pits:
-        noun = pits[0].nouns[1]
+        noun = pits[0]._nouns[1]
         raise ValueError(
             f"damage has {noun}, but hexahedra have none: {noun} are cut out of tetrahedra only: use cells = 'tetrahedra'"
         )
     if teeth is not None:
         raise ValueError(f"teeth = {teeth}, but hexahedra are those of the whole gear: use cells = 'tetrahedra'")
-    loaded = sorted({crack.tooth % gear.z for crack in cracks}) or [0]
-    return part_of(solid(gear, layer=min(LAYER * gear.m_n, gear.b / 4), loaded=loaded, cracks=cracks, refine=refine))
+    cracks, broken = seams
+    gone = missing_teeth(gear, broken)
+    loaded = sorted({one.tooth % gear.z for one in (*cracks, *broken)} - {*gone}) or [1 if 0 in gone else 0]
+    options = {"layer": min(LAYER * gear.m_n, gear.b / 4), "loaded": loaded, "cracks": cracks, "broken": broken}
+    return part_of(solid(gear, refine=refine, **options))
 
 
 def _write(path, suffix, part, kind):

@@ -52,7 +52,7 @@ def plot_contact(
     offset = (pair.gear_1.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
     for pit in pits:
         z, radius = flank_edge(pair.gear_1, pit)
-        nouns = " and ".join(dict.fromkeys(hollow.nouns[1] for hollow in pits))
+        nouns = " and ".join(dict.fromkeys(hollow._nouns[1] for hollow in pits))
         label = {"label": f"{nouns}, on pair {pit.tooth:+d} only"} if pit is pits[0] else {}
         top.fill(z - offset, radius, facecolor="0.85", edgecolor="black", linewidth=0.9, zorder=1, **label)
     for limit, name in ((pair.gear_1.r_form, "form circle"), (pair.gear_1.r_a, "tip circle")):

@@ -61,7 +61,7 @@ def plot_pair(
         damage, pair = pair.damage if damage is None else damage, pair.pair
     by_gear = by_side(damage)
     tooth = next((hurt.tooth for damages in by_gear for hurt in damages), 0)
-    pitch = pair.gear_1.r_b * math.tan(pair.alpha_w)  # roll length at the pitch point
+    pitch = pair.gear_1.r_b * math.tan(pair.alpha_wt)  # roll length at the pitch point
     turns = [float(turn) for turn in pair.turn(pitch - tooth * pair.p_bt)]
     figure, views = blank((10, 5.2), 1, 2)
     for i, gear in enumerate((pair.gear_1, pair.gear_2)):
@@ -75,9 +75,9 @@ def plot_pair(
             for line in marks:
                 axes.plot(*line, color=HURT, linewidth=2.5, solid_capstyle="round", zorder=4)
     along = np.array(pair.path) - pitch
-    line = np.array([along * math.cos(pair.alpha_w), pair.pitch_radius_1 + along * math.sin(pair.alpha_w)])
+    line = np.array([along * math.cos(pair.alpha_wt), pair.pitch_radius_1 + along * math.sin(pair.alpha_wt)])
     views[1].plot(*line, color="#222222", linestyle="--", linewidth=1.2, zorder=3, label="path of contact")
-    for noun in sorted({hurt.nouns[0] for damages in by_gear for hurt in damages}):
+    for noun in sorted({hurt._nouns[0] for damages in by_gear for hurt in damages}):
         views[1].plot([], [], color=HURT, linewidth=2.5, label=noun)
     half = NEAR * pair.gear_1.m_n
     views[1].set(xlim=(-1.15 * half, 1.15 * half), ylim=(pair.pitch_radius_1 - half, pair.pitch_radius_1 + half))

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..geometry.aliases import Floats
-from ..geometry.damage.missing import MissingTooth
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import arc_at
 
@@ -38,11 +37,6 @@ def _logarithmic(arc, places, least):
     middle, tip = places[-2:]
     left = np.maximum(tip - np.maximum(arc, middle), 0.0) + least
     return np.minimum(arc - middle, 0.0) + np.log((tip - middle + least) / left)
-
-
-def missing_teeth(gear: Gear, broken: Iterable[Any]) -> tuple[int, ...]:
-    """Numbers of the missing teeth among broken ones."""
-    return tuple(one.tooth % gear.z for one in broken if isinstance(one, MissingTooth))
 
 
 def reached_teeth(gear: Gear, damage: Iterable[Any], neighbours: int) -> list[int]:

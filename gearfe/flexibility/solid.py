@@ -5,14 +5,16 @@ like a half-space is taken out (`halfspace`), the rest is smooth and carried bet
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..geometry.damage.chip import loaded_side
+from ..geometry.damage.missing import missing_teeth
 from ..geometry.kept import keeping
-from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.gear import Gear, shortened
 from ..geometry.tooth.profile import arc_at, roll_at_arc
 from .end_faces import edge_factor, mirrored_patches
 from .halfspace import half_space, hat_points, modes, patch_kernel
@@ -58,6 +60,8 @@ class Flexibility3D:
     edge : float
         Coefficient of loads mirrored in the end faces [mm**2/N], taken out of B like the half-space, see
         `gearfe.flexibility.end_faces`.
+    tips : dict of int to float
+        Of teeth whose loaded flank ends below the tip circle: roll length of the corner [mm].
     """
 
     gear: Gear
@@ -69,10 +73,14 @@ class Flexibility3D:
     healthy: "Flexibility3D | None" = None
     seam: Any = None
     edge: float = 0.0
+    tips: dict = field(default_factory=dict)
 
-    def basis(self, roll, z):
-        """Rows ``(n, PLACES * (degree + 1))`` that read B at roll lengths `roll` and heights `z` [mm]."""
+    def basis(self, roll, z, tooth=0):
+        """Rows ``(n, PLACES * (degree + 1))`` that read B at roll lengths `roll` and heights `z` [mm] of teeth `tooth`."""
         across, along = carry(self.gear, roll), modes(z, self.gear.b, self.degree)
+        for number, corner in self.tips.items():
+            on = np.broadcast_to(np.asarray(tooth) % self.gear.z == number, roll.shape)
+            across[on] = carry(shortened(self.gear, corner), roll[on])
         return (across[:, :, None] * along[:, None, :]).reshape(across.shape[0], -1)
 
     def between(self, first, second):
@@ -89,7 +97,7 @@ class Flexibility3D:
 
     def opening(self, tooth, roll, z):
         """Opening ``(k, n)`` [mm/N] of the points of `seam` under loads at `roll`, `z` [mm] of teeth `tooth`."""
-        tooth, rows = np.asarray(tooth) % self.gear.z, self.basis(roll, z)
+        tooth, rows = np.asarray(tooth) % self.gear.z, self.basis(roll, z, tooth)
         out = np.zeros((self.seam.influence.shape[0], tooth.size))
         for number in np.unique(tooth).tolist():
             if number in self.seam.opening:
@@ -114,27 +122,31 @@ class Faces:
     influence: np.ndarray
 
 
-def solved_teeth(gear, cracks, neighbours):
-    """Teeth to solve for: tooth 0 and `neighbours` following, or those around each crack."""
-    if not cracks:
+def solved_teeth(gear, damage, neighbours):
+    """Teeth to load: tooth 0 and `neighbours` following, or those around each damaged tooth, but missing ones."""
+    if not damage:
         return list(range(min(neighbours, gear.z - 1) + 1))
-    reach = max(1, neighbours)
-    return sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
+    reach, gone = max(1, neighbours), missing_teeth(gear, damage)
+    return sorted({(one.tooth + k) % gear.z for one in damage for k in range(-reach, reach + 1)} - set(gone))
 
 
-def parted(gear, material, degree, influence, unknowns, healthy=None, *, cache=True):
+def parted(gear, material, degree, influence, unknowns, healthy=None, *, damage=(), cache=True):
     """`Flexibility3D` from the influence between patches.
 
     `degree` is the highest axial mode; `influence` ``{(i, j): (n, n)}`` that between the patches of `solved_teeth`, `hats` of
-    unit area times `halfspace.modes`, modes innermost [mm/N mm]; `healthy` the `Flexibility3D` without cracks if there are any.
+    unit area times `halfspace.modes`, modes innermost [mm/N mm]; `healthy` the `Flexibility3D` without `damage` if there is any.
     """
     edge = edge_factor(material) * half_space(material)
-    local = half_space(material) * own_distance(gear, degree, cache=cache)
-    local = local + edge * own_mirrors(gear, degree, cache=cache)
     wanted = {(i, j): value for (i, j), value in influence.items() if i == 0 or healthy}  # healthy teeth are alike
-    near = {i: value - local for (i, j), value in wanted.items() if i == j}
+    near, tips = {}, {}
+    for tooth in {i for i, _ in wanted}:
+        end = loaded_side(gear, damage, tooth)
+        local = half_space(material) * own_distance(end, degree, cache=cache) + edge * own_mirrors(end, degree, cache=cache)
+        near[tooth] = wanted[tooth, tooth] - local
+        if end is not gear:
+            tips[tooth] = end.roll_a
     far = {(i, j): value for (i, j), value in wanted.items() if i != j and (j - i) % gear.z <= gear.z // 2}
-    return Flexibility3D(gear, degree, half_space(material), near, far, unknowns, healthy, edge=edge)
+    return Flexibility3D(gear, degree, half_space(material), near, far, unknowns, healthy, edge=edge, tips=tips)
 
 
 def own_distance(gear, degree, *, cache=True):

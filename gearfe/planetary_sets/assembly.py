@@ -73,7 +73,7 @@ class Set:
 
     def __init__(self, case: PlanetaryCase, bodies: Bodies, stand: Standing, coupled: bool) -> None:
         self.case, self.bodies, self.stand, self.coupled = case, bodies, stand, coupled
-        angles = np.array(case.angles)
+        angles = np.array(case.planet_angles)
         outer, inner = directions(case.gears, angles)
         self.push = np.array([outer, inner]).transpose(0, 2, 1)  # (2, planets, 2): unit forces on the planets
         out = np.array([np.sin(angles), np.cos(angles)]).T

@@ -15,6 +15,7 @@ from ..core.record import ranged, settle
 from ..geometry.damage.crack import Crack, check_apart, check_through
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.planetary import PlanetarySet
+from ..geometry.renamed import renamed
 from ..geometry.tooth.modified import Flank
 from .rim_supports import check_support
 from .standing import assembled
@@ -23,6 +24,7 @@ GEARS = ("sun", "planet", "ring")
 LARGEST = 0.1  # modules: larger position errors are probably given in another unit
 
 
+@renamed(angles="planet_angles")
 @dataclass(frozen=True, slots=True)
 class PlanetaryCase:
     """A planetary set in plane strain with its load: the carrier is held, the sun drives clockwise, the ring takes the torque.
@@ -30,13 +32,13 @@ class PlanetaryCase:
     Parameters
     ----------
     gears : PlanetarySet
-        Spur gears. Its number of planets does not count where `angles` are given.
+        Spur gears. Its number of planets does not count where `planet_angles` are given.
     force : float
         Mean over the planets of the force between sun and planet, along the line of action [N]: the sun's torque is `force` times
         the number of planets times the sun's r_b.
     material : Material or (Material, Material, Material)
         Of all gears, or of sun, planets and ring.
-    angles : sequence of float, optional
+    planet_angles : sequence of float, optional
         Where the planets stand, clockwise from +y [rad]; default: equally spaced from 0 on. Teeth fit only where planets are
         whole multiples of ``2 pi / (z_s + z_r)`` apart.
     ring : "held", RimBed or RimSupports
@@ -67,7 +69,7 @@ class PlanetaryCase:
     gears: PlanetarySet
     force: float
     material: Any
-    angles: Any = None
+    planet_angles: Any = None
     ring: Any = "held"
     floating: bool = False
     pin: float = math.inf
@@ -87,7 +89,9 @@ class PlanetaryCase:
             )
         n = self.gears.n_planets
         even = 2 * math.pi / n * np.arange(n)
-        settle(self, angles=tuple(assembled(self.gears, even if self.angles is None else self.angles).tolist()))
+        settle(
+            self, planet_angles=tuple(assembled(self.gears, even if self.planet_angles is None else self.planet_angles).tolist())
+        )
         settle(self, force=ranged("force", self.force, " N", above=0.0))
         settle(self, pin=ranged("pin", self.pin, " N/mm", above=0.0, finite=False))
         materials = tuple(self.material) if isinstance(self.material, (tuple, list)) else (self.material,) * 3
@@ -107,7 +111,7 @@ class PlanetaryCase:
     @property
     def planets(self) -> int:
         """Number of planets."""
-        return len(self.angles)
+        return len(self.planet_angles)
 
     @property
     def width(self) -> float:
@@ -173,7 +177,7 @@ class PlanetaryCase:
     def with_(self, **changed: Any) -> "PlanetaryCase":
         """The same with other values; flanks and damage are given anew as a whole.
 
-        Gears with another number of planets stand equally spaced unless `angles` are given.
+        Gears with another number of planets stand equally spaced unless `planet_angles` are given.
 
         Raises
         ------
@@ -182,8 +186,8 @@ class PlanetaryCase:
         """
         gears = changed.get("gears", self.gears)
         if getattr(gears, "n_planets", None) != self.gears.n_planets:
-            changed = {"angles": None} | changed
-        angles = changed.get("angles", self.angles)
+            changed = {"planet_angles": None} | changed
+        angles = changed.get("planet_angles", self.planet_angles)
         count = gears.n_planets if angles is None else np.size(angles)
         planets = {name: any(name not in ("sun", "ring") for name in getattr(self, name)) for name in ("flanks", "damage")}
         planets["errors"] = any(map(any, self.errors))

@@ -56,7 +56,7 @@ class SetDeck:
             moments.append(float((place[1] * f[0] - place[0] * f[1]).sum()))
             sums.append(f.sum(axis=1))
         gears, n = self.case.gears, self.case.planets
-        outer, inner = directions(gears, np.array(self.case.angles))
+        outer, inner = directions(gears, np.array(self.case.planet_angles))
         meshes = []
         for i in range(n):  # the pin holds against both meshes: force and clockwise torque
             rows = np.column_stack([np.append(outer[:, i], -1.0), np.append(inner[:, i], 1.0)])

@@ -44,7 +44,7 @@ def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
     without = np.flatnonzero((curves.force[:, at] == 0).any(axis=0)).tolist()
     if without:
         raise ValueError(f"planet {without[0]} carries nothing at position {at}, so that its place is not known: choose another")
-    return case, standing(case.gears, np.array(case.angles), [curves.position[at]])
+    return case, standing(case.gears, np.array(case.planet_angles), [curves.position[at]])
 
 
 def meshed(case, gear, rolls, fillet, near, far, pad):
@@ -95,7 +95,7 @@ def touching(case, stand, curves, at):
 
 def placed(case, stand, curves, at):
     """Gear, material, centre [mm], angle of tooth 0 [rad], and motion of the held nodes (turn, (x, y)) of sun, planets, ring."""
-    angles, gears = np.array(case.angles), case.gears
+    angles, gears = np.array(case.planet_angles), case.gears
     sun, planets, ring = tooth_angles(gears, angles, stand)
     _, inner = directions(gears, angles)
     turn, orbit = curves.te[at] * 1e3, curves.orbit[at] * 1e3

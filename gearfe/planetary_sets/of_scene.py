@@ -37,7 +37,7 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
     """
     given = scene.set
     if given is None:
-        raise ValueError(f"scene {scene.name} has no [set] table: add one with n_planets or angles_deg")
+        raise ValueError(f"scene {scene.name} has no [set] table: add one with n_planets or planet_angles_deg")
     outer, inner = (scene.pairs[name] for name in given.pairs)
     for name, pair in zip(given.pairs, (outer, inner), strict=True):
         if pair.supports or pair.misalignment:
@@ -52,7 +52,8 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
     materials = (*outer.materials, inner.materials[1])
     with located(file, "set"):
         return PlanetaryCase(
-            given.gears, given.force, materials, angles=given.angles, ring=ring, floating=given.floating, pin=given.pin,
+            given.gears, given.force, materials, planet_angles=given.planet_angles, ring=ring,
+            floating=given.floating, pin=given.pin,
             errors=given.errors, flanks=flanks, damage=damage,
         )  # fmt: skip
 
@@ -89,7 +90,7 @@ def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, i
         raise ValueError(f"no case {case!r} in the set of scene {scene.name}; it has {', '.join(known) or 'none'}")
     one, two = outer.damage.get(case, {}), inner.damage.get(case, {})
     hurt = [own for found in (*one.values(), *two.values()) for own in found]
-    other = sorted({own.nouns[0] for own in hurt if not isinstance(own, Crack)})
+    other = sorted({own._nouns[0] for own in hurt if not isinstance(own, Crack)})
     if other:
         raise ValueError(
             f"case {case!r} has a {' and a '.join(other)}, but the section of a set has cracks only: choose a case of cracks"

@@ -45,9 +45,9 @@ def assembled(set_: "PlanetarySet", angles: ArrayLike) -> Floats:
 
     ValueError if teeth do not fit there, or neighbours touch; the message gives the nearest angles that fit.
     """
-    places = numbers("angles", angles, " [rad], one for each planet")
+    places = numbers("planet_angles", angles, " [rad], one for each planet")
     if places.ndim != 1 or not places.size or not np.isfinite(places).all():
-        raise ValueError(f"angles = {angles!r}, but give a finite angle for each planet [rad]")
+        raise ValueError(f"planet_angles = {angles!r}, but give a finite angle for each planet [rad]")
     step = 2 * math.pi / (set_.sun.z + set_.ring.z)
     away = (places - places[0]) / step
     if (np.abs(away - np.round(away)) > FITS).any():
@@ -91,12 +91,12 @@ def standing(set_: "PlanetarySet", angles: Floats, position: ArrayLike) -> Stand
 
 def _turn_1(pair, nominal):
     """Clockwise angle of the pinion's tooth in contact at `nominal` [mm], which may be anywhere on the line of action."""
-    middle = pair.gear_1.r_b * math.tan(pair.alpha_w)
+    middle = pair.gear_1.r_b * math.tan(pair.alpha_wt)
     return pair.turn(middle)[0] + (nominal - middle) / pair.gear_1.r_b
 
 
 def _turn_2(pair, nominal):
-    middle = pair.gear_1.r_b * math.tan(pair.alpha_w)
+    middle = pair.gear_1.r_b * math.tan(pair.alpha_wt)
     return pair.turn(middle)[1] - pair.outward * (nominal - middle) / pair.gear_2.r_b
 
 
@@ -116,5 +116,5 @@ def directions(set_: "PlanetarySet", angles: Floats) -> tuple[Floats, Floats]:
     def turned(x, y):
         return np.array([x * cos + y * sin, y * cos - x * sin])
 
-    alpha_outer, alpha_inner = set_.sun_planet.alpha_w, set_.planet_ring.alpha_w
+    alpha_outer, alpha_inner = set_.sun_planet.alpha_wt, set_.planet_ring.alpha_wt
     return turned(math.cos(alpha_outer), math.sin(alpha_outer)), turned(math.cos(alpha_inner), -math.sin(alpha_inner))

@@ -120,8 +120,8 @@ def _places(machine, case, names):
         lost = [one for one in asked if one not in own]
         if lost or name.format(case.planets + 1) in own:
             raise ValueError(f"{case.planets} planets in the set, but the machine's meshes are {', '.join(own)}: give `names`")
-        for one, angle in zip(asked, case.angles, strict=True):
-            _check(machine, machine.meshes[own[one]], pair, angle + back * (math.pi / 2 - pair.alpha_w))
+        for one, angle in zip(asked, case.planet_angles, strict=True):
+            _check(machine, machine.meshes[own[one]], pair, angle + back * (math.pi / 2 - pair.alpha_wt))
         out.append([own[one] for one in asked])
     return out
 
@@ -137,7 +137,9 @@ def _check(machine, mesh, pair, direction):
         told = (", ".join(f"{1e3 * one:.6g}" for one in found) for found in (radii, want))
         raise ValueError("mesh {} has base radii of {} mm, but in the set of {} mm".format(mesh.name, *told))
     if any(abs(x * math.sin(direction) - y * math.cos(direction)) > SAME for x, y in zip(along, across, strict=True)):
-        raise ValueError(f"mesh {mesh.name} does not lie as in the set: give the machine's planets the set's angles as `places`")
+        raise ValueError(
+            f"mesh {mesh.name} does not lie as in the set: give the machine's planets the set's angles as `planet_angles`"
+        )
     if mesh.damage:
         raise ValueError(f"mesh {mesh.name} has damage besides the set: give it to the PlanetaryCase, and a healthy machine here")
 

@@ -30,7 +30,7 @@ RANGES = {
     "x_2": (-0.3, 0.6),
     "bore_1": (0.2, 0.9),
     "bore_2": (0.2, 0.9),
-    "tip_radius": (0.2, 0.38),
+    "rack_tip_radius": (0.2, 0.38),
     "crack": (0.02, 0.7),
 }
 LOADS = (10.0, 50.0, 250.0)
@@ -124,7 +124,7 @@ def error_map(
 
 def build(sample):
     """Pair of module 1 and width 1 mm from the sampled numbers."""
-    rack = {"m_n": 1.0, "alpha_n": math.radians(sample["alpha_deg"]), "b": 1.0, "tip_radius": sample["tip_radius"]}
+    rack = {"m_n": 1.0, "alpha_n": math.radians(sample["alpha_deg"]), "b": 1.0, "rack_tip_radius": sample["rack_tip_radius"]}
     with own_warnings():  # tip radii are capped at the full rounding
         gears = []
         for k in (1, 2):

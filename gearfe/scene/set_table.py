@@ -13,15 +13,15 @@ from .schema import arguments
 class SceneSet:
     """A planetary set of a scene: `pairs` names those of sun and planet, and of planet and ring.
 
-    `force` is the mean of a mesh along the line of action [N], `angles` where planets stand [rad] (None: equally spaced), `pin`
-    the stiffness of each pin [N/mm], `errors` by planet how far its pin stands off, outwards and clockwise [mm], `support` the
-    checked table ``[ring.support]``.
+    `force` is the mean of a mesh along the line of action [N], `planet_angles` where planets stand [rad] (None: equally spaced),
+    `pin` the stiffness of each pin [N/mm], `errors` by planet how far its pin stands off, outwards and clockwise [mm], `support`
+    the checked table ``[ring.support]``.
     """
 
     gears: PlanetarySet
     pairs: tuple[str, str]
     force: float
-    angles: tuple[float, ...] | None
+    planet_angles: tuple[float, ...] | None
     floating: bool
     pin: float
     errors: tuple[tuple[float, float], ...]
@@ -38,14 +38,16 @@ def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet |
     if row is None:
         for name in ("ring", "pin"):
             if rows[name]:
-                raise ValueError(f"{file}: [{name}] belongs to a planetary set: add a table [set] with n_planets or angles_deg")
+                raise ValueError(
+                    f"{file}: [{name}] belongs to a planetary set: add a table [set] with n_planets or planet_angles_deg"
+                )
         return None
     ring = rows["ring"] or checked("gearfe.scene", "ring", file, "ring", {})
     names = _pairs(file, row, pairs, rows["pair"])
     outer, inner = (pairs[name].pair for name in names)
-    angles, n = row["angles_deg"], row["n_planets"]
+    angles, n = row["planet_angles_deg"], row["n_planets"]
     if angles == []:
-        raise ValueError(f"{file} [set] angles_deg = []: give the angle of each planet, or n_planets")
+        raise ValueError(f"{file} [set] planet_angles_deg = []: give the angle of each planet, or n_planets")
     count = n if angles is None else len(angles)
     with located(file, "set", row):
         gears = PlanetarySet(outer.gear_1, outer.gear_2, inner.gear_2, n or 1, outer.a)
@@ -57,7 +59,7 @@ def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet |
         errors=_errors(file, rows["pin"], count),
         damaged_planet=_planet(file, "set", "damaged_planet", row["damaged_planet"], count),
         support=ring["support"],
-        **{"angles": None, "pin": math.inf} | arguments("set", row, "angles_deg", "pin_N_per_um"),
+        **{"planet_angles": None, "pin": math.inf} | arguments("set", row, "planet_angles_deg", "pin_N_per_um"),
     )
 
 

@@ -10,12 +10,19 @@ import numpy as np
 
 from ..core.files import check_path
 from ..geometry.aliases import StrPath
+from ..geometry.renamed import warn_renamed
+
+FORMER = {  # former keys
+    "crowning_um": "profile_crowning_um", "slope_um": "profile_slope_um", "lead_crowning_um": "helix_crowning_um",
+    "lead_slope_um": "helix_slope_um", "F_beta_um": "F_beta_x_um", "tip_radius": "rack_tip_radius",
+    "angles_deg": "planet_angles_deg",
+}  # fmt: skip
 
 
 def read_toml(file: Any) -> dict[str, Any]:
     """Tables of a file (a path, or a resource of the package); ValueError that names it if it is not TOML."""
     try:
-        return tomllib.loads(file.read_text(encoding="utf-8-sig"))
+        return _renamed(file.name, tomllib.loads(file.read_text(encoding="utf-8-sig")))
     except (OSError, ValueError, RecursionError) as error:  # ValueError: no UTF-8, no TOML, whole numbers of 4300 digits
         raise ValueError(f"{file.name}: not readable as TOML: {error}") from error
 
@@ -26,12 +33,28 @@ def given_tables(given: StrPath | Mapping[str, Any], what: str) -> tuple[str, Pa
     ValueError if there is no such file, or it is not TOML.
     """
     if isinstance(given, Mapping):
-        return what, Path(), _plain(given)
+        return what, Path(), _renamed(what, _plain(given))
     check_path(what, given)
     path = Path(given)
     if not path.is_file():
         raise ValueError(f"no {what} {str(given)!r}: give a .toml file")
     return path.name, path.parent, read_toml(path)
+
+
+def _renamed(file, value):
+    """Tables with present names of keys, also at the end of dotted keys; a note for each former one."""
+    if isinstance(value, list):
+        return [_renamed(file, entry) for entry in value]
+    if not isinstance(value, dict):
+        return value
+    out = {}
+    for key, entry in value.items():
+        place, dot, last = key.rpartition(".")
+        if last in FORMER:
+            warn_renamed(f"{file}: key {last}", FORMER[last], FutureWarning)
+            key = f"{place}{dot}{FORMER[last]}"
+        out[key] = _renamed(file, entry)
+    return out
 
 
 def _plain(value):

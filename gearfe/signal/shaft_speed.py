@@ -26,7 +26,7 @@ LOOK = "look at gearfe.plot_spectrogram; give a range that the speed does not le
 GOLDEN = (math.sqrt(5) - 1) / 2
 
 
-def with_own_speed(
+def with_estimated_speed(
     signal: Signal, order: float, speeds: tuple[float, float], *, harmonics: int = 3, seconds: float | None = None
 ) -> Signal:
     """The signal with the angle of its shaft, found from a line and its harmonics, such as those of the mesh.

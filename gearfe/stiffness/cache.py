@@ -17,7 +17,8 @@ from ..flexibility.energy.ritz.solid import flexibility3d
 from ..flexibility.finite_elements import fe
 from ..flexibility.finite_elements.fe_gear3d import WholeGear, solid_flexibility
 from ..flexibility.solved import PROCESS, solved_gears
-from ..geometry.damage.crack import meshed_path
+from ..geometry.damage.crack import Crack, meshed_path
+from ..geometry.damage.kinds import told
 from .flexibility_file import read_flexibility, write_flexibility
 
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
@@ -50,53 +51,54 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
     return _kept("section", gear, case, solve, kept)
 
 
-def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options):
+def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options):
     """`Flexibility3D` of a gear of finite width by finite elements of all of it, from the cache if it is there.
 
     `cache` as of `solved_gear`, `options` as of `finite_elements.fe_gear3d.WholeGear`: neighbours, degree, less, refine, section,
     shaft. `tell` gets one line of text before each solve: which gear, the unknowns, the expected seconds and memory.
     """
     kept = solved_gears(cache)
-    for crack in cracks:
-        meshed_path(gear, crack)  # refused before the sound gear is solved
+    for one in damage:
+        if isinstance(one, Crack):
+            meshed_path(gear, one)  # refused before the sound gear is solved
 
     def said(plan):
-        damage = f", {len(cracks)} cracks" if cracks else ""
-        tell(f"z = {gear.z}, b = {gear.b:g} mm{damage}: {plan}")
+        hurt = f", {told({'': gear}, {'': damage})}" if damage else ""
+        tell(f"z = {gear.z}, b = {gear.b:g} mm{hurt}: {plan}")
 
     def solve():
-        healthy = solved_solid(gear, material, cache=kept, tell=tell, **options) if cracks else None
+        healthy = solved_solid(gear, material, cache=kept, tell=tell, **options) if damage else None
         keywords = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
-        return solid_flexibility(WholeGear(gear, cracks, **options), material, **keywords)
+        return solid_flexibility(WholeGear(gear, damage, **options), material, **keywords)
 
-    return _kept("solid", gear, _solid_case(material, cracks, options), solve, kept)
+    return _kept("solid", gear, _solid_case(material, damage, options), solve, kept)
 
 
-def solved_energy(gear, material, cracks=(), *, cache=True, **options):
+def solved_energy(gear, material, damage=(), *, cache=True, **options):
     """`Flexibility3D` of a gear of finite width by the energy model, from the cache if it is there.
 
     `cache` as of `solved_gear`, `options` as of `energy.ritz.solid.flexibility3d`: neighbours, order, axial, refine.
     """
     kept = solved_gears(cache)
-    solve = partial(flexibility3d, gear, material, cracks, cache=kept, **options)
-    return _kept("energy", gear, _solid_case(material, cracks, options), solve, kept)
+    solve = partial(flexibility3d, gear, material, damage, cache=kept, **options)
+    return _kept("energy", gear, _solid_case(material, damage, options), solve, kept)
 
 
-def _solid_case(material, cracks, options):
-    return material, cracks, tuple(sorted(options.items()))
+def _solid_case(material, damage, options):
+    return material, damage, tuple(sorted(options.items()))
 
 
-def unsolved(gear, material, cracks=(), *, cache=True, **options):
+def unsolved(gear, material, damage=(), *, cache=True, **options):
     """`finite_elements.solver.Plan` by key of what `solved_solid` would solve now, without what is kept or on the disk.
 
     RuntimeError, with the numbers, if one of them does not fit into memory.
     """
-    key = ("solid", gear, *_solid_case(material, cracks, options))
+    key = ("solid", gear, *_solid_case(material, damage, options))
     kept = solved_gears(cache)
     if key in kept or (kept is PROCESS and (file := _file(key)[0]) and file.exists()):
         return {}
-    before = unsolved(gear, material, cache=kept, **options) if cracks else {}
-    return before | {key: WholeGear(gear, cracks, **options).plan()}
+    before = unsolved(gear, material, cache=kept, **options) if damage else {}
+    return before | {key: WholeGear(gear, damage, **options).plan()}
 
 
 def _file(key):

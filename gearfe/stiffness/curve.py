@@ -15,12 +15,14 @@ from ..figures.inline import line_svg
 from ..figures.stiffness_plots import plot_curves
 from ..flexibility.section_contact import MARKS
 from ..geometry.aliases import Floats, StrPath
+from ..geometry.renamed import renamed
 from .curve_file import content, read_fields
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+@renamed(lte="deflection", lte_supports="support_deflection")
 @dataclass(frozen=True, slots=True)
 class StiffnessCurve:
     """Mesh stiffness along the line of action.
@@ -33,9 +35,9 @@ class StiffnessCurve:
         Secant stiffness, force over loaded transmission error [N/m].
     k_tangent : ndarray, shape (n,)
         Tangent stiffness dF/dx [N/m].
-    lte : ndarray, shape (n,)
-        Loaded minus unloaded transmission error, as a length on the line of action [m]; ``k = force / lte``, also where so light
-        a load leaves part of the pairs open.
+    deflection : ndarray, shape (n,)
+        Loaded minus unloaded transmission error, as a length on the line of action [m]; ``k = force / deflection``, also where so
+        light a load leaves part of the pairs open.
     order : ndarray, shape (pairs,)
         Which tooth pairs the columns below belong to: pair k is k base pitches ahead of the newest.
     force : ndarray, shape (n, pairs)
@@ -46,9 +48,9 @@ class StiffnessCurve:
         Estimated discretisation error of k [N/m], if one was asked for.
     unloaded : ndarray, shape (n,) or None
         Transmission error without load [m]: 0 for involutes, otherwise where the first pair of modified flanks touches.
-    lte_supports : ndarray, shape (n,) or None
-        The part of `lte` that shafts and springs under the hubs give way [m], the mean over the loads of the contact; None of
-        rigid bores.
+    support_deflection : ndarray, shape (n,) or None
+        The part of `deflection` that shafts and springs under the hubs give way [m], the mean over the loads of the contact; None
+        of rigid bores.
     meta : dict
         Gears, centre distance, load, materials, method, resolution, versions: all that is needed to repeat it.
     """
@@ -56,14 +58,14 @@ class StiffnessCurve:
     phase: Floats
     k: Floats
     k_tangent: Floats
-    lte: Floats
+    deflection: Floats
     order: NDArray[np.int64]
     force: Floats
     pressure: Floats
     error: Floats | None = None
     meta: dict[str, Any] = field(default_factory=dict)
     unloaded: Floats | None = None
-    lte_supports: Floats | None = None
+    support_deflection: Floats | None = None
 
     def __repr__(self):
         """One line: method, phases, load, the range of k."""
@@ -97,7 +99,7 @@ class StiffnessCurve:
     def to_xarray(self) -> Any:
         """The curve as an `xarray.Dataset` with named axes ``phase`` and ``order`` (the tooth pair), units in ``attrs``.
 
-        ``k``, ``k_tangent``, ``lte`` and, if there is one, ``error`` over ``phase``; ``force`` and ``pressure`` over both.
+        ``k``, ``k_tangent``, ``deflection`` and, if there is one, ``error`` over ``phase``; ``force`` and ``pressure`` over both.
         RuntimeError if xarray is missing; the message names what to install.
         """
         try:
@@ -134,7 +136,7 @@ class StiffnessCurve:
     @property
     def te(self) -> Floats:
         """Transmission error under load ``(n,)`` [m], its unloaded part included, as a length on the line of action."""
-        return self.lte if self.unloaded is None else self.lte + self.unloaded
+        return self.deflection if self.unloaded is None else self.deflection + self.unloaded
 
     def without_supports(self) -> "StiffnessCurve":
         """The stiffness of the teeth and bodies alone, loaded as they are on their shafts.
@@ -142,13 +144,13 @@ class StiffnessCurve:
         For models that have shafts and bearings of their own: they must not be counted twice. The tangent stiffness takes the
         shafts' tangent for their secant, which is exact of hubs that do not tilt.
         """
-        if self.lte_supports is None:
+        if self.support_deflection is None:
             return self
-        lte, way = self.lte - self.lte_supports, self.lte_supports / self.meta["force_N"]
+        deflection, way = self.deflection - self.support_deflection, self.support_deflection / self.meta["force_N"]
         k_tangent = 1 / (1 / self.k_tangent - way)
-        error = None if self.error is None else self.error * (self.lte / lte) ** 2
-        k = self.meta["force_N"] / lte
-        return replace(self, k=k, k_tangent=k_tangent, lte=lte, error=error, lte_supports=None)
+        error = None if self.error is None else self.error * (self.deflection / deflection) ** 2
+        k = self.meta["force_N"] / deflection
+        return replace(self, k=k, k_tangent=k_tangent, deflection=deflection, error=error, support_deflection=None)
 
     @property
     def share(self) -> Floats:
@@ -217,7 +219,9 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
             return None
         return np.concatenate([np.zeros(c.phase.size) if part is None else part for c, part in zip(curves, parts, strict=True)])
 
-    whole = {name: np.concatenate([getattr(curve, name) for curve in curves]) for name in ("phase", "k", "k_tangent", "lte")}
+    whole = {
+        name: np.concatenate([getattr(curve, name) for curve in curves]) for name in ("phase", "k", "k_tangent", "deflection")
+    }
     return StiffnessCurve(
         **whole,
         order=order,
@@ -226,7 +230,7 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
         error=row("error"),
         meta=_meta_of(curves),
         unloaded=row("unloaded"),
-        lte_supports=row("lte_supports"),
+        support_deflection=row("support_deflection"),
     )
 
 

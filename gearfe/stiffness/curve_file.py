@@ -6,15 +6,15 @@ import numpy as np
 
 from ..core.files import Content, read_text
 
-COLUMNS = {"phase": "-", "k": "N/m", "k_tangent": "N/m", "lte": "m"}
-OPTIONAL = {"error": "N/m", "unloaded": "m", "lte_supports": "m"}
+COLUMNS = {"phase": "-", "k": "N/m", "k_tangent": "N/m", "deflection": "m"}
+OPTIONAL = {"error": "N/m", "unloaded": "m", "support_deflection": "m"}
 PER_PAIR = {"force": "N", "pressure": "Pa"}
 TITLE = "gearfe stiffness curve, version 1"
 FIRST_LINE = f"# {TITLE}"
 
 
 def content(curve):
-    """Return the `Content` of a `StiffnessCurve` (``error``, ``unloaded``, ``lte_supports`` only if there are any)."""
+    """Return the `Content` of a `StiffnessCurve` (``error``, ``unloaded``, ``support_deflection`` only if there are any)."""
     columns = {f"{name} [{unit}]": getattr(curve, name) for name, unit in COLUMNS.items()}
     extra = {name: unit for name, unit in OPTIONAL.items() if getattr(curve, name) is not None}
     for name, unit in extra.items():

@@ -85,7 +85,7 @@ class MeshCycle:
         return math.lcm(1, *(part.period for part in self.parts))
 
     def sampled(self, name: str = "k") -> Floats:
-        """``k`` [N/m], ``lte`` [m] or ``unloaded`` [m] at the samples of all `cycles`, ``(cycles phases,)``."""
+        """``k`` [N/m], ``deflection`` [m] or ``unloaded`` [m] at the samples of all `cycles`, ``(cycles phases,)``."""
         n, size = self.phases, self.cycles * self.phases
         healthy = _values(self.healthy, name)
         out = np.tile(healthy, self.cycles)

@@ -129,8 +129,8 @@ ROWS = (
     ),
     Method(
         "ritz3d", "converged energy model of gears of finite width: helical, herringbone, pits", "solid",
-        "gearfe.flexibility.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="any", pits=True, faces=FACES,
-        error=True, extended=True, flanks=True, order=3, kept="process",
+        "gearfe.flexibility.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="any", pits=True, broken=True,
+        faces=FACES, error=True, extended=True, flanks=True, order=3, kept="process",
     ),
     Method(
         "fe", "finite elements of the transverse section; mesh, elements and solution are not those of ritz", "section",
@@ -139,8 +139,8 @@ ROWS = (
     ),
     Method(
         "fe3d", "finite elements of whole gears of finite width; mesh, elements and solution are not those of ritz3d", "solid",
-        "gearfe.stiffness.cache:solved_solid", "minutes", converged=True, cracks="any", pits=True, faces=FACES, error=True,
-        extended=True, flanks=True, kept="disk",
+        "gearfe.stiffness.cache:solved_solid", "minutes", converged=True, cracks="any", pits=True, broken=True, faces=FACES,
+        error=True, extended=True, flanks=True, kept="disk",
     ),
     Method(
         "coupled", "closed form: tapered beams on a common annulus, neighbours coupled; healthy external gears", "section",
@@ -152,12 +152,14 @@ ROWS = (
         variants=True, flanks=True, crack_models=("constant", "straight", "parabola"),
     ),
     Method(
-        "published", "closed form: the beams of the article, as printed and corrected, plain sum of tooth pairs", "sum",
-        "gearfe.flexibility.energy.closed.published", "milliseconds", cracks="through", pits=True, rings="printed", faces=FACES,
+        "herringbone_article", "closed form: the beams of the article, as printed and corrected, plain sum of tooth pairs", "sum",
+        "gearfe.flexibility.energy.closed.herringbone_article", "milliseconds", cracks="through", pits=True,
+        rings="printed", faces=FACES,
         variants=True, flanks=True, crack_models=("constant",),
     ),
 )  # fmt: skip
 METHODS = {row.name: row for row in ROWS}
+FORMER = {"published": "herringbone_article"}  # former names of methods
 NAMES = ("auto", *METHODS)
 SUMS = tuple(row.name for row in ROWS if row.kind == "sum")
 RING_FOUNDATIONS = {  # variants `foundation` that say what a ring's body does
@@ -167,9 +169,19 @@ RING_FOUNDATIONS = {  # variants `foundation` that say what a ring's body does
 }
 
 
+def current(name: Any) -> Any:
+    """Return the present name of a method, with a DeprecationWarning for a former one; anything else unchanged."""
+    if isinstance(name, str) and name in FORMER:
+        from ..geometry.renamed import warn_renamed  # here: it loads numpy, and the command's help needs none
+
+        warn_renamed(f"method {name!r}", repr(FORMER[name]))
+        return FORMER[name]
+    return name
+
+
 def described():
     """One line of text for each method: its name, what it is, what it costs."""
-    return "\n".join(f"  {row.name:10s} {row.about}; {row.cost}" for row in ROWS)
+    return "\n".join(f"  {row.name:19s} {row.about}; {row.cost}" for row in ROWS)
 
 
 def having(what, kind=None):

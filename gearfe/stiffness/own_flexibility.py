@@ -66,9 +66,9 @@ class OwnFlexibility:
     Raises
     ------
     ValueError
-        If something is none of these, such as a plain sum of tooth pairs (``"textbook"``, ``"published"``). `mesh_stiffness`
-        raises one if a function fails, or its matrix has another shape, is not real or finite, not symmetric, or (``bulk``)
-        gives way against a load.
+        If something is none of these, such as a plain sum of tooth pairs (``"textbook"``, ``"herringbone_article"``).
+        `mesh_stiffness` raises one if a function fails, or its matrix has another shape, is not real or finite, not symmetric, or
+        (``bulk``) gives way against a load.
 
     Examples
     --------

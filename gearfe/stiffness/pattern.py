@@ -56,7 +56,7 @@ def contact_pattern(
     >>> import math, gearfe as gf
     >>> rack = dict(m_n=3.0, alpha_n=math.radians(20), b=12.0)
     >>> pair = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack), gf.Gear(z=30, r_bore=18.0, **rack))
-    >>> askew = gf.Misalignment(F_beta=0.02)
+    >>> askew = gf.Misalignment(F_beta_x=0.02)
     >>> contact = gf.contact_pattern(pair, 2000.0, gf.Material(E=207e3, nu=0.3), misalignment=askew, phases=[0.75])
     >>> [round(z, 6) for z, _ in contact.cells[0].at_ends(pair)]
     [0.0]

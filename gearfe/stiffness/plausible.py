@@ -34,8 +34,10 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
     if not (np.isfinite(curve.k).all() and (curve.k > 0).all()):
         bad = curve.phase[~(np.isfinite(curve.k) & (curve.k > 0))][0]
         raise ValueError(f"k at phase {bad:.6g} is not positive and finite: no model holds for these gears at {force:g} N")
-    lte = curve.lte if curve.lte_supports is None else curve.lte - curve.lte_supports  # of the teeth alone, without their shafts
-    ratio = float(np.median(lte)) * 1e3 / module
+    deflection = (
+        curve.deflection if curve.support_deflection is None else curve.deflection - curve.support_deflection
+    )  # of the teeth alone, without their shafts
+    ratio = float(np.median(deflection)) * 1e3 / module
     message = f"under {force:g} N the gears approach by {1e3 * ratio * module:.3g} um, {100 * ratio:.3g} % of the module"
     if ratio > REFUSE:
         raise ValueError(

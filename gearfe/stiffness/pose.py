@@ -29,13 +29,13 @@ def in_pose(curve_at, phase, pair, pose, flanks=None):
         phase,
         pose,
         lambda curve: shift * 1e3 * curve.te,
-        lambda curve: np.clip(PART * abs(shift) * 1e3 * curve.lte, LEAST, SETTLED),
+        lambda curve: np.clip(PART * abs(shift) * 1e3 * curve.deflection, LEAST, SETTLED),
     )
     if flanks is not None:
         least = _settled(lambda p: flank_contacts(pair, p, flanks=flanks).gap.min(axis=1), phase, pose, lambda gap: shift * gap)
         unloaded = least[1]
-        lte = curve.lte + (curve.unloaded - unloaded * 1e-3)
-        curve = replace(curve, lte=lte, unloaded=unloaded * 1e-3, k=curve.meta["force_N"] / lte)
+        deflection = curve.deflection + (curve.unloaded - unloaded * 1e-3)
+        curve = replace(curve, deflection=deflection, unloaded=unloaded * 1e-3, k=curve.meta["force_N"] / deflection)
     meta = curve.meta | {"pose": pose}
     meta |= {name: phase[np.isin(at, meta[name])].tolist() for name in MARKS if name in meta}
     return replace(curve, phase=phase, meta=meta)

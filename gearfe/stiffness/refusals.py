@@ -59,11 +59,11 @@ def _damage(row, case, method):
     if any(case.cracks) and not row.cracks:
         yield f"cracks with {method}, which has none: use {having('cracks')}"
     for one in sum(case.broken, ()) if not row.broken else ():
-        yield f"a {one.nouns[0]} with {method}, which has none: use {having('broken')}"
+        yield f"a {one._nouns[0]} with {method}, which has none: use {having('broken')}"
     if case.forms is not None and any(isinstance(one, Chip) for own in case.broken for one in own):
         yield "chips of modified flanks: leave the flanks out, or the chips"
     if any(case.pits) and not row.pits:
-        nouns = next(pit for pits in case.pits for pit in pits).nouns[1]
+        nouns = next(pit for pits in case.pits for pit in pits)._nouns[1]
         yield f"{nouns} with {method}, a transverse section: use {having('pits')}"
 
 

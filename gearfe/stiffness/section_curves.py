@@ -96,13 +96,13 @@ def curve(case, phase, force, solve, meta):
         phase=phase,
         k=force / (solved.closing * 1e-3),
         k_tangent=solved.tangent * width * 1e3,
-        lte=solved.closing * 1e-3,
+        deflection=solved.closing * 1e-3,
         order=solved.order[used],
         force=solved.line_load[:, used] * width,
         pressure=solved.pressure[:, used] * 1e6,
         meta=meta,
         unloaded=unloaded,
-        lte_supports=None if solved.supports is None else solved.supports * 1e-3,
+        support_deflection=None if solved.supports is None else solved.supports * 1e-3,
     )
 
 

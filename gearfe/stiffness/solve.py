@@ -17,7 +17,7 @@ from ..flexibility.solved import SolvedGears, solved_gears
 from ..geometry.aliases import Floats
 from ..geometry.pair.gear_pair import GearPair
 from .curve import StiffnessCurve
-from .methods import METHODS, Method
+from .methods import METHODS, Method, current
 from .methods import NAMES as METHOD_NAMES
 from .own_flexibility import OwnFlexibility
 from .phases import LONG, SPANS, phase_array
@@ -35,7 +35,7 @@ class Solve:
 
     Parameters
     ----------
-    method : {"auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", "textbook", "published"} or OwnFlexibility
+    method : {"auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", "textbook", "herringbone_article"} or OwnFlexibility
         What each takes is written in one table, `gearfe.stiffness.methods.ROWS`; in words:
         ``ritz``: the converged energy model of the transverse section, milliseconds (`energy.ritz.plane`). ``ritz3d``: the
         same in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact
@@ -46,8 +46,8 @@ class Solve:
         ``fe``: finite elements of whole sections, not those of `ritz` (`gearfe.flexibility.finite_elements.fe`).
         ``fe3d``: hexahedra of whole gears of finite width, the same for ``ritz3d``, minutes (`finite_elements.fe_gear3d`).
         ``coupled``: closed forms repaired by known means, external healthy gears (`energy.closed.coupled`). All with line
-        contact, neighbour coupling and load sharing. ``textbook``, ``published``: beam energies and a plain sum of the pairs
-        (`energy.closed.plain_sum`). An `OwnFlexibility`: your own model of how one gear gives, where ``ritz`` and ``fe``
+        contact, neighbour coupling and load sharing. ``textbook``, ``herringbone_article``: beam energies and a plain sum of the
+        pairs (`energy.closed.plain_sum`). An `OwnFlexibility`: your own model of how one gear gives, where ``ritz`` and ``fe``
         stand otherwise.
 
         Cracks: all but ``coupled``; of part of the width or of a depth that changes along it: ``ritz3d`` and ``fe3d``. Pits and
@@ -73,8 +73,9 @@ class Solve:
     teeth : int, optional
         For ``fe``: number of teeth that are modelled, on a plain rim; default: all.
     variants : dict, optional
-        For ``textbook`` and ``published``: options of `gearfe.flexibility.energy.closed.plain_sum.plain_sum` and of the formulas'
-        ``components`` (``root``, ``foot``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``lost``).
+        For ``textbook`` and ``herringbone_article``: options of `gearfe.flexibility.energy.closed.plain_sum.plain_sum` and of the
+        formulas' ``components`` (``root``, ``foot``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``,
+        ``lost``).
     error : bool
         For ``ritz`` and ``fe``, also in three dimensions: estimate the discretisation error of every k from coarser solves (see
         `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.wide_curves.solid_curves`).
@@ -112,6 +113,7 @@ class Solve:
 
     def __post_init__(self) -> None:
         """Check what can be said without a case."""
+        object.__setattr__(self, "method", current(self.method))
         custom = isinstance(self.method, OwnFlexibility)
         if not custom and not (isinstance(self.method, str) and self.method in METHOD_NAMES):
             raise ValueError(f"method = {self.method!r}, but it must be one of {', '.join(METHOD_NAMES)}, or an OwnFlexibility")
@@ -306,7 +308,7 @@ def mesh_stiffness(
         ``damage``, ``flanks``, ``misalignment``, ``supports``, ``face``, ``groove`` of a `Case`, and ``method``,
         ``phases``, ``span``, ``extended``, ``state``, ``refine``, ``order``, ``teeth``, ``variants``, ``error``, ``cache``,
         ``tell``, ``pose`` of a `Solve`: there it says what they are. `flanks` make the curve's `te` the transmission error under
-        load and `unloaded` that without; of `supports` the curve's `lte_supports` is their part of the deflection.
+        load and `unloaded` that without; of `supports` the curve's `support_deflection` is their part of the deflection.
         ``meta["crack_closed_phases"]`` says where the load presses faces of a crack together, ``meta["tip_in_fillet_phases"]``
         where a tip presses into its mate's fillet.
 

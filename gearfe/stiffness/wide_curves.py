@@ -37,7 +37,8 @@ def solid_curves(row, case, how, phase):
     h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the coarser, with p of `ORDER`; times `SAFETY`.
     The estimate at a phase is that of k there, or, because that can vanish by chance, the mean of those at the fixed phases of
     one base pitch about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not enter. What the laws
-    of contact leave out is added: `estimate.MODEL`, and sliding along cracked teeth at corners (`PhaseContact`).
+    of contact leave out is added: `estimate.MODEL`, sliding along cracked teeth at corners, and movement where no contact on the
+    path carries (`PhaseContact`).
 
     `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
     """
@@ -80,12 +81,12 @@ def _curve(found, meta, case):
         phase=found.phase,
         k=found.k,
         k_tangent=found.k_tangent,
-        lte=1e-3 * (found.approach - found.unloaded),
+        deflection=1e-3 * (found.approach - found.unloaded),
         order=found.order[used],
         force=found.load[:, used],
         pressure=1e6 * pressure[:, used],
         unloaded=1e-3 * found.unloaded if case.forms is not None or found.unloaded.any() else None,
-        lte_supports=None if found.supports is None else 1e-3 * found.supports,
+        support_deflection=None if found.supports is None else 1e-3 * found.supports,
         meta=meta,
     )
 
@@ -114,7 +115,7 @@ def _doubt(case, phase, found, options, brute):
     apart = np.abs(phase[:, None] - fixed)
     within = (np.abs((apart + 0.5) % 1 - 0.5) if healthy else apart) <= MEAN + 1e-9
     doubt = np.maximum(away[: phase.size], (within * at_fixed).sum(axis=1) / within.sum(axis=1))
-    return doubt + MODEL * found.k, ratio
+    return doubt + found.off_path + MODEL * found.k, ratio
 
 
 def _bodies(how):
@@ -146,7 +147,7 @@ def _coarser(case, phase, options, how):
     raise failed
 
 
-def _finer_section(how, gear, material, cracks=(), **options):
+def _finer_section(how, gear, material, damage=(), **options):
     """A gear whose section is finer."""
-    flexibility = solved_solid(gear, material, cracks, refine=how.refine, cache=how.cache, tell=how.tell, **options)
-    return finer_section(flexibility, material, cracks, refine=how.refine, cache=how.cache)
+    flexibility = solved_solid(gear, material, damage, refine=how.refine, cache=how.cache, tell=how.tell, **options)
+    return finer_section(flexibility, material, damage, refine=how.refine, cache=how.cache)

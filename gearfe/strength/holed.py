@@ -172,7 +172,7 @@ def _mirrored(gear, lower, upper):
     """Whether the pits of one half are the mirror images of those of the other."""
 
     def rounded(pit):
-        return pit.called, [value if isinstance(value, str) else np.round(value, 9).tolist() for value in astuple(pit)]
+        return pit._adjective, [value if isinstance(value, str) else np.round(value, 9).tolist() for value in astuple(pit)]
 
     return sorted(map(rounded, lower)) == sorted(map(rounded, in_both_halves(gear, upper, "herringbone")))
 

@@ -48,7 +48,7 @@ class Chip:
     ValueError
         If a number is not finite or out of range.
 
-    >>> Chip(depth=1.0).told(Gear(z=21, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=7.4))
+    >>> Chip(depth=1.0)._description(Gear(z=21, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=7.4))
     'chip 1 mm deep at 45 degrees'
     """
 
@@ -57,9 +57,9 @@ class Chip:
     tooth: int = 0
     side: str = "loaded"
 
-    nouns: ClassVar[tuple[str, str]] = ("chip", "chips")
-    called: ClassVar[str] = "chipped"
-    removes_contact: ClassVar[None] = None  # the flank is shorter, with a corner at its end
+    _nouns: ClassVar[tuple[str, str]] = ("chip", "chips")
+    _adjective: ClassVar[str] = "chipped"
+    _removes_contact: ClassVar[None] = None  # the flank is shorter, with a corner at its end
     through: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -146,11 +146,11 @@ class Chip:
             ends = ends[0], cartesian(gear.r_a, other)
         return np.array(ends).T * ([[1], [1]] if self.side == "loaded" else [[-1], [1]])
 
-    def told(self, gear: Gear) -> str:
+    def _description(self, gear: Gear) -> str:
         """Return it in words."""
         return f"chip {self.depth:.3g} mm deep at {math.degrees(self.angle):.3g} degrees"
 
-    def doubts(self, gear: Gear) -> str:
+    def _warning(self, gear: Gear) -> str:
         """Return no warning."""
         return ""
 

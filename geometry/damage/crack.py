@@ -75,9 +75,9 @@ class Crack:
     ends: tuple[float, ...] = (1.0, 1.0)
     rounded: bool = False
 
-    nouns: ClassVar[tuple[str, str]] = ("crack", "cracks")
-    called: ClassVar[str] = "cracked"
-    removes_contact: ClassVar[bool] = False
+    _nouns: ClassVar[tuple[str, str]] = ("crack", "cracks")
+    _adjective: ClassVar[str] = "cracked"
+    _removes_contact: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         """Reject contradictory descriptions."""
@@ -111,7 +111,7 @@ class Crack:
         """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth: `crack_path`."""
         return crack_path(gear, self)
 
-    def told(self, gear: Gear) -> str:
+    def _description(self, gear: Gear) -> str:
         """Its size and angle in words."""
         angle = f"at {math.degrees(self.angle):.3g} degrees"
         if self.length is not None:
@@ -120,7 +120,7 @@ class Crack:
             return f"turning crack of level {self.level:.3g} {angle}"
         return f"{path_length(gear, self):.3g} mm crack {angle} (level {self.level:.3g})"
 
-    def doubts(self, gear: Gear) -> str:
+    def _warning(self, gear: Gear) -> str:
         """What to warn of when it meets its gear: nothing."""
         return ""
 

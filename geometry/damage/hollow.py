@@ -65,7 +65,7 @@ def profile(gear, hollow):
 
 def flank_edge(gear, hollow):
     """Heights [mm] and radii [mm] of a hollow's outline."""
-    u, w = hollow.edge()
+    u, w = hollow._edge()
     return hollow.z + w, np.hypot(gear.r_b, roll_at_arc(gear, centre_arc(gear, hollow) + u))
 
 
@@ -73,20 +73,20 @@ def takes_all(gear, hollow):
     """Whether a hollow takes its whole flank: all four corners of it lie within the outline."""
     u = arc_at(gear, np.array([gear.roll_f, gear.roll_a])) - centre_arc(gear, hollow)
     w = np.array([0.0, gear.b]) - hollow.z
-    return bool(hollow.covers(u, w[:, None]).all())
+    return bool(hollow._contains(u, w[:, None]).all())
 
 
-def doubts(gear, hollow, size):
+def warning_of(gear, hollow, size):
     """What to warn of when a hollow of a `size` in words meets its gear; empty if nothing."""
     if not takes_all(gear, hollow):
         return ""
     return (
-        f"{hollow.nouns[0]} with {size} mm takes the whole flank of z = {gear.z}: nothing of it is left to carry, but the "
-        f"{hollow.nouns[0]}'s floor, {hollow.depth:g} mm lower; lengths are in mm"
+        f"{hollow._nouns[0]} with {size} mm takes the whole flank of z = {gear.z}: nothing of it is left to carry, but the "
+        f"{hollow._nouns[0]}'s floor, {hollow.depth:g} mm lower; lengths are in mm"
     )
 
 
-def doubts_together(gear, hollows):
+def warning_together(gear, hollows):
     """What to warn of if several hollows of one flank together take all of it; empty if they do not, or one does alone."""
     arcs = arc_at(gear, np.linspace(gear.roll_f, gear.roll_a, PLACES))
     if len(hollows) < 2 or any(takes_all(gear, hollow) for hollow in hollows):
@@ -106,7 +106,7 @@ def check_hollows(gear, hollows):
     is left out.
     """
     for hollow in hollows:
-        noun = hollow.nouns[0]
+        noun = hollow._nouns[0]
         low, high = sorted((gear.r_form, gear.r_a))
         if not low <= hollow.radius <= high:
             raise ValueError(

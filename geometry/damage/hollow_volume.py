@@ -72,7 +72,7 @@ def _below(gear, one, s, z):
     dual = np.linalg.inv(np.column_stack([axes, -push / deep]))  # places in half axes and height
     p, q, h = np.einsum("ij,jsz->isz", dual, start)
     dp, dq, dh = (dual @ inward)[:, :, None]
-    low, high = one.along(p, q, dp, dq)
+    low, high = one._chord(p, q, dp, dq)
     tip = np.maximum(gear.outward * (roll - gear.roll_a), 0.0)[:, None]  # beyond the tip the body begins deeper
     low = np.maximum(low, tip)
     high = np.minimum(high, (-deep - h) / dh)  # dh < 0: down to the bottom

@@ -2,9 +2,9 @@
 
 Damage acts in two ways, `split`: a crack weakens the body it runs into; pits and spalls take contact away (and with it a
 little material, which plain sums and holes in meshes see). Missing teeth and chipped tips are `BROKEN`: they do both and are in
-neither part. Each kind has `tooth`, `through` (it is the same in every transverse section), `removes_contact`, `nouns` (one,
-several), `called` (what a tooth with it is), ``outline(gear)`` (a line that shows it in the section), ``told(gear)`` (it in
-words) and ``doubts(gear)`` (a warning, or nothing); what hollows have is in `hollow`.
+neither part. Each kind has `tooth`, `through` (equal in every transverse section), `_removes_contact`, `_nouns` (singular,
+plural), `_adjective` (of its tooth: cracked), ``outline(gear)`` (a line that shows it in the section), ``_description(gear)`` and
+``_warning(gear)`` (empty if there is none). `hollow` states the attributes of pits and spalls.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -58,7 +58,7 @@ def _listed(damage, side):
 def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     """What weakens the body, and what takes contact away: two tuples."""
     damage = tuple(damage)
-    weakens, removes = (tuple(defect for defect in damage if defect.removes_contact is removing) for removing in (False, True))
+    weakens, removes = (tuple(defect for defect in damage if defect._removes_contact is removing) for removing in (False, True))
     return weakens, removes
 
 
@@ -67,19 +67,19 @@ def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> s
     by_noun: dict[str, list[str]] = {}
     for side, gear_damage in damage.items():
         for defect in gear_damage:
-            by_noun.setdefault(defect.nouns[1], []).append(defect.told(gears[side]))
-    order = [kind.nouns[1] for kind in get_args(Damage) if kind.nouns[1] in by_noun]
+            by_noun.setdefault(defect._nouns[1], []).append(defect._description(gears[side]))
+    order = [kind._nouns[1] for kind in get_args(Damage) if kind._nouns[1] in by_noun]
     *others, last = [by_noun[noun][0] if len(by_noun[noun]) == 1 else f"{len(by_noun[noun])} {noun}" for noun in order] or [""]
     return f"{', '.join(others)} and {last}" if others else last
 
 
 def called(damage: Iterable[Damage]) -> str:
     """What a tooth with such damage is called: cracked, pitted or spalled; damaged if it is more than one of these."""
-    names = {defect.called for defect in damage}
+    names = {defect._adjective for defect in damage}
     return names.pop() if len(names) == 1 else "damaged"
 
 
 def why_wide(damage: Sequence[Damage]) -> str:
     """Which damage no transverse section shows, because it changes along the width; empty if none does."""
-    nouns = {defect.nouns[1] for defect in damage if not defect.through}
-    return next((f"{kind.nouns[1]} change along the width" for kind in get_args(Damage) if kind.nouns[1] in nouns), "")
+    nouns = {defect._nouns[1] for defect in damage if not defect.through}
+    return next((f"{kind._nouns[1]} change along the width" for kind in get_args(Damage) if kind._nouns[1] in nouns), "")

@@ -1,7 +1,8 @@
 """`MissingTooth`: a tooth that has broken off."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -34,9 +35,9 @@ class MissingTooth:
 
     tooth: int = 0
 
-    nouns: ClassVar[tuple[str, str]] = ("missing tooth", "missing teeth")
-    called: ClassVar[str] = "missing"
-    removes_contact: ClassVar[None] = None  # it removes the whole tooth
+    _nouns: ClassVar[tuple[str, str]] = ("missing tooth", "missing teeth")
+    _adjective: ClassVar[str] = "missing"
+    _removes_contact: ClassVar[None] = None  # it removes the whole tooth
     through: ClassVar[bool] = True
     side: ClassVar[str] = "loaded"
 
@@ -49,10 +50,15 @@ class MissingTooth:
         x, y = cartesian(*flank(gear, np.linspace(gear.roll_f, gear.roll_a, 24)))
         return np.array([np.append(x, -x[::-1]), np.append(y, y[::-1])])
 
-    def told(self, gear: Gear) -> str:
+    def _description(self, gear: Gear) -> str:
         """Return it in words."""
         return "missing tooth"
 
-    def doubts(self, gear: Gear) -> str:
+    def _warning(self, gear: Gear) -> str:
         """Return no warning."""
         return ""
+
+
+def missing_teeth(gear: Gear, damage: Iterable[Any]) -> tuple[int, ...]:
+    """Numbers of the missing teeth among damage."""
+    return tuple(one.tooth % gear.z for one in damage if isinstance(one, MissingTooth))

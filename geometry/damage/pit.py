@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..aliases import Floats
 from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
-from .hollow import doubts, in_circle, on_line, profile
+from .hollow import in_circle, on_line, profile, warning_of
 
 MOST = 5000  # pits in a row
 LEAST, LONGEST = 1e-50, 1e50  # semi-axes [mm]: a pit larger than its flank takes all of it, however large
@@ -64,9 +64,9 @@ class Pit:
     side: str = "loaded"
 
     kinks: ClassVar[tuple[tuple[float, ...], tuple[float, ...]]] = (), ()
-    nouns: ClassVar[tuple[str, str]] = ("pit", "pits")
-    called: ClassVar[str] = "pitted"
-    removes_contact: ClassVar[bool] = True
+    _nouns: ClassVar[tuple[str, str]] = ("pit", "pits")
+    _adjective: ClassVar[str] = "pitted"
+    _removes_contact: ClassVar[bool] = True
     through: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
@@ -107,19 +107,19 @@ class Pit:
         """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth."""
         return profile(gear, self)
 
-    def told(self, gear: Gear) -> str:
+    def _description(self, gear: Gear) -> str:
         """The pit in words."""
         return "1 pit"
 
-    def doubts(self, gear: Gear) -> str:
+    def _warning(self, gear: Gear) -> str:
         """What to warn of when it meets its gear; empty if nothing."""
-        return doubts(gear, self, f"semi-axes {self.axes[0]:g} x {self.axes[1]:g}")
+        return warning_of(gear, self, f"semi-axes {self.axes[0]:g} x {self.axes[1]:g}")
 
     def mirrored(self, b: float) -> Self:
         """Its mirror image in the other half of a face of width `b` [mm]."""
         return replace(self, z=b - self.z, angle=-self.angle)
 
-    def covers(self, u: Floats, w: Floats) -> NDArray[np.bool_]:
+    def _contains(self, u: Floats, w: Floats) -> NDArray[np.bool_]:
         """Whether places are in it: `u` along the profile, `w` along the width from its centre [mm]."""
         across, mixed, along = self.form
         return across * w**2 + 2 * mixed * w * u + along * u**2 <= 1
@@ -132,19 +132,19 @@ class Pit:
         middle = self.z - mixed * np.where(root > 0, u, 0.0) / across
         return middle - half, middle + half
 
-    def edge(self) -> tuple[Floats, Floats]:
+    def _edge(self) -> tuple[Floats, Floats]:
         """Its outline: places along the profile and along the width from its centre [mm]."""
         turn = np.linspace(0, 2 * np.pi, 90)
         p, q = self.axes[0] * np.cos(turn), self.axes[1] * np.sin(turn)
         c, s = np.cos(self.angle), np.sin(self.angle)
         return p * c - q * s, p * s + q * c
 
-    def drawn(self, centre: Floats, axes: Floats) -> list[tuple[str, Floats]]:
+    def _contours(self, centre: Floats, axes: Floats) -> list[tuple[str, Floats]]:
         """Its outline in space: centre and half axes at right angles ``(3, 3)`` of the ellipse that `axes` ``(3, 2)`` span."""
         turned, size, _ = np.linalg.svd(axes, full_matrices=False)
         return [("ellipse", np.column_stack([centre, turned * size]))]
 
-    def along(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[Floats, Floats]:
+    def _chord(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[Floats, Floats]:
         """Where lines ``(p + t dp, q + t dq)``, in units of the semi-axes, are in it: from t to t, equal where nowhere."""
         return in_circle(p, q, dp, dq, 1e-12 / min(self.axes) ** 2)
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..aliases import Floats
 from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
-from .hollow import doubts, in_circle, on_line, profile
+from .hollow import in_circle, on_line, profile, warning_of
 
 LEAST, LONGEST = 1e-6, 1e6  # sides [mm]
 QUARTER = 8  # parts of a rounded corner that is drawn
@@ -61,9 +61,9 @@ class Spall:
     tooth: int = 0
     side: str = "loaded"
 
-    nouns: ClassVar[tuple[str, str]] = ("spall", "spalls")
-    called: ClassVar[str] = "spalled"
-    removes_contact: ClassVar[bool] = True
+    _nouns: ClassVar[tuple[str, str]] = ("spall", "spalls")
+    _adjective: ClassVar[str] = "spalled"
+    _removes_contact: ClassVar[bool] = True
     through: ClassVar[bool] = False
     angle: ClassVar[float] = 0.0
 
@@ -103,19 +103,19 @@ class Spall:
         """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth."""
         return profile(gear, self)
 
-    def told(self, gear: Gear) -> str:
+    def _description(self, gear: Gear) -> str:
         """The spall in words, with its size."""
         return f"{self.sides[0]:.3g} x {self.sides[1]:.3g} mm spall"
 
-    def doubts(self, gear: Gear) -> str:
+    def _warning(self, gear: Gear) -> str:
         """What to warn of when it meets its gear; empty if nothing."""
-        return doubts(gear, self, f"sides of {self.sides[0]:g} x {self.sides[1]:g}")
+        return warning_of(gear, self, f"sides of {self.sides[0]:g} x {self.sides[1]:g}")
 
     def mirrored(self, b: float) -> Self:
         """Its mirror image in the other half of a face of width `b` [mm]."""
         return replace(self, z=b - self.z)
 
-    def covers(self, u: Any, w: Any) -> NDArray[np.bool_]:
+    def _contains(self, u: Any, w: Any) -> NDArray[np.bool_]:
         """Whether places are in it: `u` along the profile, `w` along the width from its centre [mm]."""
         away = [np.abs(at) - half for at, half in zip((u, w), self.axes, strict=True)]
         beside = [np.maximum(distance + self.corner, 0.0) for distance in away]
@@ -130,7 +130,7 @@ class Spall:
         half = np.where(np.abs(u) <= self.axes[0], half, 0.0)
         return self.z - half, self.z + half
 
-    def edge(self) -> tuple[Floats, Floats]:
+    def _edge(self) -> tuple[Floats, Floats]:
         """Its outline: places along the profile and along the width from its centre [mm]."""
         turn = np.linspace(0, 2 * math.pi, 4 * QUARTER, endpoint=False) + math.pi / 4 / QUARTER
         unit = np.array([np.cos(turn), np.sin(turn)])
@@ -138,7 +138,7 @@ class Spall:
         u, w = np.column_stack([out, out[:, 0]])
         return u, w
 
-    def drawn(self, centre: Floats, axes: Floats) -> list[tuple[str, Floats]]:
+    def _contours(self, centre: Floats, axes: Floats) -> list[tuple[str, Floats]]:
         """Its outline in space, from its `centre` and half `axes` ``(3, 2)``: lines, and arcs by their ends and centres."""
         inner = 1 - self.corner / np.array(self.axes)
         out = []
@@ -151,7 +151,7 @@ class Spall:
                 out.append(("line", np.array([ends[1], following])))
         return [(kind, centre[:, None] + axes @ places.T) for kind, places in out]
 
-    def along(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[Floats, Floats]:
+    def _chord(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[Floats, Floats]:
         """Where lines ``(p + t dp, q + t dq)``, in units of the half sides, are in it: from t to t, equal where nowhere."""
         rounded = self.corner / np.array(self.axes)
         p, q, dp, dq = np.broadcast_arrays(p, q, dp, dq)
@@ -179,7 +179,7 @@ class Spall:
         roots = np.concatenate([_roots(limit) for limit in limits])
         places = np.unique([-1.0, *roots[np.abs(roots) < 1], 1.0])
         middles = (places[1:] + places[:-1]) / 2
-        covered = self.covers(np.polynomial.polynomial.polyval(middles, u), reach * middles)
+        covered = self._contains(np.polynomial.polynomial.polyval(middles, u), reach * middles)
         ends: list[list[float]] = []
         for first, last, inside in zip(places[:-1], places[1:], covered, strict=True):
             if inside and ends and ends[-1][1] == first:

@@ -131,4 +131,4 @@ def tool(gear, hollow, squeeze):
     centre, axes, push, _ = hollow_frame(gear, hollow)
     roll = math.sqrt(hollow.radius**2 - gear.r_b**2)
     above = (0.2 + (max(hollow.axes) ** 2 / roll if gear.internal else 0.0) / hollow.depth) * push
-    return hollow.drawn((centre - above) * squeeze[:, 0], squeeze * axes), (push + above) * squeeze[:, 0]
+    return hollow._contours((centre - above) * squeeze[:, 0], squeeze * axes), (push + above) * squeeze[:, 0]

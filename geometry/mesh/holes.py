@@ -156,7 +156,7 @@ def _check_place(gear, pits, crack):
         least = centre_arc(gear, pit) - pit.reach[0]
         if least < arc_at(gear, gear.roll_f):
             raise ValueError(
-                f"{pit.nouns[0]} at radius = {pit.radius:.6g} mm reaches {arc_at(gear, gear.roll_f) - least:.3g} mm below the "
+                f"{pit._nouns[0]} at radius = {pit.radius:.6g} mm reaches {arc_at(gear, gear.roll_f) - least:.3g} mm below the "
                 f"form circle ({gear.r_form:.6g} mm): holes are cut into the involute only; move it to the tip or make it smaller"
             )
 

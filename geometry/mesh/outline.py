@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..damage.chip import chip_of
-from ..damage.missing import MissingTooth
+from ..damage.missing import missing_teeth
 from ..tooth.gear import shortened
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, lengths, roll_at_arc, root_curve, root_half_angle
 
@@ -130,7 +130,7 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None,
     starts : dict of (int, str) to int
         Vertex numbers of the marks.
     """
-    marks, missing = marks or {}, {one.tooth % gear.z for one in broken if isinstance(one, MissingTooth)}
+    marks, missing = marks or {}, missing_teeth(gear, broken)
     plain, coarse, far = (
         half(gear, stations(gear, s), f, s) for s, f in ((size, fillet_size), (size, size), (far_size, far_size))
     )

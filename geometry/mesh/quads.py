@@ -10,19 +10,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..damage.chip import chip_of
 from ..damage.crack import check_apart, check_single, meshed_path, mirrored, start_arc
+from ..damage.missing import missing_teeth
 from ..tooth.gear import Gear
-from ..tooth.profile import arc_at, cartesian, fillet_length, flank, lengths, roll_at_arc, root_curve, root_half_angle
+from ..tooth.profile import cartesian, lengths
 from .mesher import quadrangulate
 from .outline import spaced
+from .tooth_pieces import GROWTH, half_tooth, no_tooth, quarters
 
 # edge lengths in modules: loaded flanks, their tip corner, their fillets, other fillets, teeth beside them, all others,
 # largest crack edge, crack tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
 ATTEMPTS = tuple((finer, algorithm) for own in ((5, 6), (8,)) for finer in (1.0, 1.07, 1.15, 1.24, 1.4, 1.6) for algorithm in own)
 # finer, gmsh's algorithm: it may leave triangles, or fold quads; 8 comes last: it does not always give the same mesh
-GROWTH = 0.4  # of the edge length per length, away from fine places
-BELOW = 2  # of the pieces of half a tooth: the one below the flank
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +75,7 @@ class QuadSection:
     fillet: dict
 
 
-def quad_section(gear, *, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=None):
+def quad_section(gear, *, loaded=(0,), cracks=(), broken=(), patches=(), refine=1.0, sizes=None):
     """Mesh the section of `gear`, all teeth and the true rim.
 
     Parameters
@@ -83,6 +84,7 @@ def quad_section(gear, *, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     loaded : sequence of int
         Teeth whose loaded flanks carry or read loads.
     cracks : sequence of Crack
+    broken : sequence of (MissingTooth or Chip)
     patches : sequence of (float, float, float), or dict of int to such
         Places on the loaded flanks to mesh finer: first arc, last arc, edge length [mm]; of all of them, or by tooth. An
         arc less than that of the form point is one of the fillet, which is then finer too.
@@ -117,21 +119,21 @@ def quad_section(gear, *, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     for finer, algorithm in ATTEMPTS:
         edges = {name: value / refine / finer for name, value in size.items()}
         try:
-            return _attempt(gear, teeth, cracks, patches, edges, algorithm)
+            return _attempt(gear, teeth, (cracks, broken), patches, edges, algorithm)
         except RuntimeError as error:
             failed = error
     raise failed
 
 
-def _attempt(gear, teeth, cracks, patches, size, algorithm):
-    draft, damaged = _Draft(), {}
+def _attempt(gear, teeth, damage, patches, size, algorithm):
+    draft, damaged, (cracks, broken) = _Draft(), {}, damage
     for number, crack in enumerate(cracks):
         damaged.setdefault(crack.tooth % gear.z, []).append((number, crack))
     mouths = {tooth: _mouths(gear, size, tooth_cracks) for tooth, tooth_cracks in damaged.items()}
-    outline, flanks, fillets, marks = _rim(gear, draft, size, teeth, mouths, patches)
+    outline, flanks, fillets, marks = _rim(gear, draft, size, teeth, (mouths, broken), patches)
     rim = abs(gear.r_f - gear.held)  # two quads through it at least: with one a ring's section is 0.2 ... 0.5 % too stiff
     count = max(8, math.ceil(math.pi * gear.held / min(rim / 2, 3 * size["far"])))
-    turn = _quarters(np.linspace(0.0, 2 * math.pi, count + 1))
+    turn = quarters(np.linspace(0.0, 2 * math.pi, count + 1))
     bore = draft.add(gear.held * np.array([np.sin(turn), np.cos(turn)]), closed=True)
     body, tops, cuts = list(outline), [], []
     for tooth, tooth_cracks in sorted(damaged.items()):
@@ -177,11 +179,6 @@ class _Draft:
         return np.stack([nodes[:, :2], nodes[:, 1:]], axis=1).reshape(-1, 2).T
 
 
-def _quarters(values):
-    """Every interval cut in four."""
-    return np.interp(np.arange(4 * len(values) - 3) / 4, np.arange(len(values)), values)
-
-
 def _mouths(gear, size, found):
     """By side of a cracked tooth: arc where the parting line starts and the edge length there [mm]."""
     ends = {crack.side: (start_arc(gear, crack), lengths(meshed_path(gear, crack))[-1]) for _, crack in found}
@@ -190,52 +187,35 @@ def _mouths(gear, size, found):
     return {side: mouths.get(side, (only[0], size["fillet"])) for side in ("unloaded", "loaded")}
 
 
-def _rim(gear, draft, size, teeth, mouths, patches):
+def _rim(gear, draft, size, teeth, damage, patches):
     """The toothed outline clockwise from the tip of tooth 0: line numbers, loaded flanks, fillets, nodes of cracks' ends."""
-    lines, flanks, fillets, marks, last = [], {}, {}, {}, None
+    lines, flanks, fillets, marks, last, (mouths, broken) = [], {}, {}, {}, None, damage
+    gone = missing_teeth(gear, broken)
     halves = [(tooth, side) for k in range(gear.z) for tooth, side in ((k, "loaded"), ((k + 1) % gear.z, "unloaded"))]
     for owner, side in halves:
         away = min(abs((owner - k + gear.z // 2) % gear.z - gear.z // 2) for k in [*teeth, *mouths])
         loaded = side == "loaded" and owner in teeth
-        pieces = _half(gear, size, away, loaded, mouths.get(owner, {}).get(side), patches.get(owner, ()))
+        chip = chip_of(gear, broken, owner)
+        if owner in gone:
+            pieces = no_tooth(gear, size)
+        else:
+            cut = chip and (chip.end_roll(gear, side), chip.top(gear, side))
+            pieces = half_tooth(gear, size, away, loaded, mouths.get(owner, {}).get(side), patches.get(owner, ()), cut)
+        below = 1 + next((k for k, piece in enumerate(pieces) if piece[0] == "flank"), 0)
         sign = 1 if side == "loaded" else -1
         for k, (name, radius, angle, params) in list(enumerate(pieces))[::sign]:
-            final = (owner, side, name) == (0, "unloaded", "tip")
+            final = (owner, side, k) == (0, "unloaded", 0)
             points = cartesian(radius, 2 * math.pi * owner / gear.z + sign * angle)[:, ::sign]
             added = draft.add(points, first=last, last=draft.lines[0][0] if final else None)
             last = draft.lines[added[-1] - 1][2]
             lines += added
             if name == "flank" and loaded:
                 flanks[owner] = draft.edges(added)[::-1, ::-1], params[::-2]
-            if k == BELOW and loaded:
+            if k == below and loaded:
                 fillets[owner] = draft.edges(added)[::-1, ::-1]
             if name == "fillet":
                 marks[owner, side] = last if sign > 0 else draft.lines[added[0] - 1][0]
     return lines, flanks, fillets, marks
-
-
-def _half(gear, size, away, own, mouth, patches):
-    """Half a tooth from tip middle to root middle: pieces (name, radius, angle, parameter), four places for each line."""
-    edge = size["flank"] if own else size["near"] if away <= 1 else size["far"]
-    corner, width = min(edge, size["corner"]) if own else edge, gear.half_thickness(gear.r_a) * gear.r_a
-    tip = _quarters(spaced(0.0, width, 2 * edge, [(width, width, 2 * corner)], 1, GROWTH)) / gear.r_a
-    start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
-    fine = [(stop, stop, 2 * corner), *([(a, b, 2 * s) for a, b, s in patches] if own else [])]
-    rolls = roll_at_arc(gear, spaced(start, stop, 2 * edge, fine, 1, GROWTH))[::-1]
-    rolls[[0, -1]] = gear.roll_a, gear.roll_f
-    rolls = _quarters(rolls)
-    below, top = -gear.r_f * (math.pi / gear.z - root_half_angle(gear)), fillet_length(gear)
-    root = size["fillet"] if away == 0 else size["root"]
-    out = [("tip", np.full(tip.size, gear.r_a), tip, tip), ("flank", *flank(gear, rolls), rolls)]
-    mark, fine = (below, []) if mouth is None else (mouth[0], [(mouth[0], mouth[0], 2 * mouth[1])])
-    fine += [
-        (top + a - start, top + min(b - start, 0.0), 2 * s) for a, b, s in (patches if own else ()) if a < start - 1e-6 * gear.m_n
-    ]
-    for name, low, high in (("root" if mouth is None else "fillet", mark, top), ("root", below, mark)):
-        if high - low > 1e-6 * gear.m_n:
-            arcs = _quarters(spaced(low, high, 2 * root, fine, 1, GROWTH)[::-1])
-            out.append((name, *root_curve(gear, arcs), arcs))
-    return out
 
 
 def _cut(gear, draft, size, tooth, found, mouths, marks):
@@ -255,9 +235,7 @@ def _cut(gear, draft, size, tooth, found, mouths, marks):
     cos, sin = math.cos(2 * math.pi * tooth / gear.z), math.sin(2 * math.pi * tooth / gear.z)
     for k, (path, number, places, sizes) in enumerate(chain):
         length = math.dist(*path.T)
-        part = _quarters(
-            spaced(0.0, length, 2 * size["crack"], [(0, 0, 2 * sizes[0]), (length, length, 2 * sizes[1])], 1, GROWTH)
-        )
+        part = quarters(spaced(0.0, length, 2 * size["crack"], [(0, 0, 2 * sizes[0]), (length, length, 2 * sizes[1])], 1, GROWTH))
         x, y = (np.interp(part, [0.0, length], row) for row in path)
         final = marks[tooth, "unloaded"] if k == len(chain) - 1 else None
         new = draft.add(np.array([cos * x + sin * y, cos * y - sin * x]), first=last, last=final)

@@ -80,7 +80,7 @@ def layers(b, size, *, breaks=(), fine=()):
     return np.concatenate([parts[0][:1], *[part[1:] for part in parts]])
 
 
-def solid(gear, *, layer, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=None, fine=()):
+def solid(gear, *, layer, loaded=(0,), cracks=(), broken=(), patches=(), refine=1.0, sizes=None, fine=()):
     """Mesh a whole gear, all teeth and the true rim.
 
     The elements follow the front of a straight crack whose depth changes along the width (`geometry.mesh.front`); that of a
@@ -91,7 +91,7 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     gear : Gear
     layer : float
         Height of the element layers [mm].
-    loaded, cracks, patches, sizes
+    loaded, cracks, broken, patches, sizes
         As of `gearfe.geometry.mesh.quads.quad_section`.
     refine : float
         Divides all edge lengths, along the width too.
@@ -107,7 +107,8 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     check_apart(gear, cracks)
     check_single(gear, cracks)
     shapes = [crack if crack.bends else whole(crack) for crack in cracks]
-    section = quad_section(gear, loaded=loaded, cracks=shapes, patches=patches, refine=refine, sizes=sizes)
+    options = {"broken": broken, "patches": patches, "refine": refine, "sizes": sizes}
+    section = quad_section(gear, loaded=loaded, cracks=shapes, **options)
     moves = {k: follow_front(section, k, crack) for k, crack in enumerate(cracks) if not (crack.even or crack.bends)}
     breaks = [z for crack in cracks for z in crack.width or ()]
     breaks += [z for _, front in moves.values() for z in (*front.kinks(), *np.ravel(front.open()))]

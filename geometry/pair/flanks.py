@@ -6,25 +6,27 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..checks import by_gear, is_finite
+from ..renamed import renamed
 from ..tooth.flank_form import FlankForm
 from ..tooth.modified import Flank
 
 STEEPEST = 0.01  # largest misalignment per width: with more the axes are not parallel
 
 
+@renamed(F_beta="F_beta_x")
 @dataclass(frozen=True, slots=True)
 class Misalignment:
     """Axes of a gear pair that are not parallel.
 
     Only what is left in the plane of action matters; over the common width b the flanks of a pair then open by::
 
-        F_beta + (f_sigma_beta cos(alpha_w) + f_sigma_delta sin(alpha_w)) b / length
+        F_beta_x + (f_sigma_beta cos(alpha_wt) + f_sigma_delta sin(alpha_wt)) b / length
 
     more at z = b than at z = 0 (heights as of a `Pit`); none in the middle of the width.
 
     Parameters
     ----------
-    F_beta : float
+    F_beta_x : float
         Equivalent misalignment in the plane of action over the common width, F_beta_x of ISO 6336-1 [mm]; positive: at z = b the
         flanks are further apart, as if material were removed there.
     f_sigma_beta, f_sigma_delta : float
@@ -40,11 +42,11 @@ class Misalignment:
 
     Examples
     --------
-    >>> Misalignment(F_beta=0.012)
-    Misalignment(F_beta=0.012, f_sigma_beta=0.0, f_sigma_delta=0.0, length=None)
+    >>> Misalignment(F_beta_x=0.012)
+    Misalignment(F_beta_x=0.012, f_sigma_beta=0.0, f_sigma_delta=0.0, length=None)
     """
 
-    F_beta: float = 0.0
+    F_beta_x: float = 0.0
     f_sigma_beta: float = 0.0
     f_sigma_delta: float = 0.0
     length: float | None = None
@@ -74,9 +76,11 @@ def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
     if misalignment is None:
         return 0.0
     if not isinstance(misalignment, Misalignment):
-        raise ValueError(f"misalignment = {misalignment!r}, but give a Misalignment(F_beta=...) [mm]")
-    askew = misalignment.f_sigma_beta * math.cos(pair.alpha_w) + misalignment.f_sigma_delta * math.sin(pair.alpha_w)
-    tilt = misalignment.F_beta / min(pair.gear_1.b, pair.gear_2.b) + (askew / misalignment.length if misalignment.length else 0.0)
+        raise ValueError(f"misalignment = {misalignment!r}, but give a Misalignment(F_beta_x=...) [mm]")
+    askew = misalignment.f_sigma_beta * math.cos(pair.alpha_wt) + misalignment.f_sigma_delta * math.sin(pair.alpha_wt)
+    tilt = misalignment.F_beta_x / min(pair.gear_1.b, pair.gear_2.b) + (
+        askew / misalignment.length if misalignment.length else 0.0
+    )
     if abs(tilt) > STEEPEST:
         raise ValueError(
             f"{1e3 * tilt:.4g} um of misalignment per mm of width, but gears with parallel axes bear no more than "

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..aliases import Floats
+from ..renamed import renamed
 from ..tooth.gear import Gear, shortened
 from ..tooth.involute import inv, inverse_inv
 from ..tooth.profile import flank
@@ -19,6 +20,7 @@ from .interference import overlap, radial_assembly
 OVERLAP = 1e-3  # of a module: deeper cuts of one outline into the other are interference
 
 
+@renamed(alpha_w="alpha_wt")
 @dataclass(frozen=True, slots=True)
 class GearPair:
     """Two meshing gears; gear 1 (the pinion, external) drives gear 2, an external gear or a ring.
@@ -35,7 +37,7 @@ class GearPair:
     gear_1, gear_2 : Gear
         Pinion and wheel or ring, of the same basic rack and helix angle.
     a : float, optional
-        Centre distance [mm]; default: the one without backlash.
+        Centre distance [mm]; default: the one without backlash of teeth without allowance.
 
     Raises
     ------
@@ -160,14 +162,14 @@ class GearPair:
         return not self.gear_2.internal or radial_assembly(self)
 
     @property
-    def alpha_w(self) -> float:
+    def alpha_wt(self) -> float:
         """Working transverse pressure angle [rad]."""
         return math.acos((self.gear_1.r_b * self.outward + self.gear_2.r_b) / self.a)
 
     @property
     def length(self) -> float:
         """Distance between the tangent points of the line of action on the two base circles [mm]."""
-        return self.a * math.sin(self.alpha_w)
+        return self.a * math.sin(self.alpha_wt)
 
     def mate_roll(self, roll_1: ArrayLike) -> Floats:
         """Roll length on gear 2 [mm] where the pinion touches at `roll_1`, on the line of action."""
@@ -181,8 +183,8 @@ class GearPair:
     def backlash(self) -> float:
         """Normal backlash: play along the line of action [mm] (negative: the teeth overlap)."""
         pinion, wheel = self.gear_1, self.gear_2
-        tooth_1 = 2 * (pinion.base_half_angle - inv(self.alpha_w))
-        tooth_2 = 2 * (wheel.base_half_angle - wheel.outward * inv(self.alpha_w))
+        tooth_1 = 2 * (pinion.base_half_angle - inv(self.alpha_wt))
+        tooth_2 = 2 * (wheel.base_half_angle - wheel.outward * inv(self.alpha_wt))
         return pinion.r_b * (2 * math.pi / pinion.z - tooth_1) - wheel.r_b * tooth_2
 
     @property
@@ -224,17 +226,17 @@ class GearPair:
     @property
     def pitch_phase(self) -> float:
         """Phase at which the contact is at the pitch point."""
-        return (self.gear_1.r_b * math.tan(self.alpha_w) - self.path[0]) / self.p_bt
+        return (self.gear_1.r_b * math.tan(self.alpha_wt) - self.path[0]) / self.p_bt
 
     @property
     def pitch_radius_1(self) -> float:
         """Working pitch radius of the pinion [mm]: where its flank touches at the pitch point."""
-        return self.gear_1.r_b / math.cos(self.alpha_w)
+        return self.gear_1.r_b / math.cos(self.alpha_wt)
 
     @property
     def pitch_radius_2(self) -> float:
         """Working pitch radius of the wheel [mm]."""
-        return self.gear_2.r_b / math.cos(self.alpha_w)
+        return self.gear_2.r_b / math.cos(self.alpha_wt)
 
     def curvature_radii(self, phase: ArrayLike) -> tuple[Floats, Floats]:
         """Radii of curvature [mm] of both flanks where the pair of `phase` touches."""
@@ -247,8 +249,8 @@ class GearPair:
         Gear 1's centre is the origin, gear 2's at ``(0, centre_2)``. A ring's loaded flank faces the other way: its own
         frame (`gearfe.geometry.tooth.profile`) is mirrored in place.
         """
-        along = np.asarray(nominal) - self.gear_1.r_b * math.tan(self.alpha_w)
-        x, y = along * math.cos(self.alpha_w), self.pitch_radius_1 + along * math.sin(self.alpha_w)
+        along = np.asarray(nominal) - self.gear_1.r_b * math.tan(self.alpha_wt)
+        x, y = along * math.cos(self.alpha_wt), self.pitch_radius_1 + along * math.sin(self.alpha_wt)
         turn_1 = np.arctan2(x, y) - flank(self.gear_1, nominal)[1]
         turn_2 = np.arctan2(x, y - self.centre_2) - self.outward * flank(self.gear_2, self.mate_roll(nominal))[1]
         return turn_1, turn_2
@@ -270,5 +272,5 @@ def free_centre_distance(one: Gear, two: Gear) -> float:
     """Centre distance without backlash [mm] (ISO 21771:2007, 7.3)."""
     teeth = one.z + two.outward * two.z
     shift = one.x + two.outward * two.x
-    alpha_w = inverse_inv(inv(one.alpha_t) + 2 * shift * math.tan(one.alpha_n) / teeth)
-    return abs(one.r_b + two.outward * two.r_b) / math.cos(alpha_w)
+    alpha_wt = inverse_inv(inv(one.alpha_t) + 2 * shift * math.tan(one.alpha_n) / teeth)
+    return abs(one.r_b + two.outward * two.r_b) / math.cos(alpha_wt)

@@ -63,8 +63,8 @@ class PlanetarySet:
     def closing_shift(self) -> float:
         """Profile shift of the ring [m_n] with which planet and ring mesh without backlash at `a`."""
         planet, ring = self.planet, self.ring
-        alpha_w = math.acos((ring.r_b - planet.r_b) / self.a)
-        return planet.x + (inv(alpha_w) - inv(planet.alpha_t)) * (ring.z - planet.z) / (2 * math.tan(planet.alpha_n))
+        alpha_wt = math.acos((ring.r_b - planet.r_b) / self.a)
+        return planet.x + (inv(alpha_wt) - inv(planet.alpha_t)) * (ring.z - planet.z) / (2 * math.tan(planet.alpha_n))
 
     @property
     def sun_planet(self) -> GearPair:

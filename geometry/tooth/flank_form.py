@@ -172,11 +172,11 @@ class FlankForm:
             factor = amount * math.prod(exponent - i for i in range(n)) / (end - start) ** n
             if factor:
                 out += np.where(part > 0, factor * np.where(part > 0, part, 1.0) ** (exponent - n), 0.0)
-        if self.flank.crowning:
+        if self.flank.profile_crowning:
             place, step = (2 * roll - self.low - self.high) / span, 2 / span
-            out += self.flank.crowning * (place**2, 2 * step * place, 2 * step**2)[n]
-        if self.flank.slope:
-            out += self.flank.slope * ((roll - self.low) / span, 1 / span, 0.0)[n]
+            out += self.flank.profile_crowning * (place**2, 2 * step * place, 2 * step**2)[n]
+        if self.flank.profile_slope:
+            out += self.flank.profile_slope * ((roll - self.low) / span, 1 / span, 0.0)[n]
         if self._spline is not None:
             out += self._spline(np.clip(roll, self._spline.x[0], self._spline.x[-1]), n)
         if self._lead is not None and self._z is not None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 
 from ..checks import is_number
+from ..renamed import renamed
 from .involute import inv
 
 LARGEST = 1e9  # of any number of a gear: a kilometre has 1e6 mm
@@ -17,6 +18,7 @@ def _base_radius(z: int, m_n: float, alpha_n: float, beta: float) -> float:
     return z * (m_n / math.cos(beta)) / 2 * math.cos(math.atan(math.tan(alpha_n) / math.cos(beta)))
 
 
+@renamed(tip_radius="rack_tip_radius")
 @dataclass(frozen=True, slots=True)
 class Gear:
     """An involute gear (symbols of ISO 21771; rack of ISO 53): external with `r_bore`, internal (a ring) with `r_rim`.
@@ -41,9 +43,12 @@ class Gear:
         Radius of an external gear's bore [mm], the inner edge of the body, which is held.
     r_rim : float
         Outside radius of a ring [mm], the outer edge of the body, which is held.
-    addendum, dedendum, tip_radius : float
+    addendum, dedendum, rack_tip_radius : float
         Addendum, dedendum and radius of the rounded tip of the basic rack [m_n]. A tip radius larger than the full
         rounding of the tool's tip cannot be cut: it is capped there, with a warning.
+    E_sn : float
+        Normal tooth thickness allowance at the reference circle [mm] (DIN 3967); negative: a thinner tooth, cut with the profile
+        shift `x_E`. Tip circle and centre distance without backlash stay those of `x`.
     z_cutter : int
         Of a ring: number of teeth of the pinion-type cutter that generates its fillet. The cutter has no profile shift and the
         same tip radius.
@@ -72,9 +77,10 @@ class Gear:
     x: float = 0.0
     addendum: float = 1.0
     dedendum: float = 1.25
-    tip_radius: float = 0.38
+    rack_tip_radius: float = 0.38
     r_rim: float | None = None
     z_cutter: int = 20
+    E_sn: float = 0.0
 
     def __post_init__(self) -> None:
         """Reject gears that cannot be cut, and cap the rack tip radius."""
@@ -134,25 +140,25 @@ class Gear:
             raise ValueError(
                 f"beta = {self.beta} rad, but helix angles of 60 degrees and more are not supported; angles are radians in Python"
             )
-        if self.tip_radius < 0:
-            raise ValueError(f"tip_radius = {self.tip_radius}, but it cannot be negative")
+        if self.rack_tip_radius < 0:
+            raise ValueError(f"rack_tip_radius = {self.rack_tip_radius}, but it cannot be negative")
 
     def _cap_tip_radius(self):
         from .profile import cutter_tip_radius
 
         cap = cutter_tip_radius(self) if self.internal else self.full_tip_radius
-        if cap <= 0:
+        if cap <= 0 and not self.internal:
             raise ValueError(
                 f"dedendum = {self.dedendum} m_n at alpha_n = {math.degrees(self.alpha_n):.4g} degrees: the rack tooth "
                 f"is pointed before its tip; give dedendum < {math.pi / 4 / math.tan(self.alpha_n):.4g}"
             )
-        if self.tip_radius > cap * (1 + 1e-12):
+        if self.rack_tip_radius > cap * (1 + 1e-12):
             warnings.warn(
-                f"tip_radius = {self.tip_radius} m_n does not fit on the tool's tip at alpha_n = "
+                f"rack_tip_radius = {self.rack_tip_radius} m_n does not fit on the tool's tip at alpha_n = "
                 f"{math.degrees(self.alpha_n):.4g} degrees; capped at the full tip radius {cap:.6g} m_n",
                 stacklevel=4,
             )
-            object.__setattr__(self, "tip_radius", cap)
+            object.__setattr__(self, "rack_tip_radius", cap)
 
     def _check_body(self):
         if self.internal:
@@ -203,6 +209,11 @@ class Gear:
         return math.tan(self.beta) / self.r
 
     @property
+    def x_E(self) -> float:  # noqa: N802  # the symbol of ISO 21771
+        """Generating profile shift coefficient [m_n]: `x` plus what the tooth thickness allowance `E_sn` requires of the tool."""
+        return self.x + self.outward * self.E_sn / (2 * self.m_n * math.tan(self.alpha_n))
+
+    @property
     def r(self) -> float:
         """Reference radius [mm]."""
         return self.z * self.m_t / 2
@@ -220,7 +231,7 @@ class Gear:
     @property
     def r_f(self) -> float:
         """Root radius [mm]."""
-        return self.r - (self.outward * self.dedendum - self.x) * self.m_n
+        return self.r - (self.outward * self.dedendum - self.x_E) * self.m_n
 
     @property
     def p_bt(self) -> float:
@@ -253,7 +264,7 @@ class Gear:
     @property
     def base_half_angle(self) -> float:
         """Half angle of the tooth on the base circle [rad] (of a ring: of its flanks extended to it)."""
-        tooth = (math.pi / 2 + 2 * self.x * math.tan(self.alpha_n)) / self.z + inv(self.alpha_t)
+        tooth = (math.pi / 2 + 2 * self.x_E * math.tan(self.alpha_n)) / self.z + inv(self.alpha_t)
         return math.pi / self.z - tooth if self.internal else tooth
 
     def half_thickness(self, radius: float) -> float:

@@ -39,7 +39,7 @@ class LeadForm:
         across, along = (2 * roll - self.low - self.high) / span, 2 * z / self.b - 1
         out = flank.twist * along * (across, 2 / span, 0.0)[n]
         if n == 0:
-            out = out + flank.lead_crowning * along**2 + flank.lead_slope * (1 + along) / 2
+            out = out + flank.helix_crowning * along**2 + flank.helix_slope * (1 + along) / 2
             for away, amount, length, exponent in zip(
                 (z, self.b - z), flank.end_relief, flank.end_length, flank.end_exponent, strict=True
             ):

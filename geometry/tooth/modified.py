@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..checks import is_finite
+from ..renamed import renamed
 from .flank_form import FlankForm
 from .gear import Gear
 from .lead import checked_topography, two_ends
@@ -13,6 +14,7 @@ from .tables import numbers, table, worn
 LISTS = ("table", "topography", "pitch", "wear", "tooth_scale")
 
 
+@renamed(crowning="profile_crowning", slope="profile_slope", lead_crowning="helix_crowning", lead_slope="helix_slope")
 @dataclass(frozen=True, slots=True)
 class Flank:
     """Modifications and deviations of a gear's loaded flanks, from tip to root and from tooth to tooth.
@@ -24,8 +26,8 @@ class Flank:
     and t the part of the way from the start of a relief to the end of the flank, a place of the flank has less by::
 
         tip_relief t**tip_exponent  (t > 0)  +  root_relief t**root_exponent  (t > 0)
-        + crowning p**2  +  slope (1 + p) / 2  +  table(L)            p = 2 (L - middle) / (roll_a - roll_f)
-        + lead_crowning q**2  +  lead_slope (1 + q) / 2  +  twist p q   q = 2 z / b - 1, at height z of the width b
+        + profile_crowning p**2  +  profile_slope (1 + p) / 2  +  table(L)            p = 2 (L - middle) / (roll_a - roll_f)
+        + helix_crowning q**2  +  helix_slope (1 + q) / 2  +  twist p q   q = 2 z / b - 1, at height z of the width b
         + end_relief (part of the way to its end face)**end_exponent  +  topography(L, z)
 
     all of it times `tooth_scale` of the tooth, and besides
@@ -42,17 +44,17 @@ class Flank:
         1: linear, with a kink at its start; 2: parabolic; any number from 1 on.
     root_start_diameter, root_start_roll, root_start_angle, root_exponent
         The same for the root relief, which grows from its start down to the form point.
-    crowning : float
+    profile_crowning : float
         Profile crowning C_alpha: a parabola, zero in the middle of the flank's roll lengths, so much at tip and form point [mm].
-    slope : float
+    profile_slope : float
         Removed at the tip if the rest is removed in proportion up from the form point [mm]: a profile slope deviation f_Halpha of
         ISO 1328-1 with the opposite sign (there, material at the tip counts positive).
     table : (sequence, sequence), optional
         Measured deviation: rising roll lengths [mm] that cover the flank, and the material removed there [mm]; cubic between them
         without overshoot. Noise bends the flank: smooth it over less than a contact's width.
-    lead_crowning : float
+    helix_crowning : float
         Flank line (helix) crowning C_beta: a parabola along the width, zero in the middle, so much at both end faces [mm].
-    lead_slope : float
+    helix_slope : float
         Removed at z = b if the rest is removed in proportion up from z = 0 [mm]: a helix slope deviation f_Hbeta. Heights z
         are counted as those of a `Pit`.
     twist : float
@@ -109,11 +111,11 @@ class Flank:
     root_start_roll: float | None = None
     root_start_angle: float | None = None
     root_exponent: float = 1.0
-    crowning: float = 0.0
-    slope: float = 0.0
+    profile_crowning: float = 0.0
+    profile_slope: float = 0.0
     table: Any = None
-    lead_crowning: float = 0.0
-    lead_slope: float = 0.0
+    helix_crowning: float = 0.0
+    helix_slope: float = 0.0
     twist: float = 0.0
     end_relief: Any = 0.0
     end_length: Any = None
@@ -167,7 +169,7 @@ class Flank:
     @property
     def wide(self) -> bool:
         """Whether anything changes along the width, so that no transverse section is the whole truth."""
-        return bool(self.lead_crowning or self.lead_slope or self.twist or any(self.end_relief) or self.topography is not None)
+        return bool(self.helix_crowning or self.helix_slope or self.twist or any(self.end_relief) or self.topography is not None)
 
     def start_of(self, end: str) -> tuple[str, float]:
         """How the start of a relief is given, one of `STARTS`, and its value."""

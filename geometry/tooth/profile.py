@@ -52,9 +52,9 @@ def flank_normal(gear, roll):
 
 def _rack_tip(gear):
     """Centre (xi, eta) of the rack tip rounding in the transverse section, from the pitch line [mm]."""
-    rho = gear.tip_radius
+    rho = gear.rack_tip_radius
     xi = math.pi / 4 - (gear.dedendum - rho) * math.tan(gear.alpha_n) - rho / math.cos(gear.alpha_n)
-    return max(xi, 0.0) * gear.m_t, (gear.x - gear.dedendum + rho) * gear.m_n
+    return max(xi, 0.0) * gear.m_t, (gear.x_E - gear.dedendum + rho) * gear.m_n
 
 
 def fillet(gear, phi):
@@ -68,7 +68,7 @@ def fillet(gear, phi):
     if gear.internal:
         return _shaped_fillet(gear, phi)
     xi_c, eta_c = _rack_tip(gear)
-    rho = gear.tip_radius * gear.m_n
+    rho = gear.rack_tip_radius * gear.m_n
     slope = math.cos(gear.beta)
     xi = xi_c + rho * np.cos(phi) / slope
     eta = eta_c - rho * np.sin(phi)
@@ -86,7 +86,7 @@ def _cutter(gear):
     the full rounding of its tip.
     """
     base = gear.r_b * gear.z_cutter / gear.z
-    tooth = 2 * gear.x * math.tan(gear.alpha_n) / (gear.z - gear.z_cutter) + inv(gear.alpha_t)
+    tooth = 2 * gear.x_E * math.tan(gear.alpha_n) / (gear.z - gear.z_cutter) + inv(gear.alpha_t)
     alpha_0 = inverse_inv(tooth)
     pitch, ring = base / math.cos(alpha_0), gear.r_b / math.cos(alpha_0)
     tip = gear.r_f - (ring - pitch)
@@ -98,7 +98,7 @@ def _cutter(gear):
         """Angle of the rounding's centre: it lies on the involute offset inwards by rho."""
         return half - inv(math.acos(min(1.0, base / (tip - rho)))) - rho / base
 
-    rho = gear.tip_radius * gear.m_n
+    rho = gear.rack_tip_radius * gear.m_n
     if corner(rho) < 0:
         if corner(0.0) < 0:
             raise ValueError(f"z_cutter = {gear.z_cutter}: the cutter's teeth are pointed below its tip; lower the dedendum")
@@ -139,10 +139,12 @@ def form_point(gear):
         phi = _cutter(gear)[0]
         radius = fillet(gear, phi)[0]
         if radius <= gear.r_a or fillet(gear, math.pi / 2)[1] > math.pi / gear.z:
-            raise ValueError(f"z = {gear.z}, x = {gear.x}: the fillets overlap and leave no ring flank; lower the tip_radius")
+            raise ValueError(
+                f"z = {gear.z}, x = {gear.x}: the fillets overlap and leave no ring flank; lower the rack_tip_radius"
+            )
         return phi, float(np.sqrt(radius**2 - gear.r_b**2))
     _, eta_c = _rack_tip(gear)
-    depth = -(eta_c - gear.tip_radius * gear.m_n * math.sin(gear.alpha_n))
+    depth = -(eta_c - gear.rack_tip_radius * gear.m_n * math.sin(gear.alpha_n))
     phi = gear.alpha_n
     if depth > gear.r * math.sin(gear.alpha_t) ** 2:
         phi = _undercut(gear)

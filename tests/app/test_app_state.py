@@ -44,8 +44,8 @@ STATES = {
     "start": {},
     "healthy": {"crack": "none", "title": 'a "name" with \\ and é'},
     "level": {"crack": "level", "crack_level": 0.4, "turning": "yes", "crack_gear": "wheel"},
-    "ring": {"wheel": "ring", "z_2": 84, "held_2": 95.0, "addendum_2": 0.8, "tip_radius_2": 0.2, "crack": "none"},
-    "helix": {"beta": -12.5, "lead_1": 4.0, "F_beta": 10.0, "speed": 1500.0},
+    "ring": {"wheel": "ring", "z_2": 84, "held_2": 95.0, "addendum_2": 0.8, "rack_tip_radius_2": 0.2, "crack": "none"},
+    "helix": {"beta": -12.5, "lead_1": 4.0, "F_beta_x": 10.0, "speed": 1500.0},
     "herringbone": {"beta": 16.0, "b_1": 30.0, "b_2": 30.0, "face": "herringbone", "groove": 4.0},
     "pits": {"pits": "yes", "crack": "none", "pit_count": 3},
     "one pit": {"pits": "yes", "pit_count": 1, "pit_first": 10.0, "pit_last": 10.0},
@@ -89,24 +89,25 @@ def test_a_built_in_scene_is_refused_until_a_pair_and_a_case_are_chosen(scene):
         read(scene, text)
     whole = gf.load_scene(scene)
     assert caught.value.choices == {name: ["", *one.damage] for name, one in whole.pairs.items()}
-    pair, cases = next(iter(caught.value.choices.items()))
+    pair, cases = next((name, cases) for name, cases in caught.value.choices.items() if len(cases) > 1)
     if scene == "herringbone_contact_line":
         with pytest.raises(ValueError, match=r"pits\.middle_mm = 15\.0, but the page has None there"):
             read(scene, text, pair, cases[1])
         return
-    state, notes = read(scene, text, pair, cases[1])
+    case = "" if whole.train else cases[1]  # the page has no missing teeth and chips
+    state, notes = read(scene, text, pair, case)
     assert any("not taken" in one for one in notes)
     mine, own = scene_from(state).pair(), whole.pair(pair)
     assert mine.pair.gear_1 == own.pair.gear_1
     assert mine.materials == own.materials
-    assert mine.damage[CASE] == own.damage[cases[1]]
+    assert mine.damage.get(CASE) == own.damage.get(case)
     assert mine.force == own.force
 
 
 REFUSED = {
     'z_cutter = 25\nz = 21': "gear.pinion.z_cutter = 25",
     'z = 21\n[support.soft]\ngear = "pinion"\naxial_N_per_um = 200.0': "support.pinion.axial_N_per_um",
-    'z = 21\n[flank.p]\ngear = "pinion"\nslope_um = 3.0': "flank.pinion.slope_um = 3.0",
+    'z = 21\n[flank.p]\ngear = "pinion"\nprofile_slope_um = 3.0': "flank.pinion.profile_slope_um = 3.0",
     'z = 21\n[[crack]]\ncase = "damaged"\ngear = "pinion"\nlevel = 0.2\ntooth = 5': "2 tables [[crack]]",
     'z = 21\n[machine]\nmodel = "helical_pair"\nspeed_rpm = 100.0\ntorque_Nm = 7.0\nrunout_um = 3.0': "machine helical_pair",
     "z = 300": "this page takes 6 to 160",

@@ -99,7 +99,7 @@ def test_render_opens_a_crack_and_says_how_far(tmp_path, capsys):
 def test_pictures_have_the_flanks_and_shafts_of_their_scene(tmp_path):
     """k of the picture of contact is that of `mesh_stiffness`; a relieved neighbour leaves its load to the tooth shown."""
     chosen = gf.load_scene("planetary_pitting").pair()
-    askew = replace(chosen, misalignment=gf.Misalignment(F_beta=0.01), supports={"pinion": gf.Support(radial=2e5, tilt=5e7)})
+    askew = replace(chosen, misalignment=gf.Misalignment(F_beta_x=0.01), supports={"pinion": gf.Support(radial=2e5, tilt=5e7)})
     told = render_contact(askew.case(), tmp_path / "contact.svg", phase=0.9)
     solved = gf.mesh_stiffness(askew.case(), method="ritz3d", phases=[0.9])
     assert told["k"] == pytest.approx(solved.k[0], rel=1e-9)
@@ -131,7 +131,10 @@ def test_scenes_and_info(capsys):
     ("arguments", "message"),
     [
         (["stiffness", "nowhere"], "built in are"),
-        (["stiffness", "planetary_pitting", "--method", "magic"], "auto, ritz, ritz3d, fe, fe3d, coupled, textbook, published"),
+        (
+            ["stiffness", "planetary_pitting", "--method", "magic"],
+            "auto, ritz, ritz3d, fe, fe3d, coupled, textbook, herringbone_article",
+        ),
         (["stiffness", "planetary_pitting", "--method", "textbook", "-o", "/no/such/folder/k.csv"], "cannot write"),
         (["stiffness", "planetary_pitting", "--force", "-5"], "force = -5.0"),
         (["render", "planetary_pitting", "-o", "stress.jpg"], "use one of .png, .vtu"),

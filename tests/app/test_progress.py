@@ -46,7 +46,7 @@ def test_a_failure_leaves_nobody_listening():
     [
         ("stiffness planetary_pitting --method ritz3d --phases 2 --refine 0.3", 10),
         ("compare planetary_pitting --phases 2 --refine 0.2", 5),
-        ("stiffness planetary_pitting --forces 1000 2000 --phases 8 --refine 0.3", 3),
+        ("te planetary_pitting --forces 1000 2000 --phases 8 --refine 0.3", 3),
     ],
 )
 def test_verbs_say_how_far_they_are(line, least, capsys):

@@ -66,7 +66,7 @@ def test_what_cannot_be_is_refused_before_work_begins(scene, tmp_path, monkeypat
         assert main(["set", str(scene), *options]) == 1
         assert told in capsys.readouterr().err
     assert main(["set", "herringbone"]) == 1
-    assert "has no [set] table: add one with n_planets or angles_deg" in capsys.readouterr().err
+    assert "has no [set] table: add one with n_planets or planet_angles_deg" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["my_set.toml"]
 
 

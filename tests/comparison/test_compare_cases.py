@@ -53,7 +53,10 @@ def test_tables_have_rows_for_each_case(found):
     assert len(found.loss_table().rows) == 3 * 2
     assert "none" in rows[4]
     assert not [cell for row in rows for cell in row if "nan" in cell]
-    assert set(found.left_out) == {"textbook of sun_planet crack70", "published of sun_planet crack70"}  # past the centre-line
+    assert set(found.left_out) == {
+        "textbook of sun_planet crack70",
+        "herringbone_article of sun_planet crack70",
+    }  # past the centre-line
 
 
 def test_record_has_every_number(found, tmp_path):

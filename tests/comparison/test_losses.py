@@ -93,7 +93,7 @@ def test_case_and_cases_give_the_same_numbers(found, scene):
     assert every.subject == found.subject == ("stage", "cracked")
     fe = [[row.k for row in one.rows() if row[:3] == ("stage", "cracked", "fe")] for one in (every, found)]
     assert_allclose(*fe, rtol=1e-6)
-    for name in ("fe", "ritz", "textbook", "published"):
+    for name in ("fe", "ritz", "textbook", "herringbone_article"):
         one, other = every.losses()[name], found.losses()[name]
         assert one.keys() == other.keys()
         assert_allclose(list(one.values()), list(other.values()), rtol=1e-5)

@@ -48,7 +48,7 @@ def test_total_function_gives_the_textbooks_curve():
     want = by_textbook(64)
     got = own_curve("mine", lambda phase: by_textbook(phase).k, PAIR, want)
     assert_allclose(got.k, want.k, rtol=1e-12)
-    assert_allclose(got.lte, want.lte, rtol=1e-12)
+    assert_allclose(got.deflection, want.deflection, rtol=1e-12)
     assert_array_equal(got.k_tangent, got.k)
     assert_array_equal(got.order, want.order)
     assert np.isnan(got.force[want.force > 0]).all(), "a total says nothing of the shares"
@@ -85,7 +85,7 @@ def test_functions_see_phases_of_one_cycle_and_radii_of_the_active_flank():
         assert radius.ndim == 1
         assert radius.max() == pytest.approx(gear.r_a, rel=1e-9)
         assert radius.min() > gear.r_b
-    sine = PAIR.a * math.sin(PAIR.alpha_w)  # both touch in one point of the line of action
+    sine = PAIR.a * math.sin(PAIR.alpha_wt)  # both touch in one point of the line of action
     assert_allclose(
         np.sqrt(seen[1][0] ** 2 - PAIR.gear_1.r_b**2) + np.sqrt(seen[1][1] ** 2 - PAIR.gear_2.r_b**2), sine, rtol=1e-12
     )

@@ -12,14 +12,14 @@ from gearfe.comparison.pattern import pattern_of
 def askew(tmp_path_factory):
     """A narrow spur pair, 20 um wider open at z = b."""
     scene = gf.new_scene(tmp_path_factory.mktemp("pattern") / "own.toml", teeth=(17, 23), width=8.0)
-    scene.write_text(scene.read_text().replace("#F_beta_um = 10.0", "F_beta_um = 20.0"))
+    scene.write_text(scene.read_text().replace("#F_beta_x_um = 10.0", "F_beta_x_um = 20.0"))
     return scene
 
 
 def test_load_over_the_face_is_the_whole_force(askew):
     chosen = gf.load_scene(askew).pair()
     found = pattern_of(chosen.case(), phases=4)
-    z, load = gf.face_load(found.contact)
+    z, load = gf.face_load_distribution(found.contact)
     assert load.mean() * 8.0 == pytest.approx(chosen.force, rel=0.01)  # spur: normal to the flank is along the line of action
     assert np.diff(z).max() < 0.1
     assert load[z < 1].mean() > 2 * load[z > 7].mean()

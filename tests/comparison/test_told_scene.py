@@ -29,7 +29,7 @@ def test_all_of_a_scene_is_told(everything, capsys):
         "2000 N along the line of action, 39.47 N m on the pinion",
         "tip relief 20 um, linear",
         "share the load over the first and the last 3.63 mm of roll",  # (eps_alpha - 1) p_bt, 0.615 times 5.904 mm
-        "axes: misalignment F_beta 10 um",
+        "axes: misalignment F_beta_x 10 um",
         "pinion held by a shaft of 40 mm of 18.4 mm, 40 mm of 18.4 mm, bearings at 0 and 80 mm (200 N/um and 200 N/um)",
         "wheel held by springs: radial stiffness 200 N/um",
         "2 mm crack at 60 degrees in the pinion's tooth 0; solved by ritz3d: cracks change along the width",

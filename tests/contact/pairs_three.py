@@ -22,7 +22,7 @@ TWO = ("17/ring 42", "healthy")  # with both resolutions
 def pairs():
     """Pairs by name: teeth, helix angle, width in modules; wheel or ring with its rim radius."""
     rack = {"m_n": 2.0, "alpha_n": math.radians(20)}
-    ring = {"tip_radius": 0.2, "addendum": 0.8}
+    ring = {"rack_tip_radius": 0.2, "addendum": 0.8}
 
     def made(one, two, degrees, b, **wheel):
         beta, rim = math.radians(degrees), wheel.get("r_rim")

@@ -55,7 +55,7 @@ def drawn(seed):
         "m_n": m,
         "alpha_n": math.radians(rng.choice([17.5, 20.0, 25.0])),
         "b": float(m * rng.uniform(4, 8)),
-        "tip_radius": 0.2,
+        "rack_tip_radius": 0.2,
     }
     z_1, more = int(rng.integers(15, 60)), int(rng.integers(22, 60))
     z_2, x = z_1 + more if ring else 16 + more, float(rng.uniform(0, 0.4))

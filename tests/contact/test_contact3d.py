@@ -24,7 +24,7 @@ from validation.shared.solid_pair import solid_contact
 STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 BETA = math.radians(16)
-RING = gf.Gear(z=72, r_rim=90.0, b=12.0, beta=BETA, tip_radius=0.3, addendum=0.85, **RACK)
+RING = gf.Gear(z=72, r_rim=90.0, b=12.0, beta=BETA, rack_tip_radius=0.3, addendum=0.85, **RACK)
 
 
 def pair_of(width=12.0, beta=BETA):
@@ -98,7 +98,7 @@ def test_corner_contact_of_a_wide_spur_pair_is_that_of_the_plane(line_load):
 def test_corner_contact_of_a_ring_and_of_two_materials_is_that_of_the_plane():
     rack, materials = RACK | {"b": 400.0}, (STEEL, gf.Material(E=110e3, nu=0.25))
     planet = gf.Gear(z=27, r_bore=12.0, **rack)
-    pair = gf.GearPair(planet, gf.Gear(z=72, r_rim=90.0, addendum=0.8, tip_radius=0.2, **rack))
+    pair = gf.GearPair(planet, gf.Gear(z=72, r_rim=90.0, addendum=0.8, rack_tip_radius=0.2, **rack))
     leaves = pair.eps_alpha - 1
     phases = np.array([-0.02, 0.0, 0.4, leaves, leaves + 0.02, leaves + 0.05])
     plane, without = (gf.mesh_stiffness(pair, 6e4, materials, phases=phases, extended=e, method="ritz").k for e in (True, False))
@@ -212,7 +212,7 @@ def test_verdict_on_how_much_plane_strain_is_too_stiff(ratio, printed, found):
 @pytest.mark.slow
 def test_a_corner_that_meets_its_mate_late_is_cut_into_cells_from_there():
     """The flank of an undercut mate ends before the path: up to there nothing touches, and k hung on one cell (0.7 % off)."""
-    rack = {"m_n": 1.0, "alpha_n": math.radians(17.5), "b": 4.5, "tip_radius": 0.2}
+    rack = {"m_n": 1.0, "alpha_n": math.radians(17.5), "b": 4.5, "rack_tip_radius": 0.2}
     beta = 0.26682
     pinion = gf.Gear(z=12, x=0.3243, r_bore=2.02, beta=beta, **rack)
     pair = gf.GearPair(pinion, gf.Gear(z=13, x=0.003, r_bore=2.29, beta=-beta, **rack))
@@ -225,7 +225,7 @@ def test_a_corner_that_meets_its_mate_late_is_cut_into_cells_from_there():
 @pytest.mark.slow
 def test_error_estimate_sees_the_length_of_the_cells():
     """Near a tip corner cells err more than the bodies do: the estimate covers what half of them give."""
-    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.75, "beta": math.radians(8.72), "tip_radius": 0.2}
+    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.75, "beta": math.radians(8.72), "rack_tip_radius": 0.2}
     ring = gf.Gear(z=32, r_rim=41.8, addendum=0.688, **rack)
     pair = gf.GearPair(gf.Gear(z=12, x=0.197, r_bore=5.73, **rack), ring)
     solved = solid_contact(pair, 496.0, STEEL, [0.049], error=True)

@@ -18,7 +18,7 @@ from gearfe.geometry.tooth.profile import arc_at, cartesian, flank
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))
-RING = gf.Gear(z=72, r_rim=125.0, addendum=0.85, tip_radius=0.2, **RACK)
+RING = gf.Gear(z=72, r_rim=125.0, addendum=0.85, rack_tip_radius=0.2, **RACK)
 
 
 def _left(points):

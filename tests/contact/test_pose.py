@@ -29,7 +29,7 @@ def solved(pair, phase, pose="mean", **options):
 def test_turning_one_gear_is_the_mean_pose_half_an_approach_away(pair, phase):
     for pose, sign in (("pinion", 1), ("wheel", -1)):
         one = solved(pair, phase, pose)
-        mean = solved(pair, phase + sign * one.lte[0] * 1e3 / 2 / pair.p_bt)
+        mean = solved(pair, phase + sign * one.deflection[0] * 1e3 / 2 / pair.p_bt)
         assert_allclose(one.k, mean.k, rtol=1e-5)
         assert one.phase[0] == phase
         assert one.meta["pose"] == pose
@@ -62,7 +62,7 @@ def test_a_corner_just_off_the_path_opens_with_the_square_of_the_distance(pair):
 
 def test_the_estimate_of_every_pose_is_the_mean_poses(pair):
     one = solved(pair, 0.95, "wheel", error=True)
-    mean = solved(pair, 0.95 - one.lte[0] * 1e3 / 2 / pair.p_bt, error=True)
+    mean = solved(pair, 0.95 - one.deflection[0] * 1e3 / 2 / pair.p_bt, error=True)
     assert_allclose(one.error, mean.error, rtol=1e-3)
 
 
@@ -75,7 +75,7 @@ def test_the_pose_holds_in_three_dimensions():
     pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
     wide = {"method": "ritz3d", "face": "spur"}
     one = gf.mesh_stiffness(pair, LOAD * 20, STEEL, phases=[0.95], pose="pinion", **wide)
-    at = 0.95 + one.lte[0] * 1e3 / 2 / pair.p_bt
+    at = 0.95 + one.deflection[0] * 1e3 / 2 / pair.p_bt
     mean = gf.mesh_stiffness(pair, LOAD * 20, STEEL, phases=[at], **wide)
     assert_allclose(one.k, mean.k, rtol=1e-5)
 
@@ -86,7 +86,7 @@ def test_calculix_in_the_same_pose(pair, tmp_path):
     """Nonlinear contact with large displacements, the same gears turned."""
     phase, pose = 0.95, "wheel"
     curve = solved(pair, phase, pose)
-    deck = gf.write_contact_inp(tmp_path / "pair.inp", pair, phase, curve.lte[0] * 1e3, LOAD, (STEEL, STEEL), pose=pose)
+    deck = gf.write_contact_inp(tmp_path / "pair.inp", pair, phase, curve.deflection[0] * 1e3, LOAD, (STEEL, STEEL), pose=pose)
     subprocess.run(["ccx", "-i", "pair"], cwd=tmp_path, capture_output=True, timeout=600, check=False)
     difference = LOAD / deck.force(tmp_path / "pair.dat") - 1
     print(f"phase {phase}, {pose}: {100 * difference:+.3f} %")

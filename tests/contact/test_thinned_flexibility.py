@@ -46,7 +46,9 @@ def test_what_is_known_is_that_of_whole_bodies(pair):
 
 @pytest.mark.parametrize("ring", [False, True])
 def test_added_flexibility_is_symmetric_and_grows_with_what_is_removed(ring):
-    held = {"z": 84, "r_rim": 95.0, "x": -0.4617, "addendum": 0.859, "tip_radius": 0.2} if ring else {"z": 31, "r_bore": 11.4}
+    held = (
+        {"z": 84, "r_rim": 95.0, "x": -0.4617, "addendum": 0.859, "rack_tip_radius": 0.2} if ring else {"z": 31, "r_bore": 11.4}
+    )
     gear = gf.Gear(**held, **RACK)
     roll = np.linspace(gear.roll_f, gear.roll_a, 7)
     once, both = (Thinning(relieved(gear, 0.03, way).on(gear), STEEL, "plane strain").between(roll, 0) for way in (False, True))

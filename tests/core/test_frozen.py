@@ -27,17 +27,17 @@ def inputs(pair):
         "material": [STEEL, STEEL],
         "damage": {"pinion": [gf.Crack(level=0.3, ends=[1.0, 1.0])], "wheel": []},
         "flanks": {"pinion": flank, "wheel": None},
-        "misalignment": gf.Misalignment(F_beta=0.002),
+        "misalignment": gf.Misalignment(F_beta_x=0.002),
         "supports": {"wheel": gf.Shaft([[100.0, 22.0]], [0.0, 100.0], 50.0, STEEL, bearing_stiffness=[1e6, 1e6])},
     }
 
 
 def test_a_case_does_not_change_with_what_it_was_given(pair):
-    given = {"pinion": gf.Flank(crowning=0.002)}
+    given = {"pinion": gf.Flank(profile_crowning=0.002)}
     forces = [1000.0, 2000.0]
     case = gf.Case(pair, forces, STEEL, flanks=given)
     text, k = repr(case), gf.solve(case, gf.Solve(phases=4))[1].k
-    given["pinion"], forces[1] = gf.Flank(crowning=0.02), 9000.0
+    given["pinion"], forces[1] = gf.Flank(profile_crowning=0.02), 9000.0
     assert repr(case) == text
     assert_allclose(gf.solve(replace(case), gf.Solve(phases=4))[1].k, k, rtol=1e-12)
     array = np.array([1000.0, 2000.0])
@@ -83,12 +83,17 @@ def test_a_solve_does_not_change_either():
 def test_planetary_cases():
     rack = {"m_n": 2.0, "alpha_n": 0.35, "b": 20.0}
     sun, planet = gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack)
-    gears = gf.PlanetarySet(sun, planet, gf.Gear(z=83, r_rim=95.0, tip_radius=0.2, addendum=0.9, **rack), 1)
-    given = {"damage": {"sun": [gf.Crack(level=0.2)]}, "flanks": {"planet": gf.Flank(crowning=0.002)}}
+    gears = gf.PlanetarySet(sun, planet, gf.Gear(z=83, r_rim=95.0, rack_tip_radius=0.2, addendum=0.9, **rack), 1)
+    given = {"damage": {"sun": [gf.Crack(level=0.2)]}, "flanks": {"planet": gf.Flank(profile_crowning=0.002)}}
     errors, angles = np.zeros((3, 2)), [2 * math.pi * k / 104 for k in (0, 35, 69)]
     one, two = (
         gf.PlanetaryCase(
-            gears, 1000.0, [STEEL] * 3, angles=[2 * math.pi * k / 104 for k in (0, 35, 69)], errors=errors, **copy.deepcopy(given)
+            gears,
+            1000.0,
+            [STEEL] * 3,
+            planet_angles=[2 * math.pi * k / 104 for k in (0, 35, 69)],
+            errors=errors,
+            **copy.deepcopy(given),
         )
         for _ in range(2)
     )
@@ -96,7 +101,7 @@ def test_planetary_cases():
     assert hash(one) == hash(two)
     errors[0, 0] = 0.01
     given["damage"]["sun"].append(gf.Crack(level=0.2, tooth=1))
-    assert one == two != gf.PlanetaryCase(gears, 1000.0, STEEL, angles=angles, errors=errors, **given)
+    assert one == two != gf.PlanetaryCase(gears, 1000.0, STEEL, planet_angles=angles, errors=errors, **given)
 
 
 def test_masked_values_are_refused(pair):

@@ -29,7 +29,7 @@ def pair_of(degrees, *, ring=False):
     beta = math.radians(degrees)
     first = gf.Gear(z=13, x=0.3, r_bore=8.0, beta=beta, **rack)
     if ring:
-        return gf.GearPair(first, gf.Gear(z=30, r_rim=39.0, tip_radius=0.2, addendum=0.8, beta=beta, **rack))
+        return gf.GearPair(first, gf.Gear(z=30, r_rim=39.0, rack_tip_radius=0.2, addendum=0.8, beta=beta, **rack))
     return gf.GearPair(first, gf.Gear(z=16, x=0.2, r_bore=10.0, beta=-beta, **rack))
 
 
@@ -48,9 +48,9 @@ def depth(pair, part, order):
     radius = np.hypot(x, y)
     there = (radius > gear.r_form) & (radius < gear.r_a)
     ahead = 0.45 * pair.p_bt + math.tan(gear.beta_b) * (z - (pair.gear_1.b if gear.beta > 0 else 0.0))
-    turn = (pair.path[0] + ahead) / gear.r_b - math.tan(pair.alpha_w)
-    # at the pitch point, n = r_b tan(alpha_w), the flank's point is straight above the centre
-    pitch = flank(gear, np.array(gear.r_b * math.tan(pair.alpha_w)))[1]
+    turn = (pair.path[0] + ahead) / gear.r_b - math.tan(pair.alpha_wt)
+    # at the pitch point, n = r_b tan(alpha_wt), the flank's point is straight above the centre
+    pitch = flank(gear, np.array(gear.r_b * math.tan(pair.alpha_wt)))[1]
     own = flank(gear, np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0)))[1] - pitch + turn + 2 * math.pi * order / gear.z
     return ((np.arctan2(x, y) - own) * gear.r_b)[there]
 
@@ -147,7 +147,7 @@ def test_nodes_of_tets_lie_on_the_involute(damaged):
         ({"pose": "left"}, "must be one of"),
         ({"damage": {"ring": []}}, "'pinion' and 'wheel'"),
         ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "which has none"),
-        ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta=0.01)}, "knows no width"),
+        ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta_x=0.01)}, "knows no width"),
         ({"damage": {"pinion": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}}, "through the whole width"),
         ({"pits": "filled", "damage": {"pinion": [gf.Crack(level=0.3)]}}, "no pit in damage"),
         ({"pits": "holes", "damage": {"pinion": [PIT]}}, "must be one of"),
@@ -219,8 +219,8 @@ needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is 
 def test_nodes_of_modified_flanks_lie_on_them():
     """On the involute helicoid each node turns by what is removed at its place, on the loaded flank of the teeth asked for."""
     pair = pair_of(15.0)
-    flanks = {"pinion": gf.Flank(lead_crowning=0.01, twist=0.004, tip_relief=0.02, tip_start_roll=pair.gear_1.roll_a - 2.0)}
-    form = flank_forms(pair, flanks, gf.Misalignment(F_beta=0.01))[0]
+    flanks = {"pinion": gf.Flank(helix_crowning=0.01, twist=0.004, tip_relief=0.02, tip_start_roll=pair.gear_1.roll_a - 2.0)}
+    form = flank_forms(pair, flanks, gf.Misalignment(F_beta_x=0.01))[0]
     gear, rng = pair.gear_1, np.random.default_rng(0)
     roll, z = rng.uniform(gear.roll_f, gear.roll_a, 50), rng.uniform(0, gear.b, 50)
     for tooth, loaded in ((0, True), (3, True), (0, False), (1, None)):
@@ -236,7 +236,7 @@ def test_nodes_of_modified_flanks_lie_on_them():
 def test_a_deck_carries_the_modified_flanks(tmp_path):
     """The pinion's flanks that may touch lie behind their involutes by what is removed there, in the place of their phase."""
     pair = pair_of(15.0)
-    flanks, askew = {"pinion": gf.Flank(lead_crowning=0.02, tip_relief=0.01, tip_start_roll=5.0)}, gf.Misalignment(F_beta=0.01)
+    flanks, askew = {"pinion": gf.Flank(helix_crowning=0.02, tip_relief=0.01, tip_start_roll=5.0)}, gf.Misalignment(F_beta_x=0.01)
     deck = written(tmp_path, pair, flanks=flanks, misalignment=askew)
     form, part, gear = flank_forms(pair, flanks, askew)[0], deck.parts[0], pair.gear_1
     assert deck.slaves

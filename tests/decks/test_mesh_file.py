@@ -148,7 +148,7 @@ def test_a_close_up_looks_into_pits_wherever_they_are(tmp_path, ring, side):
     from matplotlib.image import imread
 
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 4.0}
-    gear = gf.Gear(z=40, r_rim=48.0, tip_radius=0.3, **rack) if ring else gf.Gear(z=18, r_bore=10.0, **rack)
+    gear = gf.Gear(z=40, r_rim=48.0, rack_tip_radius=0.3, **rack) if ring else gf.Gear(z=18, r_bore=10.0, **rack)
     pit = gf.Pit(radius=gear.r, z=2.0, axes=(0.4, 0.8), depth=0.15, side=side)
     part = gf.export_mesh(tmp_path / "t.vtu", gear, [pit], teeth=3, refine=0.5)
     gf.render_mesh(part, tmp_path / "t.png", close_up="pits", size=(200, 150))

@@ -109,7 +109,7 @@ def test_design_pattern_and_root_stress(tmp_path):
     text = (SITE / "howto" / "design.md").read_text(encoding="utf-8")
     scene = gf.new_scene(tmp_path / "my.toml")
     assert "\n".join(told_root(gf.load_scene(scene).case())) in text
-    scene.write_text(scene.read_text().replace("#F_beta_um", "F_beta_um"))
+    scene.write_text(scene.read_text().replace("#F_beta_x_um", "F_beta_x_um"))
     first, second, *_ = pattern_of(gf.load_scene(scene).case()).told().splitlines()
     assert f"{first}\n{second}\n```" in text
 

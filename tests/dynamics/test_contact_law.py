@@ -32,7 +32,7 @@ def law_of_meshes(*fields):
 def test_slopes_are_derivatives_of_the_force():
     law = law_of_meshes(
         {"damping": 50.0},
-        {"damping": 30.0, "beta": 1e-6, "backlash": 2e-5, "film": 0.3},
+        {"damping": 30.0, "damping_per_stiffness": 1e-6, "backlash": 2e-5, "film": 0.3},
         {"power": 1.5, "damping": 80.0, "depth": 1e-4, "backlash": math.inf, "push": True},
         {"power": 1.5, "damping": 80.0, "depth": 1e-4, "backlash": 3e-5, "push": True, "film": 0.0},
         {"power": 1.2, "damping": 80.0, "depth": 1e-4, "backlash": 3e-5},
@@ -67,9 +67,9 @@ def pair_of(scale=1.0):
 
 
 def test_a_pair_at_its_pitch_point_is_hertzs_sphere():
-    """F = 4/3 E' sqrt(R) d**1.5, with the radii of curvature r_w sin(alpha_w) and 1 / E' twice (1 - nu**2) / E of steel."""
+    """F = 4/3 E' sqrt(R) d**1.5, with the radii of curvature r_w sin(alpha_wt) and 1 / E' twice (1 - nu**2) / E of steel."""
     pair, steel = pair_of(), gf.Material(E=207e3, nu=0.3)
-    one, two = (math.sin(pair.alpha_w) * r for r in (pair.pitch_radius_1, pair.a - pair.pitch_radius_1))
+    one, two = (math.sin(pair.alpha_wt) * r for r in (pair.pitch_radius_1, pair.a - pair.pitch_radius_1))
     want = 4 / 3 * 207e3 / (2 * (1 - 0.3**2)) * math.sqrt(one * two / (one + two))
     found = impact_cycle(pair, (steel, steel))
     assert pair.eps_alpha - 1 < pair.pitch_phase % 1.0 < 1, "one pair alone"

@@ -36,8 +36,12 @@ def test_order_of_the_fast_path_and_the_reference():
 MACHINES = {
     "smooth": two_masses(error=((1e-6, 500.0, 0.3),)),
     "loses contact": two_masses(error=((80e-6, 500.0, 0.3),), backlash=4e-5),
-    "damped by its stiffness": two_masses(error=((1e-6, 500.0, 0.3),), beta=1e-6, load=lambda t: 800 + 300 * np.sin(600 * t)),
-    "pulses and a film": two_masses(load=pulses(500.0, 3000.0, 4e-3, 1e-3, 4), film=0.2, backlash=1e-4, beta=1e-6),
+    "damped by its stiffness": two_masses(
+        error=((1e-6, 500.0, 0.3),), damping_per_stiffness=1e-6, load=lambda t: 800 + 300 * np.sin(600 * t)
+    ),
+    "pulses and a film": two_masses(
+        load=pulses(500.0, 3000.0, 4e-3, 1e-3, 4), film=0.2, backlash=1e-4, damping_per_stiffness=1e-6
+    ),
     "impact law": two_masses(
         load=lambda t: 800 + 300 * np.sin(600 * t), backlash=np.inf, power=1.5, depth=5e-5, push=True, stiffness=300 * WAVE
     ),

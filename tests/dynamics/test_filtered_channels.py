@@ -30,7 +30,7 @@ def under_a_law(**mesh):
 
 
 MADE = {
-    "always closed": lambda: two_masses(beta=1e-6, error=ERROR),
+    "always closed": lambda: two_masses(damping_per_stiffness=1e-6, error=ERROR),
     "lost contact": lambda: two_masses(backlash=4e-5, error=((80e-6, 500.0, 0.3),), film=0.2),
     "damaged tooth": lambda: two_masses(teeth=(5, 7), damage=(ToothDamage(0, 0, tooth(WAVE, 0.9, 1.5)),)),
     "load that jumps": lambda: two_masses(load=HISTORY),

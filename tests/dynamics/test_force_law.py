@@ -58,7 +58,7 @@ def test_below_its_loads_it_has_their_secant_and_above_them_their_tangent():
 def test_a_law_is_the_contact_solved_anew_at_other_loads_and_phases():
     law, phase = gf.force_law(PAIR, LOADS, STEEL), np.random.default_rng(1).random(40)
     for want in gf.mesh_stiffness(PAIR, [70.0, 300.0, 1111.0, 2500.0], STEEL, phases=np.sort(phase)):
-        got = law(want.lte, want.phase)
+        got = law(want.deflection, want.phase)
         load = want.meta["force_N"]
         assert np.sqrt(np.mean((got / load - 1) ** 2)) < 2e-3
         assert_allclose(got, load, rtol=0.02)
@@ -70,7 +70,7 @@ def test_more_loads_and_phases_converge():
 
     def off(loads, phases):
         law = gf.force_law(PAIR, np.geomspace(50, 3200, loads), STEEL, phases=phases)
-        return math.sqrt(np.mean([(law(one.lte, one.phase) / one.meta["force_N"] - 1) ** 2 for one in asked]))
+        return math.sqrt(np.mean([(law(one.deflection, one.phase) / one.meta["force_N"] - 1) ** 2 for one in asked]))
 
     errors = [off(4, 32), off(7, 64), off(13, 128)]
     print("RMS error of the force over load:", *(f"{one:.1e}" for one in errors))
@@ -99,7 +99,7 @@ def test_derivatives_of_the_force_are_those_of_its_values():
     from gearfe.dynamics.machine.contact_law import force, slopes
 
     secant = gf.force_law(PAIR, LOADS, STEEL).secant
-    machine = gf.single_mesh(0.15, 3e8, 100.0, damping=50.0, beta=1e-6, backlash=2e-5)
+    machine = gf.single_mesh(0.15, 3e8, 100.0, damping=50.0, damping_per_stiffness=1e-6, backlash=2e-5)
     for x, v in ((3.3e-6, 0.01), (-2.4e-5, -0.02), (2e-5, 0.0), (-1e-5, 0.01)):
 
         def at(x, v=v):

@@ -69,7 +69,7 @@ def test_what_cannot_be_heard_is_refused():
     with pytest.raises(ValueError, match="planet_ring1"):
         gf.housing_signal(made, kind="sun_planet", carrier=1.0)
     with pytest.raises(ValueError, match="3 planets"):
-        gf.housing_signal(made, carrier=1.0, places=[0.0])
+        gf.housing_signal(made, carrier=1.0, planet_angles=[0.0])
 
 
 def test_modes_of_the_housing_amplify_as_an_oscillator_does():

@@ -81,7 +81,7 @@ def test_the_helical_pair_has_the_law_of_its_scene():
 
 
 def first_angle(scene):
-    return scene.pairs["sun_planet"].pair.alpha_w
+    return scene.pairs["sun_planet"].pair.alpha_wt
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,7 @@ def test_it_is_the_sum_over_the_modes_and_the_same_from_either_side():
         made.dofs,
         made.mass,
         tuple(gf.Spring(s.name, s.row, s.k) for s in made.springs),
-        made.with_meshes(zeta=0.0, damping=0.0, beta=0.0).meshes,
+        made.with_meshes(zeta=0.0, damping=0.0, damping_per_stiffness=0.0).meshes,
     )
     found = gf.modal_energy(plain)
     f, one, two = np.array([433.3, 1234.5]), made.dofs[0], made.meshes[0].name

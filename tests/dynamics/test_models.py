@@ -75,7 +75,7 @@ def test_phases_of_a_stage_are_consistent(spur_stage):
 def test_unequal_places_must_allow_assembly(spur_stage):
     pairs = spur_stage.sun_planet, spur_stage.planet_ring
     with pytest.raises(ValueError, match="cannot be assembled"):
-        stage_phases(pairs, 2, places=(0.0, 1.0))
+        stage_phases(pairs, 2, planet_angles=(0.0, 1.0))
 
 
 def test_two_damaged_teeth_meet_at_the_hunting_interval(herringbone_stage):

@@ -42,7 +42,7 @@ def rms(values):
 def test_turned_slowly_a_mesh_has_its_static_transmission_error_at_every_load(load):
     frequency = 2.0
     response = gf.simulate(mass(law(), frequency, load, damping=20 * DAMPING), 1 / frequency, rate=256 * frequency)
-    want = gf.mesh_stiffness(PAIR, load, STEEL, phases=256).lte
+    want = gf.mesh_stiffness(PAIR, load, STEEL, phases=256).deflection
     got = response["compression mesh"][:256]
     assert rms(got[8:] / want[8:] - 1) < 2e-3
     assert_allclose(got[8:], want[8:], rtol=1e-2, err_msg="the worst is between two phases solved where a pair comes in")
@@ -74,9 +74,9 @@ def test_a_cracked_tooth_turned_slowly_has_its_static_transmission_error():
     response = gf.simulate(machine, 2.5 / frequency, rate=128 * frequency, filtered=False)
     phase = 20.0 + frequency * response.time - 21
     near = (phase > -0.2) & (phase < 1.4)
-    want = gf.mesh_stiffness(PAIR, load, STEEL, damage=CRACK, phases=phase[near]).lte
+    want = gf.mesh_stiffness(PAIR, load, STEEL, damage=CRACK, phases=phase[near]).deflection
     assert_allclose(response["compression mesh"][near], want, rtol=5e-3)
-    healthy = gf.mesh_stiffness(PAIR, load, STEEL, phases=phase[near] % 1).lte
+    healthy = gf.mesh_stiffness(PAIR, load, STEEL, phases=phase[near] % 1).deflection
     assert np.abs(want / healthy - 1).max() > 0.02, "the crack matters"
 
 
@@ -84,7 +84,7 @@ def test_a_cracked_tooth_turned_slowly_has_its_static_transmission_error():
 def test_it_is_the_motion_of_contact_solved_at_every_step():
     frequency, load, steps, phase = 2500.0, 300.0, 60, 0.55  # half a cycle: a pair leaves, another comes in
     h = 0.5 / frequency / steps
-    start = float(gf.mesh_stiffness(PAIR, load, STEEL, phases=[phase]).lte[0])
+    start = float(gf.mesh_stiffness(PAIR, load, STEEL, phases=[phase]).deflection[0])
     force = load
 
     def solved(x, t):
@@ -92,7 +92,7 @@ def test_it_is_the_motion_of_contact_solved_at_every_step():
         nonlocal force
         for _ in range(8):
             one = gf.mesh_stiffness(PAIR, force, STEEL, phases=[(phase + frequency * t) % 1])
-            away = x - float(one.lte[0])
+            away = x - float(one.deflection[0])
             force = max(force + float(one.k_tangent[0]) * away, 20.0)
             if abs(away) < 1e-5 * x:
                 return force
@@ -162,7 +162,7 @@ def test_flanks_that_only_push_and_damp_by_depth_meet_under_a_law_as_the_referen
 @pytest.mark.parametrize("load", [150.0, 1600.0])
 def test_standing_still_small_vibration_has_the_frequency_of_the_tangent_at_its_load(load):
     at_load = gf.mesh_stiffness(PAIR, load, STEEL, phases=[0.4])
-    start = 1.01 * float(at_load.lte[0])
+    start = 1.01 * float(at_load.deflection[0])
     response = gf.simulate(mass(law(), 0.0, load, damping=0.0, phase=0.4), 0.004, rate=1e6, initial=([start], [0.0]))
     x = response["pair.x"] - response["pair.x"].mean()
     ups = np.flatnonzero((x[:-1] < 0) & (x[1:] >= 0))
@@ -183,7 +183,7 @@ def test_far_above_resonance_under_a_constant_load_it_is_what_one_curve_gives():
 def test_a_law_that_no_load_changes_is_its_stiffness_over_the_phase():
     curve = gf.mesh_stiffness(PAIR, 1000.0, STEEL, phases=256)
     others = [
-        replace(curve, k_tangent=curve.k, lte=part * curve.lte, meta=curve.meta | {"force_N": 1000.0 * part})
+        replace(curve, k_tangent=curve.k, deflection=part * curve.deflection, meta=curve.meta | {"force_N": 1000.0 * part})
         for part in (0.1, 1.0, 3.0)
     ]
     same = gf.ForceLaw.of(others)

@@ -48,7 +48,7 @@ def test_multipliers_against_a_general_integrator():
 def test_multipliers_with_damping_in_proportion_to_stiffness():
     """``m x'' + k(t) (x + beta x') = 0``, whose compressions and rates the fast path carries as one."""
     k, frequency, beta = 1e8 * (1 + 0.3 * np.cos(2 * math.pi * np.arange(2048) / 2048)), 2900.0, 3e-6
-    got = steady_state(single_mesh(1.0, k, frequency, beta=beta), dt=1 / frequency / 200).multipliers
+    got = steady_state(single_mesh(1.0, k, frequency, damping_per_stiffness=beta), dt=1 / frequency / 200).multipliers
 
     def rate(t, y):
         now = 1e8 * (1 + 0.3 * math.cos(2 * math.pi * frequency * t))

@@ -180,7 +180,7 @@ def test_flexibility_is_what_its_parts_are():
 
 
 def test_ring_is_refused():
-    ring = gf.Gear(z=72, m_n=2.0, alpha_n=math.radians(20), b=WIDTH, r_rim=90.0, addendum=0.7, tip_radius=0.25)
+    ring = gf.Gear(z=72, m_n=2.0, alpha_n=math.radians(20), b=WIDTH, r_rim=90.0, addendum=0.7, rack_tip_radius=0.25)
     with pytest.raises(ValueError, match="no ring"):
         coupled.flexibility(ring, STEEL)
 
@@ -216,8 +216,8 @@ def test_below_three_percent_of_finite_elements(name):
 
 LIMITS = {  # gear, and the largest error there: wide roots are hardly beams, and a rim thinner than a tooth is no ring
     "many teeth": (thin(60, 0.5), 0.036),
-    "alpha 25": (thin(30, 0.5, alpha_n=math.radians(25), tip_radius=0.3), 0.062),
-    "sharp fillet": (thin(30, 0.5, tip_radius=0.2), 0.042),
+    "alpha 25": (thin(30, 0.5, alpha_n=math.radians(25), rack_tip_radius=0.3), 0.062),
+    "sharp fillet": (thin(30, 0.5, rack_tip_radius=0.2), 0.042),
     "thin rim": (thin(18, 0.85), 0.053),
 }
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 import gearfe as gf
-from gearfe.flexibility.energy.closed import published, textbook
+from gearfe.flexibility.energy.closed import herringbone_article, textbook
 from gearfe.flexibility.energy.closed.beam import SAINSOT, sainsot
 from gearfe.geometry.tooth.profile import cartesian, fillet, flank, form_point
 
@@ -22,7 +22,7 @@ def make(z, **numbers):
 
 
 @pytest.mark.parametrize(
-    "gear", [make(12), make(21), make(62), make(30, x=0.5), make(25, tip_radius=0.0)], ids=lambda g: f"z{g.z}"
+    "gear", [make(12), make(21), make(62), make(30, x=0.5), make(25, rack_tip_radius=0.0)], ids=lambda g: f"z{g.z}"
 )
 def test_beam_integrals_equal_independent_quadrature(gear):
     """Half thickness against height, by quad on the profile itself with numerical slopes."""
@@ -82,13 +82,13 @@ def test_published_beam_equals_quadrature_of_its_own_profile(z):
         x = gear.r_b * math.sin(gear.base_half_angle)
         bottom = math.sqrt(gear.r_f**2 - x**2)
         want += quad(lambda y: bending(x, y), bottom, gear.r_b * math.cos(gear.base_half_angle), epsrel=1e-11)[0]
-    assert_allclose(published.components(gear, STEEL, roll).bending, want, rtol=1e-8)
+    assert_allclose(herringbone_article.components(gear, STEEL, roll).bending, want, rtol=1e-8)
 
 
 def test_published_contact_is_1_57_times_the_textbooks():
     from gearfe.flexibility.hertz import linear_hertz
 
-    assert_allclose(published.contact((STEEL, STEEL)) / linear_hertz((STEEL, STEEL)), math.pi / 2, rtol=1e-12)
+    assert_allclose(herringbone_article.contact((STEEL, STEEL)) / linear_hertz((STEEL, STEEL)), math.pi / 2, rtol=1e-12)
 
 
 def test_unknown_lever_is_refused():

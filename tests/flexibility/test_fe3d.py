@@ -24,7 +24,7 @@ from gearfe.geometry.tooth.profile import arc_at
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 GEAR = gf.Gear(z=12, x=0.3, b=3.0, r_bore=5.0, **RACK)
 HELICAL = replace(GEAR, beta=math.radians(20))
-RING = gf.Gear(z=26, b=3.0, r_rim=33.0, addendum=0.6, tip_radius=0.2, z_cutter=16, **RACK)
+RING = gf.Gear(z=26, b=3.0, r_rim=33.0, addendum=0.6, rack_tip_radius=0.2, z_cutter=16, **RACK)
 COARSE = {"flank": 0.5, "corner": 0.4, "fillet": 0.5, "root": 0.6, "near": 1.0, "far": 2.0}
 W = 0.5
 

@@ -108,7 +108,7 @@ def test_the_curve_says_what_was_done(steel, tmp_path, monkeypatch):
     curve = curve_of(steel, tell=told.append)
     assert [line.split(",")[0] for line in told] == ["2 solves", "z = 12", "z = 13"]
     assert all("unknowns, about" in line and "GB free" in line for line in told[1:])
-    assert_allclose(curve.k * curve.lte, 400.0, rtol=1e-12)
+    assert_allclose(curve.k * curve.deflection, 400.0, rtol=1e-12)
     assert_allclose(curve.force.sum(axis=1), 400.0, rtol=1e-9)
     assert curve.meta["method"] == "fe3d"
     assert curve.meta["face"] == "helical"
@@ -148,7 +148,7 @@ def test_herringbone_halves_have_their_own_cracks(steel):
     ("options", "message"),
     [
         ({"teeth": 3}, "teeth = 3 with method = 'fe3d'"),
-        ({"variants": {"root": "prism"}}, "only textbook or published have variants"),
+        ({"variants": {"root": "prism"}}, "only textbook or herringbone_article have variants"),
         ({"refine": 0.0}, "refine = 0.0"),
         ({"face": "spur"}, "the gears have a helix angle"),
         ({"damage": {"pinion": [gf.Crack(level=0.3, width=(1.0, 4.5))]}}, "the face ends at 4 mm"),

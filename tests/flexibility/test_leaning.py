@@ -17,7 +17,7 @@ from gearfe.geometry.tooth.profile import roll_at_arc
 STEEL = gf.Material(E=206e3, nu=0.3)
 GEARS = [
     gf.Gear(z=12, m_n=1.0, alpha_n=math.radians(20), b=1.0, r_bore=2.7),
-    gf.Gear(z=60, m_n=1.0, alpha_n=math.radians(20), b=1.0, r_rim=34.25, tip_radius=0.2),
+    gf.Gear(z=60, m_n=1.0, alpha_n=math.radians(20), b=1.0, r_rim=34.25, rack_tip_radius=0.2),
 ]
 
 

@@ -12,7 +12,7 @@ from scipy.integrate import quad
 
 import gearfe as gf
 from gearfe.flexibility import hertz
-from gearfe.flexibility.energy.closed import published, textbook
+from gearfe.flexibility.energy.closed import herringbone_article, textbook
 from gearfe.flexibility.energy.closed.beam import SAINSOT, Validity, load_angle
 from gearfe.flexibility.energy.closed.plain_sum import plain_sum
 from gearfe.flexibility.energy.closed.section import ToothDamage
@@ -116,7 +116,9 @@ def test_summed_widths_act_wherever_the_line_is(half):
 def test_beam_and_body_of_the_article_end_where_they_are_told_to():
     """Beams on the base circle lose the prism, nothing else; a body that ends there has its lever and its S_f counted there."""
     roll = np.array([3.0, 5.0])
-    whole, beam, body = (published.components(GEAR, STEEL, roll, **one) for one in ({}, {"root": "base"}, {"foot": "base"}))
+    whole, beam, body = (
+        herringbone_article.components(GEAR, STEEL, roll, **one) for one in ({}, {"root": "base"}, {"foot": "base"})
+    )
     assert_allclose(whole.foundation, beam.foundation, rtol=0)
     assert_allclose(whole.bending, body.bending, rtol=0)
     sin, cos = math.sin(GEAR.base_half_angle), math.cos(GEAR.base_half_angle)
@@ -124,13 +126,13 @@ def test_beam_and_body_of_the_article_end_where_they_are_told_to():
     force = load_angle(GEAR, roll)
     assert_allclose(whole.axial - beam.axial, np.sin(force) ** 2 * prism / (2 * STEEL.E * GEAR.r_b * sin), rtol=1e-9)
     crack = ToothDamage((gf.Crack(level=0.3),))
-    hurt = published.components(GEAR, STEEL, roll, damage=crack, root="base")
-    assert (hurt.bending < published.components(GEAR, STEEL, roll, damage=crack).bending).all()
+    hurt = herringbone_article.components(GEAR, STEEL, roll, damage=crack, root="base")
+    assert (hurt.bending < herringbone_article.components(GEAR, STEEL, roll, damage=crack).bending).all()
     on_base = replace(GEAR, dedendum=(GEAR.r - GEAR.r_b) / GEAR.m_n)  # its root circle is the base circle
-    assert_allclose(body.foundation, published.components(on_base, STEEL, roll).foundation, rtol=1e-6)
+    assert_allclose(body.foundation, herringbone_article.components(on_base, STEEL, roll).foundation, rtol=1e-6)
     for name in ("root", "foot"):
         with pytest.raises(ValueError, match=f"{name} = 'tip'"):
-            published.components(GEAR, STEEL, roll, **{name: "tip"})
+            herringbone_article.components(GEAR, STEEL, roll, **{name: "tip"})
 
 
 @pytest.mark.parametrize("contact", ["weber", "palmgren"])
@@ -265,17 +267,17 @@ def test_what_is_outside_its_range_is_named():
     assert "theta_f" in seen.what
     assert seen.value > seen.high == 0.12
     thin = gf.GearPair(*(gf.Gear(z=62, r_bore=r, **RACK) for r in (50.0, 20.0)))
-    outside = plain_sum(gf.Case(thin, 1.0, STEEL), PHASE, published)[1]["outside"]
+    outside = plain_sum(gf.Case(thin, 1.0, STEEL), PHASE, herringbone_article)[1]["outside"]
     assert [v.what for v in outside] == ["h = r_f / r_bore of z = 62 (Sainsot)"]
     assert plain_sum(case, PHASE, textbook, foundation="none")[1]["outside"] == ()
 
 
-@pytest.mark.parametrize("formulas", [textbook, published])
+@pytest.mark.parametrize("formulas", [textbook, herringbone_article])
 def test_a_ring_has_beams_and_its_planet_a_foundation(formulas):
     """With foundation 'external' the planet's tooth is as before and the ring's that without any foundation."""
     roll = np.array([8.0, 9.0])
     planet = gf.Gear(z=27, r_bore=12.0, **RACK)
-    ring = gf.Gear(z=72, r_rim=90.0, addendum=0.86, tip_radius=0.2, **RACK)
+    ring = gf.Gear(z=72, r_rim=90.0, addendum=0.86, rack_tip_radius=0.2, **RACK)
     own, whole = (formulas.components(planet, STEEL, roll, foundation=name) for name in ("external", "sainsot"))
     assert_allclose(own.total, whole.total, rtol=0)
     at = np.linspace(ring.roll_a, ring.roll_f, 4)[1:3]
@@ -287,11 +289,11 @@ def test_a_ring_has_beams_and_its_planet_a_foundation(formulas):
         formulas.components(ring, STEEL, at)
 
 
-@pytest.mark.parametrize("formulas", [textbook, published])
+@pytest.mark.parametrize("formulas", [textbook, herringbone_article])
 def test_a_ring_has_the_foundation_of_external_gears_if_printed(formulas):
     """Article S4's bracket with h = 1, here from the numbers of its table, in front of the planet's unchanged one."""
     planet = gf.Gear(z=27, r_bore=12.0, **RACK)
-    ring = gf.Gear(z=72, r_rim=90.0, addendum=0.86, tip_radius=0.2, **RACK)
+    ring = gf.Gear(z=72, r_rim=90.0, addendum=0.86, rack_tip_radius=0.2, **RACK)
     roll = np.array([8.0, 9.0])
     own, whole = (formulas.components(planet, STEEL, roll, foundation=name) for name in ("printed", "sainsot"))
     assert_allclose(own.total, whole.total, rtol=0)
@@ -321,7 +323,7 @@ def test_a_ring_has_the_foundation_of_external_gears_if_printed(formulas):
         ({"crack_model": "curved"}, "constant, straight, parabola"),
         ({"root": "square"}, "fillet, base, line"),
         ({"foundation": "rigid"}, "sainsot, external, printed, none"),
-        ({"contact": "iso"}, "linear, published, weber, palmgren"),
+        ({"contact": "iso"}, "linear, herringbone_article, weber, palmgren"),
         ({"face": "bevel"}, "spur, helical, herringbone"),
         ({"groove": 2.0}, "only face = 'herringbone'"),
         ({"lost": "width"}, "one of hertz, slices, summed"),

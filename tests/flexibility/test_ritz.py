@@ -18,7 +18,7 @@ from gearfe.geometry.pair.interference import outline
 STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 1.0}
 GEAR = gf.Gear(z=18, r_bore=9.0, **RACK)
-RING = gf.Gear(z=72, r_rim=90.0, tip_radius=0.3, **RACK)
+RING = gf.Gear(z=72, r_rim=90.0, rack_tip_radius=0.3, **RACK)
 
 
 def test_flamant_is_in_equilibrium_and_elastic():
@@ -125,7 +125,7 @@ def random_pair(seed):
         "m_n": float(rng.choice([1.0, 2.0, 3.5])),
         "alpha_n": math.radians(rng.choice([17.5, 20.0, 22.5, 25.0])),
         "b": 10.0,
-        "tip_radius": float(rng.choice([0.1, 0.25, 0.38])),
+        "rack_tip_radius": float(rng.choice([0.1, 0.25, 0.38])),
     }
     z, x = int(rng.integers(9, 151)), float(rng.uniform(-0.3, 0.6))
     one = gf.Gear(z=z, x=x, r_bore=float(rng.uniform(0.3, 0.95)) * (z / 2 - 1.25 + x) * rack["m_n"], **rack)
@@ -182,7 +182,9 @@ def test_random_pairs_against_refined_fe():
     assert everywhere.max() < 4e-3
 
 
-@pytest.mark.parametrize("body", [{"r_bore": 12.0}, {"r_rim": 52.0, "tip_radius": 0.2, "addendum": 0.8}], ids=["gear", "ring"])
+@pytest.mark.parametrize(
+    "body", [{"r_bore": 12.0}, {"r_rim": 52.0, "rack_tip_radius": 0.2, "addendum": 0.8}], ids=["gear", "ring"]
+)
 def test_loads_point_into_the_tooth_and_their_tangents_to_its_tip(body):
     """Where the field of a load has its jump is told by the tangent: it must be the side where there is no material."""
     gear = gf.Gear(z=40, m_n=2.0, alpha_n=math.radians(20), b=20.0, **body)

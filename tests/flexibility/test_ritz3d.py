@@ -29,7 +29,7 @@ STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 BETA = math.radians(16)
 GEAR = gf.Gear(z=18, r_bore=9.0, b=12.0, beta=BETA, **RACK)
-RING = gf.Gear(z=72, r_rim=90.0, b=12.0, beta=BETA, tip_radius=0.3, addendum=0.85, **RACK)
+RING = gf.Gear(z=72, r_rim=90.0, b=12.0, beta=BETA, rack_tip_radius=0.3, addendum=0.85, **RACK)
 
 
 def surface(gear, roll, z):

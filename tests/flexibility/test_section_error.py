@@ -18,7 +18,7 @@ from gearfe.flexibility.finite_elements.section_error import finer_section, plan
 from gearfe.flexibility.halfspace import half_space
 from gearfe.flexibility.solid import PLACES, Flexibility3D, hats, own_distance, own_mirrors
 
-GEAR = gf.Gear(z=12, x=0.2, m_n=2.0, alpha_n=math.radians(20), b=6.0, r_bore=6.0, tip_radius=0.2)
+GEAR = gf.Gear(z=12, x=0.2, m_n=2.0, alpha_n=math.radians(20), b=6.0, r_bore=6.0, rack_tip_radius=0.2)
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def test_a_section_changes_steadily_with_the_helix_angle(hats_at):
 def leaning():
     """A helical gear and the spur gear of the same transverse section."""
     beta = math.radians(30)
-    spur = {name: getattr(GEAR, name) * math.cos(beta) for name in ("x", "addendum", "dedendum", "tip_radius")}
+    spur = {name: getattr(GEAR, name) * math.cos(beta) for name in ("x", "addendum", "dedendum", "rack_tip_radius")}
     spur |= {"m_n": GEAR.m_n / math.cos(beta), "alpha_n": math.atan(math.tan(GEAR.alpha_n) / math.cos(beta))}
     spur, helical = (replace(GEAR, r_bore=9.0, **own) for own in (spur, {"beta": beta}))
     assert_allclose([spur.r_b, spur.r_a, spur.r_f], [helical.r_b, helical.r_a, helical.r_f], rtol=1e-9)

@@ -12,9 +12,9 @@ import pytest
 from machines import difference
 
 import gearfe as gf
-from gearfe.dynamics.machine.gear_pair import gear_pair
+from gearfe.dynamics.machine.gear_pair import gear_pair_machine
 from gearfe.dynamics.machine.layout import Body
-from gearfe.dynamics.machine.member import disc
+from gearfe.dynamics.machine.member import gear_member
 from gearfe.dynamics.machine.mesh_curves import Samples, cycle_table
 from gearfe.dynamics.machine.modes import natural_frequencies
 from gearfe.dynamics.machine.single_mesh import single_mesh
@@ -45,10 +45,10 @@ def gear(z=25, bore=0.5, **numbers):
 
 
 def ring(z):
-    return gf.Gear(z=z, r_rim=z + 12.5, tip_radius=0.2, **RACK)
+    return gf.Gear(z=z, r_rim=z + 12.5, rack_tip_radius=0.2, **RACK)
 
 
-HIGH = {"addendum": 1.35, "dedendum": 1.6, "tip_radius": 0.2}
+HIGH = {"addendum": 1.35, "dedendum": 1.6, "rack_tip_radius": 0.2}
 SECTIONS = {  # name: the gears, the centre distance or None, options
     "z = 10": (lambda: (gear(10), gear(43)), {}),
     "z = 200": (lambda: (gear(200), gear(43)), {}),
@@ -56,7 +56,7 @@ SECTIONS = {  # name: the gears, the centre distance or None, options
     "30 degrees": (lambda: [gear(z, alpha_n=math.radians(30)) for z in (25, 43)], {}),
     "x = 0.6": (lambda: (gear(20, x=0.6), gear(43)), {}),
     "bore at 0.95 of the root": (lambda: (gear(25, 0.95), gear(43, 0.95)), {}),
-    "sharp fillet": (lambda: [gear(z, tip_radius=0.0) for z in (25, 43)], {}),
+    "sharp fillet": (lambda: [gear(z, rack_tip_radius=0.0) for z in (25, 43)], {}),
     "crack of 0.1 %": (lambda: (gear(), gear(43)), {"damage": {"pinion": [gf.Crack(level=0.001)]}, "span": "tooth"}),
     "crack of 95 %": (lambda: (gear(), gear(43)), {"damage": {"pinion": [gf.Crack(level=0.95)]}, "span": "tooth"}),
     "turning crack of 99 %": (
@@ -108,7 +108,7 @@ def wide(b=12.0, degrees=16.0, bore=0.55, mate=None):
 
 def wide_ring(rim):
     beta = math.radians(16)
-    more = {"b": 12.0, "beta": beta, "tip_radius": 0.2, "addendum": 0.8}
+    more = {"b": 12.0, "beta": beta, "rack_tip_radius": 0.2, "addendum": 0.8}
     return gf.Gear(z=72, r_rim=72 / math.cos(beta) + 2.5 + 2 * rim, **RACK | more)
 
 
@@ -160,10 +160,10 @@ def sun_and_planet():
 def machine(*, stiffness=None, zeta=0.02, torque=TORQUE, **mesh):
     """The 21/31 pair on elastic shafts, 6 degrees of freedom."""
     gears, curve = sun_and_planet()
-    made = [disc(one, 7850.0, 0.0) for one in (gears.gear_1, gears.gear_2)]
+    made = [gear_member(one, 7850.0, 0.0) for one in (gears.gear_1, gears.gear_2)]
     bodies = [Body(name, one.mass, one.inertia, "x y theta") for name, one in zip(("pinion", "wheel"), made, strict=True)]
     options = {"speed": SPEED, "torque": torque, "support": {"x": 1e8, "y": 1e8}, "torsion": (1e4, 0.0), "zeta": zeta}
-    return gear_pair(gears, bodies, curve if stiffness is None else stiffness, **options, **mesh).with_meshes(zeta=zeta)
+    return gear_pair_machine(gears, bodies, curve if stiffness is None else stiffness, **options, **mesh).with_meshes(zeta=zeta)
 
 
 def broken(rest=0.0):
@@ -186,7 +186,9 @@ def shaken(made, amplitude, share=1.0):
 
 
 def undamped(made):
-    return replace(made, springs=tuple(replace(s, c=0.0) for s in made.springs)).with_meshes(zeta=0.0, damping=0.0, beta=0.0)
+    return replace(made, springs=tuple(replace(s, c=0.0) for s in made.springs)).with_meshes(
+        zeta=0.0, damping=0.0, damping_per_stiffness=0.0
+    )
 
 
 def stiffer(made, factor):

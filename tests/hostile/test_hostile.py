@@ -56,7 +56,7 @@ def gear_inputs():
     rows += [("beta", [*NO_NUMBER, *NOT_FINITE, 20.0, math.pi / 2, -2.0], None, True)]
     rows += [("addendum", [*NO_NUMBER, *NOT_FINITE, -1.0, 0.0, 5.0, 1e30], None, True)]
     rows += [("dedendum", [*NO_NUMBER, *NOT_FINITE, -1.0, 0.0, 50.0], ["dedendum", "r_bore", "root"], True)]
-    rows += [("tip_radius", [*NO_NUMBER, *NOT_FINITE, -1.0, 1e30], ["tip_radius", "tip radius"], True)]
+    rows += [("rack_tip_radius", [*NO_NUMBER, *NOT_FINITE, -1.0, 1e30], ["rack_tip_radius", "tip radius"], True)]
     return rows
 
 
@@ -182,7 +182,7 @@ def test_comparison_curves_and_motion(small):
         found[f"curve {k}"] = judged(lambda g=given: curve(g), ["phase"])
     for k, given in enumerate([None, 3, "machine", small]):
         found[f"simulate {k}"] = judged(lambda g=given: gf.simulate(g, 0.1), ["Machine"])
-    for k, given in enumerate([3, None, "textbook", "published", "none", [1.0], STEEL]):
+    for k, given in enumerate([3, None, "textbook", "herringbone_article", "none", [1.0], STEEL]):
         found[f"own {k}"] = judged(lambda g=given: gf.OwnFlexibility(g), ["pinion", "give"])
     counts, wrong = tally(found)
     assert len(found) == told("for comparisons, curves and motion")
@@ -246,7 +246,7 @@ def commands(tmp_path):
         yield ["render", scene, "-o", value], ["file name", "no format", "cannot write"]
     for value in ("", "Ritz", "fem", "textbook,ritz"):
         yield ["stiffness", scene, "--method", value], ["method"]
-    for method in ("textbook", "published", "coupled"):
+    for method in ("textbook", "herringbone_article", "coupled"):
         yield ["stiffness", scene, "--method", method, "--error"], ["error"]
         yield ["stiffness", scene, "--method", method, "--refine", "2"], ["refine"]
     for value in numbers[:4]:

@@ -50,7 +50,7 @@ def compound(**other):
 
 def pair(**other):
     drive = {"speed": 100.0, "torque": 10.0, "support": {"x": 1e8, "y": 1e8}} | other
-    return gf.gear_pair(gears().sun_planet, (gf.Body("one", 1.0, 1e-3), gf.Body("two", 2.0, 4e-3)), 1e8, **drive)
+    return gf.gear_pair_machine(gears().sun_planet, (gf.Body("one", 1.0, 1e-3), gf.Body("two", 2.0, 4e-3)), 1e8, **drive)
 
 
 def run(**other):
@@ -143,18 +143,18 @@ RECORDS = {
     ],
     "r_b": [(lambda v: gf.Member(1.0, 1.0, 1e8, v), (0.0, -0.03, NAN))],
     "width": [
-        (lambda v: gf.disc(gears().sun, 7800.0, 0.0, width=v), (0, -1.0, NAN)),
+        (lambda v: gf.gear_member(gears().sun, 7800.0, 0.0, width=v), (0, -1.0, NAN)),
         (lambda v: gf.RimSupports(3, v), (0.0, -1.0, NAN, INF)),
     ],
     "density": [
-        (lambda v: gf.disc(gears().sun, v, 0.0), (0.0, -1.0, NAN)),
+        (lambda v: gf.gear_member(gears().sun, v, 0.0), (0.0, -1.0, NAN)),
         (lambda v: pitted(density=v), (0.0, NAN)),
         (lambda v: herringbone(density=v), (0.0, NAN)),
     ],
     "n_planets": [(stage, (0, -2, 2.5, NAN, True, "3")), (phases, (0, -2, 2.5, NAN))],
-    "places": [
-        (lambda v: stage(places=v), ([0.0, 0.0, 0.0], [0.0, 1.0], [0.0, NAN, 2.0], "abc")),
-        (lambda v: phases(2, places=v), ([0.0, NAN], [0.0])),
+    "planet_angles": [
+        (lambda v: stage(planet_angles=v), ([0.0, 0.0, 0.0], [0.0, 1.0], [0.0, NAN, 2.0], "abc")),
+        (lambda v: phases(2, planet_angles=v), ([0.0, NAN], [0.0])),
     ],
     "start": [
         (lambda v: phases(start=v), (NAN, INF)),
@@ -184,7 +184,7 @@ RECORDS = {
     "planet": [
         (lambda v: case(flanks={v: gf.Flank()}), (("planet", True), ("planet", 3), "planets")),
         (
-            lambda v: case(flanks={("planet", 2): gf.Flank(pitch=[0.001] + [0.0] * 30)}).with_(angles=v),
+            lambda v: case(flanks={("planet", 2): gf.Flank(pitch=[0.001] + [0.0] * 30)}).with_(planet_angles=v),
             ([0.0, 2 * math.pi / 3],),
         ),
     ],
@@ -212,7 +212,7 @@ def test_sets_beyond_small_displacements_are_refused(force, pin):
 
 def test_gears_with_another_number_of_planets_stand_equally_spaced():
     assert case().with_(gears=gears(1)).planets == 1
-    assert unequal(0, 34, 71).with_(force=1000.0).angles == unequal(0, 34, 71).angles
+    assert unequal(0, 34, 71).with_(force=1000.0).planet_angles == unequal(0, 34, 71).planet_angles
 
 
 def test_numbers_of_other_types_run_as_floats():

@@ -25,7 +25,7 @@ ANY = st.one_of(st.floats(), st.integers(), st.text(max_size=3), st.none(), st.b
 
 ODD = st.sampled_from([math.nan, math.inf, -1.0, 0.0, 1e30, True, "1"])
 WIDE = {"z": st.integers(5, 90), "x": st.floats(-0.6, 0.9), "bore": st.floats(0.3, 0.9), "b": st.floats(2.0, 60.0)}
-WIDE |= {"addendum": st.floats(0.6, 1.2), "tip_radius": st.floats(0.0, 0.5)}
+WIDE |= {"addendum": st.floats(0.6, 1.2), "rack_tip_radius": st.floats(0.0, 0.5)}
 GEARS = st.builds(  # gears of many kinds, some with one number that cannot be
     lambda own, spoilt, name, odd: own | ({name: odd} if spoilt > 8 else {}),
     st.fixed_dictionaries(WIDE), st.integers(0, 10), st.sampled_from([name for name in WIDE if name != "bore"]), ODD,
@@ -34,9 +34,9 @@ FORCES = st.builds(lambda own, spoilt, odd: odd if spoilt > 8 else own, st.float
 SENSIBLE = st.fixed_dictionaries({"z": st.integers(14, 60), "x": st.floats(-0.2, 0.5), "bore": st.floats(0.3, 0.75)})
 
 
-def gear(z, x, bore, b=20.0, alpha_n=0.35, addendum=1.0, tip_radius=0.38):
+def gear(z, x, bore, b=20.0, alpha_n=0.35, addendum=1.0, rack_tip_radius=0.38):
     size = z if isinstance(z, int) else 20
-    return gf.Gear(z, 2.0, alpha_n, b, bore * (size - 2.5), x=x, addendum=addendum, tip_radius=tip_radius)
+    return gf.Gear(z, 2.0, alpha_n, b, bore * (size - 2.5), x=x, addendum=addendum, rack_tip_radius=rack_tip_radius)
 
 
 def made(one, two):

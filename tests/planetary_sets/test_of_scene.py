@@ -57,11 +57,11 @@ def test_what_holds_the_ring(tmp_path, support, ring):
 
 def test_flanks_and_cracks_are_those_of_the_gears(tmp_path):
     """A planet's crack is one, on the flank of the sun; one of the ring's mesh alone is on the other flank of its tooth."""
-    flanks = "".join(f'[flank.{gear}]\ngear = "{gear}"\ncrowning_um = {um}\n' for gear, um in (("sun", 3), ("planet", 5)))
+    flanks = "".join(f'[flank.{gear}]\ngear = "{gear}"\nprofile_crowning_um = {um}\n' for gear, um in (("sun", 3), ("planet", 5)))
     crack = '[[crack]]\ncase = "planet"\ngear = "planet"\nlevel = 0.2\ntooth = 4\n'
     text = SCENE.replace(PADS, "").replace("[set]", "[set]\ndamaged_planet = 2")
     found = gf.build_set(loaded(tmp_path, text + flanks + crack), "planet")
-    assert {name: one.crowning for name, one in found.flanks.items() if name != "ring"} == {
+    assert {name: one.profile_crowning for name, one in found.flanks.items() if name != "ring"} == {
         "sun": 0.003, ("planet", 0): 0.005, ("planet", 1): 0.005, ("planet", 2): 0.005,
     }  # fmt: skip
     assert found.damage == {("planet", 2): (gf.Crack(level=0.2, tooth=4),)}
@@ -90,7 +90,7 @@ def test_what_a_set_does_not_know_is_refused(tmp_path, more, which, message):
 def test_places_that_cannot_be_name_the_table(tmp_path):
     with pytest.raises(ValueError, match=r"s.toml \[ring.support\] width_mm = -1, but it must be above 0 mm"):
         gf.build_set(loaded(tmp_path, SCENE.replace("width_mm = 5 ", "width_mm = -1 ")))
-    angles = SCENE.replace("n_planets = 3 ", "angles_deg = [0, 121, 240] #")
+    angles = SCENE.replace("n_planets = 3 ", "planet_angles_deg = [0, 121, 240] #")
     with pytest.raises(ValueError, match=r"s.toml \[set\]: planets at 0, 121, 240 degrees cannot be assembled"):
         gf.build_set(loaded(tmp_path, angles))
     with pytest.raises(ValueError, match=r"scene helical_pitting has no \[set\] table"):

@@ -38,12 +38,12 @@ def test_meshes_that_do_not_feel_each_other_are_isolated_pairs(given):
     for inner in (0, 1):
         for planet in range(3):
             flanks = {"pinion": given.flanks["sun"]} if given.flanks and not inner else None
-            stand = standing(given.gears, np.array(given.angles), found.position)
+            stand = standing(given.gears, np.array(given.planet_angles), found.position)
             phase = (stand.outer, stand.inner)[inner][:, planet]
             phase = np.round(phase - np.floor(phase), 9)
             want = isolated(given.pairs[inner], phase, flanks=flanks)
             assert_allclose(found.k_alone[inner, :, planet], want.k, rtol=1e-6)
-            if given.angles == case().angles:
+            if given.planet_angles == case().planet_angles:
                 assert_allclose(found.k[inner, :, planet], want.k, rtol=1e-6)
                 continue
             for i in range(0, 48, 8):  # planets that are not in phase carry other loads
@@ -59,8 +59,8 @@ def test_everything_is_in_balance(ring):
     total = 3 * FORCE
     assert_allclose(found.force[0].sum(axis=1), total, rtol=1e-10)
     assert_allclose(found.force[0], found.force[1], rtol=1e-10)
-    angles = np.array(given.angles)
-    turned = angles + math.pi / 2 - given.pairs[0].alpha_w  # direction of the force of each mesh
+    angles = np.array(given.planet_angles)
+    turned = angles + math.pi / 2 - given.pairs[0].alpha_wt  # direction of the force of each mesh
     pushed = np.array([np.sin(turned), np.cos(turned)]) @ found.force[0].T
     assert_allclose(pushed, 0, atol=1e-10 * total)
     assert_allclose(found.pair_force.sum(axis=3), found.force, rtol=1e-12)
@@ -105,8 +105,8 @@ def test_a_pin_with_an_error_is_a_spring_in_series():
     given = case(pin=pin, errors=[(0, 0), (0.01, error), (0, 0)])
     found = planetary_stiffness(given, [0.9], coupled=False)
     one, two = given.pairs
-    across = math.cos(one.alpha_w) + math.cos(two.alpha_w)
-    up = math.sin(one.alpha_w) - math.sin(two.alpha_w)
+    across = math.cos(one.alpha_wt) + math.cos(two.alpha_wt)
+    up = math.sin(one.alpha_wt) - math.sin(two.alpha_wt)
     ways = []
     for planet, (radial, along) in enumerate(given.errors):
         force = found.force[0, 0, planet]
@@ -119,7 +119,7 @@ def test_a_pin_with_an_error_is_a_spring_in_series():
 
 
 def _inner_phase(given, position, planet):
-    phase = standing(given.gears, np.array(given.angles), [position]).inner[0, planet]
+    phase = standing(given.gears, np.array(given.planet_angles), [position]).inner[0, planet]
     return round(phase - math.floor(phase), 9)
 
 
@@ -186,7 +186,7 @@ def test_cracks_of_planet_and_ring_are_those_of_isolated_pairs(name):
     """Counted and mirrored as the pair of planet and ring has them: what the sun loads is unloaded there."""
     plain = planetary_stiffness(unequal(0), [0.2], coupled=False)
     given = unequal(0)
-    stand = standing(given.gears, np.array(given.angles), [0.2])
+    stand = standing(given.gears, np.array(given.planet_angles), [0.2])
     tooth = int(plain.tooth[1, 0, 0].max())  # of the planet, in mesh with the ring
     pair = -tooth + given.gears.planet.z * round((tooth - stand.inner[0, 0]) / given.gears.planet.z)
     pair += given.gears.planet.z * round((-stand.inner[0, 0] + 0.5 - pair) / given.gears.planet.z)
@@ -255,16 +255,16 @@ def test_loads_and_materials_that_are_none_are_refused(name, value):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"angles": [0, 1]}, "cannot be assembled"),
-        ({"floating": True, "angles": [0.0]}, "do not hold a floating sun"),
+        ({"planet_angles": [0, 1]}, "cannot be assembled"),
+        ({"floating": True, "planet_angles": [0.0]}, "do not hold a floating sun"),
         ({"ring": None}, "a ring that nothing holds moves away"),
         ({"ring": "free"}, "a ring that nothing holds moves away"),
         ({"ring": np.zeros(3)}, "a ring that nothing holds moves away"),
         ({"ring": RimSupports(6, 100.0)}, r"longer than its rim.*less than 99\.48 mm"),
-        ({"angles": "abc"}, "angles = 'abc'"),
-        ({"angles": []}, "angles = "),
-        ({"angles": 0.5}, "angle for each planet"),
-        ({"angles": [[0], [1, 2]]}, "angles = "),
+        ({"planet_angles": "abc"}, "planet_angles = 'abc'"),
+        ({"planet_angles": []}, "planet_angles = "),
+        ({"planet_angles": 0.5}, "angle for each planet"),
+        ({"planet_angles": [[0], [1, 2]]}, "planet_angles = "),
         ({"floating": "no"}, "floating = 'no'"),
         ({"pin": math.nan}, "pin = nan"),
         ({"errors": "x"}, "errors = 'x'"),
@@ -276,7 +276,7 @@ def test_loads_and_materials_that_are_none_are_refused(name, value):
         ({"errors": [(0, 20.0)] * 3}, "20 um are 0.02"),
         ({"flanks": {"carrier": gf.Flank()}}, "flanks of 'carrier'"),
         ({"flanks": {"sun": 0.02}}, "is no Flank"),
-        ({"flanks": {"sun": gf.Flank(lead_crowning=0.01)}}, "change along the width"),
+        ({"flanks": {"sun": gf.Flank(helix_crowning=0.01)}}, "change along the width"),
         ({"flanks": {"planet": gf.Flank(eccentricity=0.01)}}, "eccentricity"),
         ({"damage": {"sun": [gf.Pit(radius=21.0, z=10.0, axes=(0.5, 0.5), depth=0.1)]}}, "the section has no other"),
     ],

@@ -31,14 +31,14 @@ def machine(given, **changed):
     }  # fmt: skip
     body["sun"] = gf.Member(1.0, 1e-3, 0.0 if given.floating else HELD, 1e-3 * gears.sun.r_b)
     body["planet"] = gf.Member(1.0, 1e-3, min(1e3 * given.pin, HELD), 1e-3 * gears.planet.r_b)
-    phases = gf.stage_phases(given.pairs, given.planets, frequency=MESH, places=given.angles, start=0.4)
+    phases = gf.stage_phases(given.pairs, given.planets, frequency=MESH, planet_angles=given.planet_angles, start=0.4)
     options = {
         "n_planets": given.planets,
-        "alpha": tuple(pair.alpha_w for pair in given.pairs),
+        "alpha": tuple(pair.alpha_wt for pair in given.pairs),
         "stiffness": {"sun_planet": 1e8, "planet_ring": 1e8},
         "mesh": lambda kind, i: phases[f"{kind}{i + 1}"],
         "loads": {"sun": 1e-3 * given.planets * FORCE * gears.sun.r_b},
-        "places": given.angles,
+        "planet_angles": given.planet_angles,
     }
     return gf.planetary(**(body | options | changed))
 
@@ -134,8 +134,8 @@ def test_damping_ratios_of_the_ring_stay():
 def test_phases_of_the_set_are_those_of_the_stage():
     """Planets and both meshes apart, from two derivations: fractions of a cycle between any two meshes agree."""
     given = unequal(0, 30, 71)
-    stand = standing(given.gears, np.array(given.angles), [0.0])
-    own = gf.stage_phases(given.pairs, 3, places=given.angles)
+    stand = standing(given.gears, np.array(given.planet_angles), [0.0])
+    own = gf.stage_phases(given.pairs, 3, planet_angles=given.planet_angles)
     apart = [
         one - own[f"{kind}{planet + 1}"]["phase"]
         for kind, row in (("sun_planet", stand.outer[0]), ("planet_ring", stand.inner[0]))
@@ -162,7 +162,7 @@ def test_machines_and_sets_that_do_not_fit_are_refused():
     other = machine(unequal(0, 30, 71))
     hurt = made.with_meshes(damage=(gf.ToothDamage(0, 0, gf.Samples(np.array([0.0, 1.0]), np.array([1e8, 1e8]))),))
     smaller = gf.PlanetarySet(*(gf.Gear(z=z, m_n=2.0, alpha_n=math.radians(20), b=20.0, **o) for z, o in (
-        (18, {"r_bore": 6.0}), (27, {"r_bore": 8.0}), (72, {"r_rim": 83.0, "addendum": 0.8, "tip_radius": 0.3})
+        (18, {"r_bore": 6.0}), (27, {"r_bore": 8.0}), (72, {"r_rim": 83.0, "addendum": 0.8, "rack_tip_radius": 0.3})
     )), 3)  # fmt: skip
     for options, message in (
         ((made, pads, "in k"), "repeats after 14"),

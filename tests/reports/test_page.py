@@ -59,7 +59,7 @@ def test_first_sentence_is_the_answer(page):
 def test_tooth_is_pressed_as_its_scene_says(tmp_path, monkeypatch):
     """Flanks, misalignment and supports go to the tooth in three dimensions, which would look well without them, too."""
     text = gf.new_scene(tmp_path / "own.toml", tip_relief_um=10.0, tip_length_mm=2.0).read_text()
-    (tmp_path / "own.toml").write_text(text.replace("#F_beta_um", "F_beta_um"))
+    (tmp_path / "own.toml").write_text(text.replace("#F_beta_x_um", "F_beta_x_um"))
     given = {}
 
     def pressed_tooth(case):
@@ -73,7 +73,7 @@ def test_tooth_is_pressed_as_its_scene_says(tmp_path, monkeypatch):
     assert given["flanks"] == chosen.flanks
     assert set(given["flanks"]) == {"pinion", "wheel"}
     assert given["misalignment"] == chosen.misalignment
-    assert given["misalignment"].F_beta == 0.01
+    assert given["misalignment"].F_beta_x == 0.01
 
 
 def luminance(colour):
@@ -123,7 +123,7 @@ def test_the_tooth_is_shown_with_some_of_its_body():
 
     from gearfe.reports.tooth import shown_tooth
 
-    for body in ({"r_bore": 5.0}, {"r_rim": 60.0, "tip_radius": 0.2, "addendum": 0.8}):
+    for body in ({"r_bore": 5.0}, {"r_rim": 60.0, "rack_tip_radius": 0.2, "addendum": 0.8}):
         gear = gf.Gear(z=40, m_n=2.0, alpha_n=0.35, b=1.0, **body)
         radius = gear.r_f - gear.outward * np.arange(-4.0, 13.0)  # from the tooth down into the body
         corners = np.array([[0, 1, 0, 1], [0, 0, 0, 0], [0, 0, 1, 1]], dtype=float)

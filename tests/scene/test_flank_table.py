@@ -49,11 +49,11 @@ def loaded(tmp_path, text):
 
 
 def test_units_are_those_of_the_keys(tmp_path):
-    scene, _ = loaded(tmp_path, RELIEF + "\n[flank.wheel]\ngear = 'wheel'\ncrowning_um = 4\nslope_um = -2\n")
+    scene, _ = loaded(tmp_path, RELIEF + "\n[flank.wheel]\ngear = 'wheel'\nprofile_crowning_um = 4\nprofile_slope_um = -2\n")
     case = scene.pair().case()
     assert case.flanks == {
         "pinion": gf.Flank(tip_relief=0.010, tip_start_angle=math.radians(24), tip_exponent=2),
-        "wheel": gf.Flank(crowning=0.004, slope=-0.002),
+        "wheel": gf.Flank(profile_crowning=0.004, profile_slope=-0.002),
     }
     curve = gf.mesh_stiffness(case, phases=8)
     found = gf.transmission_error(case.pair, [3000.0], case.material, flanks=case.flanks, phases=8)
@@ -63,8 +63,8 @@ def test_units_are_those_of_the_keys(tmp_path):
 WIDE = """
 [flank.wide]
 gear = "pinion"
-lead_crowning_um = 5
-lead_slope_um = -3
+helix_crowning_um = 5
+helix_slope_um = -3
 twist_um = 2
 end_relief_um = [4, 8]
 end_length_mm = [2, 3]
@@ -72,17 +72,19 @@ end_length_mm = [2, 3]
 
 
 def test_keys_along_the_width_and_misalignment(tmp_path):
-    askew = "F_beta_um = 12\nf_sigma_beta_um = 6\nbearing_span_mm = 90\n"
+    askew = "F_beta_x_um = 12\nf_sigma_beta_um = 6\nbearing_span_mm = 90\n"
     scene, _ = loaded(tmp_path, askew + WIDE)
     case = scene.pair().case()
-    assert case.misalignment == gf.Misalignment(F_beta=0.012, f_sigma_beta=0.006, length=90)
+    assert case.misalignment == gf.Misalignment(F_beta_x=0.012, f_sigma_beta=0.006, length=90)
     made = case.flanks["pinion"]
-    assert made == gf.Flank(lead_crowning=0.005, lead_slope=-0.003, twist=0.002, end_relief=(0.004, 0.008), end_length=(2.0, 3.0))
+    assert made == gf.Flank(
+        helix_crowning=0.005, helix_slope=-0.003, twist=0.002, end_relief=(0.004, 0.008), end_length=(2.0, 3.0)
+    )
     assert scene.case().why_wide
     assert not loaded(tmp_path, RELIEF)[0].case().why_wide
     for text, message in (
         ("f_sigma_beta_um = 6\n", r"\[pair.main\]: misalignment: .* give length"),
-        ("F_beta_um = 12000\n", r"\[pair.main\]: 600 um of misalignment per mm"),
+        ("F_beta_x_um = 12000\n", r"\[pair.main\]: 600 um of misalignment per mm"),
         (WIDE.replace("[2, 3]", "[2, 30]"), r"\[flank.wide\]: end_length_mm = \[2, 30\], but the gear of z = 24 is 20 mm wide"),
         (WIDE.replace("[4, 8]", "4"), r"expected two numbers in um"),
     ):
@@ -92,9 +94,9 @@ def test_keys_along_the_width_and_misalignment(tmp_path):
 
 @pytest.mark.slow
 def test_a_misaligned_pair_is_compared_in_three_dimensions(tmp_path):
-    _, path = loaded(tmp_path, "F_beta_um = 12\n")
+    _, path = loaded(tmp_path, "F_beta_x_um = 12\n")
     found = gf.compare(path, phases=4)
-    assert list(found.curves) == ["ritz3d", "textbook", "published"]
+    assert list(found.curves) == ["ritz3d", "textbook", "herringbone_article"]
     assert all(curve.unloaded is not None for curve in found.curves.values())
 
 
@@ -120,7 +122,7 @@ def test_mistakes_are_explained(tmp_path, text, message):
 
 def test_the_command_line_prints_and_draws_the_map(tmp_path, capsys):
     _, path = loaded(tmp_path, RELIEF)
-    assert main(["stiffness", str(path), "--forces", "1000", "3000", "--phases", "16", "--plot", str(tmp_path / "te.svg")]) == 0
+    assert main(["te", str(path), "--forces", "1000", "3000", "--phases", "16", "--plot", str(tmp_path / "te.svg")]) == 0
     text = capsys.readouterr().out
     assert "peak-to-peak" in text
     assert len([line for line in text.splitlines() if line.split()[1:2] in (["1000"], ["3000"])]) == 2
@@ -132,7 +134,7 @@ def test_the_command_line_prints_and_draws_the_map(tmp_path, capsys):
 def test_a_relief_may_start_at_a_length_below_the_tip(tmp_path, gear):
     own = SCENE
     if gear == "ring":
-        own = own.replace("z = 36", "z = 90").replace("r_bore_mm = 20", "r_rim_mm = 160\naddendum = 0.8\ntip_radius = 0.2")
+        own = own.replace("z = 36", "z = 90").replace("r_bore_mm = 20", "r_rim_mm = 160\naddendum = 0.8\nrack_tip_radius = 0.2")
     lengths = "tip_relief_um = 10\ntip_start_length_mm = 2.0\nroot_relief_um = 8\nroot_start_length_mm = 1.5\n"
     path = tmp_path / "scene.toml"
     side = "wheel" if gear == "ring" else "pinion"

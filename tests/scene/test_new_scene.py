@@ -91,7 +91,7 @@ def test_all_that_a_scene_can_say_stands_in_it_and_holds(options, tmp_path):
         1e-3 * options.get("tip_relief_um", 10 * options.get("module", 2.0))
     )
     assert chosen.flanks["wheel"].tip_relief == chosen.flanks["pinion"].tip_relief
-    assert chosen.misalignment.F_beta == 0.01
+    assert chosen.misalignment.F_beta_x == 0.01
     assert bool(scene.machine) is not options.get("ring", False)
     if scene.machine:
         assert scene.machine["torque_Nm"] == pytest.approx(chosen.force * 1e-3 * chosen.pair.gear_1.r_b, abs=0.01)

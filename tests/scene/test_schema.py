@@ -121,7 +121,7 @@ TEXT = (resources.files("gearfe.scene.scenes") / "planetary_pitting.toml").read_
 MESSAGES = [  # of a scene: text, what is there instead, the whole message but the file
     ("alpha_n_deg = 20.0", "alpha_n_deg = 0.35", "[gear.sun] alpha_n_deg = 0.35, but it must lie between 5 and 45 degrees"),
     ("z = 21", "zz = 21", "[gear.sun]: unknown key 'zz' (nearest: 'z'); expected z, m_n_mm, alpha_n_deg, beta_deg, b_mm, x, "
-     "addendum, dedendum, tip_radius, r_bore_mm, r_rim_mm, z_cutter, material"),
+     "addendum, dedendum, rack_tip_radius, r_bore_mm, r_rim_mm, z_cutter, E_sn_um, material"),
     ("z = 21\n", "", "[gear.sun]: missing key 'z'; expected a whole number"),
     ("b_mm = 20.0", "b_mm = '20'", "[gear.sun] b_mm = '20': expected a number in mm"),
     ("r_bore_mm = 7.4", "r_bore_mm = 74.0", "[gear.sun]: r_bore_mm = 74.0, but the bore must lie inside the root circle: give "
@@ -129,7 +129,7 @@ MESSAGES = [  # of a scene: text, what is there instead, the whole message but t
     ("a_mm = 52.0", "face = 'straight'", "[pair.sun_planet] face = 'straight', but it must be one of spur, helical, herringbone"),
     ("axes_mm = [", "axes_mm = [-1.0, 1.0] # ", "[pits 1] axes_mm = [-1.0, 1.0], but each number must be above 0 mm"),
     ('model = "planetary"', 'model = "planetry"', "[machine] model = 'planetry', but it must be one of planetary, "
-     "compound_planetary, helical_pair, herringbone_planetary"),
+     "compound_planetary, helical_pair, herringbone_planetary, gearbox"),
     ('gear = "sun"', 'gear = "son"', "[pits 1] gear = 'son': no such gear; there is sun, planet, ring"),
     ("[given]\n", '[given]\n"gear.sun" = 21\n', "[given] 'gear.sun' is a table, but give single values: gear.sun.KEY = VALUE"),
 ]  # fmt: skip

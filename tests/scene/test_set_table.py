@@ -27,9 +27,11 @@ def test_units_are_those_of_the_keys(tmp_path):
     assert scene.set.force * 3 * scene.gears["sun"].r_b == pytest.approx(120e3)
     assert scene.set.pin == 3e5
     assert scene.set.errors == ((0.0, 0.005), (0.0, 0.0), (0.0, 0.0))
-    assert scene.set.angles is None
-    turned = loaded(tmp_path, SCENE.replace("n_planets = 3 ", "angles_deg = [0, 120, 240] #").replace("torque_Nm = 120", ""))
-    assert turned.set.angles == pytest.approx([0, 2 * math.pi / 3, 4 * math.pi / 3])
+    assert scene.set.planet_angles is None
+    turned = loaded(
+        tmp_path, SCENE.replace("n_planets = 3 ", "planet_angles_deg = [0, 120, 240] #").replace("torque_Nm = 120", "")
+    )
+    assert turned.set.planet_angles == pytest.approx([0, 2 * math.pi / 3, 4 * math.pi / 3])
     assert turned.set.force == 2000
 
 
@@ -61,8 +63,9 @@ def test_assumptions_speak_of_a_set(tmp_path):
         ("[set]", "[sets]", r"unknown key 'sets' \(nearest: 'set'\)"),
         (SCENE[SCENE.index("[set]") : SCENE.index("[ring")], "", r"\[ring\] belongs to a planetary set: add a table \[set\]"),
         ("[set]\n", "[set]\nplanets = 3\n", r"\[set\]: unknown key 'planets' \(nearest: 'planet'\); expected n_planets"),
-        ("n_planets = 3 ", "#", r"\[set\]: give n_planets \(number of planets\) or angles_deg"),
-        ("n_planets = 3 ", "angles_deg = [] #", r"\[set\] angles_deg = \[\]: give the angle of each planet, or n_planets"),
+        ("n_planets = 3 ", "#", r"\[set\]: give n_planets \(number of planets\) or planet_angles_deg"),
+        ("n_planets = 3 ", "planet_angles_deg = [] #",
+         r"\[set\] planet_angles_deg = \[\]: give the angle of each planet, or n_planets"),
         ("n_planets = 3 ", "n_planets = 0 #", r"\[set\] n_planets = 0, but it must be at least 1"),
         ("n_planets = 3 ", "n_planets = 4 #", r"\[set\]: 4 planets cannot be spaced equally"),
         ("[set]\n", '[set]\nsun = "moon"\n', r"\[set\] sun = 'moon': no such gear; there is sun, planet, ring"),

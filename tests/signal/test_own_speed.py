@@ -25,7 +25,7 @@ def test_a_line_that_sweeps(noise):
     turns = 10 * t + 1.5 * t**2 + 0.1 * np.sin(2 * np.pi * 0.5 * t)
     values = sum(np.cos(k * TEETH * 2 * np.pi * turns + k) / k for k in (1, 2, 3))
     values = values + noise * np.random.default_rng(0).standard_normal(t.size)
-    found = gf.with_own_speed(gf.Signal(values, 2e4, "g"), TEETH, (8.0, 30.0))
+    found = gf.with_estimated_speed(gf.Signal(values, 2e4, "g"), TEETH, (8.0, 30.0))
     speed, angle = off(found, turns)
     assert speed < (0.01 if noise else 0.0005)
     assert angle < (0.05 if noise else 0.01)
@@ -43,7 +43,7 @@ def test_a_speed_that_hardly_changes(swing, resonant):
         w, r = 2 * np.pi * 390 / 5e3, 1 - 0.01 * 2 * np.pi * 390 / 5e3
         values = values + lfilter([3 * (1 - r)], [1, -2 * r * np.cos(w), r * r], values)
     for speeds in ((10.0, 30.0), (18.0, 22.0)):
-        assert off(gf.with_own_speed(gf.Signal(values, 5e3, "g"), TEETH, speeds), turns)[0] < 0.01
+        assert off(gf.with_estimated_speed(gf.Signal(values, 5e3, "g"), TEETH, speeds), turns)[0] < 0.01
 
 
 def test_noise_and_a_speed_outside_of_the_range_are_refused():
@@ -52,11 +52,11 @@ def test_noise_and_a_speed_outside_of_the_range_are_refused():
         alone = gf.Signal(noise.standard_normal(5000 * seconds), 5e3, "g")
         for speeds in ((10.0, 30.0), (18.0, 22.0)):
             with pytest.raises(ValueError, match=r"no line of order 21 stands out at any speed of the range: look at"):
-                gf.with_own_speed(alone, TEETH, speeds)
+                gf.with_estimated_speed(alone, TEETH, speeds)
     t = np.arange(25_000) / 5e3
     values = np.cos(TEETH * 2 * np.pi * (12 * t + 1.4 * t**2)) + 0.1 * noise.standard_normal(t.size)
     with pytest.raises(ValueError, match=r"from 0\.0\d+ to 1\.\d+ s no line"):
-        gf.with_own_speed(gf.Signal(values, 5e3, "g"), TEETH, (18.0, 26.0))
+        gf.with_estimated_speed(gf.Signal(values, 5e3, "g"), TEETH, (18.0, 26.0))
 
 
 def test_a_simulated_run_up():
@@ -67,7 +67,7 @@ def test_a_simulated_run_up():
     run = gf.simulate(made, 2.0, rate=2e4)
     known = run.signal("force mesh", turning=2000.0 / TEETH)
     bare = gf.Signal(known.values, known.rate, known.unit)
-    found = gf.with_own_speed(bare, TEETH, (20.0, 105.0), harmonics=2)
+    found = gf.with_estimated_speed(bare, TEETH, (20.0, 105.0), harmonics=2)
     speed, angle = off(found, known.angle / (2 * np.pi))
     assert speed < 0.005
     assert angle < 0.35, "of a mesh cycle: its own phase turns through a resonance by a quarter to a half"
@@ -85,5 +85,5 @@ def test_what_shows_no_speed_is_refused():
         ((4, (0.5, 2.0), 3, 2.0), "four or more are needed"),
     ):
         with pytest.raises(ValueError, match=said):
-            gf.with_own_speed(signal, given[0], given[1], **dict(zip(("harmonics", "seconds"), given[2:], strict=False)))
+            gf.with_estimated_speed(signal, given[0], given[1], **dict(zip(("harmonics", "seconds"), given[2:], strict=False)))
     assert_allclose(signal.values[0], 0.0)

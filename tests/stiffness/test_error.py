@@ -20,7 +20,7 @@ def random_case(seed):
         "alpha_n": math.radians(rng.choice([17.5, 20.0, 22.5])),
         "beta": math.radians(rng.choice([0.0, 15.0])),
         "b": 10.0,
-        "tip_radius": float(rng.choice([0.1, 0.25])),
+        "rack_tip_radius": float(rng.choice([0.1, 0.25])),
     }
     z = int(rng.integers(9, 60))
     r_f = (z / 2 / math.cos(rack["beta"]) - 1.25) * rack["m_n"]
@@ -80,7 +80,7 @@ def fuzz(seeds, method="ritz", refine=1.0):
     for seed in seeds:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            warnings.filterwarnings("ignore", "tip_radius|the ring's tip", UserWarning)
+            warnings.filterwarnings("ignore", "rack_tip_radius|the ring's tip", UserWarning)
             try:
                 pair, force, damage = random_case(seed)
                 run = {"phases": 8, "refine": refine, "cache": False, "span": "tooth", "method": method}

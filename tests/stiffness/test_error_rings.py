@@ -25,7 +25,7 @@ def ring_pair(seed):
         "m_n": float(rng.choice([1.0, 2.0, 3.5])),
         "alpha_n": math.radians(rng.choice([17.5, 20, 22.5, 25])),
         "b": 10.0,
-        "tip_radius": float(rng.choice([0.1, 0.2, 0.3])),
+        "rack_tip_radius": float(rng.choice([0.1, 0.2, 0.3])),
     }
     z = int(rng.integers(14, 50))
     more, x = int(rng.integers(18, 80)), float(rng.uniform(-0.2, 0.5))

@@ -70,7 +70,8 @@ def test_files_state_the_unit_of_every_array(pair, steel, suffix, tmp_path):
     units = json.loads(str(found["units_json"].item()))
     assert set(units) == set(found) - {"meta", "units_json"}
     assert units | {"order": "-", "phase": "-"} == {
-        "phase": "-", "order": "-", "k": "N/m", "k_tangent": "N/m", "lte": "m", "force": "N", "pressure": "Pa", "error": "N/m"
+        "phase": "-", "order": "-", "k": "N/m", "k_tangent": "N/m", "deflection": "m", "force": "N", "pressure": "Pa", "error":
+        "N/m"
     }  # fmt: skip
 
 

@@ -42,7 +42,7 @@ CASES = {
         "flanks": {"pinion": gf.Flank(eccentricity=0.01, eccentric_tooth=2.0)},
         "damage": {"wheel": [crack(1)]},
     },
-    "teeth of several scales": {"flanks": {"wheel": gf.Flank(slope=0.01, tooth_scale=(1.0,) * 6 + (1.6,) + (1.0,) * 6)}},
+    "teeth of several scales": {"flanks": {"wheel": gf.Flank(profile_slope=0.01, tooth_scale=(1.0,) * 6 + (1.6,) + (1.0,) * 6)}},
 }
 
 
@@ -62,7 +62,7 @@ def test_every_cycle_of_the_hunting_period_is_that_of_the_teeth_that_meet(name):
     assert_allclose(np.tile(cycle.sampled(), again), want.k, rtol=1e-7)
     unloaded = 0.0 if want.unloaded is None else want.unloaded
     assert_allclose(np.tile(cycle.sampled("unloaded"), again), unloaded + 0 * want.k, atol=1e-12)
-    te = cycle.sampled("lte") + cycle.sampled("unloaded")
+    te = cycle.sampled("deflection") + cycle.sampled("unloaded")
     assert_allclose(np.tile(te, again), want.te, atol=1e-12)
 
 

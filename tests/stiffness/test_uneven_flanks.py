@@ -27,7 +27,7 @@ def both(**edge):
     return {"pinion": gf.Flank(**edge), "wheel": gf.Flank(**edge)}
 
 
-RING = gf.Gear(z=60, r_rim=110.0, tip_radius=0.3, **RACK)
+RING = gf.Gear(z=60, r_rim=110.0, rack_tip_radius=0.3, **RACK)
 
 
 @pytest.mark.parametrize("gear", [PAIR.gear_1, PAIR.gear_2, RING], ids=["z24", "z36", "ring"])
@@ -140,15 +140,15 @@ def test_wear_is_what_is_worn_off():
     rolls, depth = [PAIR.gear_1.roll_f, 12.0, PAIR.gear_1.roll_a], [0.004, 0.0, 0.006]
     worn, table = solved({"pinion": gf.Flank(wear=(rolls, depth))}), solved({"pinion": gf.Flank(table=(rolls, depth))})
     assert_allclose(worn.te, table.te, rtol=1e-12)
-    form = gf.Flank(wear=([10.0, 11.0, 12.0], [0.0, 0.005, 0.0]), slope=0.002).on(PAIR.gear_1)
-    plain = gf.Flank(slope=0.002).on(PAIR.gear_1)
+    form = gf.Flank(wear=([10.0, 11.0, 12.0], [0.0, 0.005, 0.0]), profile_slope=0.002).on(PAIR.gear_1)
+    plain = gf.Flank(profile_slope=0.002).on(PAIR.gear_1)
     at = np.array([9.0, 11.0, 14.0])
     assert_allclose(form.removed(at) - plain.removed(at), [0.0, 0.005, 0.0], atol=1e-15)
 
 
 def test_teeth_with_forms_of_their_own():
     """Tooth 0 slopes twice as much as the others: alone in contact it is as if all did, and elsewhere as if none."""
-    relief = {"slope": 0.01, "crowning": 0.002}
+    relief = {"profile_slope": 0.01, "profile_crowning": 0.002}
     scales = [2.0] + [1.0] * 23
     at = np.array([PAIR.eps_alpha - 0.75, 5.85])  # one pair in contact: that of tooth 0, and that of another
     found = solved({"pinion": gf.Flank(**relief, tooth_scale=scales)}, phases=at)
@@ -221,7 +221,7 @@ def test_a_huge_hunting_period_is_refused_with_its_number():
         ({"wear": ([2.0, 20.0], [0.0, 1.0])}, "mm of wear of z = 24: more than a tenth of the module"),
         ({"tooth_scale": [1.0, 2.0]}, "tooth_scale has 2 values, but z = 24"),
         ({"eccentricity": 1.0}, "1 mm of eccentricity of z = 24: more than a tenth"),
-        ({"slope": 0.2, "tooth_scale": [2.0] * 24}, "0.4 mm removed from the flank"),
+        ({"profile_slope": 0.2, "tooth_scale": [2.0] * 24}, "0.4 mm removed from the flank"),
     ],
 )
 def test_impossible_ones_are_refused(given, message):

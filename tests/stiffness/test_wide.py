@@ -35,7 +35,7 @@ def healthy(steel):
 
 
 def test_identities_of_the_curve(healthy):
-    assert_allclose(healthy.k * healthy.lte, FORCE, rtol=1e-12)
+    assert_allclose(healthy.k * healthy.deflection, FORCE, rtol=1e-12)
     assert_allclose(healthy.force.sum(axis=1), FORCE, rtol=1e-9)
     assert_allclose(healthy.share * FORCE, healthy.force, rtol=1e-9, atol=1e-6)
     assert (healthy.share >= 0).all()
@@ -79,7 +79,7 @@ def test_several_forces_give_a_list(healthy, steel):
     assert_allclose(curves[2].k, curve_of(steel, force=8 * FORCE).k, rtol=1e-12)
     assert_allclose(curves[0].k, healthy.k, rtol=1e-12)
     between = 2 / (1 / curves[0].k_tangent + 1 / curves[1].k_tangent)
-    assert_allclose(0.02 * FORCE / (curves[1].lte - curves[0].lte), between, rtol=3e-4)
+    assert_allclose(0.02 * FORCE / (curves[1].deflection - curves[0].deflection), between, rtol=3e-4)
     assert (curves[2].k > 1.02 * curves[0].k).all(), "the contact stiffens under load"
     assert (healthy.k_tangent > healthy.k).all()
     assert isinstance(curve_of(steel, force=[FORCE]), list)

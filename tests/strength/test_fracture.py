@@ -93,7 +93,7 @@ def test_crack_of_a_ring(start, level, known):
     """Truth: 13 ring teeth between polygons cut by a polygon of the cutter, Delaunay triangles of second order, a slit of
     separate nodes from the polygon's own tangent point, K from the stiffness derivative and the opening.
     """
-    ring = gf.Gear(z=84, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_rim=95.0, x=-0.4617, addendum=0.859, tip_radius=0.2)
+    ring = gf.Gear(z=84, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_rim=95.0, x=-0.4617, addendum=0.859, rack_tip_radius=0.2)
     found = gf.stress_intensity(ring, gf.Crack(level=level, start=start), 82.558, 100.0, STEEL)
     assert_allclose(found.K_I, known, rtol=3e-3)
 

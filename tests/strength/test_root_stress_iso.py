@@ -22,7 +22,7 @@ def test_the_standard_is_above_by_a_little(z, x):
 
 def test_the_wheel_has_its_own_stress_and_other_pairs_are_refused():
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 5.0}
-    wheel, ring = gf.Gear(z=43, r_bore=10.0, **rack), gf.Gear(z=63, r_rim=80.0, addendum=0.8, tip_radius=0.2, **rack)
+    wheel, ring = gf.Gear(z=43, r_bore=10.0, **rack), gf.Gear(z=63, r_rim=80.0, addendum=0.8, rack_tip_radius=0.2, **rack)
     pinion = gf.Gear(z=21, r_bore=5.0, **rack)
     pair, turned = gf.GearPair(pinion, wheel), gf.GearPair(wheel, pinion)
     assert gf.iso_root_stress(pair, 1000.0, "wheel") == gf.iso_root_stress(turned, 1000.0)

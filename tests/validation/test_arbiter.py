@@ -32,7 +32,7 @@ def answer(undercut):
 
 @pytest.mark.quick
 @pytest.mark.parametrize(
-    "held", [{"z": 24, "r_bore": 15.0, "x": 0.3}, {"z": 13, "r_bore": 8.0}, {"z": 60, "r_rim": 95.0, "tip_radius": 0.2}]
+    "held", [{"z": 24, "r_bore": 15.0, "x": 0.3}, {"z": 13, "r_bore": 8.0}, {"z": 60, "r_rim": 95.0, "rack_tip_radius": 0.2}]
 )
 def test_flank_is_the_involute(held):
     gear = gf.Gear(**held, **RACK)
@@ -47,7 +47,7 @@ def test_flank_is_the_involute(held):
 
 def test_a_sharp_tool_cuts_the_path_of_its_corner():
     """A point of the rack at height eta, rolled by s, lies at radius hypot(r + eta, s)."""
-    gear = gf.Gear(z=11, r_bore=5.0, tip_radius=0.0, **RACK)
+    gear = gf.Gear(z=11, r_bore=5.0, rack_tip_radius=0.0, **RACK)
     space = Space(gear)
     eta = -1.25 * 2.5
     corner = math.pi * 2.5 / 4 + eta * math.tan(gear.alpha_n)

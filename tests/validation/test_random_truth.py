@@ -21,7 +21,7 @@ def drawn(seed):
     """Pair, flanks, line load [N/mm], phase, damage."""
     rng = np.random.default_rng(seed)
     m, ring = float(rng.choice([1.0, 2.0, 4.0])), rng.random() < 0.4
-    rack = {"m_n": m, "alpha_n": math.radians(float(rng.choice([17.5, 20, 25]))), "b": 1.0, "tip_radius": 0.2}
+    rack = {"m_n": m, "alpha_n": math.radians(float(rng.choice([17.5, 20, 25]))), "b": 1.0, "rack_tip_radius": 0.2}
     z, x = (int(rng.integers(11, 40)), int(rng.integers(12, 70))), (float(rng.uniform(-0.5, 1.0)), float(rng.uniform(-0.5, 0.9)))
     bores = [0.5 * (teeth / 2 - 1.25 + shift) * m for teeth, shift in zip(z, x, strict=True)]
     held = {"z": z[0] + z[1], "r_rim": (sum(z) / 2 + 5) * m, "addendum": 0.8} if ring else {"z": z[1], "r_bore": bores[1]}

@@ -21,7 +21,7 @@ RACK = {"m_n": 2.5, "alpha_n": math.radians(20), "b": 1.0}
 
 @pytest.mark.parametrize("edge", [{"tip_rounding": 0.25}, {"tip_chamfer": 0.1}], ids=["rounding", "chamfer"])
 @pytest.mark.parametrize(
-    "held", [{"z": 24, "r_bore": 18.0}, {"z": 17, "r_bore": 8.0}, {"z": 60, "r_rim": 95.0, "tip_radius": 0.2}]
+    "held", [{"z": 24, "r_bore": 18.0}, {"z": 17, "r_bore": 8.0}, {"z": 60, "r_rim": 95.0, "rack_tip_radius": 0.2}]
 )
 def test_tip_edges_are_those_of_whole_outlines(held, edge):
     gear = gf.Gear(**held, **RACK)
@@ -51,7 +51,12 @@ def ring_pairs(count):
     """Rings of random teeth, shifts, addenda and pressure angles with their pinions."""
     for seed in range(40):
         rng = np.random.default_rng(seed)
-        rack = {"m_n": 2.0, "alpha_n": math.radians(rng.choice([17.5, 20, 25])), "b": 1.0, "tip_radius": rng.uniform(0.1, 0.38)}
+        rack = {
+            "m_n": 2.0,
+            "alpha_n": math.radians(rng.choice([17.5, 20, 25])),
+            "b": 1.0,
+            "rack_tip_radius": rng.uniform(0.1, 0.38),
+        }
         z_1, more = int(rng.integers(11, 40)), int(rng.integers(8, 60))
         shifts, addendum = (rng.uniform(-0.3, 0.8), rng.uniform(-0.5, 0.8)), rng.uniform(0.7, 1.0)
         ring = {"z": z_1 + more, "r_rim": z_1 + more + 10.0, "addendum": addendum, "z_cutter": min(20, z_1 + more - 10)}
@@ -77,7 +82,7 @@ def test_tips_of_rings_meet_those_of_pinions_on_both_sides_of_the_path():
 def test_a_ring_tip_after_the_path():
     """19/47, trimmed: 0.82 base pitches after the end the outlines are 0.84 um apart, not 12."""
     rack = {"m_n": 4.0, "alpha_n": math.radians(20), "b": 10.0}
-    ring = gf.Gear(z=47, x=-0.29, r_rim=110.0, tip_radius=0.3, **rack)
+    ring = gf.Gear(z=47, x=-0.29, r_rim=110.0, rack_tip_radius=0.3, **rack)
     with pytest.warns(UserWarning, match="trimmed"):
         pair = gf.GearPair(gf.Gear(z=19, x=0.27, r_bore=15.0, **rack), ring)
     phase = pair.eps_alpha + 0.82

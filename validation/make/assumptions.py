@@ -18,7 +18,9 @@ from ..shared.table_rows import rows_of, write_table
 
 BASE = "as assumed [N/m]"
 CSV = TABLES / "assumptions.csv"
-SCENES = [name for name in scene_names() if name != "herringbone_contact_line"]  # its bores are chosen, not assumed
+SCENES = [  # scenes of articles; the bores of herringbone_contact_line are chosen and not assumed
+    name for name in scene_names() if name != "herringbone_contact_line" and gf.load_scene(name).references
+]
 WIDE = 8  # phases in three dimensions
 PITTED = {"planetary_pitting": "mild_rows", "helical_pitting": "severe"}  # scene: case whose pits are changed
 
@@ -53,7 +55,7 @@ def changed(one):
         yield name, {"changes": [{} if g.internal else {"r_bore": factor * g.r_bore} for g in gears]}
     yield "force halved", {"force": one.force / 2}
     yield "force doubled", {"force": 2 * one.force}
-    yield "rack tip radius 0.25", {"changes": [{} if g.internal else {"tip_radius": 0.25} for g in gears]}
+    yield "rack tip radius 0.25", {"changes": [{} if g.internal else {"rack_tip_radius": 0.25} for g in gears]}
     ring = gears[1]
     if ring.internal:
         yield "rim one module thicker", {"changes": ({}, {"r_rim": ring.r_rim + ring.m_n})}

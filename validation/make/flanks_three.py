@@ -19,8 +19,8 @@ def case_of(name):
     if name == "involutes":
         return pair, {}
     relief = {"tip_relief": 0.008, "tip_start_roll": pair.gear_1.roll_a - 2.0, "tip_exponent": 2.0}
-    flanks = {"pinion": gf.Flank(lead_crowning=0.006, **relief), "wheel": gf.Flank(lead_crowning=0.004)}
-    return pair, {"flanks": flanks, "misalignment": gf.Misalignment(F_beta=0.008)}
+    flanks = {"pinion": gf.Flank(helix_crowning=0.006, **relief), "wheel": gf.Flank(helix_crowning=0.004)}
+    return pair, {"flanks": flanks, "misalignment": gf.Misalignment(F_beta_x=0.008)}
 
 
 def solved(name, phase):
@@ -77,7 +77,7 @@ def text():
         ## Three dimensions beside CalculiX
 
         A helical pair 13/16 of m 2, 15 degrees, 6 mm wide, {LOAD:g} N/mm. Its flanks: lead crowning of 6 um (pinion) and 4 um
-        (wheel), a parabolic tip relief of 8 um over 2 mm of roll length on the pinion, and axes askew by F_beta = 8 um, which
+        (wheel), a parabolic tip relief of 8 um over 2 mm of roll length on the pinion, and axes askew by F_beta_x = 8 um, which
         presses it at one end. CalculiX: both whole gears in 20-node hexahedra whose nodes lie on the modified flanks,
         surface-to-surface contact, large displacements (`gf.write_contact_inp(face="helical", flanks=...,
         misalignment=...)`). Involutes by the same meshes show what of a difference is the mesh's: at phase 0.45 k differs by

@@ -24,13 +24,13 @@ def seeded_pair(seed):
     pair = gf.GearPair(gf.Gear(z=one, r_bore=0.5 * one, beta=-beta, **rack), gf.Gear(z=two, r_bore=0.5 * two, beta=beta, **rack))
     flanks = {
         name: gf.Flank(
-            lead_crowning=rng.uniform(0, 0.008), lead_slope=rng.uniform(-0.004, 0.004), twist=rng.uniform(-0.002, 0.002),
+            helix_crowning=rng.uniform(0, 0.008), helix_slope=rng.uniform(-0.004, 0.004), twist=rng.uniform(-0.002, 0.002),
             end_relief=rng.uniform(0, 0.006), end_length=2.0, tip_relief=rng.uniform(0.002, 0.015), tip_exponent=2.0,
             tip_start_roll=gear.roll_a - 0.35 * (gear.roll_a - gear.roll_f),
         )
         for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2))
     }  # fmt: skip
-    return pair, flanks, gf.Misalignment(F_beta=rng.uniform(-0.01, 0.01)), rack["b"] * rng.uniform(60, 250)
+    return pair, flanks, gf.Misalignment(F_beta_x=rng.uniform(-0.01, 0.01)), rack["b"] * rng.uniform(60, 250)
 
 
 def against_fe3d(seed):
@@ -39,7 +39,7 @@ def against_fe3d(seed):
     options = {"phases": list(PHASES), "flanks": flanks, "misalignment": askew}
     found = gf.mesh_stiffness(pair, force, STEEL, method="ritz3d", **options)
     truth = gf.mesh_stiffness(pair, force, STEEL, method="fe3d", refine=REFINE, **options)
-    return float(truth.lte.mean()), float(np.abs(found.te - truth.te).max() / truth.lte.mean())
+    return float(truth.deflection.mean()), float(np.abs(found.te - truth.te).max() / truth.deflection.mean())
 
 
 def seeded_section(seed):
@@ -54,7 +54,7 @@ def seeded_section(seed):
         exponent = float(rng.choice([1, 1.5, 2]))
         flanks[name] = gf.Flank(
             tip_relief=m * rng.uniform(0.001, 0.012), tip_start_roll=gear.roll_a - length, tip_exponent=exponent,
-            crowning=m * rng.uniform(0, 0.002), slope=m * rng.uniform(-0.001, 0.002),
+            profile_crowning=m * rng.uniform(0, 0.002), profile_slope=m * rng.uniform(-0.001, 0.002),
         )  # fmt: skip
     return pair, flanks, 10.0 * m * m * rng.uniform(20, 100)
 
@@ -63,16 +63,16 @@ def against_fe(seed):
     """Largest difference of `ritz` and `fe` in the transmission error over the mean deflection, 24 phases."""
     pair, flanks, force = seeded_section(seed)
     ritz, fe = (gf.mesh_stiffness(pair, force, STEEL, method=name, flanks=flanks, phases=24) for name in ("ritz", "fe"))
-    return float(np.abs(ritz.te - fe.te).max() / fe.lte.mean())
+    return float(np.abs(ritz.te - fe.te).max() / fe.deflection.mean())
 
 
 def wide_row(seed):
     """Row of a narrow pair: what it is, its deflection [um] by `fe3d`, and how far `ritz3d` is from it."""
     pair, _, _, force = seeded_pair(seed)
-    lte, away = against_fe3d(seed)
+    deflection, away = against_fe3d(seed)
     one = pair.gear_1
     known = {"z": [one.z, pair.gear_2.z], "beta": math.degrees(abs(one.beta)), "b": one.b, "force": force}
-    return known | {"deflection": 1e6 * lte, "difference": away}
+    return known | {"deflection": 1e6 * deflection, "difference": away}
 
 
 def reference():
@@ -160,7 +160,7 @@ def _kinks():
             run = {"phases": 64, "flanks": flanks}
             plane = gf.mesh_stiffness(pair, 100 * load, STEEL, method="ritz", **run)
             solid = solid_contact(pair, 100 * load, STEEL, plane.phase, face="spur", axial=0, step=20.0, flanks=flanks)
-            away = 100 * np.abs(1e-3 * solid.approach - plane.te) / plane.lte
+            away = 100 * np.abs(1e-3 * solid.approach - plane.te) / plane.deflection
             lines.append(f"| {name} | {load:g} N/mm | {away.max():.2f} % | {np.median(away):.2f} % |")
     return lines
 

@@ -142,7 +142,7 @@ def _held(found, name):
 def _corners():
     lines = []
     for z, alpha, x, bore in CORNERS:
-        sample = {"z_1": z[0], "z_2": z[1], "alpha_deg": alpha, "x_1": x[0], "x_2": x[1], "tip_radius": 0.25}
+        sample = {"z_1": z[0], "z_2": z[1], "alpha_deg": alpha, "x_1": x[0], "x_2": x[1], "rack_tip_radius": 0.25}
         name = f"| {z[0]}/{z[1]} | {alpha:g} | {x[0]:g}, {x[1]:g} | {bore:g} | "
         try:
             pair = build(sample | {"bore_1": bore, "bore_2": bore})

@@ -51,7 +51,7 @@ def draw():
     crack = gf.Crack(level=0.5)
     case = gf.Case(pair, 2000.0, gf.Material(E=207e3, nu=0.25), damage={"pinion": [crack]})
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.2, 3.4), width_ratios=(1.45, 1), dpi=110, layout="constrained")
-    for one, label in ((case.healthy, "healthy"), (case, crack.told(pair.gear_1))):
+    for one, label in ((case.healthy, "healthy"), (case, crack._description(pair.gear_1))):
         curve = gf.solve(one, gf.Solve(method="fe", phases=128, span="tooth", error=True))
         (line,) = left.plot(curve.phase, curve.k / 1e6, label=label)
         band = (curve.k - curve.error) / 1e6, (curve.k + curve.error) / 1e6

@@ -25,7 +25,7 @@ def random_case(seed):
     """Pair, line load [N/mm] and damage of a seed; ValueError where no such gears exist."""
     rng = np.random.default_rng(seed)
     m, width = float(rng.choice([1.0, 2.0, 4.0])), 10.0
-    rack = {"m_n": m, "alpha_n": math.radians(rng.choice([17.5, 20.0, 25.0])), "b": width, "tip_radius": 0.2}
+    rack = {"m_n": m, "alpha_n": math.radians(rng.choice([17.5, 20.0, 25.0])), "b": width, "rack_tip_radius": 0.2}
     z_1, ring = int(11 * (70 / 11) ** rng.random()), bool(rng.random() < 0.25)
     z_2 = z_1 + int(20 * (90 / 20) ** rng.random()) if ring else int(14 * (110 / 14) ** rng.random())
     x_1, x_2 = float(rng.uniform(-0.1, 0.5)), 0.0 if ring else float(rng.uniform(-0.3, 0.3))

@@ -79,8 +79,8 @@ def drawn(kind, seed):
     turn = [z / (2 * math.cos(beta)) for z in (z_1, z_2)]
     bore = [float(rng.uniform(0.35, 0.8)) * (t - 1.25 + x) * m for t, x in zip(turn, (x_1, x_2), strict=True)]
     held = {"r_rim": (turn[1] + 1.25 + float(rng.uniform(2, 6))) * m, "addendum": 0.8} if ring else {"r_bore": bore[1]}
-    one = gf.Gear(z=z_1, x=x_1, r_bore=bore[0], beta=beta, tip_radius=0.2, **rack)
-    two = gf.Gear(z=z_2, x=x_2, beta=beta if ring else -beta, tip_radius=0.2, **held, **rack)
+    one = gf.Gear(z=z_1, x=x_1, r_bore=bore[0], beta=beta, rack_tip_radius=0.2, **rack)
+    two = gf.Gear(z=z_2, x=x_2, beta=beta if ring else -beta, rack_tip_radius=0.2, **held, **rack)
     pair, load = gf.GearPair(one, two), m * float(10 ** rng.uniform(1.3, 2.3))
     share = rng.random(PHASES)
     if kind not in ("crack", "pitted"):

@@ -92,7 +92,7 @@ MACHINES = "What the set does to the machines of the articles: [sets_machines.md
 def gears(planets=1, rim=8.0):
     """The set of the table."""
     sun, planet = gf.Gear(z=45, r_bore=20.0, **RACK), gf.Gear(z=30, r_bore=12.0, **RACK)
-    ring = gf.Gear(z=105, r_rim=107.5 + rim, addendum=0.8, tip_radius=0.3, **RACK)
+    ring = gf.Gear(z=105, r_rim=107.5 + rim, addendum=0.8, rack_tip_radius=0.3, **RACK)
     return gf.PlanetarySet(sun, planet, ring, planets)
 
 
@@ -100,7 +100,7 @@ def case(planets, rim, supports):
     """A case of the table; without supports the rim is held."""
     angles = 2 * math.pi / 150 * np.array(PLANETS[planets])
     ring = gf.RimSupports(supports, PAD) if supports else "held"
-    return gf.PlanetaryCase(gears(rim=rim), FORCE, STEEL, angles=angles, ring=ring)
+    return gf.PlanetaryCase(gears(rim=rim), FORCE, STEEL, planet_angles=angles, ring=ring)
 
 
 def kind(planets, supports):
@@ -147,7 +147,7 @@ def table():
 def small(first):
     """The set that CalculiX has, its first pad at an angle from planet 0 [rad]."""
     sun, planet = gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK)
-    ring = gf.Gear(z=84, r_rim=95.0, x=-0.4617, addendum=0.85, tip_radius=0.3, **RACK)
+    ring = gf.Gear(z=84, r_rim=95.0, x=-0.4617, addendum=0.85, rack_tip_radius=0.3, **RACK)
     made = gf.PlanetarySet(sun, planet, ring, 3)
     angles = 2 * math.pi / 3 * np.arange(3)
     support = gf.RimSupports(6, 4.8, first=first - tooth_angles(made, angles, standing(made, angles, [AT]))[2])

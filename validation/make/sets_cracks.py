@@ -44,7 +44,7 @@ Estimated errors are those of `meta["error"]` over these positions.
 
 def ring_case(damage=True):
     """The set of the table."""
-    ring = gf.Gear(z=84, r_rim=90.6, x=-0.4617, addendum=0.85, tip_radius=0.3, **RACK)
+    ring = gf.Gear(z=84, r_rim=90.6, x=-0.4617, addendum=0.85, rack_tip_radius=0.3, **RACK)
     gears = gf.PlanetarySet(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK), ring, 3)
     support = gf.RimSupports(6, 4.8, first=math.pi / 6)
     return gf.PlanetaryCase(gears, 2000.0, STEEL, ring=support, damage={"ring": [CRACK]} if damage else None)

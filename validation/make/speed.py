@@ -109,7 +109,7 @@ def sections():
     cracked = gf.mesh_stiffness(scene.pair, method="fe", refine=REFERENCE / 2, damage=damage, **case)
     runs = [(f"fe, refine {refine:g}", {"method": "fe", "refine": refine}) for refine in REFINES]
     runs += [(f"ritz, order {order}", {"method": "ritz", "order": order}) for order in ORDERS]
-    runs += [(method, {"method": method}) for method in ("coupled", "textbook", "published")]
+    runs += [(method, {"method": method}) for method in ("coupled", "textbook", "herringbone_article")]
     rows = [_row(name, truth, lambda o=options: gf.mesh_stiffness(scene.pair, **case, **o)) for name, options in runs]
     for method in ("fe", "ritz"):
         run = {"method": method, "damage": damage}

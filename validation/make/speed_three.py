@@ -67,7 +67,7 @@ def measure(*setting):
 def rows():
     """Measure: rows of `speed_page.table`."""
     asked = [("ritz3d", *map(str, setting)) for setting in SETTINGS]
-    asked += [("fe3d", str(BRUTE)), ("textbook",), ("published",)]
+    asked += [("fe3d", str(BRUTE)), ("textbook",), ("herringbone_article",)]
     found = {}
     for setting in asked:
         command = [sys.executable, "-m", "validation.make.speed_three", *setting]

@@ -90,7 +90,7 @@ def solved_rows(tables):
         yield _row("single_pair", f"s_R {row['s_R']}", row["value"], reference.single_pair(row, one), one["tolerance"])
     one = tables["root_stress"]
     for row in one["rows"]:
-        case = f"z {row['z']}, x {row['x']:g}, tip radius {row['tip_radius']:g}"
+        case = f"z {row['z']}, x {row['x']:g}, tip radius {row['rack_tip_radius']:g}"
         yield _row("root_stress", case, row["value"], reference.root_stress(row), one["tolerance"])
     one = tables["ring_root_stress"]
     row = one["rows"][0]
@@ -142,10 +142,10 @@ def contact_row(phase):
     curve = gf.mesh_stiffness(pair, LINE_LOAD * pair.gear_1.b, steel, phases=[phase])
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        deck = gf.write_contact_inp(folder / "pair.inp", pair, phase, float(curve.lte[0]) * 1e3, LINE_LOAD, (steel, steel))
+        deck = gf.write_contact_inp(folder / "pair.inp", pair, phase, float(curve.deflection[0]) * 1e3, LINE_LOAD, (steel, steel))
         calculix(folder, "pair")
         force = deck.force(folder / "pair.dat")
-    return phase, float(curve.k[0]), force * pair.gear_1.b / float(curve.lte[0])
+    return phase, float(curve.k[0]), force * pair.gear_1.b / float(curve.deflection[0])
 
 
 def springs(phases):
@@ -157,14 +157,14 @@ def springs(phases):
     pair, steel = contact_pair()
     curve = gf.mesh_stiffness(pair, LINE_LOAD * pair.gear_1.b, steel, method="ritz", phases=phases)
     overlap = 8 / (3 * math.pi) * curve.pressure / (PENALTY * steel.E * 1e6) * 1e-3  # m
-    added = np.where(curve.force > 0, curve.share * overlap, 0.0).sum(axis=1) / curve.lte
+    added = np.where(curve.force > 0, curve.share * overlap, 0.0).sum(axis=1) / curve.deflection
     return [None if math.isnan(one) else one for one in added.tolist()]
 
 
 LINEAR = {
     "21 teeth, healthy": ({"z": 21, "r_bore": 7.4}, 21.5, ()),
     "21 teeth, crack of 40 %": ({"z": 21, "r_bore": 7.4}, 21.5, (gf.Crack(level=0.4),)),
-    "ring of 72 teeth": ({"z": 72, "r_rim": 90.0, "tip_radius": 0.2}, 72.0, ()),
+    "ring of 72 teeth": ({"z": 72, "r_rim": 90.0, "rack_tip_radius": 0.2}, 72.0, ()),
 }
 
 

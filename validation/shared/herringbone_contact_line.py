@@ -17,8 +17,8 @@ SCENE = "herringbone_contact_line"
 OFFSETS = (-0.25, -0.12, -0.09, -0.06, -0.03, 0.0, 0.03, 0.06, 0.09, 0.12, 0.25)  # base pitches from the pitch point
 METHODS = {  # name: method, and its variants
     "ritz3d": ("ritz3d", {}),
-    "published": ("published", {}),
-    "published, summed": ("published", {"lost": "summed"}),
+    "herringbone_article": ("herringbone_article", {}),
+    "herringbone_article, summed": ("herringbone_article", {"lost": "summed"}),
     "textbook": ("textbook", {}),
     "fe3d": ("fe3d", {}),
 }

@@ -19,7 +19,7 @@ Bores {sun:.2f} and {planet:.2f} of the root radius, a rim of 93 mm, a crack of 
 a scan of five unprinted values and eight layouts of pits found, which is a frozen page of its own ([herringbone_layouts.md](herringbone_layouts.md)): a fit, no evidence, and what would falsify it. `ritz3d` at full order, finite elements by `fe3d`, at the rotation of the healthy pair and the phase at
 which case 4 takes most; errors against S4's finite element column, reductions against its own.
 
-| pair | case | S4 FE | `ritz3d` [N/um] | error | reduction, S4 FE | `ritz3d` | points | largest within 0.25 base pitches | `published` | `published`, k_h with summed widths | `fe3d`, error |
+| pair | case | S4 FE | `ritz3d` [N/um] | error | reduction, S4 FE | `ritz3d` | points | largest within 0.25 base pitches | `herringbone_article` | `herringbone_article`, k_h with summed widths | `fe3d`, error |
 |---|---|---|---|---|---|---|---|---|---|---|---|
 {ten}
 
@@ -35,7 +35,7 @@ def ten():
     """Rows of the table of the ten rows."""
     known, k, out = line.load(), line.ours("ritz3d")[0], []
     want, lost, own = printed(), reductions(k), reductions(printed())
-    others = {name: line.ours(name)[0] for name in ("published", "published, summed")}
+    others = {name: line.ours(name)[0] for name in ("herringbone_article", "herringbone_article, summed")}
     solid = line.ours("fe3d")[0]
     places = iter(range(8))
     for i, (pair, case) in enumerate(line.rows()):

@@ -64,7 +64,7 @@ def changed(made, draw):
         springs.append(replace(one, k=factor * one.k, c=math.sqrt(factor) * draw["damping"] * one.c))
     meshes = []
     for one in made.meshes:
-        more = {name: draw["mesh_damping"] * getattr(one, name) for name in ("damping", "beta", "zeta")}
+        more = {name: draw["mesh_damping"] * getattr(one, name) for name in ("damping", "damping_per_stiffness", "zeta")}
         error = tuple((draw["errors"] * size, frequency, angle) for size, frequency, angle in one.error)
         meshes.append(replace(one, error=error, backlash=draw["play"] * one.backlash, **more))
     loads = tuple(replace(one, value=_loaded(one.value, draw)) for one in made.loads)

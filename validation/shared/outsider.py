@@ -66,7 +66,7 @@ def ring_pair():
     """Pinion in a ring of 36 teeth."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # its tip is trimmed
-        ring = gf.Gear(z=36, r_rim=45.0, tip_radius=0.2, addendum=0.8, beta=math.radians(15), **RACK)
+        ring = gf.Gear(z=36, r_rim=45.0, rack_tip_radius=0.2, addendum=0.8, beta=math.radians(15), **RACK)
         return gf.GearPair(pinion(), ring)
 
 
@@ -175,7 +175,7 @@ def ritz3d_row(name):
     run = {"method": "ritz3d", "phases": [case.phase], "damage": damage}
     force = case.load * case.pair.gear_1.b
     curve = gf.mesh_stiffness(case.pair, force, STEEL, **run)
-    out = {"value": float(curve.k[0]) / 1e6, "approach": 1e3 * float(curve.lte[0])}
+    out = {"value": float(curve.k[0]) / 1e6, "approach": 1e3 * float(curve.deflection[0])}
     return out | ({"carried": sharing(case)} if name == SHOWN else {})
 
 

@@ -47,7 +47,7 @@ def single_pair(row, table):
 
 def root_stress(row):
     """Root stress over Ft/(b m) [-]."""
-    numbers = {"x": row["x"], "tip_radius": row["tip_radius"]}
+    numbers = {"x": row["x"], "rack_tip_radius": row["rack_tip_radius"]}
     gear = gf.Gear(z=row["z"], m_n=1.0, r_bore=0.2 * _root(row["z"], **numbers), **RACK, **numbers)
     return gf.root_stress(gear, math.hypot(*row["point"]), 1 / math.cos(gear.alpha_n), STEEL, half_width=0.05)
 
@@ -82,7 +82,7 @@ def formulation(row, **options):
 def _ross_gear():
     """Gear of the beam code's example and its root half angle."""
     rho = 0.25 / (1 - math.sin(math.radians(20)))
-    gear = gf.Gear(z=62, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=17.5, tip_radius=rho)
+    gear = gf.Gear(z=62, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=17.5, rack_tip_radius=rho)
     return gear, (math.pi / 2 + 2 * math.tan(gear.alpha_n) * (1 - rho) + 2 * rho / math.cos(gear.alpha_n)) / gear.z
 
 
@@ -127,7 +127,7 @@ def iso():
 
 def ring_root_stress(row):
     """Root stress of a ring over Ft/(b m) [-], and its contact ratio with 17 teeth before trimming."""
-    ring = gf.Gear(z=row["z"], m_n=1.0, r_rim=row["z"] / 2 + 12.0, tip_radius=row["tip_radius"], **RACK)
+    ring = gf.Gear(z=row["z"], m_n=1.0, r_rim=row["z"] / 2 + 12.0, rack_tip_radius=row["rack_tip_radius"], **RACK)
     stress = gf.root_stress(ring, math.hypot(*row["point"]), 1 / math.cos(ring.alpha_n), STEEL, half_width=0.05)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
@@ -159,7 +159,14 @@ def crack_reduction(row, method="ritz", **crack):
 
 def iso_mesh():
     """Single and mesh stiffness of the ISO/TR example, after ISO 6336-1 with rack D and solid discs [N/(mm um)]."""
-    rack = {"m_n": 8.0, "alpha_n": math.radians(20), "beta": math.radians(15.8), "b": 100.0, "dedendum": 1.4, "tip_radius": 0.25}
+    rack = {
+        "m_n": 8.0,
+        "alpha_n": math.radians(20),
+        "beta": math.radians(15.8),
+        "b": 100.0,
+        "dedendum": 1.4,
+        "rack_tip_radius": 0.25,
+    }
     pair = gf.GearPair(gf.Gear(z=17, x=0.145, r_bore=20.0, **rack), gf.Gear(z=103, r_bore=60.0, **rack), 500.0)
     basic_rack = 1 + 0.5 * (1.2 - pair.gear_1.dedendum)
     single = theoretical_stiffness(pair) * 0.8 * basic_rack * math.cos(pair.gear_1.beta)
@@ -197,7 +204,7 @@ def stage(table):
     }[table]
     rack = {"m_n": module, "alpha_n": math.radians(20), "b": 10.0}
     sun, planet = (gf.Gear(z=z, r_bore=0.15 * module * z, **rack) for z in teeth[:2])
-    ring = gf.Gear(z=teeth[2], r_rim=module * (teeth[2] / 2 + 5), tip_radius=0.2, **rack)
+    ring = gf.Gear(z=teeth[2], r_rim=module * (teeth[2] / 2 + 5), rack_tip_radius=0.2, **rack)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         outer, inner = gf.GearPair(sun, planet, a), gf.GearPair(planet, ring, a)

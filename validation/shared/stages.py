@@ -29,7 +29,7 @@ def stage(damaged=True, **options):
     """The herringbone stage with a cracked sun tooth; synthetic stiffnesses of the size of a half's."""
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 30.0, "beta": math.radians(16)}
     sun, planet = gf.Gear(z=18, r_bore=8.0, **rack), gf.Gear(z=27, r_bore=12.0, **rack)
-    ring = gf.Gear(z=72, r_rim=90.0, addendum=0.8, tip_radius=0.2, **rack)
+    ring = gf.Gear(z=72, r_rim=90.0, addendum=0.8, rack_tip_radius=0.2, **rack)
     stiffness = {"sun_planet": 6e8 * WAVE, "planet_ring": 7e8 * WAVE}
     damage = {"sun": (0, {"sun_planet": tooth(stiffness["sun_planet"], 0.3, 1.5)})} if damaged else None
     return herringbone_planetary(gf.PlanetarySet(sun, planet, ring, 3), stiffness, damage=damage, members=MEMBERS, **options)

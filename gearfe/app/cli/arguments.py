@@ -5,7 +5,7 @@ import os
 from functools import partial
 
 from ...stiffness.methods import NAMES, described, having
-from . import filling, sets, shell, signals, tools
+from . import exchange, filling, sets, shell, signals, tools
 from . import verbs as run
 
 SIGNALS = (".csv", ".txt", ".mat", ".npz", ".h5", ".wav", ".uff", ".tdms", ".parquet", ".lvm")  # as of gearfe.core.files
@@ -44,16 +44,17 @@ def main(argv=None):
         default="mean",
     )
     add("--error", f"estimate the discretisation error of every k ({having('error')})")
-    add(
-        "--forces N",
-        "instead of the stiffness, the transmission error over the mesh cycle under these forces [N], of modified flanks "
-        "beside plain involutes: table, --plot",
-        nargs="+",
-        type=float,
-    )
-    add("--torques NM", "the same under these torques of the pinion [N m]", nargs="+", type=float)
+    add("--forces N", argparse.SUPPRESS, nargs="+", type=float)  # former options: the verb te has them
+    add("--torques NM", argparse.SUPPRESS, nargs="+", type=float)
     add("-o --output FILE", "save the curve: .csv, .npz, .mat or .json")
     add("--plot FILE", "draw the curve: .png, .svg or .pdf")
+    add = verb("te", run.transmission_error, "compute the transmission error over the mesh cycle, loaded and unloaded", **methods)
+    _scene_arguments(add)
+    add("--method", f"{known} (see below; default: ritz or ritz3d)", default="auto")
+    add("--forces N", "forces along the line of action [N] (default: the force of the scene)", nargs="+", type=float)
+    add("--torques NM", "torques of the pinion instead of forces [N m]", nargs="+", type=float)
+    add("--no-extended", "neglect tip-corner contact outside the path of contact")
+    add("--plot FILE", "draw the transmission error: .png, .svg or .pdf")
     add = verb("compare", run.compare, "table of every formulation's error against finite elements, by zone, with cost")
     _scene_arguments(add)
     add(
@@ -70,7 +71,7 @@ def main(argv=None):
         "-o --output FILE",
         ".csv: k, errors, losses and seconds by pair, case, method and zone; .md or .tex: the table of errors as printed",
     )
-    add("--cases", "all pairs in all cases of damage (default: those of a scene whose source prints their stiffness)")
+    add("--all-cases --cases", "all pairs in all cases of damage (default: those of a scene whose source prints their stiffness)")
     add(
         "--reference METHOD",
         "what errors are against: fe3d (default of the option), finite elements of whole gears, minutes and gigabytes "
@@ -125,7 +126,12 @@ def main(argv=None):
     add("-o --output FILE", "save the response: .csv, .npz or .mat")
     _assumptions(add)
     _analysis_arguments(add)
-    add = verb("set", sets.planetary_set, "a whole planetary set in one contact: stiffness of its meshes, load shares, pictures")
+    add = verb(
+        "planetary",
+        sets.planetary_set,
+        "solve all meshes of a planetary gear set together: mesh stiffness, load sharing, pictures",
+        aliases=["set"],
+    )
     add("scene SCENE", "a .toml file with a [set] table")
     add("--case NAME", "case of cracks, compared with healthy (default: healthy alone)")
     add("--positions N", "positions of the sun, at least (default: 32)", default=32)
@@ -202,11 +208,34 @@ def main(argv=None):
         type=float,
     )
     add("--ring", "the wheel is an internal gear")
+    add = verb(
+        "import", exchange.import_file, "write a scene of a gear unit of another program, with what its file lacks as assumptions"
+    )
+    add("kind", "format of the file: REXS 1.0 to 2.0.0, as XML, JSON or zip", choices=("rexs",))
+    add("file FILE", "the file: .rexs, .rexsj or .zip")
+    add("--load-case N", "load case of its load spectrum (default: 1)", default=1)
+    add("-o --output FILE", "the new scene (default: its name with .toml, in the present folder)")
+    add = verb(
+        "export", exchange.export_file, "write a pair or a gear for other programs: FMU, lookup table, REXS, outline, solid"
+    )
+    _scene_arguments(add, count=False)
+    add("--gear", "which gear an outline or a solid has (default: pinion)", choices=("pinion", "wheel"), default="pinion")
+    add("--method", "of the stiffness (default: ritz or ritz3d)", default="auto")
+    add("--phases N", "phases per mesh cycle (default: 64)", default=64)
+    add(
+        "-o --output FILE",
+        ".fmu: the pair as an FMU 2.0; .mat, .txt: stiffness over the angle of the pinion for Simscape and Modelica; .rexs: all "
+        "gears of the scene; .dxf, .svg: outline of a gear; .step: its solid",
+        required=True,
+    )
     add = verb("check", tools.check, "say in words what a scene holds, and how each case would be solved")
     add("scene SCENE", "a .toml file, or a built-in scene (see 'gearfe scenes')")
     add("--picture FILE", "draw a pair with its damage to scale: .png, .svg or .pdf")
     add("--pair NAME", "which pair is drawn (default: its first)")
     add("--case NAME", "which case of damage is drawn (default: the first of the pair)")
+    add = verb("lines", tools.lines, "table of the frequencies of a scene's machine: meshes, shafts, teeth, planets, bearings")
+    add("scene SCENE", "a .toml file, or a built-in scene with a machine (see 'gearfe scenes')")
+    add("-o --output FILE", "save the table: .csv, .md or .tex")
     add = verb("schema", tools.schema, "print the JSON schema of scenes, by which an editor completes and checks their keys")
     add("--page", "instead a page of all keys of scenes, studies and data sets, as Markdown")
     add = verb("app", tools.app, "a page in the browser: turn a slider, see mesh, stiffness and transmission error at once")

@@ -1,4 +1,4 @@
-"""What the verb ``gearfe set`` does: a whole planetary set of a scene."""
+"""What the verb ``gearfe planetary`` does: a whole planetary set of a scene."""
 
 from .progress import working
 from .verbs import _check_outputs, _print_assumptions
@@ -7,7 +7,7 @@ FRAMES = 16  # of a moving picture, in each mesh cycle
 
 
 def planetary_set(arguments):
-    """``gearfe set``."""
+    """``gearfe planetary``."""
     from ...comparison.told_set import set_headline, set_table, spread, told_set, told_span
     from ...figures.set_motion import check_moving
     from ...planetary_sets.animation import animate_planetary_set

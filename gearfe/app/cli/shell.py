@@ -78,7 +78,9 @@ def run(work, options=()):
             stream.reconfigure(errors="spelled")
     try:
         with warnings.catch_warnings(), contextlib.redirect_stdout(sys.stdout and Harmless(sys.stdout)):
-            warnings.simplefilter("always", UserWarning)
+            for kind in (UserWarning, FutureWarning):
+                warnings.simplefilter("always", kind)
+            warnings.filterwarnings("always", ".*the old name leaves", DeprecationWarning)
             warnings.showwarning = lambda message, *_: tell(f"note: {as_options(message, options)}")
             work()
             if sys.stdout is not None:

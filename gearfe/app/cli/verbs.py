@@ -40,19 +40,22 @@ def stiffness(arguments):
     from ...stiffness.methods import fitted
     from ...stiffness.solve import Solve
 
+    if arguments.forces or arguments.torques:
+        if arguments.output or arguments.force is not None:
+            raise ValueError("--forces and --torques compute the transmission error: leave out --output and --force")
+        from ...geometry.renamed import warn_renamed
+
+        warn_renamed("gearfe stiffness --forces", "gearfe te --forces", FutureWarning)
+        return transmission_error(arguments)
     _check_outputs(arguments, output="curve", plot="picture")
     scene = load_scene(arguments.scene)
     case = scene.case(arguments.pair, arguments.case)
     if arguments.force is not None:
         case = replace(case, force=arguments.force)
     print(f"{scene.title}\n")
-    case, variants, left_out = fitted(arguments.method, case)
+    case, _, left_out = fitted(arguments.method, case)
     for text in left_out:
         print(f"{text}\n")
-    if arguments.forces or arguments.torques:
-        _transmission_error(scene, arguments, case, variants)
-        _print_assumptions(scene, arguments.assumptions)
-        return
     with working(f"stiffness by {arguments.method}") as tell:
         how = Solve(
             arguments.method, arguments.phases, extended=not arguments.no_extended, refine=arguments.refine,
@@ -77,18 +80,24 @@ def stiffness(arguments):
         print(f"written: {arguments.plot}")
 
 
-def _transmission_error(scene, arguments, case, variants):
-    """``gearfe stiffness --forces`` and ``--torques``."""
+def transmission_error(arguments):
+    """``gearfe te``."""
     from ...comparison.harris import harris
     from ...comparison.losses import cycle_of_tooth
     from ...figures.error_plots import plot_transmission_error
     from ...figures.stiffness_plots import told
+    from ...scene.load import load_scene
+    from ...stiffness.methods import fitted
     from ...stiffness.solve import Solve
 
-    if arguments.output or arguments.force is not None or (arguments.forces and arguments.torques):
-        raise ValueError("--forces, or --torques, is the transmission error of several loads: leave out --output and --force")
+    _check_outputs(arguments, plot="picture")
+    if arguments.forces and arguments.torques:
+        raise ValueError("--forces and --torques both state the loads: give one of them")
+    scene = load_scene(arguments.scene)
+    case, variants, left_out = fitted(arguments.method, scene.case(arguments.pair, arguments.case))
+    print("\n\n".join([scene.title, *left_out]), end="\n\n")
     r_b = case.pair.gear_1.r_b
-    forces = arguments.forces or [1e3 * torque / r_b for torque in arguments.torques]
+    forces = arguments.forces or [1e3 * torque / r_b for torque in arguments.torques or ()] or [case.forces[0]]
     with working(f"transmission error by {arguments.method}"):
         phases = cycle_of_tooth(case, arguments.phases) if case.first_tooth else arguments.phases
         how = Solve(arguments.method, phases, extended=not arguments.no_extended, refine=arguments.refine, variants=variants)
@@ -99,6 +108,7 @@ def _transmission_error(scene, arguments, case, variants):
         title = _title(scene, arguments, told(found.curves[0], load=False))
         plot_transmission_error(found, arguments.plot, title, plain)
         print(f"written: {arguments.plot}")
+    _print_assumptions(scene, arguments.assumptions)
 
 
 def compare(arguments):
@@ -113,15 +123,15 @@ def compare(arguments):
     _check_outputs(arguments, output="table", plot="picture")
     scene = load_scene(arguments.scene)
     printed, one = printed_cases(scene), arguments.pair or arguments.case or arguments.model or arguments.plot
-    several = arguments.cases or (printed and not one)
+    several = arguments.all_cases or (printed and not one)
     if several and one:
-        raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
+        raise ValueError("--all-cases is every pair in every case: leave out --pair, --case, --model and --plot")
     if several and arguments.reference not in (None, "fe3d"):
-        raise ValueError(f"--reference {arguments.reference} with --cases: only fe3d can be asked for")
+        raise ValueError(f"--reference {arguments.reference} with --all-cases: only fe3d can be asked for")
     options = {"phases": arguments.phases, "reference": arguments.reference}
     with working("finite elements and energy methods"):
         if several:
-            result = compare_cases(scene, None if arguments.cases else printed, **options)
+            result = compare_cases(scene, None if arguments.all_cases else printed, **options)
         else:
             more = {"models": arguments.model, "refine": arguments.refine}
             result = run(scene, arguments.pair, case=arguments.case, **more, **options)
@@ -138,7 +148,7 @@ def compare(arguments):
     table = result.table(digits=5 if several else 4)
     print(table)
     if several and (text := printed_text(scene, result)):
-        print(f"\nas printed, and after the stated corrections, beside `published` and {reference}\n\n{text}")
+        print(f"\nas printed, and after the stated corrections, beside `herringbone_article` and {reference}\n\n{text}")
     for text in () if several else printed_stiffness(scene, *result.subject):
         print(text)
     print()

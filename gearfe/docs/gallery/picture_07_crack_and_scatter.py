@@ -19,7 +19,7 @@ run = dict(force=2000.0, material=gf.Material(E=206e3, nu=0.3), span="tooth")
 slopes = np.random.default_rng(1).normal(0, 0.003, (60, 2))  # mm, standard deviation 3 um
 figure, axes = plt.subplots(layout="constrained")
 for name, damage in {"healthy": None, "crack of 10 %": {"pinion": [gf.Crack(level=0.1)]}}.items():
-    flanks = [{"pinion": gf.Flank(slope=one), "wheel": gf.Flank(slope=two)} for one, two in slopes]
+    flanks = [{"pinion": gf.Flank(profile_slope=one), "wheel": gf.Flank(profile_slope=two)} for one, two in slopes]
     curves = [gf.mesh_stiffness(pair, damage=damage, flanks=each, phases=32, **run) for each in flanks]
     low, middle, high = np.percentile([curve.k / 1e6 for curve in curves], (5, 50, 95), axis=0)
     (line,) = axes.plot(curves[0].phase, middle, label=name)

@@ -13,7 +13,7 @@ import gearfe as gf
 
 run = dict(force=2000.0, material=gf.Material(E=206e3, nu=0.3), phases=32)
 rack = dict(m_n=2.0, alpha_n=radians(20), b=20.0)
-teeth, errors = [18, 24, 32, 44, 60, 90], {"textbook": [], "published": [], "coupled": []}
+teeth, errors = [18, 24, 32, 44, 60, 90], {"textbook": [], "herringbone_article": [], "coupled": []}
 for z in teeth:
     gear = gf.Gear(z=z, r_bore=0.5 * (z - 2.5), **rack)
     truth = gf.mesh_stiffness(gf.GearPair(gear, gear), **run).k.mean()

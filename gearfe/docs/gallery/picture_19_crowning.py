@@ -14,10 +14,10 @@ import gearfe as gf
 
 rack = dict(m_n=2.0, alpha_n=radians(20), b=20.0)
 pair = gf.GearPair(gf.Gear(z=21, r_bore=9.2, **rack), gf.Gear(z=31, r_bore=14.2, **rack))
-steel, askew = gf.Material(E=206e3, nu=0.3), gf.Misalignment(F_beta=0.015)
+steel, askew = gf.Material(E=206e3, nu=0.3), gf.Misalignment(F_beta_x=0.015)
 figure, axes = plt.subplots(layout="constrained")
 for amount in (0, 5, 10, 20):
-    flanks = {"pinion": gf.Flank(lead_crowning=amount / 1000)}
+    flanks = {"pinion": gf.Flank(helix_crowning=amount / 1000)}
     (cells,) = gf.contact_pattern(pair, 2000.0, steel, flanks=flanks, misalignment=askew, phases=[pair.pitch_phase]).cells
     axes.plot(cells.z, cells.pressure, label=f"{amount} µm")
 axes.set(xlabel="place along the width z [mm]", ylabel="Hertz's pressure [MPa]", ylim=(0, None))

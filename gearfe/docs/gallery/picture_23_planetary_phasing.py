@@ -18,7 +18,7 @@ time = np.linspace(0, 2, 400)  # mesh cycles
 figure, rows = plt.subplots(2, sharex=True, layout="constrained", figsize=(6.4, 5.6))
 for axes, (z_sun, z_planet, z_ring) in zip(rows, ((21, 31, 84), (22, 31, 86)), strict=True):
     sun, planet = gf.Gear(z=z_sun, r_bore=9.2, **rack), gf.Gear(z=z_planet, r_bore=14.2, **rack)
-    ring = gf.Gear(z=z_ring, r_rim=98.0, x=-0.4, addendum=0.85, tip_radius=0.2, **rack)
+    ring = gf.Gear(z=z_ring, r_rim=98.0, x=-0.4, addendum=0.85, rack_tip_radius=0.2, **rack)
     pairs = gf.GearPair(sun, planet), gf.GearPair(planet, ring)
     curve = gf.mesh_stiffness(pairs[0], 2000.0, steel)
     running = gf.stage_phases(pairs, 3)

@@ -8,7 +8,8 @@ What a gear needs, what it is refused for, and which of its dimensions decide ho
 # %%
 # A rack, two gears
 # -----------------
-# ``addendum``, ``dedendum`` and ``tip_radius`` are those of the rack, in modules; the defaults are profile A of ISO 53. ``x`` is
+# ``addendum``, ``dedendum`` and ``rack_tip_radius`` are those of the rack, in modules; the defaults are profile A of ISO 53.
+# ``x`` is
 # the profile shift.
 
 from dataclasses import replace
@@ -16,7 +17,7 @@ from math import radians
 
 import gearfe as gf
 
-rack = dict(m_n=3.0, alpha_n=radians(20), b=30.0, addendum=1.0, dedendum=1.25, tip_radius=0.38)
+rack = dict(m_n=3.0, alpha_n=radians(20), b=30.0, addendum=1.0, dedendum=1.25, rack_tip_radius=0.38)
 pinion = gf.Gear(z=19, r_bore=12.0, x=0.3, **rack)
 wheel = gf.Gear(z=43, r_bore=30.0, x=0.1, **rack)
 pair = gf.GearPair(pinion, wheel)
@@ -55,7 +56,7 @@ for r_bore in (6.0, 12.0, 20.0):
 # An internal gear has the radius ``r_rim`` of its outside, which is held, in place of a bore. Its addendum is often shortened:
 # what would reach into the planet's fillet is cut off, and a warning says by how much.
 
-ring = gf.Gear(z=84, m_n=2.0, alpha_n=radians(20), b=20.0, r_rim=95.0, x=-0.4617, addendum=0.859, tip_radius=0.2)
+ring = gf.Gear(z=84, m_n=2.0, alpha_n=radians(20), b=20.0, r_rim=95.0, x=-0.4617, addendum=0.859, rack_tip_radius=0.2)
 planet = gf.Gear(z=31, m_n=2.0, alpha_n=radians(20), b=20.0, r_bore=11.4)
 inner = gf.GearPair(planet, ring, a=52.0)
 curve = gf.mesh_stiffness(inner, force=2000.0, material=steel)

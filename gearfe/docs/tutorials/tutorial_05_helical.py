@@ -48,6 +48,6 @@ print(np.array2string(curve.share[::3], precision=3, suppress_small=True))
 # Herringbone gears are two helical halves: ``face="herringbone"``, with ``groove`` as the width of the gap between the halves.
 # Formulas of the literature cut helical gears into slices that do not know each other:
 
-for method in ("textbook", "published"):
+for method in ("textbook", "herringbone_article"):
     found = gf.mesh_stiffness(pair, 1200.0, steel, method=method, face="helical", phases=12)
     print(f"{method:10s} mean {100 * (found.k.mean() / curve.k.mean() - 1):+5.1f} %")

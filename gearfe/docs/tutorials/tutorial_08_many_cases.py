@@ -57,7 +57,7 @@ print(f"{type(failed).__name__}: {failed}")
 # are a taste; the map in :doc:`/_made/validation/map` has many more.
 
 found = gf.error_map(8, phases=12, workers=1)
-for name in ("textbook", "published", "coupled"):
+for name in ("textbook", "herringbone_article", "coupled"):
     low, middle, high, _, rows = found.bands(name, crack=(0.0, 0.0))
     print(
         f"{name:10s} mean of k: {100 * low:+5.1f} / {100 * middle:+5.1f} / {100 * high:+5.1f} % at 5, 50 and 95 % of {rows} rows"

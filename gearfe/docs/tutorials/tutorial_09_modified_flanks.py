@@ -48,8 +48,8 @@ relieved.plot("harris.png")
 # need three dimensions, for which gearfe takes ``ritz3d``:
 
 narrow = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack | {"b": 12.0}), gf.Gear(z=30, r_bore=18.0, **rack | {"b": 12.0}))
-askew = gf.Misalignment(F_beta=0.015)  # 15 um more gap at z = b than at z = 0
-crowned = {"pinion": gf.Flank(lead_crowning=0.006)}
+askew = gf.Misalignment(F_beta_x=0.015)  # 15 um more gap at z = b than at z = 0
+crowned = {"pinion": gf.Flank(helix_crowning=0.006)}
 cases = {"parallel": {}, "askew": {"misalignment": askew}, "crowned": {"misalignment": askew, "flanks": crowned}}
 for name, given in cases.items():
     curve = gf.mesh_stiffness(narrow, 2000.0, steel, phases=8, method="ritz3d", **given)

@@ -126,7 +126,7 @@ def _behind(mesh: GearMesh, own: BackFlanks, damping: float) -> GearMesh:
         error=tuple((-size, hertz, angle) for size, hertz, angle in mesh.error),
         gap=mesh.backlash,
         damping=rest * damping,
-        beta=rest * mesh.beta,
+        damping_per_stiffness=rest * mesh.damping_per_stiffness,
         zeta=0.0,
         film=0.0,
         backlash=math.inf,

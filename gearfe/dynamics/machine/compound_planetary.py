@@ -8,10 +8,11 @@ import numpy as np
 
 from ...core.record import ranged
 from ...geometry.pair.gear_pair import GearPair
+from ...geometry.renamed import renamed
 from .gear_mesh import GearMesh
 from .layout import Body, Layout, around, through
 from .loads import Load
-from .member import disc
+from .member import gear_member
 from .mesh_curves import Stiffness
 from .planetary import teeth_damaged
 from .scene_curves import Meshed, scene_machine
@@ -126,6 +127,7 @@ def _whole(value, kind):
     return round(value)
 
 
+@renamed(beta="damping_per_stiffness")
 def compound_planetary(
     stiffness: Mapping[str, Stiffness],
     *,
@@ -134,7 +136,7 @@ def compound_planetary(
     speed: float = 700 * math.pi / 30,
     torque: float = 200.0,
     n_planets: int = 3,
-    beta: float = 2e-6,
+    damping_per_stiffness: float = 2e-6,
     zeta: float = 0.02,
     bearing: float = 1e8,
     hold: float = 1e6,
@@ -162,7 +164,7 @@ def compound_planetary(
         Load on the carrier [N m]; the article has 200.
     n_planets : int
         Number of branches, each with one planet of stage 1 and two of stage 2.
-    beta : float
+    damping_per_stiffness : float
         Mesh damping over stiffness [s]; the article's constants are lost, assumed 2e-6.
     zeta, bearing : float
         Damping ratio and stiffness [N/m] of the supports of every body, assumed 0.02 and 1e8.
@@ -183,8 +185,8 @@ def compound_planetary(
     ------
     ValueError
         If the centre distances of stage 2 make no triangle, the planets cannot be assembled with equal spacing, `density` is not
-        positive, a mesh stiffness, `beta` or `zeta` is negative or not finite, `speed` or `torque` is not finite, the phases of a
-        damaged tooth's curve do not rise, or a field of `GearMesh` is out of range.
+        positive, a mesh stiffness, `damping_per_stiffness` or `zeta` is negative or not finite, `speed` or `torque` is not
+        finite, the phases of a damaged tooth's curve do not rise, or a field of `GearMesh` is out of range.
     """
     speed, torque = ranged("speed", speed, " rad/s"), ranged("torque", torque, " N m")
     turn = carrier_speed(pairs, speed)
@@ -196,7 +198,7 @@ def compound_planetary(
     for name, ((kind, bodies, first), angle, sense, phase, rate) in table.items():
         row = layout.pair_mesh(*bodies, pairs[kind], angle, sense=sense)
         fields = {"frequency": rate, "phase": phase, "teeth": _teeth(pairs[kind]), "first": first, "damage": hurt[name]}
-        meshes.append(GearMesh(name, row, stiffness[kind], **{"beta": beta} | fields | mesh))
+        meshes.append(GearMesh(name, row, stiffness[kind], **{"damping_per_stiffness": damping_per_stiffness} | fields | mesh))
     arms = [1e-3 * g.r_b for g in suns]
     rings = pairs["c_ring"].gear_2.r_b / pairs["p_ring"].gear_2.r_b  # force in stage 1 over that in stage 2
     driven = torque * arms[1] / (arms[1] + rings * arms[0])
@@ -251,8 +253,8 @@ def _bodies(pairs, n_planets, options):
         "sun1": pairs["sun1_p"].gear_1, "sun2": pairs["sun2_b"].gear_1, "p": pairs["p_ring"].gear_1,
         "b": pairs["b_c"].gear_1, "c": pairs["c_ring"].gear_1,
     }  # fmt: skip
-    members = {name: disc(gear, density, bearing) for name, gear in gears.items()}
-    rings = [disc(pairs[kind].gear_2, density, bearing) for kind in ("p_ring", "c_ring")]
+    members = {name: gear_member(gear, density, bearing) for name, gear in gears.items()}
+    rings = [gear_member(pairs[kind].gear_2, density, bearing) for kind in ("p_ring", "c_ring")]
     radii = {"p": 1e-3 * pairs["sun1_p"].a, "b": 1e-3 * inner, "c": 1e-3 * outer}
     bodies = [Body(name, members[name].mass, members[name].inertia) for name in ("sun1", "sun2")]
     bodies.append(Body("ring", sum(r.mass for r in rings), sum(r.inertia for r in rings)))

@@ -12,9 +12,9 @@ methods say the rest::
     force(depth, rate, k, c, law)    the force [N]: of depth >= 0 [m] and its rate [m/s], in proportion to k and c together
     slopes(depth, rate, k, c, law)   its derivatives by depth and by rate
 
-`k` and ``c = damping + beta k`` [N s/m] are those of the mesh at the moment, and ``law.name`` is the parameter of that name. The
-reference integrator calls them with arrays, and the fast path has numba compile them for numbers: write them with operators and
-functions of numpy, without ``if`` and without functions of your own.
+`k` and ``c = damping + damping_per_stiffness k`` [N s/m] are those of the mesh at the moment, and ``law.name`` is the parameter
+of that name. The reference integrator calls them with arrays, and the fast path has numba compile them for numbers: write them
+with operators and functions of numpy, without ``if`` and without functions of your own.
 """
 
 import math
@@ -65,12 +65,15 @@ def law_of(power: float, full: float) -> Law:
 def parameters(meshes: Sequence[Any]) -> dict[str, NDArray[Any]]:
     """Parameters of the contact of meshes by name, ``(m,)`` each; 0 for laws that have none of that name.
 
-    Besides those of the laws: `kind`, the row of `LAWS`; ``damping, beta, backlash, film``; and `least`, 0 where flanks push and
-    never pull, otherwise ``-inf``.
+    Besides those of the laws: `kind`, the row of `LAWS`; ``damping, damping_per_stiffness, backlash, film``; and `least`, 0 where
+    flanks push and never pull, otherwise ``-inf``.
     """
     names = dict.fromkeys(field.name for law in LAWS for field in fields(law))
     out = {name: np.array([float(getattr(mesh.contact, name, 0.0)) for mesh in meshes]) for name in names}
-    out |= {name: np.array([float(getattr(mesh, name)) for mesh in meshes]) for name in ("damping", "beta", "backlash")}
+    out |= {
+        name: np.array([float(getattr(mesh, name)) for mesh in meshes])
+        for name in ("damping", "damping_per_stiffness", "backlash")
+    }
     return out | {
         "kind": np.array([LAWS.index(type(mesh.contact)) for mesh in meshes], dtype=np.int64),
         "film": np.array([0.0 if mesh.push else float(mesh.film) for mesh in meshes]),
@@ -93,7 +96,7 @@ def mesh_force(touch, pushed):
 
     def force(x, v, k, law):
         depth, rate, side = touch(x, v, law.backlash)
-        c = law.damping + law.beta * k
+        c = law.damping + law.damping_per_stiffness * k
         return side * np.maximum(pushed(depth, rate, k, c, law), law.least) + (side == 0) * law.film * c * v
 
     return force
@@ -177,8 +180,8 @@ _force = mesh_force(touch, partial(_each, "force"))
 def force(x, v, k, law):
     """Force of each mesh along its line of action [N], positive when it pushes.
 
-    That of its law on the flanks in touch, with the damping ``c = damping + beta k``; where none touch a part `film` of it
-    stays. With `push` a flank never pulls, as the impact function of multibody programs has it.
+    That of its law on the flanks in touch, with the damping ``c = damping + damping_per_stiffness k``; where none touch a part
+    `film` of it stays. With `push` a flank never pulls, as the impact function of multibody programs has it.
 
     Parameters
     ----------
@@ -220,9 +223,9 @@ def slopes(x, v, k, law, bend=0.0):
     """
     law = SimpleNamespace(**law)
     depth, rate, side = touch(x, v, law.backlash)
-    c = law.damping + law.beta * k
+    c = law.damping + law.damping_per_stiffness * k
     by_depth, by_rate = _each("slopes", depth, rate, k, c, law)
-    by_depth = by_depth + bend * _each("force", depth, rate, 1.0, law.beta, law)
+    by_depth = by_depth + bend * _each("force", depth, rate, 1.0, law.damping_per_stiffness, law)
     on = (side != 0) & (_each("force", depth, rate, k, c, law) > law.least)
     return np.where(on, by_depth, 0.0), np.where(side == 0, law.film * c, np.where(on, by_rate, 0.0))
 

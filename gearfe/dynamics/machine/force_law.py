@@ -46,7 +46,7 @@ class ForceLaw:
         Number of tooth pairs that carry; 0 where a model does not tell.
     force : float
         The load [N] whose secant stiffness stands for the mesh where one stiffness over the phase is asked for: damping by
-        `zeta` or `beta`, the first step of an integration.
+        `zeta` or `damping_per_stiffness`, the first step of an integration.
     unloaded : ndarray, shape (n,), optional
         Transmission error without load [m], of modified flanks.
     secant : Secant
@@ -109,7 +109,9 @@ class ForceLaw:
         load = np.array([curve.meta["force_N"] for curve in curves], dtype=float)
         depth, tangent, pairs = (
             np.array(rows).T[order]
-            for rows in zip(*((curve.lte, curve.k_tangent, (curve.force > 0).sum(axis=1)) for curve in curves), strict=True)
+            for rows in zip(
+                *((curve.deflection, curve.k_tangent, (curve.force > 0).sum(axis=1)) for curve in curves), strict=True
+            )
         )
         unloaded = curves[0].unloaded
         return cls(

@@ -17,6 +17,7 @@ from ...core.checks import truth, whole
 from ...core.record import settle, settle_numbers, settle_row
 from ...geometry.aliases import Floats
 from ...geometry.checks import is_finite
+from ...geometry.renamed import renamed
 from ...stiffness.curve import StiffnessCurve
 from .contact_law import LAWS, Law, law_of
 from .force_law import ForceLaw
@@ -28,6 +29,7 @@ from .tooth_damage import ToothDamage
 NOWHERE = 1e-12  # m: smaller shifts of a tooth are rounding
 
 
+@renamed(beta="damping_per_stiffness")
 @dataclass(frozen=True, slots=True)
 class GearMesh:
     """A gear mesh: the force ``F`` of `gearfe.dynamics.machine.contact_law.force` acts on the degrees of freedom as ``-row F``.
@@ -51,9 +53,10 @@ class GearMesh:
     damage : tuple of ToothDamage
     error : tuple of (float, float, float)
         Mesh error ``e(t)`` as sinusoids: amplitude [m], frequency [Hz], phase [rad] of a sine; it opens the mesh.
-    damping, beta, zeta : float
-        ``c = damping + beta k(t)`` [N s/m], `beta` in s; a `zeta` is turned into ``damping = 2 zeta sqrt(mean k / sum(row**2 /
-        m))`` by `gearfe.dynamics.machine.tables.Machine`, summed over all degrees of freedom that the row moves.
+    damping, damping_per_stiffness, zeta : float
+        ``c = damping + damping_per_stiffness k(t)`` [N s/m], `damping_per_stiffness` in s; a `zeta` is turned into ``damping = 2
+        zeta sqrt(mean k / sum(row**2 / m))`` by `gearfe.dynamics.machine.tables.Machine`, summed over all degrees of freedom that
+        the row moves.
     power, depth, push : float, float, bool
         Of the impact law: the exponent, the penetration from which the damping is full [m] (0: it always is), and whether the
         flanks only push and never pull.
@@ -79,7 +82,7 @@ class GearMesh:
     damage: tuple[ToothDamage, ...] = ()
     error: tuple[tuple[float, float, float], ...] = ()
     damping: float = 0.0
-    beta: float = 0.0
+    damping_per_stiffness: float = 0.0
     zeta: float = 0.0
     power: float = 1.0
     depth: float = 0.0
@@ -101,7 +104,7 @@ class GearMesh:
         settle_row(self, "mesh")
         what = f"mesh {self.name}"
         settle_numbers(self, what, "frequency phase")
-        settle_numbers(self, what, "damping beta zeta depth gap film", least=0.0)
+        settle_numbers(self, what, "damping damping_per_stiffness zeta depth gap film", least=0.0)
         settle_numbers(self, what, "power", least=1.0)
         settle_numbers(self, what, "backlash", least=0.0, finite=False)
         settle(self, push=truth(f"{what}: push", self.push), contact=self.law or law_of(self.power, self.depth))

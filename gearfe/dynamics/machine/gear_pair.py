@@ -14,7 +14,7 @@ from .tables import Machine
 from .tooth_damage import ToothDamage
 
 
-def gear_pair(
+def gear_pair_machine(
     pair: GearPair,
     bodies: tuple[Body, Body],
     stiffness: Stiffness,

@@ -9,9 +9,9 @@ from ...core.material import Material
 from ...geometry.pair.gear_pair import GearPair
 from .contact_cycle import ellipse_loss, line_cycle
 from .contact_law import hertz_coefficient
-from .gear_pair import gear_pair
+from .gear_pair import gear_pair_machine
 from .layout import Body
-from .member import disc
+from .member import gear_member
 from .scene_curves import Meshed, scene_machine
 from .tables import Machine
 from .tooth_damage import ToothDamage
@@ -28,13 +28,13 @@ def scene_pair(scene, case, **options):
 
     def build(healthy, damage, **drive):
         ends = {"support": BEARING, "torsion": (SHAFT, 0.0), "damage": damage["mesh"]}
-        return gear_pair(pair, _bodies(pair, DENSITY), healthy[name], **ends, **drive)
+        return gear_pair_machine(pair, _bodies(pair, DENSITY), healthy[name], **ends, **drive)
 
     return scene_machine(scene, case, options, {"mesh": Meshed(name, BODIES)}, {name: BODIES}, build)
 
 
 def _bodies(pair, density):
-    discs = {name: disc(gear, density, 0.0) for name, gear in zip(BODIES, (pair.gear_1, pair.gear_2), strict=True)}
+    discs = {name: gear_member(gear, density, 0.0) for name, gear in zip(BODIES, (pair.gear_1, pair.gear_2), strict=True)}
     return [Body(name, member.mass, member.inertia, "x y z theta") for name, member in discs.items()]
 
 
@@ -80,7 +80,7 @@ def pitted_helical(
     Returns
     -------
     Machine
-        As `gear_pair` makes it, of bodies ``pinion`` and ``wheel``: in SI units and a frame at rest.
+        As `gear_pair_machine` makes it, of bodies ``pinion`` and ``wheel``: in SI units and a frame at rest.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def pitted_helical(
         ToothDamage(0, tooth, line_cycle(pair, coefficient, lost=lost, width=width))
         for tooth, lost in ((n, loss if callable(loss) else ellipse_loss(pair, loss, width=width)) for n, loss in pits)
     )
-    return gear_pair(
+    return gear_pair_machine(
         pair,
         _bodies(pair, density),
         line_cycle(pair, coefficient, width=width),

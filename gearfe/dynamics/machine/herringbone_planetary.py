@@ -14,7 +14,7 @@ from ...geometry.pair.planetary import PlanetarySet
 from .gear_mesh import GearMesh
 from .layout import AXES, SPACE, Body, Layout
 from .loads import Load
-from .member import disc
+from .member import gear_member
 from .mesh_curves import Stiffness
 from .planetary import HOMES, carrier_and_mesh, simple_meshes, stage_meshes, stage_phases, teeth_damaged, with_stage
 from .scene_curves import scene_machine, stage_of
@@ -151,7 +151,7 @@ def scene_herringbone(scene, case, **options):
 def _solid(stage, density):
     """Masses and inertias of whole bodies from the gears, each of two halves."""
     gears = {"sun": stage.sun, "planet": stage.planet, "ring": stage.ring}
-    discs = {name: disc(gear, density, 0.0, width=2 * gear.b) for name, gear in gears.items()}
+    discs = {name: gear_member(gear, density, 0.0, width=2 * gear.b) for name, gear in gears.items()}
     out = {name: (member.mass, member.inertia) for name, member in discs.items()}
     together = stage.n_planets * out["planet"][0]
     return out | {"carrier": (together, together * (1e-3 * stage.a) ** 2)}

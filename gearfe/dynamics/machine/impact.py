@@ -12,7 +12,7 @@ from .contact_law import hertz_coefficient
 from .helical_pair import pitted_helical
 from .loads import pulses
 from .pitted_planetary import pitted_planetary
-from .scene_curves import speed_of, stage_of
+from .scene_curves import pair_backlash, speed_of, stage_of
 
 PULSED = 100.0  # s: how long the load on the carrier has pulses
 PLAY = 1e-4  # m
@@ -59,7 +59,7 @@ def impact_planetary(scene, case):
     return pitted_planetary(
         stage, stiffness, damage=damage, speed=speed_of(scene), torque=machine["torque_Nm"], carrier_torque=load,
         friction=_friction(options),
-        **_law(options, machine, hertz_coefficient(*radii, materials["sun_planet"])),
+        **_law(options, scene, "sun_planet", hertz_coefficient(*radii, materials["sun_planet"])),
     )  # fmt: skip
 
 
@@ -72,7 +72,7 @@ def impact_helical(scene, case):
         if options[key]:
             raise ValueError(f"[machine.impact] {key} = {options[key]}: only the model 'planetary' has it; leave it out")
     radii = (float(r) for r in pair.curvature_radii(pair.pitch_phase))
-    law = _law(options, machine, hertz_coefficient(*radii, materials))
+    law = _law(options, scene, next(iter(scene.pairs)), hertz_coefficient(*radii, materials))
     pits = [(-tooth_pits[0].tooth % pair.gear_1.z, pits_loss(pair, tooth_pits))] if tooth_pits else []  # in the order they enter
     return pitted_helical(
         pair, materials, pits=pits, speed=speed_of(scene), torque=machine["torque_Nm"],
@@ -89,7 +89,7 @@ def pits_of(damage):
         If there is other damage.
     """
     pits = list(damage.get("pinion", ()))
-    if damage.get("wheel") or not all(pit.removes_contact for pit in pits) or len({pit.tooth for pit in pits}) > 1:
+    if damage.get("wheel") or not all(pit._removes_contact for pit in pits) or len({pit.tooth for pit in pits}) > 1:
         raise ValueError("the impact law knows damage of the flank of one tooth of the pinion (sun) only: use contact = 'linear'")
     return pits
 
@@ -98,10 +98,9 @@ def _options(machine):
     return {key.name: key.default for key in scene_schema()["impact"].keys.values()} | (machine.get("impact") or {})
 
 
-def _law(options, machine, coefficient):
+def _law(options, scene, name, coefficient):
     damping = 1e-3 * coefficient if options["damping_Ns_per_mm"] is None else options["damping_Ns_per_mm"]
-    play = machine.get("backlash_um")
-    depth = {"depth": 1e-3 * options["depth_mm"], "backlash": PLAY if play is None else 1e-6 * play}
+    depth = {"depth": 1e-3 * options["depth_mm"], "backlash": pair_backlash(scene, name) or PLAY}
     return {"power": 1.5, "push": True, "damping": 1e3 * damping} | depth
 
 

@@ -13,7 +13,7 @@ from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.solve import PairOptions, split_arguments
 from .force_law import ForceLaw, law_of
 
-FIRST = 5, 32  # loads and phases that `law_within` begins with
+FIRST = 5, 32  # loads and phases that `converged_force_law` begins with
 ROUNDS = 6  # times it takes more of them, at most
 
 
@@ -73,7 +73,7 @@ def law_error(law: ForceLaw) -> LawError:
     return LawError(*(float(value) for value in (between.max(), across.max(), _rms(between), _rms(across))))
 
 
-def law_within(
+def converged_force_law(
     pair: GearPair | Case,
     smallest: float,
     largest: float,
@@ -118,7 +118,7 @@ def law_within(
             f"loads from {smallest} to {largest} N within {error}: give 0 < smallest < largest, error > 0, no phases"
         )
     loads, phases = FIRST
-    case, how = split_arguments("law_within", pair, [smallest, largest], material, None, options)
+    case, how = split_arguments("converged_force_law", pair, [smallest, largest], material, None, options)
     for _ in range(ROUNDS + 1):
         law = law_of(replace(case, force=np.geomspace(smallest, largest, loads)), replace(how, phases=phases), force)
         found = law_error(law)

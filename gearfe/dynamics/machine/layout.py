@@ -173,7 +173,7 @@ class Layout:
     def pair_mesh(self, one: str, two: str, pair: GearPair, angle: float = 0.0, **options: Any) -> NDArray:
         """Row of the mesh of a `GearPair` at `angle` [rad], with the `options` of `mesh`."""
         radii = 1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b
-        return self.mesh(one, two, angle=angle, alpha=pair.alpha_w, radii=radii, internal=pair.gear_2.internal, **options)
+        return self.mesh(one, two, angle=angle, alpha=pair.alpha_wt, radii=radii, internal=pair.gear_2.internal, **options)
 
     def rubbing(
         self, one: str, two: str, *, angle: float, alpha: float, sense: int = 1, internal: bool = False

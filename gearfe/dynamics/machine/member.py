@@ -35,7 +35,7 @@ class Member:
         settle_numbers(self, "member", "bearing torsion", least=0.0)
 
 
-def disc(gear: Gear, density: float, bearing: float, *, width: float | None = None) -> Member:
+def gear_member(gear: Gear, density: float, bearing: float, *, width: float | None = None) -> Member:
     """`Member` of a gear as a ring from its bore (or rim) to its reference circle.
 
     Parameters

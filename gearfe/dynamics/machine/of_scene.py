@@ -15,13 +15,14 @@ from ...scene.load import Scene
 from ...stiffness.curve import StiffnessCurve
 from .compound_planetary import scene_compound
 from .force_law import ForceLaw
+from .gearbox import scene_gearbox
 from .helical_pair import scene_pair
 from .herringbone_planetary import scene_herringbone
 from .impact import impact_helical, impact_planetary
 from .mesh_curves import Samples
 from .mesh_errors import with_errors
 from .pitted_planetary import scene_planetary
-from .scene_curves import own_forces
+from .scene_curves import own_forces, pair_backlash
 from .tables import Machine
 
 MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it is built with either contact
@@ -29,6 +30,7 @@ MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it i
     "compound_planetary": {"linear": scene_compound},
     "helical_pair": {"linear": scene_pair, "impact": impact_helical},
     "herringbone_planetary": {"linear": scene_herringbone},
+    "gearbox": {"linear": scene_gearbox},
 }
 EVEN = 1e-9  # how far phases may lie from equal distances
 ROUGH = 8  # phases per cycle of the curves from which the forces at rest are computed
@@ -77,13 +79,15 @@ def build_machine(
         return with_scene_errors(scene, build(scene, case))
     if not len(loads) or not all(math.isfinite(multiple) and multiple > 0 for multiple in loads):
         raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")
-    play = scene.machine.get("backlash_um")
-    forces = own_forces(build(scene, case, phases=ROUGH, method=method, loads=None))
+    rough = build(scene, case, phases=ROUGH, method=method, loads=None)
+    forces = own_forces(rough)
+    play = [pair_backlash(scene, mesh.stiffness.meta["scene_pair"]) for mesh in rough.meshes]
     several = {name: ([force * multiple for multiple in loads], force) for name, force in forces.items()}
     out = build(scene, case, phases=phases, method=method, loads=several)
     stated = {name: pair.force for name, pair in scene.pairs.items() if name in forces}
     out = replace(out, notes=out.notes | {"mesh forces at rest [N]": forces, "loads stated for the pairs [N]": stated})
-    return with_scene_errors(scene, with_flanks(out.with_meshes(backlash=1e-6 * play) if play else out))
+    meshes = tuple(replace(mesh, backlash=own or mesh.backlash) for mesh, own in zip(out.meshes, play, strict=True))
+    return with_scene_errors(scene, with_flanks(replace(out, meshes=meshes)))
 
 
 def flat_machine(scene: Scene, case: str | None = None) -> Machine:
@@ -128,7 +132,7 @@ def _check_contact(scene, case, contact):
                     f"[pair.{name}] has a broken tooth in case {case!r}, but the impact law has whole teeth only: use "
                     "contact = 'linear'"
                 )
-    elif not scene.machine.get("backlash_um") and any(one.missing for one in hurt.values()):
+    elif any(one.missing and not pair_backlash(scene, name) for name, one in hurt.items()):
         raise ValueError(
             "[machine] backlash_um: a missing tooth lets the contact open, so that the machine needs a backlash; give one, "
             "such as backlash_um = 100.0"

@@ -12,7 +12,7 @@ from ...core.record import ranged
 from ...geometry.pair.planetary import PlanetarySet
 from .contact_cycle import friction_weights
 from .loads import History
-from .member import Member, disc
+from .member import Member, gear_member
 from .mesh_curves import Stiffness
 from .planetary import (
     HOMES,
@@ -99,7 +99,7 @@ def pitted_planetary(
     if friction is not None:
         weights = friction_weights(outer, (speed - turn, -(speed - turn) * sun.z / planet.z), **friction)
         fields |= {name: own | {"rubbing": weights} for name, own in fields.items() if name.startswith("sun")}
-    member = {name: disc(gear, density, bearing) for name, gear in (("sun", sun), ("planet", planet), ("ring", ring))}
+    member = {name: gear_member(gear, density, bearing) for name, gear in (("sun", sun), ("planet", planet), ("ring", ring))}
     together, a = n * member["planet"].mass, 1e-3 * stage.a
     member["carrier"] = Member(together, together * a**2, bearing, a)
     member["sun"], member["ring"] = replace(member["sun"], torsion=drive), replace(member["ring"], torsion=100 * drive)
@@ -108,7 +108,7 @@ def pitted_planetary(
     machine = planetary(
         *(member[name] for name in ("sun", "planet", "ring", "carrier")),
         n_planets=n,
-        alpha=(outer.alpha_w, inner.alpha_w),
+        alpha=(outer.alpha_wt, inner.alpha_wt),
         stiffness=stiffness,
         mesh=lambda kind, i: fields[f"{kind}{i + 1}"],
         loads={"sun": torque, "carrier": _against(load)},

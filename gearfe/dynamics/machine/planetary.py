@@ -17,6 +17,7 @@ from ...core.checks import numbers, whole
 from ...core.record import check_named, ranged
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
+from ...geometry.renamed import renamed
 from .gear_mesh import GearMesh
 from .layout import Body, Layout, around, through
 from .loads import History, Load
@@ -28,6 +29,7 @@ from .tables import Machine
 from .tooth_damage import ToothDamage
 
 
+@renamed(places="planet_angles")
 def planetary(
     sun: Member,
     planet: Member | Sequence[Member],
@@ -40,7 +42,7 @@ def planetary(
     mesh: Callable[[str, int], dict[str, Any]] | None = None,
     loads: Mapping[str, History] | None = None,
     zeta: float = 0.0,
-    places: Sequence[float] | None = None,
+    planet_angles: Sequence[float] | None = None,
     spin: float = 0.0,
 ) -> Machine:
     """A planetary stage in its plane, 3 degrees of freedom per body, seen from the carrier.
@@ -65,7 +67,7 @@ def planetary(
         Torques ``{"sun": ..., "ring": ..., "carrier": ...}`` [N m]: numbers, histories or functions.
     zeta : float
         Damping ratio of the supports.
-    places : sequence of float, optional
+    planet_angles : sequence of float, optional
         Angles of the planets [rad]; default: equal spacing from 0.
     spin : float
         Speed of the carrier [rad/s], whose gyroscopic and centripetal terms are then taken in; 0: they are left out.
@@ -79,11 +81,11 @@ def planetary(
     Raises
     ------
     ValueError
-        If the bodies of the planets or their `places` are not `n_planets`; if a mass or a moment of inertia is not positive, a
-        mesh stiffness or `zeta` is negative or not finite, a load is not finite, the times of a history fall, or a field of
-        `GearMesh` is out of range.
+        If the bodies of the planets or their `planet_angles` are not `n_planets`; if a mass or a moment of inertia is not
+        positive, a mesh stiffness or `zeta` is negative or not finite, a load is not finite, the times of a history fall, or a
+        field of `GearMesh` is out of range.
     """
-    angles = planet_angles(n_planets, places)
+    angles = angles_of_planets(n_planets, planet_angles)
     names = [f"planet{i + 1}" for i in range(n_planets)]
     planets = [planet] * n_planets if isinstance(planet, Member) else list(planet)
     if len(planets) != n_planets:
@@ -111,33 +113,34 @@ def planetary(
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), torques, spin=spin)
 
 
-def planet_angles(n_planets: int, places: Sequence[float] | None = None) -> NDArray:
-    """Angles of the planets [rad], equally spaced from 0 unless `places` states them.
+def angles_of_planets(n_planets: int, planet_angles: Sequence[float] | None = None) -> NDArray:
+    """Angles of the planets [rad], equally spaced from 0 unless `planet_angles` states them.
 
     Raises
     ------
     ValueError
-        If `n_planets` is no whole number >= 1, or `places` are not as many finite angles, all of them different.
+        If `n_planets` is no whole number >= 1, or `planet_angles` are not as many finite angles, all of them different.
     """
     whole("n_planets", n_planets, 1)
-    if places is None:
+    if planet_angles is None:
         return 2 * math.pi * np.arange(n_planets) / n_planets
-    angles = numbers("places", places, " [rad]")
+    angles = numbers("planet_angles", planet_angles, " [rad]")
     if angles.shape != (n_planets,) or not np.isfinite(angles).all():
-        raise ValueError(f"places = {places!r}, but give {n_planets} finite angles [rad], one for each planet")
+        raise ValueError(f"planet_angles = {planet_angles!r}, but give {n_planets} finite angles [rad], one for each planet")
     around = np.sort(angles % (2 * math.pi))
     if n_planets > 1 and np.diff(around, append=around[0] + 2 * math.pi).min() < 1e-9:
-        raise ValueError(f"places = {places!r}, but two planets cannot stand at one angle")
+        raise ValueError(f"planet_angles = {planet_angles!r}, but two planets cannot stand at one angle")
     return angles
 
 
+@renamed(places="planet_angles")
 def stage_phases(
     pairs: tuple[GearPair, GearPair],
     n_planets: int,
     *,
     start: float = 0.0,
     frequency: float = 1.0,
-    places: Sequence[float] | None = None,
+    planet_angles: Sequence[float] | None = None,
 ) -> dict[str, dict[str, Any]]:
     """Running phases and first teeth of the meshes of a simple stage whose sun drives counter-clockwise.
 
@@ -150,7 +153,7 @@ def stage_phases(
         Phase of the first sun-planet mesh at t = 0.
     frequency : float
         Mesh frequency, the same for all meshes [Hz].
-    places : sequence of float, optional
+    planet_angles : sequence of float, optional
         Angles of the planets [rad].
 
     Returns
@@ -167,7 +170,7 @@ def stage_phases(
     """
     outer, inner = pairs
     sun, planet, ring = outer.gear_1, outer.gear_2, inner.gear_2
-    out, angles = {}, planet_angles(n_planets, places).tolist()
+    out, angles = {}, angles_of_planets(n_planets, planet_angles).tolist()
     ranged("start", start), ranged("frequency", frequency, " Hz")
     for i, angle in enumerate(angles):
         phase = around(start, sun.z, 1, angle)

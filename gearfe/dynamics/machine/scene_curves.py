@@ -44,6 +44,13 @@ def own_forces(machine):
     return out
 
 
+def pair_backlash(scene, name):
+    """Backlash of the meshes of a pair of a scene [m]: that of ``[machine]``, or else of teeth with an allowance; 0: none."""
+    stated, pair = scene.machine.get("backlash_um"), scene.pairs[name].pair
+    thin = pair.gear_1.E_sn or pair.gear_2.E_sn
+    return 1e-6 * stated if stated is not None else 1e-3 * pair.backlash if thin else 0.0
+
+
 class Meshed(NamedTuple):
     """A mesh of a machine: pair of the scene, names of both bodies, and the teeth that meet at phase 0."""
 

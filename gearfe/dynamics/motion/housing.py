@@ -9,16 +9,18 @@ from scipy.signal import cont2discrete, lfilter, ss2tf
 
 from ...core.record import ranged
 from ...geometry.aliases import Floats
+from ...geometry.renamed import renamed
 from ...signal.series import Signal
 from .response import Response
 
 
+@renamed(places="planet_angles")
 def housing_signal(
     response: Response,
     *,
     kind: str = "planet_ring",
     sensor: float = 0.0,
-    places: Sequence[float] | None = None,
+    planet_angles: Sequence[float] | None = None,
     carrier: float | None = None,
     window: Callable[[Floats], ArrayLike] | None = None,
     modes: Sequence[tuple[float, float, float]] = (),
@@ -28,7 +30,7 @@ def housing_signal(
     Simulations are made in the frame of the carrier; a sensor on a fixed ring sees the planets go by. The path from a mesh to
     it is taken as a window w over the planet's place, if none is given one that is largest at the sensor and zero opposite::
 
-        F(t) = sum over planets p of w(phi_p(t)) F_p(t),   phi_p(t) = places[p] + 2 pi carrier t - sensor,
+        F(t) = sum over planets p of w(phi_p(t)) F_p(t),   phi_p(t) = planet_angles[p] + 2 pi carrier t - sensor,
         w = (1 + cos(phi)) / 2
 
     It brings the lines a carrier turning at `carrier` Hz puts beside those of the forces (`gearfe.stage_lines` says where); their
@@ -49,7 +51,7 @@ def housing_signal(
         (``planet_ring1``, ``planet_ring1L``...).
     sensor : float
         Angle of the sensor [rad].
-    places : sequence of float, optional
+    planet_angles : sequence of float, optional
         Angles of the planets at time 0 [rad]; default: equally spaced from 0, as all stages of `gearfe.dynamics.machine` are.
     carrier : float, optional
         Turns of the carrier per second at the machine's nominal speed, counter-clockwise if positive; default: from the
@@ -67,7 +69,7 @@ def housing_signal(
     Raises
     ------
     ValueError
-        If no mesh has such a name, the carrier's frequency is not known, or `places` are too few.
+        If no mesh has such a name, the carrier's frequency is not known, or `planet_angles` are too few.
 
     References
     ----------
@@ -84,9 +86,9 @@ def housing_signal(
             raise ValueError("the machine's notes have no 'carrier frequency [Hz]': give carrier")
         carrier = machine.notes["carrier frequency [Hz]"]
     count = 1 + max(planet for _, planet in heard)
-    angles = 2 * np.pi * np.arange(count) / count if places is None else np.asarray(places, dtype=float)
+    angles = 2 * np.pi * np.arange(count) / count if planet_angles is None else np.asarray(planet_angles, dtype=float)
     if len(angles) < count:
-        raise ValueError(f"places has {len(angles)} angles, but there are {count} planets")
+        raise ValueError(f"planet_angles has {len(angles)} angles, but there are {count} planets")
     time = response.time
     turned = 2 * np.pi * carrier * machine.turned(time) - sensor
     weigh = _raised if window is None else window

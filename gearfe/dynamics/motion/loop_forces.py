@@ -35,7 +35,7 @@ def forces(g, first, x, now, row, laws, parts, table):
     if m > 0 and laws[0].affine:  # every mesh stays closed: the same, without asking where it is
         for i in range(m):
             law, k, e, rate = laws[i], now[row, i], now[row, m + i], now[row, 2 * m + i]
-            g[first + i] = (k - law.k_linear) * x[i] - k * e - (law.damping + law.beta * k) * rate
+            g[first + i] = (k - law.k_linear) * x[i] - k * e - (law.damping + law.damping_per_stiffness * k) * rate
             law.stiff = k
         return
     at = now.shape[1] - 2 * (parts.size - rubs)

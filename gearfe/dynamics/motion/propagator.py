@@ -44,7 +44,7 @@ class Plan:
         ``(q, v) = basis @ z``.
     P : ndarray, shape (m or 2m, 2n)
         What the forces depend on: compressions (without errors), and their rates where the law needs them; where all forces are
-        affine ``x + beta v`` alone.
+        affine ``x + damping_per_stiffness v`` alone.
     affine : bool
         Whether they are: ``f = (k - plan.k) P z + shift(t)``.
     rows : ndarray, shape (width, n)
@@ -82,7 +82,7 @@ class Plan:
 
 
 def is_affine(machine):
-    """Whether all mesh forces are ``k(t) (x - e) + (damping + beta k(t)) (x - e)'`` at any time, and the loads never bend."""
+    """Return True if all mesh forces are ``k(t) (x - e) + c(t) (x - e)'`` at any time and loads have no kinks."""
     smooth = all(load.breaks.size < 2 for load in machine.loads) and not any(m.friction for m in machine.meshes)
     return closed(machine.law) and smooth and not machine.curved
 
@@ -109,8 +109,8 @@ def plan(machine, h, x=None, adapt=False):
     pressed, law = x, machine.law
     x, v = machine.G @ basis[:n], machine.G @ basis[n:]
     affine, film = is_affine(machine), (law["film"] != 1) & (law["damping"] > 0)
-    rates = (law["beta"] > 0) | (law["straight"] == 0) | (law["least"] == 0) | film | (len(rub) > 0)
-    P = x + law["beta"][:, None] * v if affine else np.concatenate([x, *([v] if rates.any() else [])])
+    rates = (law["damping_per_stiffness"] > 0) | (law["straight"] == 0) | (law["least"] == 0) | film | (len(rub) > 0)
+    P = x + law["damping_per_stiffness"][:, None] * v if affine else np.concatenate([x, *([v] if rates.any() else [])])
     opens = bool((law["backlash"] > 0).any())
     local = adapt and opens and is_bent(machine)
     count = 1 + (DEEPER if local else LEVELS if opens or any(load.breaks.size > 1 for load in machine.loads) else 0)

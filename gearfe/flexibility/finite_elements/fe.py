@@ -22,12 +22,13 @@ from scipy.interpolate import CubicSpline, RectBivariateSpline
 from scipy.sparse import coo_matrix, hstack
 
 from ...geometry.damage.chip import loaded_side
+from ...geometry.damage.missing import missing_teeth
 from ...geometry.mesh.outline import GROWTH, stations
 from ...geometry.mesh.section_mesh import section
 from ...geometry.tooth.profile import arc_at, flank_normal
 from ..hats import SPAN, hat_knots, wider
 from ..hertz import half_plane, hat_logarithm
-from ..plane import BELOW, TILT, Flexibility, SeamFaces, leaning, missing_teeth, reached_teeth
+from ..plane import BELOW, TILT, Flexibility, SeamFaces, leaning, reached_teeth
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
 
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the

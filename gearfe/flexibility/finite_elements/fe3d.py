@@ -10,7 +10,7 @@ weights, so the influence matrix ``C = F' K^-1 F`` is symmetric.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -37,11 +37,14 @@ class Patches:
     modes : int
         Number of functions along the width: the Legendre polynomials ``P_a(2 z / b - 1) / b``, of which the first is a uniform
         line load of unit resultant.
+    own : dict of int to ndarray, shape (3, arcs)
+        Knots of teeth whose loaded flanks end elsewhere.
     """
 
     teeth: tuple
     knots: np.ndarray
     modes: int
+    own: dict = field(default_factory=dict)
 
     @property
     def shape(self):
@@ -57,6 +60,10 @@ class Patches:
     def along_width(self, z, b):
         """Axial functions ``(modes, n)`` [1/mm] at heights `z` [mm]."""
         return legendre.legvander(2 * np.asarray(z) / b - 1, self.modes - 1).T / b
+
+    def of(self, tooth):
+        """Those of a tooth."""
+        return replace(self, teeth=(tooth,), knots=self.own.get(tooth, self.knots))
 
     def check(self, gear):
         """Raise ValueError if a hat leaves the flank."""
@@ -95,17 +102,20 @@ class Influence:
         return cls(within, dofs, matrix[size:, :size].reshape(-1, *shape), matrix[size:, size:])
 
 
-def mesh_patches(gear, patches, *, cracks=(), refine=1.0, per_hat=4, layer=None, sizes=None, fine=()):
+def mesh_patches(gear, patches, *, cracks=(), broken=(), refine=1.0, per_hat=4, layer=None, sizes=None, fine=()):
     """Mesh `gear` for `patches`: `per_hat` edges across each hat and layers of height `layer` [mm].
 
-    `layer` is b / 12 by default, at most a module. `refine` divides all edge lengths and the layers; `cracks`, `sizes`,
+    `layer` is b / 12 by default, at most a module. `refine` divides all edge lengths and the layers; `cracks`, `broken`, `sizes`,
     `fine` as in `gearfe.geometry.mesh.solid.solid`. What converges last are loads that run over the end faces:
     ``fine = [(0, 0, w), (b, b, w)]`` gives layers of w there.
     """
     patches.check(gear)
-    places = [(start, stop, (stop - start) / (per_hat * refine)) for start, _, stop in patches.knots.T]
+    places = {
+        tooth: [(start, stop, (stop - start) / (per_hat * refine)) for start, _, stop in patches.of(tooth).knots.T]
+        for tooth in patches.teeth
+    }
     layer = layer or min(gear.b / 12, gear.m_n)
-    options = {"refine": refine, "sizes": sizes, "fine": fine}
+    options = {"broken": broken, "refine": refine, "sizes": sizes, "fine": fine}
     return solid(gear, layer=layer, loaded=patches.teeth, cracks=cracks, patches=places, **options)
 
 
@@ -114,7 +124,7 @@ def patch_loads(mesh, patches, tooth):
 
     Both integrals are cut at the borders of the elements, that along the profile also at the knots of the hats.
     """
-    gear = mesh.gear
+    gear, patches = mesh.gear, patches.of(tooth)
     rising = gear.outward * mesh.section.roll[tooth % gear.z]  # a ring's roll length falls from root to tip
     cuts = gear.outward * roll_at_arc(gear, np.unique(patches.knots))
     edge, x, at, across = points_between(rising, cuts, ROLL_POINTS)

@@ -8,6 +8,8 @@ import numpy as np
 from scipy.linalg import eigh
 
 from ...core.supports.shaft import Shaft
+from ...geometry.damage.chip import loaded_side
+from ...geometry.damage.kinds import BROKEN
 from ...geometry.tooth.gear import Gear
 from ..halfspace import half_space
 from ..solid import Faces, hats, own_distance, parted, solved_teeth
@@ -37,8 +39,8 @@ class WholeGear:
     ----------
     gear : Gear
         Bore or rim are held over the whole width, the end faces free.
-    cracks : tuple of Crack
-        Their faces are kept from passing through each other, zone by zone (`gearfe.flexibility.finite_elements.crack_zones`).
+    damage : tuple of (Crack, MissingTooth or Chip)
+        The faces of cracks are kept from passing through each other, zone by zone (`finite_elements.crack_zones`).
     neighbours : int
         How many following teeth may carry load at the same time.
     degree : int, optional
@@ -53,7 +55,7 @@ class WholeGear:
     """
 
     gear: Gear
-    cracks: tuple = ()
+    damage: tuple = ()
     neighbours: int = 1
     degree: int | None = None
     less: int = 0
@@ -73,12 +75,15 @@ class WholeGear:
         if not (math.isfinite(refine) and refine > 0):
             raise ValueError(f"refine = {refine}, but it divides the edge lengths: give a positive number")
         degree = (axial_modes(gear.b, gear.m_n) if self.degree is None else self.degree) - self.less
-        patches = Patches(tuple(solved_teeth(gear, self.cracks, self.neighbours)), hats(gear), degree + 1)
+        broken = tuple(one for one in self.damage if isinstance(one, BROKEN))
+        own = {one.tooth % gear.z: hats(loaded_side(gear, broken, one.tooth)) for one in broken}
+        patches = Patches(tuple(solved_teeth(gear, self.damage, self.neighbours)), hats(gear), degree + 1, own)
         section = refine if self.section is None else self.section
         layer = min(LAYER * gear.m_n, gear.b / 6) * section / refine
         fine = [(z, z, END * layer) for z in (0.0, gear.b)]
         options = {"refine": section, "per_hat": PER_HAT, "layer": layer, "sizes": SIZES, "fine": fine}
-        return mesh_patches(gear, patches, cracks=self.cracks, **options), patches
+        cracks = tuple(one for one in self.damage if one not in broken)
+        return mesh_patches(gear, patches, cracks=cracks, broken=broken, **options), patches
 
     def plan(self):
         """`finite_elements.solver.Plan` of its `solid_flexibility`, refused if it does not fit; costs its mesh alone."""
@@ -96,7 +101,7 @@ def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
     Parameters
     ----------
     healthy : Flexibility3D, optional
-        Of the gear without cracks; needed if it has cracks.
+        Of the gear without damage; needed if it has damage.
     tell
         As in `gearfe.flexibility.finite_elements.fe3d.influence`.
     cache : bool or SolvedGears
@@ -119,7 +124,7 @@ def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
     kept = _resolved(whole, material, matrix[0, :, 0], degree, cache) if healthy is None else healthy.degree
     carried = np.flatnonzero(np.arange(size) % (degree + 1) <= kept)
     between = {(i, j): matrix[a][np.ix_(carried, [b], carried)][:, 0] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
-    flexibility = parted(gear, material, kept, between, solved.dofs, healthy, cache=cache)
+    flexibility = parted(gear, material, kept, between, solved.dofs, healthy, damage=whole.damage, cache=cache)
     if not solved.mutual.size:
         return flexibility
     opening = {tooth: (solved.opening[:, k].reshape(-1, size) * unit)[:, carried] for k, tooth in enumerate(teeth)}

@@ -12,6 +12,8 @@ from scipy.sparse import coo_matrix, csc_matrix, tril
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
 
+from ...geometry.damage.chip import loaded_side
+from ...geometry.damage.crack import Crack
 from ...geometry.damage.front import whole
 from ...geometry.mesh.solid import HEX
 from ..solid import hats
@@ -24,7 +26,7 @@ FINER = 4.0  # resolution of the section that is taken for exact, against that o
 THIN = 1e-2  # height of the layer [m_n]: so thin that a helix does not turn it
 
 
-def finer_section(found, material, cracks=(), *, refine, cache=True):
+def finer_section(found, material, damage=(), *, refine, cache=True):
     """A gear's `Flexibility3D` with what a section of `FINER` resolution adds to every tooth.
 
     `found` is of hexahedra whose section has resolution `refine`. Cracks of part of the width or of a depth that changes count
@@ -35,8 +37,8 @@ def finer_section(found, material, cracks=(), *, refine, cache=True):
 
     def lacking(tooth):
         """Displacement ``(PLACES, PLACES)`` of the hats under a unit force per width that the section lacks [mm**2/N]."""
-        on_tooth = tuple(replace(whole(c), tooth=0) for c in cracks if c.tooth % gear.z == tooth)
-        case = gear, material, on_tooth
+        own = [one for one in damage if one.tooth % gear.z == tooth]
+        case = gear, material, tuple(replace(whole(one) if isinstance(one, Crack) else one, tooth=0) for one in own)
         return kept.get(("section error", *case, refine), lambda: plane_hats(*case, FINER * refine) - plane_hats(*case, refine))
 
     near = {tooth: near + np.kron(lacking(tooth), even) for tooth, near in found.near.items()}
@@ -44,11 +46,13 @@ def finer_section(found, material, cracks=(), *, refine, cache=True):
     return replace(found, near=near, healthy=healthy)
 
 
-def plane_hats(gear, material, cracks, refine):
+def plane_hats(gear, material, damage, refine):
     """Displacement ``(PLACES, PLACES)`` of the hats of tooth 0 under a unit force per width in plane strain [mm**2/N]."""
     thin = replace(gear, b=THIN * gear.m_n)
-    patches = Patches((0,), hats(gear), 1)
-    mesh = mesh_patches(thin, patches, cracks=cracks, refine=refine, per_hat=PER_HAT, layer=refine * thin.b, sizes=SIZES)
+    cracks, broken = ([one for one in damage if isinstance(one, Crack) is cracked] for cracked in (True, False))
+    patches = Patches((0,), hats(loaded_side(gear, broken, 0)), 1)
+    options = {"refine": refine, "per_hat": PER_HAT, "layer": refine * thin.b, "sizes": SIZES}
+    mesh = mesh_patches(thin, patches, cracks=cracks, broken=broken, **options)
     count = mesh.points.shape[1]
     lower = assemble(mesh.points, mesh.cells, material, np.arange(count))
     planar = _planar(mesh.cells, count)

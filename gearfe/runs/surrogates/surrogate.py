@@ -96,8 +96,8 @@ class Surrogate:
         Returns
         -------
         StiffnessCurve
-            ``k``, ``lte`` and ``error``, the worst difference found in that zone of the mesh cycle; its `zones` give mean and
-            zone values. Load shares, pressures and tangent are not fitted: nan.
+            ``k``, ``deflection`` and ``error``, the worst difference found in that zone of the mesh cycle; its `zones` give mean
+            and zone values. Load shares, pressures and tangent are not fitted: nan.
         """
         values = self.space.point(point)
         breaks, series = self._parts(values)
@@ -111,7 +111,8 @@ class Surrogate:
             "eps_alpha": float(int(self.meta["pairs"]) + 1 + 2 * breaks[0]),  # the first break: half the zone of fewer pairs
         }  # fmt: skip
         return StiffnessCurve(
-            phase=phase, k=k, k_tangent=none[:, 0], lte=inputs["force"] / k, order=np.array([0]), force=none, pressure=none,
+            phase=phase, k=k, k_tangent=none[:, 0], deflection=inputs["force"] / k,
+            order=np.array([0]), force=none, pressure=none,
             error=k * self.worst[piece_of(inside, breaks)], meta=meta,
         )  # fmt: skip
 

@@ -132,7 +132,7 @@ def curve_bands(
     return bands.rename(quantile="percentile").assign_coords(percentile=list(percentiles)).dropna("place")
 
 
-def told_apart(healthy: Any, damaged: Any) -> float:
+def roc_auc(healthy: Any, damaged: Any) -> float:
     """Chance that a damaged gear drawn at random has the larger value than a healthy one: the area under the ROC curve.
 
     0.5: not at all told apart, 1: always; below 0.5 damage makes the value smaller. Mann and Whitney's U over all pairs.
@@ -156,7 +156,7 @@ def told_apart(healthy: Any, damaged: Any) -> float:
 
     Examples
     --------
-    >>> told_apart([1.0, 2.0, 3.0], [2.5, 3.5, 4.5])
+    >>> roc_auc([1.0, 2.0, 3.0], [2.5, 3.5, 4.5])
     0.8888888888888888
     """
     undamaged, hurt = numbers("healthy", healthy, ""), numbers("damaged", damaged, "")

@@ -66,7 +66,7 @@ def test_level_is_spelled_out(turning):
 def test_start_is_where_the_tangent_of_the_cut_fillet_has_its_angle(seed, start):
     """Truth: tooth spaces cut by brute force, `validation.shared.arbiter.cutting`; external gears and rings."""
     rng = np.random.default_rng(seed)
-    own = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 1.0, "tip_radius": float(rng.uniform(0.1, 0.25))}
+    own = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 1.0, "rack_tip_radius": float(rng.uniform(0.1, 0.25))}
     gear = (
         gf.Gear(z=int(rng.integers(40, 130)), x=float(rng.uniform(-0.4, 0.3)), addendum=0.8, r_rim=150.0, **own)
         if seed % 2
@@ -80,7 +80,7 @@ def test_start_is_where_the_tangent_of_the_cut_fillet_has_its_angle(seed, start)
 
 
 def test_a_ring_without_the_tangent_names_the_other_starts():
-    ring = gf.Gear(z=50, m_n=2.0, alpha_n=math.radians(20), b=1.0, x=0.8, addendum=0.8, tip_radius=0.2, r_rim=65.0)
+    ring = gf.Gear(z=50, m_n=2.0, alpha_n=math.radians(20), b=1.0, x=0.8, addendum=0.8, rack_tip_radius=0.2, r_rim=65.0)
     with pytest.raises(ValueError, match=r"make 3\d\.\d to 9\d\.\d degrees .* use start = '60deg', 'root', 'middle'"):
         crack_path(ring, gf.Crack(level=0.3))
     assert crack_path(ring, gf.Crack(level=0.3, start="60deg"))[0, 0] > 0
@@ -281,7 +281,11 @@ def test_bad_damage(damage, message):
         ((), {"method": "ritz", "teeth": 5}, "only 'fe'"),
         ((), {"method": "ritz", "variants": {"root": "base"}}, "variants"),
         ((), {"method": "textbook", "variants": {"roots": "base"}}, "it has contact, crack_model"),
-        ((), {"method": "published", "variants": {"roots": "base"}}, "'roots' is none of method = 'published'"),
+        (
+            (),
+            {"method": "herringbone_article", "variants": {"roots": "base"}},
+            "'roots' is none of method = 'herringbone_article'",
+        ),
     ],
 )
 def test_what_a_method_does_not_model_is_refused(damage, options, message):
@@ -307,7 +311,7 @@ def test_impossible_widths_are_refused(options, message):
         gf.Crack(level=0.3, **options)
 
 
-@pytest.mark.parametrize("method", ["ritz", "fe", "textbook", "published"])
+@pytest.mark.parametrize("method", ["ritz", "fe", "textbook", "herringbone_article"])
 @pytest.mark.parametrize("options", [{"width": (0.0, 0.5)}, {"ends": (1.0, 0.0)}])
 def test_sections_refuse_cracks_of_part_of_the_width(method, options):
     damage = {"pinion": [gf.Crack(level=0.3, **options)]}

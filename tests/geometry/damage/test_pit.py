@@ -16,7 +16,7 @@ from gearfe.geometry.tooth.profile import arc_at
 pytestmark = pytest.mark.quick
 
 GEAR = gf.Gear(z=21, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=7.4)
-RING = gf.Gear(z=72, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_rim=90.0, tip_radius=0.3)
+RING = gf.Gear(z=72, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_rim=90.0, rack_tip_radius=0.3)
 GOOD = {"radius": 21.0, "z": 10.0, "axes": (0.4, 1.0), "depth": 0.2}
 
 

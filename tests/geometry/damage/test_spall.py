@@ -19,7 +19,7 @@ from gearfe.geometry.tooth.profile import arc_at
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)
 HELICAL = gf.Gear(z=21, r_bore=7.4, beta=0.3, **RACK)
-RING = gf.Gear(z=72, r_rim=90.0, tip_radius=0.3, **RACK)
+RING = gf.Gear(z=72, r_rim=90.0, rack_tip_radius=0.3, **RACK)
 GOOD = {"radius": 21.0, "z": 10.0, "sides": (1.5, 6.0), "depth": 0.2, "corner": 0.4}
 COARSE = {"far": 3.0, "tooth": 1.2, "flank": 1.0, "fillet": 0.8}
 
@@ -36,10 +36,10 @@ def pair(beta=0.0):
 def test_area_is_that_of_points_thrown_at_random(corner):
     found, rng = spall(corner=corner), np.random.default_rng(1)
     u, w = rng.uniform(-1, 1, (2, 1_000_000)) * [[0.9], [3.5]]
-    area = found.covers(u, w).mean() * 1.8 * 7.0
+    area = found._contains(u, w).mean() * 1.8 * 7.0
     assert_allclose(area, 1.5 * 6.0 - (4 - math.pi) * corner**2, rtol=3e-3)
     low, high = found.span(u)
-    assert (found.covers(u, w) == ((low - found.z < w) & (w < high - found.z))).all(), "the span says the same"
+    assert (found._contains(u, w) == ((low - found.z < w) & (w < high - found.z))).all(), "the span says the same"
     arc = centre_arc(GEAR, found) + np.linspace(-0.75, 0.75, 20_001)
     assert_allclose(np.trapezoid(lost_width(GEAR, [found], arc), arc), 9.0 - (4 - math.pi) * corner**2, rtol=1e-5)
 
@@ -146,9 +146,9 @@ def test_outline_that_is_drawn_is_the_edge():
     assert_allclose([z.min(), z.max()], [7.0, 13.0], atol=2e-3)
     assert (z[0], radius[0]) == (z[-1], radius[-1]), "closed"
     found = spall()
-    u, w = found.edge()
-    assert found.covers(0.999 * u, 0.999 * w).all()
-    assert not found.covers(1.01 * u, 1.01 * w).any()
+    u, w = found._edge()
+    assert found._contains(0.999 * u, 0.999 * w).all()
+    assert not found._contains(1.01 * u, 1.01 * w).any()
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal, roll_a
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 GEAR = gf.Gear(z=18, r_bore=9.0, **RACK)
 HELICAL = replace(GEAR, beta=math.radians(25))
-RING = gf.Gear(z=40, r_rim=52.0, addendum=0.8, tip_radius=0.2, **RACK)
+RING = gf.Gear(z=40, r_rim=52.0, addendum=0.8, rack_tip_radius=0.2, **RACK)
 PIT = {"z": 3.0, "axes": (0.5, 0.8), "depth": 0.2}
 COARSE = {"far": 3.0, "tooth": 1.0, "flank": 0.8, "fillet": 0.6, "tip": 0.3}
 

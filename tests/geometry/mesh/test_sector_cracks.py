@@ -65,7 +65,7 @@ def test_a_crack_between_two_teeth_softens_as_the_section_has_it(steel):
 
 def test_cracks_that_no_mesh_can_follow_are_refused():
     m = 2.0
-    ring = gf.Gear(z=60, r_rim=70.0, tip_radius=0.2, **RACK)
+    ring = gf.Gear(z=60, r_rim=70.0, rack_tip_radius=0.2, **RACK)
     sizes = {"fillet_size": 0.15 * m, "size": 0.3 * m, "far_size": 0.8 * m, "teeth": 5}
 
     def meshed(gear, *cracks):

@@ -18,7 +18,7 @@ from gearfe.geometry.tooth.profile import cartesian, fillet_length, flank, root_
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 GEAR = gf.Gear(z=12, x=0.3, r_bore=5.0, **RACK)
 HELICAL = replace(GEAR, beta=math.radians(20))
-RING = gf.Gear(z=26, r_rim=33.0, addendum=0.6, tip_radius=0.2, z_cutter=16, **RACK)
+RING = gf.Gear(z=26, r_rim=33.0, addendum=0.6, rack_tip_radius=0.2, z_cutter=16, **RACK)
 COARSE = {"flank": 0.5, "corner": 0.3, "fillet": 0.4, "root": 0.6, "near": 1.0, "far": 2.0}
 
 

@@ -11,7 +11,7 @@ from gearfe.geometry.pair import contacts
 from gearfe.geometry.tooth.profile import cartesian
 from gearfe.geometry.tooth.side import place, side
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 10.0, "tip_radius": 0.2}
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 10.0, "rack_tip_radius": 0.2}
 ONE = gf.Gear(z=20, r_bore=8.0, **RACK)
 PAIRS = {
     "external": gf.GearPair(ONE, gf.Gear(z=31, r_bore=12.0, **RACK)),
@@ -75,7 +75,7 @@ def test_pitches_beyond_the_path_are_those_where_corners_come_near(more, count):
 
 def test_corners_touch_in_their_own_half_of_the_cycle():
     """Tip of the pinion and form point of the wheel at the end, the others at the start; the swapped pair has it mirrored."""
-    rack = RACK | {"tip_radius": 0.1}
+    rack = RACK | {"rack_tip_radius": 0.1}
     one, two = gf.Gear(z=14, r_bore=4.0, **rack), gf.Gear(z=15, r_bore=4.0, **rack)
     for pair in (gf.GearPair(one, two), gf.GearPair(two, one)):
         found = contacts.contacts(pair, np.arange(8) / 8)

@@ -23,7 +23,7 @@ PHASES = np.linspace(0, 1, 4001)[:-1] + 1e-4
 def helical(beta=15.0, b=30.0, ring=False, **numbers):
     rack = RACK | {"b": b} | numbers
     if ring:
-        wheel = gf.Gear(z=72, r_rim=95.0, tip_radius=0.3, addendum=0.8, beta=math.radians(beta), **rack)
+        wheel = gf.Gear(z=72, r_rim=95.0, rack_tip_radius=0.3, addendum=0.8, beta=math.radians(beta), **rack)
     else:
         wheel = gf.Gear(z=31, r_bore=11.0, beta=math.radians(-beta), **rack)
     return gf.GearPair(gf.Gear(z=21, r_bore=7.0, beta=math.radians(beta), **rack), wheel)
@@ -51,7 +51,7 @@ def test_whole_overlap_ratio_keeps_the_length_constant():
 
 
 def test_whole_transverse_contact_ratio_keeps_the_length_constant():
-    deep = {"beta": 10.0, "dedendum": 1.6, "tip_radius": 0.2}
+    deep = {"beta": 10.0, "dedendum": 1.6, "rack_tip_radius": 0.2}
     high = brentq(lambda h: helical(addendum=h, **deep).eps_alpha - 2.0, 1.0, 1.4)
     pair = helical(addendum=high, **deep)
     assert_allclose(total_length(pair, PHASES), 2 * 30.0 / math.cos(pair.gear_1.beta_b), rtol=1e-9)

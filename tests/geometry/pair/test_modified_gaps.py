@@ -24,7 +24,10 @@ def relieved(amount=0.01, length=4.0, exponent=1.0, **more):
 
 
 def test_the_search_finds_conjugate_contact_again():
-    plain, found = contacts(PAIR, PHASE), flank_contacts(PAIR, PHASE, flanks=flank_forms(PAIR, {"pinion": gf.Flank(slope=1e-13)}))
+    plain, found = (
+        contacts(PAIR, PHASE),
+        flank_contacts(PAIR, PHASE, flanks=flank_forms(PAIR, {"pinion": gf.Flank(profile_slope=1e-13)})),
+    )
     near = plain.gap < 0.2
     assert_allclose(found.gap[near], plain.gap[near], atol=1e-10)
     assert_allclose(found.roll_1[near], plain.roll_1[near], atol=2e-4)
@@ -33,7 +36,7 @@ def test_the_search_finds_conjugate_contact_again():
 
 @pytest.mark.parametrize("exponent", [1.0, 2.0])
 def test_the_gap_is_the_least_over_the_flank(exponent):
-    forms = flank_forms(PAIR, relieved(0.02, exponent=exponent, crowning=0.004))
+    forms = flank_forms(PAIR, relieved(0.02, exponent=exponent, profile_crowning=0.004))
     found = flank_contacts(PAIR, PHASE[::2], flanks=forms)
     roll = np.linspace(PAIR.path[0] - 0.5, PAIR.gear_1.roll_a, 40001)
     checked = 0
@@ -77,9 +80,15 @@ def test_hollow_flanks_are_refused():
 @pytest.mark.parametrize("driver", [True, False])
 def test_arms_are_those_of_flanks_that_lean(ring, driver):
     """How fast an approach of both gears closes a point, by differences: half of one gear's part and half of the other's."""
-    pair = gf.GearPair(PAIR.gear_1, gf.Gear(z=72, r_rim=125.0, addendum=0.85, tip_radius=0.2, **RACK)) if ring else PAIR
+    pair = gf.GearPair(PAIR.gear_1, gf.Gear(z=72, r_rim=125.0, addendum=0.85, rack_tip_radius=0.2, **RACK)) if ring else PAIR
     gears = pair.gear_1, pair.gear_2
-    forms = flank_forms(pair, {"pinion": gf.Flank(crowning=0.01, slope=0.02), "wheel": gf.Flank(crowning=0.01, slope=-0.02)})
+    forms = flank_forms(
+        pair,
+        {
+            "pinion": gf.Flank(profile_crowning=0.01, profile_slope=0.02),
+            "wheel": gf.Flank(profile_crowning=0.01, profile_slope=-0.02),
+        },
+    )
     own, mate = forms if driver else forms[::-1]
     gear, sense = gears[not driver], 1 if driver else -1
     roll = gear.roll_f + np.array([0.2, 0.5, 0.8]) * (gear.roll_a - gear.roll_f)

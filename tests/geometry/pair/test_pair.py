@@ -21,7 +21,7 @@ def gear(z, **numbers):
 @pytest.mark.parametrize("row", reference.load()["root_stress"]["rows"])
 def test_contact_ratio_of_independent_cases(row):
     rack = {"m_n": 1.0, "alpha_n": math.radians(20), "b": 1.0, "r_bore": 1.0}
-    one = gf.Gear(z=row["z"], x=row["x"], tip_radius=row["tip_radius"], **rack)
+    one = gf.Gear(z=row["z"], x=row["x"], rack_tip_radius=row["rack_tip_radius"], **rack)
     assert_allclose(gf.GearPair(one, gf.Gear(z=43, **rack)).eps_alpha, row["eps_alpha"], rtol=1e-11)
 
 
@@ -51,7 +51,7 @@ def test_flanks_touch_on_the_line_of_action_with_the_computed_backlash(x_1, x_2,
     touch_1, touch_2 = cartesian(r_1, turn_1 + a_1), cartesian(r_2, turn_2 + a_2) + np.array([0, pair.a])
     assert_allclose(touch_1, touch_2, atol=1e-10)
     # play: turn the wheel the other way until its other flank touches the pinion's next tooth
-    at = pair.alpha_w
+    at = pair.alpha_wt
     gap_1 = 2 * math.pi / one.z - 2 * flank(one, one.r_b * math.tan(at))[1]
     tooth_2 = 2 * flank(two, two.r_b * math.tan(at))[1]
     assert_allclose(pair.backlash, (pair.pitch_radius_1 * gap_1 - pair.pitch_radius_2 * tooth_2) * math.cos(at), atol=1e-10)
@@ -133,6 +133,6 @@ def test_impossible_pairs_are_refused(two, a, message):
 
 
 def test_long_addendum_interferes_with_the_mates_fillet():
-    long = {"addendum": 1.35, "dedendum": 1.4, "tip_radius": 0.45}
+    long = {"addendum": 1.35, "dedendum": 1.4, "rack_tip_radius": 0.45}
     with pytest.warns(UserWarning, match="capped"), pytest.raises(ValueError, match=r"interference|reaches the root circle"):
         gf.GearPair(gear(30), gear(150, **long))

@@ -18,7 +18,7 @@ SIZE = {"axes": (0.4, 0.4), "depth": 0.2}
 
 def pairs(beta):
     sun, planet = (gf.Gear(z=z, r_bore=r, beta=beta, **RACK) for z, r in ((18, 8.0), (27, 12.0)))
-    ring = gf.Gear(z=72, r_rim=87.0, addendum=0.86, tip_radius=0.2, beta=beta, **RACK)
+    ring = gf.Gear(z=72, r_rim=87.0, addendum=0.86, rack_tip_radius=0.2, beta=beta, **RACK)
     return {"external": gf.GearPair(sun, replace(planet, b=50.0)), "ring": gf.GearPair(planet, ring)}
 
 

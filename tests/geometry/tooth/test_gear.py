@@ -40,7 +40,7 @@ def test_fillet_is_smooth_where_not_undercut():
 
 def test_generated_fillet_is_the_envelope_of_the_rack():
     """Rolling the rack against the gear, no rack tip point enters the tooth, and every fillet point is touched."""
-    gear = gf.Gear(z=20, **RACK, tip_radius=0.3)
+    gear = gf.Gear(z=20, **RACK, rack_tip_radius=0.3)
     phi = np.linspace(form_point(gear)[0], math.pi / 2, 400)
     r_fillet, a_fillet = fillet(gear, phi)
     order = np.argsort(r_fillet)
@@ -89,9 +89,9 @@ def test_root_curve_is_continuous():
 
 
 def test_rack_tip_radius_is_capped_with_a_warning():
-    with pytest.warns(UserWarning, match=r"tip_radius = 0.38 m_n does not fit .* capped at the full tip radius 0.317"):
+    with pytest.warns(UserWarning, match=r"rack_tip_radius = 0.38 m_n does not fit .* capped at the full tip radius 0.317"):
         gear = gf.Gear(z=30, m_n=1.0, alpha_n=math.radians(25), b=1.0, r_bore=5.0)
-    assert gear.tip_radius == pytest.approx(gear.full_tip_radius)
+    assert gear.rack_tip_radius == pytest.approx(gear.full_tip_radius)
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_rack_tip_radius_is_capped_with_a_warning():
         ({"r_bore": 20.0}, "r_bore = 20.0 mm, but the bore must lie inside the root circle"),
         ({"r_bore": 0.0}, "r_bore = 0.0"),
         ({"z": 5, "x": -0.6}, "undercut"),
-        ({"tip_radius": -0.1}, "tip_radius"),
+        ({"rack_tip_radius": -0.1}, "rack_tip_radius"),
         ({"dedendum": 2.5}, "pointed before its tip"),
     ],
 )

@@ -11,7 +11,7 @@ from gearfe.geometry.pair.flanks import flank_forms
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)
-RING = gf.Gear(z=72, r_rim=90.0, tip_radius=0.2, **RACK)
+RING = gf.Gear(z=72, r_rim=90.0, rack_tip_radius=0.2, **RACK)
 
 
 @pytest.mark.parametrize("gear", [GEAR, RING], ids=["gear", "ring"])
@@ -31,14 +31,16 @@ def test_reliefs_start_where_they_should_and_end_with_their_amount(gear):
 def test_crowning_slope_and_table_by_hand():
     roll = np.linspace(GEAR.roll_f, GEAR.roll_a, 21)
     part = np.linspace(0, 1, 21)
-    assert_allclose(gf.Flank(crowning=0.008).on(GEAR).removed(roll), 0.008 * (2 * part - 1) ** 2, atol=1e-16)
-    assert_allclose(gf.Flank(slope=-0.005).on(GEAR).removed(roll), -0.005 * part, atol=1e-16)
+    assert_allclose(gf.Flank(profile_crowning=0.008).on(GEAR).removed(roll), 0.008 * (2 * part - 1) ** 2, atol=1e-16)
+    assert_allclose(gf.Flank(profile_slope=-0.005).on(GEAR).removed(roll), -0.005 * part, atol=1e-16)
     measured = gf.Flank(table=(roll, 0.01 * part)).on(GEAR)
     assert_allclose(measured.removed(roll), 0.01 * part, atol=1e-16)
 
 
 def test_derivatives_are_those_of_the_amount():
-    form = gf.Flank(tip_relief=0.02, tip_start_diameter=43.0, tip_exponent=2.5, crowning=0.01, slope=0.003).on(GEAR)
+    form = gf.Flank(tip_relief=0.02, tip_start_diameter=43.0, tip_exponent=2.5, profile_crowning=0.01, profile_slope=0.003).on(
+        GEAR
+    )
     roll, h = np.linspace(GEAR.roll_f + 0.1, GEAR.roll_a - 0.1, 40), 1e-4
     first = (form.removed(roll + h) - form.removed(roll - h)) / (2 * h)
     assert_allclose(form.removed(roll, 1), first, atol=1e-8)
@@ -56,7 +58,7 @@ def test_derivatives_are_those_of_the_amount():
         ({"tip_relief": 0.02, "tip_start_diameter": 22.0}, "tip_start_diameter = 22 mm is not inside the flank of z = 21"),
         ({"tip_relief": 0.02, "tip_start_angle": 25.0}, "tip_start_angle = 25 rad is not inside the flank"),
         ({"root_relief": 0.02, "root_start_roll": 2.0, "root_exponent": 0.5}, "an exponent >= 1"),
-        ({"crowning": math.nan}, "crowning = nan, but a flank needs a finite number"),
+        ({"profile_crowning": math.nan}, "crowning = nan, but a flank needs a finite number"),
         ({"table": ([5.0, 6.0], [0.0, 0.01])}, "does not cover the flank"),
         ({"table": ([5.0, 4.0], [0.0, 0.01])}, "the roll lengths rising"),
         ({"table": ([2.0, 20.0], [0.0, math.nan])}, "without holes"),

@@ -10,7 +10,7 @@ import gearfe as gf
 from gearfe.geometry.tooth import profile
 from gearfe.geometry.tooth.side import form_corner, on_fillet, place, side
 
-RACK = {"m_n": 2.5, "alpha_n": math.radians(20), "b": 10.0, "tip_radius": 0.3}
+RACK = {"m_n": 2.5, "alpha_n": math.radians(20), "b": 10.0, "rack_tip_radius": 0.3}
 GEARS = [
     gf.Gear(z=13, r_bore=8.0, **RACK),
     gf.Gear(z=30, x=0.3, r_bore=20.0, **RACK),

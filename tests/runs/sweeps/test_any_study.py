@@ -21,7 +21,7 @@ STUDY = {
     "block": 5,
     "options": {"method": "coupled", "phases": 4, "span": "cycle", "error": False, "refine": 1.0, "order": 4, "pose": "mean"},
     "crack": [{"case": "cracked", "gear": "sun", "level": 0.2}],
-    "flank": {"bent": {"gear": "sun", "crowning_um": 3.0}},
+    "flank": {"bent": {"gear": "sun", "profile_crowning_um": 3.0}},
     "vary": {
         "crack.cracked.level": [0.1, 0.2],
         "pair": {"sun_planet": {"force_N": STEPS}},

@@ -82,10 +82,10 @@ def test_a_missing_draw_is_said(tmp_path):
 def test_told_apart_of_normal_values():
     """Of two normal distributions of the same spread: the normal distribution of their distance over sqrt(2) spreads."""
     drawn = np.random.default_rng(4)
-    found = gf.told_apart(drawn.normal(0, 1, 4000), drawn.normal(1, 1, 4000))
+    found = gf.roc_auc(drawn.normal(0, 1, 4000), drawn.normal(1, 1, 4000))
     assert abs(found - 0.76025) < 0.01
-    assert gf.told_apart([1, 2], [3, 4]) == 1
-    assert gf.told_apart([1, 2], [1, 2]) == 0.5
+    assert gf.roc_auc([1, 2], [3, 4]) == 1
+    assert gf.roc_auc([1, 2], [1, 2]) == 0.5
 
 
 def test_bands_have_only_places_that_all_cases_have(tmp_path):

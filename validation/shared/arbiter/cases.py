@@ -22,7 +22,7 @@ def random_pair(seed):
     addendum, dedendum = ((1.0, 1.25), (0.8, 1.0))[int(rng.random() < 0.2)]
     alpha = float(rng.choice([20.0, 20.0, 20.0, 20.0, 17.5, 25.0]))
     rack = {"m_n": m, "alpha_n": math.radians(alpha), "b": 1.0, "addendum": addendum, "dedendum": dedendum}
-    rack["tip_radius"] = float(rng.choice([0.2, 0.3, 0.38]))
+    rack["rack_tip_radius"] = float(rng.choice([0.2, 0.3, 0.38]))
     if rng.random() < 0.2:
         rack["beta"] = math.radians(rng.uniform(5, 25))
     z_1 = int(8 * (80 / 8) ** rng.random() + 0.5)
@@ -72,9 +72,9 @@ def random_flank(rng, gear):
             "root_start_roll": gear.roll_f + float(rng.uniform(0.1, 0.3)) * span,
         }
     if rng.random() < 0.25:
-        given["crowning"] = 1e-3 * float(rng.uniform(2, 8))
+        given["profile_crowning"] = 1e-3 * float(rng.uniform(2, 8))
     if rng.random() < 0.25:
-        given["slope"] = 1e-3 * float(rng.uniform(-6, 6))
+        given["profile_slope"] = 1e-3 * float(rng.uniform(-6, 6))
     if rng.random() < 0.25:
         given["pitch"] = (1e-3 * rng.normal(0, 4, gear.z)).tolist()
     return gf.Flank(**given)

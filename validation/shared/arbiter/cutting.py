@@ -86,7 +86,7 @@ class Rack:
 
     def __init__(self, space):
         gear = space.gear
-        m, slope, rho, r = gear.m_n, math.cos(gear.beta), gear.tip_radius * gear.m_n, space.r
+        m, slope, rho, r = gear.m_n, math.cos(gear.beta), gear.rack_tip_radius * gear.m_n, space.r
         tan = math.tan(gear.alpha_n)
         centre = (gear.x - gear.dedendum) * m + rho  # height of the rounding's centre over the pitch line
         across = math.pi * m / 4 + (centre - gear.x * m) * tan - rho / math.cos(gear.alpha_n)
@@ -128,7 +128,7 @@ class Cutter:
         alpha_t = math.atan(math.tan(gear.alpha_n) / math.cos(gear.beta))
         self.half = math.pi / (2 * gear.z_cutter) + math.tan(alpha_t) - alpha_t
         self.distance = 0.0
-        rho = gear.tip_radius * gear.m_n
+        rho = gear.rack_tip_radius * gear.m_n
         wanted = (math.pi / 2 + 2 * gear.x * math.tan(gear.alpha_n)) / gear.z
 
         def involute(radius):

@@ -18,7 +18,7 @@ from .cutting import Space
 
 FILLET, FLANK = 260, 90  # nodes of the splines through cut points
 KNOWN = re.compile(
-    "(tip|root)_(relief|exponent|start_.*)|crowning|slope|pitch|tip_(rounding|chamfer)|both_sides|end_(exponent|length)"
+    "(tip|root)_(relief|exponent|start_.*)|profile_(crowning|slope)|pitch|tip_(rounding|chamfer)|both_sides|end_(exponent|length)"
 )
 
 
@@ -77,7 +77,7 @@ class Outline:
         for start, end, amount, exponent in self._reliefs:
             out += amount * np.maximum((roll - start) / (end - start), 0.0) ** exponent
         place = 2 * (roll - (low + high) / 2) / (high - low)
-        return out + self.flank.crowning * place**2 + self.flank.slope * (1 + place) / 2
+        return out + self.flank.profile_crowning * place**2 + self.flank.profile_slope * (1 + place) / 2
 
     def cut(self, radius):
         """Half angle of the tooth as cut, no tip edge and nothing removed [rad]."""

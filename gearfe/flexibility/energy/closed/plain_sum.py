@@ -9,13 +9,13 @@ from ....geometry.damage.hollow import check_hollows
 from ....geometry.tooth.profile import flank
 from ...hertz import linear_hertz, palmgren_line, weber_line
 from ...section_contact import Solved
-from . import published
+from . import herringbone_article
 from .beam import load_angle
 from .integrals import flank_edges
 from .section import ToothDamage
 from .slices import faces_of, stations
 
-CONTACTS = ("linear", "published", "weber", "palmgren")
+CONTACTS = ("linear", "herringbone_article", "weber", "palmgren")
 
 
 def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lost="hertz", **variants):
@@ -32,11 +32,11 @@ def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lo
         flanks whose gap is not closed carries nothing. Without `face` the teeth are taken for straight.
     phase : ndarray
     formulas : module
-        Such as `textbook` or `published`: its ``components`` gives the flexibility of one tooth; its ``DEFAULTS``, if there are
-        any, the `contact` of its source, and the ``root`` profile that its beams stand on if it is no variant.
-    contact : {"linear", "published", "weber", "palmgren"}, optional
-        `gearfe.flexibility.hertz.linear_hertz`, `published.contact`, `weber_line`, `palmgren_line`; default: as the source of
-        `formulas`, the second for `published` and the first otherwise. The last two depend on the load.
+        Such as `textbook` or `herringbone_article`: its ``components`` gives the flexibility of one tooth; its ``DEFAULTS``, if
+        there are any, the `contact` of its source, and the ``root`` profile that its beams stand on if it is no variant.
+    contact : {"linear", "herringbone_article", "weber", "palmgren"}, optional
+        `gearfe.flexibility.hertz.linear_hertz`, `herringbone_article.contact`, `weber_line`, `palmgren_line`; default: as the
+        source of `formulas`, the second for `herringbone_article` and the first otherwise. The last two depend on the load.
     crack_model : {"constant", "straight", "parabola"}
         Limit line of the material a crack leaves alive, see `gearfe.flexibility.energy.closed.section`.
     lost : {"hertz", "slices", "summed"}
@@ -115,8 +115,8 @@ def _edges(pair, order, *, damage, crack_model, root):
 def _law(case, at, contact):
     """Contact law: from the line load on the touching length to secant and tangent flexibility [mm per N/mm]."""
     pair, materials = case.pair, case.materials
-    if contact in ("linear", "published"):
-        constant = linear_hertz(materials) if contact == "linear" else published.contact(materials)
+    if contact in ("linear", "herringbone_article"):
+        constant = linear_hertz(materials) if contact == "linear" else herringbone_article.contact(materials)
         return lambda line: (constant, constant)
     if contact == "palmgren":
         width = sum(abs(last - first) for first, last, _ in faces_of(case))

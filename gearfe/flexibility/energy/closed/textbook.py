@@ -35,7 +35,7 @@ def components(gear, material, roll, *, damage=HEALTHY, root="fillet", foundatio
         with constant thickness down to the root circle.
     foundation : {"sainsot", "external", "printed", "none"}
         ``external``: Sainsot's of external gears, none of a ring. ``printed``: of a ring too, with ``h = 1``, as article S4 has
-        it (see `published`), though it is a fit to discs held at their bore.
+        it (see `herringbone_article`), though it is a fit to discs held at their bore.
     lever : {"crossing", "contact"}
         u: height over the root circle of the point where the load line crosses the centre-line (Sainsot), or of the
         contact point itself (as some codes have it).

@@ -265,6 +265,8 @@ def _hats(gear, sector, chain, count, knots, order, tilt):
     The inward normal of the helicoid is ``(-cos(beta_b) n, sin(beta_b))``, n the section's outward normal with moment r_b:
     it is at right angles to the profile's tangent and to the trace ``(w Y, -w X, 1)``.
     """
+    if not knots.size:  # a missing tooth has no flank
+        return np.zeros((count, 3, 0))
     gauss, weight = GAUSS
     arcs = arc_at(gear, sector.roll)
     clipped = np.clip(knots[:, :, None], arcs[:-1], arcs[1:])  # (knots, hats, edges)

@@ -13,11 +13,11 @@ from scipy.interpolate import CubicSpline, RectBivariateSpline
 
 from ....geometry.damage.chip import loaded_side
 from ....geometry.damage.crack import check_through
-from ....geometry.damage.missing import MissingTooth
+from ....geometry.damage.missing import MissingTooth, missing_teeth
 from ....geometry.kept import keeping
 from ....geometry.mesh.sector import sector
 from ....geometry.tooth.profile import arc_at, roll_at_arc
-from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning, missing_teeth, reached_teeth
+from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning, reached_teeth
 from ...solved import solved_gears
 from .join import join
 from .panel import SectionModel, check_order, panel

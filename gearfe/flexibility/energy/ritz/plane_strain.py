@@ -10,6 +10,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
+from ....geometry.damage.chip import loaded_side
 from ...halfspace import hat_points
 from ...hertz import half_plane, hat_logarithm
 from ...solid import PLACES, hats
@@ -24,16 +25,22 @@ from .plane import carry, loaded_sector
 FURTHER, HIGHEST = 3, 8  # orders more of the polynomials compared with at cracks, and the highest order
 
 
-def missing(model, section, *, cubic=False, cache=True):
-    """What the polynomials of a healthy `section` miss between the hats ``(PLACES, PLACES)`` [mm per N/mm].
+def missing(model, section, healthy, *, chip=None, cubic=False, cache=True):
+    """What the polynomials of a `section` without cracks miss between the hats ``(PLACES, PLACES)`` [mm per N/mm].
 
-    `cubic` is as of `panel3d.section_of`.
+    The section may have a `chip`; `healthy` is the one without. `cubic` is as of `panel3d.section_of`.
     """
-    gear, material = model.gear, model.material
-    healthy = plane_panel(model, section, cubic)
-    coarse = join(gear, {0: healthy, 1: healthy}, healthy)[0][0, 0]
-    local = half_plane(material) * hat_logarithm(hats(gear), hats(gear))
-    return plane_hats(gear, material, cache=cache) + local - coarse
+    gear, material, knots = model.gear, model.material, hats(end_of(model.gear, chip))
+    others = plane_panel(model, healthy, cubic)
+    own = others if chip is None else plane_panel(model, section, cubic, knots=knots)
+    coarse = join(gear, {0: own, 1: others}, others)[0][0, 0]
+    local = half_plane(material) * hat_logarithm(knots, knots)
+    return plane_hats(gear, material, chip, cache=cache) + local - coarse
+
+
+def end_of(gear, chip):
+    """The gear whose loaded flanks end where that of a tooth with a `chip`, which may be None, ends."""
+    return gear if chip is None else loaded_side(gear, [chip], chip.tooth)
 
 
 def missing_at_cracks(model, sections, *, points=None, cubic=False):
@@ -81,14 +88,15 @@ def completed(missed, cracks):
     return apart @ apart.T
 
 
-def plane_panel(model, sector, cubic=False, *, points=None, at=None):
-    """`Panel` of a sector in plane strain on the triangles of `panel3d`, loaded by the hats.
+def plane_panel(model, sector, cubic=False, *, points=None, at=None, knots=None):
+    """`Panel` of a sector in plane strain on the triangles of `panel3d`, loaded by the hats or those on `knots`.
 
     `points` are its vertices, if not its own. Facing points of cracks are the nodes of polynomials of order `at`, by default of
     the `model`.
     """
     gear, moved = model.gear, sector if points is None else replace(sector, points=points)
-    every, stiffness, load, sides, held, chain = section_of(model, moved, hats(gear), plane=True, cubic=cubic)
+    knots = hats(gear) if knots is None else knots
+    every, stiffness, load, sides, held, chain = section_of(model, moved, knots, plane=True, cubic=cubic)
     apart, _ = face_forces(sector, chain, load.shape[0], model.order, at or model.order)
     load = np.concatenate([load, apart], axis=2)
     nodes, local = int(every.max()) + 1, np.arange(3 * every.shape[0]).reshape(-1, 3)[:, :2].ravel()  # the third is zero
@@ -103,7 +111,7 @@ def plane_panel(model, sector, cubic=False, *, points=None, at=None):
     coupled = np.hstack([matrix[inside][:, border].toarray(), force[inside]])
     factor = splu(matrix[inside][:, inside].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
     between = coupled.T @ factor.solve(coupled)
-    m, n, sizes = border.size, hats(gear).shape[1], np.ones(sides.size, dtype=int)
+    m, n, sizes = border.size, knots.shape[1], np.ones(sides.size, dtype=int)
     edge = matrix[border][:, border].toarray() - between[:m, :m]
     edge = polar(gear, sizes, polar(gear, sizes, edge, 2).T, 2)
     push, own = polar(gear, sizes, force[border] - between[:m, m:], 2), between[m:, m:]
@@ -118,15 +126,18 @@ def plane_panel(model, sector, cubic=False, *, points=None, at=None):
     )
 
 
-def plane_hats(gear, material, *, cache=True):
-    """Plane strain's flexibility between the hats ``(PLACES, PLACES)`` [mm per N/mm], the half-plane's logarithm left out."""
-    kept = solved_gears(cache)
+def plane_hats(gear, material, chip=None, *, cache=True):
+    """Plane strain's flexibility between the hats ``(PLACES, PLACES)`` [mm per N/mm], the half-plane's logarithm left out.
+
+    The tooth may have a `chip`.
+    """
+    kept, end = solved_gears(cache), end_of(gear, chip)
 
     def solve():
-        panel = loaded_sector(SectionModel(gear, material), (), kept)
-        influence = join(gear, {0: panel, 1: panel}, panel)[0][0, 0][:LOADS, :LOADS]
-        points, weight = hat_points(hats(gear), 12)
-        mean = np.einsum("hg,hgk->hk", weight, carry(gear, points.ravel()).reshape(*points.shape, -1))
+        own, panel = (loaded_sector(SectionModel(gear, material), (), kept, broken=one) for one in (chip, None))
+        influence = join(gear, {0: own, 1: panel}, panel)[0][0, 0][:LOADS, :LOADS]
+        points, weight = hat_points(hats(end), 12)
+        mean = np.einsum("hg,hgk->hk", weight, carry(end, points.ravel()).reshape(*points.shape, -1))
         return mean @ (influence + influence.T) @ mean.T / 2
 
-    return kept.get(("plane hats", gear, material), solve)
+    return kept.get(("plane hats", gear, material, chip), solve)

@@ -12,7 +12,10 @@ from numbers import Integral
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
+from ....geometry.damage.chip import loaded_side
+from ....geometry.damage.crack import Crack
 from ....geometry.damage.front import crack_in_band, whole
+from ....geometry.damage.missing import MissingTooth
 from ....geometry.mesh.sector import sector
 from ...solid import PLACES, Faces, hats, parted, solved_teeth
 from ...solved import solved_gears
@@ -40,7 +43,7 @@ SIZES = {
 }
 
 
-def flexibility3d(gear, material, cracks=(), *, neighbours=1, order=3, axial=None, refine=1.0, cache=True):
+def flexibility3d(gear, material, damage=(), *, neighbours=1, order=3, axial=None, refine=1.0, cache=True):
     """`Flexibility3D` of a gear of finite width by the energy model.
 
     Parameters
@@ -49,9 +52,9 @@ def flexibility3d(gear, material, cracks=(), *, neighbours=1, order=3, axial=Non
         With a positive `beta` the section at height z is that at z = 0 turned clockwise by ``z tan(beta) / r``; bore or rim are
         held over the whole width, the end faces free.
     material : Material
-    cracks : tuple of Crack
-        Of any depth along the width, but one that changes follows a straight crack. Their `tooth` counts to the loaded side of
-        this gear.
+    damage : tuple of (Crack, MissingTooth or Chip)
+        Cracks of any depth along the width, but one that changes follows a straight crack. Their `tooth` counts to the loaded
+        side of this gear.
     neighbours : int
         How many following teeth may carry load at the same time.
     order : int
@@ -73,12 +76,12 @@ def flexibility3d(gear, material, cracks=(), *, neighbours=1, order=3, axial=Non
     if isinstance(axial, bool) or not isinstance(axial, Integral) or not (axial == 0 or axial > LOST):
         raise ValueError(f"axial = {axial!r}, but it is the degree along the width: 0, or a whole number from {LOST + 1}")
     model = SolidModel(gear, material, int(order), int(axial), float(refine))
-    return _flexibility(model, tuple(cracks), min(neighbours, gear.z - 1), solved_gears(cache))
+    return _flexibility(model, tuple(damage), min(neighbours, gear.z - 1), solved_gears(cache))
 
 
-def _flexibility(model, cracks, neighbours, cache):
+def _flexibility(model, damage, neighbours, cache):
     solve = _mirrored if model.gear.beta < 0 else _solved
-    return cache.get(("ritz3d", model, cracks, neighbours), partial(solve, model, cracks, neighbours, cache))
+    return cache.get(("ritz3d", model, damage, neighbours), partial(solve, model, damage, neighbours, cache))
 
 
 def axial_degree(width, m_n):
@@ -86,11 +89,11 @@ def axial_degree(width, m_n):
     return max(8, math.ceil(0.8 * width / m_n) + LOST)
 
 
-def _mirrored(model, cracks, neighbours, cache):
+def _mirrored(model, damage, neighbours, cache):
     """The gear of the other hand, seen from its other end: odd polynomials along the width change their sign."""
     gear = model.gear
-    cracks = tuple(crack_in_band(crack, gear.b, gear.b, 0.0) for crack in cracks)
-    other = _flexibility(replace(model, gear=replace(gear, beta=-gear.beta)), cracks, neighbours, cache)
+    damage = tuple(crack_in_band(one, gear.b, gear.b, 0.0) for one in damage)
+    other = _flexibility(replace(model, gear=replace(gear, beta=-gear.beta)), damage, neighbours, cache)
     sign = np.tile((-1.0) ** np.arange(other.degree + 1), PLACES)
     near, far = ({key: sign[:, None] * matrix * sign for key, matrix in matrices.items()} for matrices in (other.near, other.far))
     healthy = other.healthy and _flexibility(model, (), neighbours, cache)
@@ -98,36 +101,35 @@ def _mirrored(model, cracks, neighbours, cache):
     return replace(other, gear=gear, near=near, far=far, healthy=healthy, seam=seam)
 
 
-def _solved(model, cracks, neighbours, cache):
+def _solved(model, damage, neighbours, cache):
     gear, degree = model.gear, max(model.axial - LOST, 0)
-    healthy_panel = solid_sector(model, (), cache)
-    by_tooth = {t: tuple(c for c in cracks if c.tooth % gear.z == t) for t in {crack.tooth % gear.z for crack in cracks}}
-    panels = dict.fromkeys(solved_teeth(gear, cracks, neighbours), healthy_panel)
-    panels |= {t: solid_sector(model, tooth_cracks, cache) for t, tooth_cracks in by_tooth.items()}
-    healthy = _flexibility(model, (), neighbours, cache) if cracks else None
+    healthy_panel, teeth = solid_sector(model, (), cache), solved_teeth(gear, damage, neighbours)
+    by_tooth = {t: tuple(one for one in damage if one.tooth % gear.z == t) for t in {one.tooth % gear.z for one in damage}}
+    panels = dict.fromkeys(teeth, healthy_panel)
+    panels |= {t: solid_sector(model, own, cache) for t, own in by_tooth.items()}
+    healthy = _flexibility(model, (), neighbours, cache) if damage else None
     influence, opening = join(gear, panels, healthy_panel)
     kept = (np.arange(PLACES)[:, None] * (model.axial + 1) + np.arange(degree + 1)).ravel()
-    influence = {key: value[np.ix_(kept, kept)] for key, value in influence.items()}
-    opening, between = {tooth: opening[tooth][:, kept] for tooth in panels}, opening["influence"]
-    ends = np.cumsum([0, *(panels[tooth].open_own.shape[0] for tooth in sorted(panels))]).tolist()
-    for tooth, first, stop in zip(sorted(panels), ends[:-1], ends[1:], strict=True):
+    influence = {(i, j): influence[i, j][np.ix_(kept, kept)] for i in teeth for j in teeth}
+    opening, between = {tooth: opening[tooth][:, kept] for tooth in teeth}, opening["influence"]
+    ends = np.cumsum([0, *(panels[tooth].open_own.shape[0] for tooth in sorted(teeth))]).tolist()
+    for tooth, first, stop in zip(sorted(teeth), ends[:-1], ends[1:], strict=True):
         own = slice(first, stop)
         _complete(model, by_tooth.get(tooth, ()), influence[tooth, tooth], opening[tooth][own], between[own, own], cache)
     unknowns = sum(p.unknowns for p in panels.values())
-    made = parted(gear, model.material, degree, influence, unknowns, healthy, cache=cache)
-    if not cracks:
-        return made
-    return replace(made, seam=Faces(opening, between))
+    made = parted(gear, model.material, degree, influence, unknowns, healthy, damage=damage, cache=cache)
+    return replace(made, seam=Faces(opening, between)) if between.size else made
 
 
-def _complete(model, cracks, influence, opening, between, cache):
-    """Add what the section's polynomials miss of a tooth with `cracks`, in place.
+def _complete(model, damage, influence, opening, between, cache):
+    """Add what the section's polynomials miss of a tooth with `damage`, in place.
 
     To the `influence` between its hats, to the `opening` of the points of its cracks by these, and `between` these points. What
     is missed at a crack belongs to its opening: it has to vanish where the faces are pressed shut.
     """
+    cracks, broken = _parts(damage)
     slopes, degree = not all(crack.even for crack in cracks), len(influence) // PLACES - 1
-    influence += np.kron(_missing(model, cache, slopes), np.eye(degree + 1))
+    influence += np.kron(_missing(model, broken, cache, slopes), np.eye(degree + 1))
     if slopes and len(cracks) == 1:
         missed = _missing_along(model, cracks[0], cache)
     elif cracks and all(crack.even and crack.width is None for crack in cracks):
@@ -170,32 +172,41 @@ def _seams(cracks):
     return tuple(by_shape), [None if None in group else tuple(group) for group in parts], fronts
 
 
-def solid_sector(model, cracks, cache=True):
-    """`Panel` of a sector with `cracks`, loaded by the hats times all modes."""
+def _parts(damage):
+    """Cracks of a tooth, and what has broken off: a `MissingTooth`, a `Chip`, or None."""
+    cracks = tuple(one for one in damage if isinstance(one, Crack))
+    return cracks, next((one for one in damage if one not in cracks), None)
+
+
+def solid_sector(model, damage, cache=True):
+    """`Panel` of a sector with `damage` of its tooth, loaded by the hats times all modes; a missing tooth has none."""
     kept, gear = solved_gears(cache), model.gear
 
     def solve():
+        cracks, broken = _parts(damage)
         shapes, parts, fronts = _seams(cracks)
-        section, tree = _sector(gear, shapes, model.refine, kept)
+        section, tree = _sector(gear, shapes, broken, model.refine, kept)
         bends = [None] * len(fronts)
         for i, crack in enumerate(fronts):
             if crack:
                 bends[i] = bent(gear, section, i, crack)
                 parts[i] = bends[i][1].open()
                 parts[i] = None if parts[i] == ((0.0, gear.b),) else parts[i]
-        return panel3d(model, section, hats(gear), parts=tuple(parts), bends=tuple(bends), tree=tree)
+        knots = hats(loaded_side(gear, damage, damage[0].tooth if damage else 0))
+        loads = slice(0 if isinstance(broken, MissingTooth) else None)
+        return panel3d(model, section, knots[:, loads], parts=tuple(parts), bends=tuple(bends), tree=tree)
 
-    return kept.get(("ritz3d sector", model, cracks), solve)
+    return kept.get(("ritz3d sector", model, damage), solve)
 
 
-def _sector(gear, cracks, refine, cache):
+def _sector(gear, cracks, broken, refine, cache):
     """The section's triangles and their nested halves."""
 
     def solve():
-        made = sector(gear, cracks, refine=refine, sizes=SIZES)
+        made = sector(gear, cracks, broken=broken, refine=refine, sizes=SIZES)
         return made, dissect(made)
 
-    return cache.get(("ritz3d section", gear, cracks, refine), solve)
+    return cache.get(("ritz3d section", gear, cracks, broken, refine), solve)
 
 
 def _missing_along(model, crack, cache):
@@ -205,7 +216,7 @@ def _missing_along(model, crack, cache):
     """
 
     def solve():
-        sections = tuple(_sector(model.gear, own, model.refine, cache)[0] for own in ((whole(crack),), ()))
+        sections = tuple(_sector(model.gear, own, None, model.refine, cache)[0] for own in ((whole(crack),), ()))
         shift, front = bent(model.gear, sections[0], 0, crack)
         x, weight = legendre.leggauss(ALONG)
         parts = np.array(front.open())
@@ -223,22 +234,23 @@ def _missing_along(model, crack, cache):
     return cache.get(("ritz3d missing along", model, crack), solve)
 
 
-def _missing(model, cache, cubic):
+def _missing(model, chip, cache, cubic):
     """`plane_strain.missing` with the section solved for: of all modes along the width.
 
     Near the tip corner the difference in plane strain is that of all modes along the width, to a thousandth.
     """
 
     def solve():
-        return missing(model, _sector(model.gear, (), model.refine, cache)[0], cubic=cubic, cache=cache)
+        sections = (_sector(model.gear, (), own, model.refine, cache)[0] for own in (chip, None))
+        return missing(model, *sections, chip=chip, cubic=cubic, cache=cache)
 
-    return cache.get(("ritz3d missing", model, cubic), solve)
+    return cache.get(("ritz3d missing", model, chip, cubic), solve)
 
 
 def _missing_at_cracks(model, cracks, cache):
     """`plane_strain.missing_at_cracks` with the sections solved for: of the even mode along the width."""
 
     def solve():
-        return missing_at_cracks(model, tuple(_sector(model.gear, own, model.refine, cache)[0] for own in (cracks, ())))
+        return missing_at_cracks(model, tuple(_sector(model.gear, own, None, model.refine, cache)[0] for own in (cracks, ())))
 
     return cache.get(("ritz3d missing at cracks", model, cracks), solve)

@@ -9,7 +9,7 @@ from .beam import FOUNDATIONS, Components, body_ratio, load_angle, sainsot, sain
 from .integrals import HEALTHY, beam_parts
 
 GAUSS = leggauss(32)
-DEFAULTS = {"contact": "published", "root": "prism"}  # of `gearfe.flexibility.energy.closed.plain_sum`
+DEFAULTS = {"contact": "herringbone_article", "root": "prism"}  # of `gearfe.flexibility.energy.closed.plain_sum`
 ROOTS, FEET = ("prism", "base"), ("root", "base")
 
 

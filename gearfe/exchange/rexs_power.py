@@ -1,0 +1,130 @@
+"""Torques and speeds of a REXS model: what the file states of its loads, spread over shafts, meshes and planetary stages."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from .rexs_file import Component, Model
+
+COUPLED = ("coupling", "switchable_coupling")
+KNOWN = 1e-9  # part of a unit vector that may lie in the null space
+
+
+class Mesh(NamedTuple):
+    """A mesh: both gears, their base radii [mm], and how many equal ones share the force. A ring has a negative radius."""
+
+    name: str
+    gears: tuple[int, int]
+    radii: tuple[float, float]
+    planets: int = 1
+    carrier: int | None = None  # component that carries the planets of this mesh
+
+
+class Power:
+    """Bodies of a model that turn together, and the balance of their torques."""
+
+    def __init__(self, model: Model, load_case: int):
+        self.model = model
+        case = model.cases[load_case - 1] if model.cases else {}
+        self.values = {one.id: one.values | case.get(one.id, {}) for one in model.components.values()}
+        self.body = {one.id: one.id for one in model.components.values()}
+        for relation in model.relations:
+            refs = relation.refs
+            if relation.type == "assembly" and {"assembly", "part"} <= refs.keys():
+                whole, part = model.components[refs["assembly"]], model.components[refs["part"]]
+                if whole.type == "shaft" or (whole.type == "planet_carrier" and part.type == "side_plate"):
+                    self._join(whole.id, part.id)
+            elif relation.type == "side" and model.components.get(refs.get("assembly", -1), Component(0, "", "")).type in COUPLED:
+                if {"inner_part", "outer_part"} <= refs.keys():
+                    self._join(refs["inner_part"], refs["outer_part"])
+            elif relation.type in ("planet_carrier_shaft", "planet_pin") and {"planetary_stage", "shaft"} <= refs.keys():
+                self._join_carrier(relation)
+
+    def _join_carrier(self, relation):
+        for part in self.model.related("assembly", "assembly", relation.refs["planetary_stage"], "part"):
+            if part.type == "planet_carrier":
+                self._join(part.id, relation.refs["shaft"])
+
+    def _root(self, one):
+        while self.body[one] != one:
+            one = self.body[one]
+        return one
+
+    def _join(self, one, other):
+        self.body[self._root(one)] = self._root(other)
+
+    def _number(self, component, name, unit):
+        value, given = self.values[component].get(name, (None, "none"))
+        right = isinstance(value, (int, float)) and not isinstance(value, bool) and given in (unit, "none")
+        return float(value) if right and math.isfinite(value) else None
+
+    def speeds(self) -> dict[int, float]:
+        """Speeds that the file states, by body [rpm]."""
+        out = {}
+        for shaft in self.model.of_type("shaft"):
+            value = self._number(shaft.id, "rotational_speed", "1 / min")
+            if value is not None:
+                out[self._root(shaft.id)] = value
+        return out
+
+    def speed_of(self, gear: int, meshes: list[Mesh]) -> float | None:
+        """Speed of a gear [rpm] through meshes of fixed axes, None if it does not follow."""
+        known = self.speeds()
+        for _ in meshes:
+            for mesh in (mesh for mesh in meshes if mesh.carrier is None):
+                roots, radii = [self._root(one) for one in mesh.gears], mesh.radii
+                for here, there in ((0, 1), (1, 0)):
+                    if roots[here] in known and roots[there] not in known:
+                        known[roots[there]] = -known[roots[here]] * radii[here] / radii[there]
+        return known.get(self._root(gear))
+
+    def forces(self, meshes: list[Mesh]) -> dict[str, float]:
+        """Force of each mesh along its transverse line of action [N], of those that follow from the loads of the file."""
+        bodies = sorted({self._root(one) for mesh in meshes for one in (*mesh.gears, *([mesh.carrier] if mesh.carrier else []))})
+        rows = {body: i for i, body in enumerate(bodies)}
+        columns = [np.zeros(len(rows)) for _ in meshes]
+        for mesh, column in zip(meshes, columns, strict=True):
+            for gear, radius in zip(mesh.gears, mesh.radii, strict=True):
+                column[rows[self._root(gear)]] += mesh.planets * radius
+            if mesh.carrier is not None:
+                column[rows[self._root(mesh.carrier)]] -= mesh.planets * sum(mesh.radii)
+        right = np.zeros(len(rows))
+        free = {body for body in bodies if self._held(body)}
+        for load in self.model.of_type("external_load"):
+            body = self._root(load.id)
+            if body in rows:
+                torque = self._torque(load.id, body)
+                if torque is None:
+                    free.add(body)
+                else:
+                    right[rows[body]] -= 1e3 * torque
+        loaded = {self._root(load.id) for load in self.model.of_type("external_load")}
+        busy = [self._root(one) for mesh in meshes for one in mesh.gears]
+        free |= {body for body in bodies if body not in loaded and busy.count(body) == 1 and not self._planets(body, meshes)}
+        free |= {body for mesh in meshes if mesh.carrier is not None and (body := self._root(mesh.carrier)) not in loaded}
+        matrix = np.array([*columns, *(np.eye(len(rows))[rows[body]] for body in sorted(free))]).T
+        if not right.any():
+            return {}
+        solution, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=1e-12)
+        if np.abs(matrix @ solution - right).max() > KNOWN * np.abs(right).max():
+            return {}  # the stated torques do not balance
+        null = np.linalg.svd(matrix)[2][rank:]
+        return {
+            mesh.name: abs(float(solution[i]))
+            for i, mesh in enumerate(meshes)
+            if not np.any(np.abs(null[:, i]) > KNOWN) and solution[i]
+        }
+
+    def _planets(self, body, meshes):
+        return any(mesh.carrier is not None and body == self._root(gear) for mesh in meshes for gear in mesh.gears)
+
+    def _held(self, body):
+        return any(self._root(casing.id) == body for casing in self.model.of_type("gear_casing"))
+
+    def _torque(self, load, body):
+        """Torque of an external load [N m], None if the file leaves it open."""
+        torque, power = self._number(load, "torque_around_u_axis", "N m"), self._number(load, "power", "kW")
+        if torque is None and power is not None and (speed := self.speeds().get(body)):
+            torque = 1e3 * power / (2 * math.pi * speed / 60)
+        return torque

@@ -1,0 +1,111 @@
+"""Profile shifts and addenda of the gears of a REXS model, where the file leaves them out or has another sign."""
+
+import math
+from typing import Any
+
+from .rexs_file import Component
+from .rexs_gear import GearReader
+
+
+class Shifts:
+    """Rows of gears by name whose shifts and addenda are completed, and pairs as ``(gear, gear, stage)``."""
+
+    def __init__(self, reader: GearReader, rows: dict[str, dict[str, Any]], gears: dict[str, Component], pairs: dict[str, tuple]):
+        self.reader, self.rows, self.gears, self.pairs = reader, rows, gears, pairs
+
+    def _outward(self, name):
+        return -1 if self.gears[name].type == "ring_gear" else 1
+
+    def distance(self, stage, name):
+        """Centre distance of a stage [mm]: stated, or of the positions of both gears; None if neither."""
+        stated = stage.number("center_distance", "mm")
+        if stated is not None:
+            return stated
+        places = [gear.value("support_vector", "mm") for gear in (self.gears[one] for one in self.pairs[name][:2])]
+        if all(isinstance(place, list) and len(place) == 3 for place in places):
+            return math.dist(places[0][1:], places[1][1:])
+        return None
+
+    def settle(self):
+        """Profile shifts: stated, or such that the centre distance has no backlash."""
+        stated = {name: self.reader.shift(self.gears[name], row["m_n_mm"]) for name, row in self.rows.items()}
+        for name, row in self.rows.items():
+            if stated[name] is not None:
+                row["x"] = stated[name]
+        for _ in range(2):
+            for name, (one, two, _stage) in self.pairs.items():
+                sum_x, outward = self._sum(name), self._outward(two)
+                if sum_x is None:
+                    continue
+                if "x" in self.rows[one] and "x" not in self.rows[two]:
+                    self.rows[two]["x"] = round(outward * (sum_x - self.rows[one]["x"]), 9)
+                elif "x" in self.rows[two] and "x" not in self.rows[one]:
+                    self.rows[one]["x"] = round(sum_x - outward * self.rows[two]["x"], 9)
+                else:
+                    continue
+                self.reader.assume(
+                    f"pair {name}: profile shift from the centre distance", "the file states that of one gear only"
+                )
+        for name, row in self.rows.items():
+            if "x" not in row:
+                row["x"] = 0.0
+                self.reader.assume(
+                    f"gear {name}: no profile shift", "the file states none, and no centre distance from which it follows"
+                )
+        self._ring_signs(stated)
+
+    def _ring_signs(self, stated):
+        """A ring's shift may have either sign in a file: take the one with which the centre distance closes."""
+        for name, (one, two, _stage) in self.pairs.items():
+            x, sum_x = self.rows[two]["x"], self._sum(name)
+            if self.gears[two].type != "ring_gear" or not stated.get(two) or sum_x is None:
+                continue
+            wanted = self.rows[one]["x"] - sum_x
+            self.rows[two]["x"] = min((x, -x), key=lambda value: abs(value - wanted))
+            self.reader.assume(f"gear {two}: x = {self.rows[two]['x']:g}", "the sign with which the centre distance closes")
+
+    def _sum(self, name):
+        """Sum of the profile shifts that the centre distance of a pair requires; None if it is not known."""
+        one, two, stage = self.pairs[name]
+        a = self.distance(stage, name)
+        first, second = self.rows[one], self.rows[two]
+        outward = self._outward(two)
+        beta, alpha = (math.radians(first[key]) for key in ("beta_deg", "alpha_n_deg"))
+        alpha_t = math.atan(math.tan(alpha) / math.cos(beta))
+        teeth = first["z"] + outward * second["z"]
+        cosine = abs(teeth) * first["m_n_mm"] / math.cos(beta) / 2 * math.cos(alpha_t) / a if a else 2.0
+        if cosine >= 1:
+            return None
+        alpha_w = math.acos(cosine)
+        return (math.tan(alpha_w) - alpha_w - math.tan(alpha_t) + alpha_t) * teeth / (2 * math.tan(alpha))
+
+    def tips(self):
+        """Addenda of gears without tip diameter: 1, shortened where the mate's root would leave less than 0.25 modules."""
+        for name, row in self.rows.items():
+            if "addendum" in row:
+                continue
+            row["addendum"] = 1.0
+            for pair, (one, two, stage) in self.pairs.items():
+                if name in (one, two):
+                    mate, a = self.rows[two if name == one else one], self.distance(stage, pair)
+                    row["addendum"] = min(row["addendum"], self._room(name, row, mate, one, two, a) if a else 1.0)
+            row["addendum"] = round(row["addendum"], 6)
+            self.reader.assume(
+                f"gear {name}: addendum {row['addendum']:g}",
+                "the file states no tip diameter; ISO 53, profile A, with clearance 0.25",
+            )
+
+    def _room(self, name, row, mate, one, two, a):
+        m_n, signs = (
+            row["m_n_mm"],
+            [self._outward(key) for key in (name, two if name == one else one)],
+        )
+        r, mate_r = (each["z"] * m_n / math.cos(math.radians(row["beta_deg"])) / 2 for each in (row, mate))
+        mate_root = mate_r - (signs[1] * mate["dedendum"] - mate["x"]) * m_n
+        if signs == [1, 1]:
+            tip = a - mate_root - 0.25 * m_n
+        elif signs == [1, -1]:
+            tip = mate_root - a - 0.25 * m_n
+        else:
+            tip = a + mate_root + 0.25 * m_n
+        return signs[0] * ((tip - r) / m_n - row["x"])
