@@ -235,8 +235,9 @@ def test_the_estimate_of_the_root_stress_vanishes_where_stress_is_linear(steel):
     left = np.linalg.det((mesh.p[:, mesh.t[1:]] - mesh.p[:, mesh.t[:1]]).transpose(2, 0, 1)) < 0
     cells = np.where(left, mesh.t[[1, 0, 2, 3]], mesh.t)
     nodes, ten, _ = second_order(mesh.p, cells)
-    middle, errors = np.argmin(np.linalg.norm(nodes - 0.5, axis=0)), []
-    for bent in (nodes[0] * nodes[1], nodes[0] ** 2 * nodes[1]):
+    middle, errors = np.argmin(np.linalg.norm(nodes - [[0.5], [0.5], [0.0]], axis=0)), []
+    askew = nodes[0] + 0.7 * nodes[1] - 0.4 * nodes[2]
+    for bent in (askew**2, askew**3):
         moved = 1e-3 * np.array([bent, nodes[1] * nodes[2], nodes[0]])
         stress = nodal_stress(nodes, ten, moved, steel)
         faces = SimpleNamespace(faces={"fillets 0": middle})
