@@ -262,11 +262,11 @@ BESIDE = {
     "the article says": lambda view: statements(*VIEWS[view]),
 }
 SAID_OF = (
-    "The first column is judged: the ring's angular acceleration, where a broken tooth is missing (`gearfe.MissingTooth`) and the "
-    "meshes have an assumed backlash of 0.1 mm. Where no other pair is on the path of contact, the gears rotate on by up to 136 um "
-    "until tip corners of the neighbours touch. The second is the velocity of sun 2, which S2 shows of its simulation. In the "
-    "third a broken tooth is the crack of 80 %, which keeps most of the mean stiffness over its engagement. In the fourth there is "
-    "no backlash, so that flanks are pulled through that gap"
+    "The first column is judged: the ring's angular acceleration, where a broken tooth is missing (`gearfe.MissingTooth`) and "
+    "the meshes have an assumed backlash of 0.1 mm. Where no other pair is on the path of contact, the gears rotate on by up to "
+    "136 um until tip corners of the neighbours touch. The second is the velocity of sun 2, which S2 shows of its simulation. In "
+    "the third a broken tooth is the crack of 80 %, which keeps most of the mean stiffness over its engagement. In the fourth "
+    "there is no backlash, so that flanks are pulled through that gap"
 )
 
 
