@@ -49,7 +49,7 @@ def about_spectra(law=OWN, channel=FORCE):
 
 
 def about_impacts(law=OWN):
-    """What they say of impacts, of the force of a sun mesh and of the carrier."""
+    """Statements on impacts by the force of a sun mesh and the acceleration of the carrier, and whether they hold."""
     rate, mesh = 1 / scene("planetary_pitting").machine["impact"]["pulse_period_s"], speeds()[2]
     peak = [np.ptp(signal_of("healthy", impact, law=law).values) for impact in (False, True)]
     found = [spectrum_of("healthy", impact, law=law) for impact in (False, True)]
