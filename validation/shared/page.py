@@ -26,7 +26,6 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "map": "How wrong are closed forms, and where may they be used?",
     "assumptions": "What do values that articles leave out do to the stiffness?",
     "speed": "What does each method cost, and how wrong is it?",
-    "needs": "What of its gears does each scene use, and what would all of them cost and change?",
     "dynamics": "Are simulated vibrations integrated correctly?",
     "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
     "two_minutes": "The articles in two minutes: what do they claim, and what is found?",
