@@ -1,6 +1,5 @@
 """Pictures say what they show, and their lines can be told apart without colours."""
 
-
 import numpy as np
 import pytest
 
