@@ -21,8 +21,6 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "outlines": "Is the contact of teeth right, beside whole outlines pressed together?",
     "sample": "Do the error estimates cover, on pairs that nobody chose?",
     "three": "Is the stiffness in three dimensions right?",
-    "sets": "What does a whole planetary set do to the stiffness of its meshes?",
-    "flanks": "Are modified flanks right?",
     "assumptions": "What do values that articles leave out do to the stiffness?",
     "speed": "What does each method cost, and how wrong is it?",
     "dynamics": "Are simulated vibrations integrated correctly?",
