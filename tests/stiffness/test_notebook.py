@@ -62,9 +62,8 @@ def test_jumps_are_drawn_where_pairs_enter_and_leave(pair):
     assert np.abs(np.diff(k)[np.diff(phase) > 0]).max() < 0.1 * np.abs(np.diff(k)).max(), "no slope stands for a jump"
 
 
-def test_machine_and_response_show_what_they_are(curve, pair):
-    scene = gf.load_scene("compound_planetary")
-    machine = gf.build_machine(scene)
+def test_machine_and_response_show_what_they_are():
+    machine = gf.single_mesh(1.0, 1e8, 500.0)
     assert f"{len(machine.dofs)} degrees of freedom" in repr(machine)
     response = gf.simulate(machine, 0.01)
     assert f"{len(response.time)} samples" in repr(response)
