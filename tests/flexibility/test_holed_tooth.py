@@ -77,7 +77,7 @@ def test_stress_of_a_linear_field_is_exact(steel):
 def pressed():
     pair = gf.GearPair(HELICAL, replace(HELICAL, z=27))
     damage = {"pinion": [pit(HELICAL), pit(HELICAL, z=1.2), gf.Crack(level=0.3)]}
-    run = {"phases": [0.5, 0.9], "removal": True, "sizes": COARSE}
+    run = {"phases": [0.5, 0.9], "sizes": COARSE}
     return pair, pressed_tooth(gf.Case(pair, 1500.0, gf.Material(E=207e3, nu=0.3), damage=damage), **run)
 
 
@@ -121,10 +121,7 @@ def test_a_line_far_from_all_triangles_is_refused():
 
 
 def test_holes_and_cracks_weaken(pressed):
-    _, made = pressed
-    assert (made.extra > 0).all()
-    assert (made.extra < 0.02).all()
-    field = tooth_field(made)
+    field = tooth_field(pressed[1])
     assert field.opening > 0
     assert np.isfinite(field.mises).all()
     assert field.root > 0
@@ -177,7 +174,7 @@ def test_halves_are_mirror_images(steel):
     """Pits in the second half of a herringbone pair, turned the other way, do what they do in the first."""
     wide = [replace(gear, b=12.0) for gear in (HELICAL, replace(HELICAL, z=27))]
     pair = gf.GearPair(*wide)
-    run = {"phases": [0.6], "removal": True, "sizes": COARSE, "teeth": 1}
+    run = {"phases": [0.6], "sizes": COARSE, "teeth": 1}
 
     def pressed(pits):
         return pressed_tooth(gf.Case(pair, 2000.0, steel, damage={"pinion": pits}, face="herringbone"), **run)
@@ -185,9 +182,7 @@ def test_halves_are_mirror_images(steel):
     found = [pressed([pit(HELICAL, z=z, angle=a)]) for z, a in ((2.0, 0.5), (10.0, -0.5))]
     assert_allclose(found[0].contact.k, found[1].contact.k, rtol=1e-6)
     assert_allclose(found[0].load, found[1].load, rtol=1e-6)
-    assert_allclose(found[0].extra, found[1].extra, rtol=1e-6)
-    both = pressed([pit(HELICAL, z=z, angle=a) for z, a in ((2.0, 0.5), (10.0, -0.5))])
-    assert_allclose(both.extra, 2 * found[0].extra, rtol=0.1, err_msg="both halves lose material")
+    assert_allclose(*(np.nanmax(np.abs(one.moved)) for one in found), rtol=1e-6)
     with pytest.raises(ValueError, match="both halves"):
         pressed(pit_row(2, 2.0, 9.0, radius=HELICAL.r, axes=(0.5, 0.5), depth=0.2))
 
