@@ -44,4 +44,4 @@ def test_the_programs_of_reading_run(tmp_path, monkeypatch):
     np.savetxt("bare.txt", values, delimiter=",")
     last = program("read_signals").splitlines()[-1]
     found = eval(last, {"gf": gf})
-    assert found.unit == "g" and found.values.size == 64
+    assert (found.unit, found.values.size) == ("g", 64)

@@ -106,11 +106,11 @@ def text(page):
         "",
         f"{scene.source}.",
         "",
-        f"`python -m validation {page}` computes this page and [tables/{page}.csv](tables/{page}.csv). The printed values are the",
-        f"`[[reference]]` rows of `gearfe/scene/scenes/{PAGES[page]}.toml`, and the last statements are those of",
-        "`validation/sources/statements.toml`. The last statements were added after a first run. The scene lists its "
-        f"{len(scene.assumptions)} assumptions",
-        "under `[[assumption]]`, each with its reason and its effect. Verdicts and kinds are defined on [printed.md](printed.md).",
+        f"`python -m validation {page}` computes this page and [tables/{page}.csv](tables/{page}.csv).",
+        f"The printed values are the `[[reference]]` rows of `gearfe/scene/scenes/{PAGES[page]}.toml`.",
+        "The last statements are those of `validation/sources/statements.toml`, which were added after a first run.",
+        f"`gearfe stiffness {PAGES[page]} --assumptions` prints the {len(scene.assumptions)} assumptions of the scene with",
+        "their reasons and effects. Verdicts and kinds are defined on [printed.md](printed.md).",
     ]
     return "\n".join(lines) + "\n"
 
