@@ -97,6 +97,9 @@ def gearbox(scene, stiffness, damage):
         "torques [N m]": dict(train.torques),
         "mass of shafts": "lumped at the stations",
     }
+    if len(train.stages) == 1:  # counter-clockwise as the planets are numbered, for sensors on the ring
+        (name, stage), *_ = train.stages.items()
+        notes["carrier frequency [Hz]"] = _sense(scene, name)[1] * train.speeds[stage.carrier] / (2 * math.pi)
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, _stages(scene), rotors=rotors)
 
 
