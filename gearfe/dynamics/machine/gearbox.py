@@ -15,7 +15,7 @@ from .loads import Load
 from .member import gear_member
 from .planetary import stage_phases
 from .scene_curves import Meshed, scene_machine
-from .shaft_chain import Chain, bearing_springs, chain, lumps, shaft_springs, station
+from .shaft_chain import Chain, bearing_springs, chain, lumps, shaft_springs
 from .springs import Spring
 from .stages import Stage
 from .tables import Machine
@@ -145,7 +145,7 @@ def _stations(scene, chains):
                 thick = 1e-3 * scene.gears[body].b
                 mass, polar = mass + gear.mass, polar + gear.inertia
                 across += gear.inertia / 2 + gear.mass * thick**2 / 12
-            out.append(station(body, (mass, polar + rigid.get(body, 0.0), across), DOFS[run["dofs"]]))
+            out.append(Body(body, mass, polar + rigid.get(body, 0.0), DOFS[run["dofs"]], across))
     return out
 
 
