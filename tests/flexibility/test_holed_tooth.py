@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,8 +18,9 @@ from gearfe.geometry.damage.pit import pit_row
 from gearfe.geometry.mesh.holes import holed_sector
 from gearfe.geometry.tooth.profile import cartesian, fillet_length, flank, root_curve
 from gearfe.strength import holed
-from gearfe.strength.fields import write_vtu
-from gearfe.strength.holed import pressed_tooth, tooth_field
+from gearfe.strength.fields import von_mises, write_vtu
+from gearfe.strength.holed import pressed_tooth, root_error, tooth_field
+from gearfe.strength.render import FINE, STRIP
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 GEAR = gf.Gear(z=18, r_bore=9.0, **RACK)
@@ -220,3 +222,28 @@ def test_the_mesh_is_finer_along_loaded_contact_lines_only(steel):
         far.append(int((away > 2.0).sum()))
     assert near[1] > 3 * near[0]
     assert far[1] < 2 * far[0]
+
+
+def test_the_estimate_of_the_root_stress_vanishes_where_stress_is_linear(steel):
+    """Second-order tets have linear stress exactly; under a cubic displacement they differ where they meet."""
+    mesh = MeshTet().refined(1)
+    left = np.linalg.det((mesh.p[:, mesh.t[1:]] - mesh.p[:, mesh.t[:1]]).transpose(2, 0, 1)) < 0
+    cells = np.where(left, mesh.t[[1, 0, 2, 3]], mesh.t)
+    nodes, ten, _ = second_order(mesh.p, cells)
+    middle, errors = np.argmin(np.linalg.norm(nodes - [[0.5], [0.5], [0.0]], axis=0)), []
+    askew = nodes[0] + 0.7 * nodes[1] - 0.4 * nodes[2]
+    for bent in (askew**2, askew**3):
+        moved = 1e-3 * np.array([bent, nodes[1] * nodes[2], nodes[0]])
+        stress = nodal_stress(nodes, ten, moved, steel)
+        faces = SimpleNamespace(faces={"fillets 0": middle})
+        pressed = SimpleNamespace(sector=faces, nodes=nodes, cells=ten, moved=moved[None], stress=stress[None])
+        errors.append(root_error(pressed, steel) / von_mises(stress).max())
+    assert errors[0] < 1e-10 < 1e-3 < errors[1]
+
+
+@pytest.mark.slow
+def test_the_estimate_of_the_root_stress_covers_a_finer_mesh():
+    case = gf.load_scene("helical_pitting").pair().case("severe")
+    coarse, fine = (pressed_tooth(case, refine=refine, sizes=FINE, strip=STRIP) for refine in (1.0, 1.6))
+    apart = abs(tooth_field(fine).root - tooth_field(coarse).root)
+    assert 0 < apart < root_error(coarse, case.materials[0]) < 0.2 * tooth_field(coarse).root

@@ -59,7 +59,7 @@ def compound(damaged):
     return gf.build_machine(gf.load_scene("compound_planetary"), "crack50" if damaged else None, phases=64, method="ritz")
 
 
-def article(case="severe"):
+def article(case="severe_rows"):
     """The planetary stage of S0 under its impact law, with friction and pulses on the carrier."""
     scene = gf.load_scene("planetary_pitting")
     return gf.build_machine(replace(scene, machine=scene.machine | {"contact": "impact"}), case)
