@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.supports.beam import Section, pieces_between
+from ...core.supports.beam import ShaftPiece, pieces_between
 from ...scene.train import TrainShaft
 from .layout import SPACE, Layout
 from .springs import Spring
@@ -17,7 +17,7 @@ class Chain(NamedTuple):
     shaft: TrainShaft
     places: list[float]
     names: list[str]
-    pieces: list[tuple[float, Section]]
+    pieces: list[tuple[float, ShaftPiece]]
 
     def at(self, place: float) -> str:
         """Name of the station at a position [mm]."""
