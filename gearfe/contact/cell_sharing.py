@@ -20,7 +20,7 @@ SLOW = 0.2  # a change of more than this part of the previous one makes a new fa
 SLOPE = 1e-4  # relative step of the line load for the derivative of the local law
 
 
-class Shared(NamedTuple):
+class SharedLoad(NamedTuple):
     """Forces on the cells, then on the faces [N]; approach [mm]; tangent stiffness d load / d approach [N/mm]."""
 
     force: Floats
@@ -95,7 +95,7 @@ class SharedLines:
             open_ = still
             if not open_:
                 tangents = self._tangents(forces, load, x, local)
-                return [Shared(*values) for values in zip(forces, approaches.tolist(), tangents, strict=True)]
+                return [SharedLoad(*values) for values in zip(forces, approaches.tolist(), tangents, strict=True)]
         raise RuntimeError(f"load sharing along the contact lines did not settle at {load[open_[0]]:g} N")
 
     def _started(self, load):

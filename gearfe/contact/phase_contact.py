@@ -50,7 +50,7 @@ class Carried(NamedTuple):
     off_path: float
 
 
-class Batch(NamedTuple):
+class CellBatch(NamedTuple):
     """Contact problems of some phases, prepared for one force.
 
     `cells` are the cells of each phase. `solved` are the cells that are solved for: one of two equal halves, if `alike`. `lines`
@@ -215,7 +215,7 @@ class PhaseContact:
         return cells_of(*arguments, longer=self.longer, fine=fine, pair_of=self.pair_of)
 
     def _batch(self, cells, bodies):
-        """`Batch` of phases; two halves that are alike are solved once."""
+        """`CellBatch` of phases; two halves that are alike are solved once."""
         cos, halves = math.cos(self.beta_b), bodies(max(int(np.ptp(group.order)) for group in cells))
         double = len(halves) > 1 and self.hubs is None and _same(*halves)
         alike = np.array([double and _alike(group, group.half == 0, ALIKE * self.pair.p_bt) for group in cells])
@@ -234,7 +234,7 @@ class PhaseContact:
         lines = SharedLines(systems, sum(body.kernel for body, _ in halves[0]), self.modulus)
         names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")
         whole = Cells(*(np.concatenate([getattr(group, name) for group in solved]) for name in names))
-        return Batch(cells, solved, alike, lines, whole, yields, halves)
+        return CellBatch(cells, solved, alike, lines, whole, yields, halves)
 
     def _shared(self, batch):
         """`Carried` of the phases of a batch."""

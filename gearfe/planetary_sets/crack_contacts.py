@@ -8,7 +8,7 @@ from scipy.linalg import block_diag
 
 from ..contact.pair_contact import OVERLAP
 from ..geometry.aliases import Floats
-from .cracked import Faces
+from .cracked import CrackOpenings
 from .whole_gear import PLACES
 
 
@@ -16,7 +16,7 @@ class CrackContacts(NamedTuple):
     """All e openings of the cracks at a position under n contact loads.
 
     `more` ``(n, n)`` is the addition of free faces to the flexibility of the contacts. `by_loads` ``(e, n)`` are the openings of
-    free faces under unit loads, `ease` ``(e, e)`` those under unit forces on the faces. `Faces` describes `touch` ``(e,)``.
+    free faces under unit loads, `ease` ``(e, e)`` those under unit forces on the faces. See `CrackOpenings` for `touch` ``(e,)``.
     `ring` are the openings of the ring's cracks.
     """
 
@@ -31,7 +31,9 @@ class CrackContacts(NamedTuple):
         return bool(opened[self.touch].min() < -OVERLAP * np.abs(opened).max())
 
 
-def crack_contacts(cracked: dict[Any, Faces], blocks: list[Any], n: int, lugs: int, *, apart: bool) -> CrackContacts | None:
+def crack_contacts(
+    cracked: dict[Any, CrackOpenings], blocks: list[Any], n: int, lugs: int, *, apart: bool
+) -> CrackContacts | None:
     """`CrackContacts` of the `cracked` gears in the meshes `blocks`; None without cracks.
 
     The last `lugs` of the n loads are those of the ring's lugs. `apart`: each mesh has the cracks of its gears for itself.

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from ..flexibility.energy.ritz.solid import flexibility3d
 from ..flexibility.finite_elements import fe
-from ..flexibility.finite_elements.fe_gear3d import WholeGear, solid_flexibility
+from ..flexibility.finite_elements.fe_gear3d import MeshedGear, solid_flexibility
 from ..flexibility.solved import PROCESS, solved_gears
 from ..geometry.damage.crack import Crack, meshed_path
 from ..geometry.damage.kinds import told
@@ -55,7 +55,7 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
 def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options):
     """Return the `Flexibility3D` of a gear of finite width by finite elements of the whole gear, from the cache if possible.
 
-    `solved_gear` describes `cache`. `options` are those of `finite_elements.fe_gear3d.WholeGear`: neighbours, degree, less,
+    `solved_gear` describes `cache`. `options` are those of `finite_elements.fe_gear3d.MeshedGear`: neighbours, degree, less,
     refine, section, shaft. `tell` gets one line of text before each solve with the gear, the unknowns, the expected seconds and
     memory.
     """
@@ -71,7 +71,7 @@ def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options)
     def solve():
         healthy = solved_solid(gear, material, cache=kept, tell=tell, **options) if damage else None
         keywords = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
-        return solid_flexibility(WholeGear(gear, damage, **options), material, **keywords)
+        return solid_flexibility(MeshedGear(gear, damage, **options), material, **keywords)
 
     return _kept("solid", gear, _solid_case(material, damage, options), solve, kept)
 
@@ -91,7 +91,7 @@ def _solid_case(material, damage, options):
 
 
 def unsolved(gear, material, damage=(), *, cache=True, **options):
-    """`finite_elements.solver.Plan` by key of the solves that `solved_solid` would need now.
+    """`finite_elements.solver.SolveCost` by key of the solves that `solved_solid` would need now.
 
     RuntimeError, with the numbers, if one of them does not fit into memory.
     """
@@ -100,7 +100,7 @@ def unsolved(gear, material, damage=(), *, cache=True, **options):
     if key in kept or (kept is PROCESS and (file := _file(key)[0]) and file.exists()):
         return {}
     before = unsolved(gear, material, cache=kept, **options) if damage else {}
-    return before | {key: WholeGear(gear, damage, **options).plan()}
+    return before | {key: MeshedGear(gear, damage, **options).plan()}
 
 
 def _file(key):

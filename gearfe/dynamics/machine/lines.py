@@ -102,7 +102,7 @@ def _shafts(scene):
 
 
 def _stages(machine: Machine, alone: bool) -> Iterator[Line]:
-    """Lines of the stages; `alone`: the gears of pairs have no shafts with separate lines."""
+    """Return the lines of the stages; `alone`: the machine has no shafts, so that gears of pairs have shaft frequencies."""
     for stage in machine.stages:
         part, z = f"stage {stage.name}", round(stage.mesh / stage.turning)
         driver = stage.driver[0] if len(stage.driver) == 1 else stage.driver[0].rstrip("LR")

@@ -1,7 +1,7 @@
 """The fast path: one step of `gearfe.dynamics.motion.propagator` after the other, in scalar arithmetic that numba compiles.
 
 A step in which a mesh opens or closes, or a load bends, is halved up to `motion.propagator.LEVELS` times about it; under a
-law of contact that is not linear so is one whose estimate (`motion.propagator.Plan.told`) is above what is allowed: flanks
+law of contact that is not linear so is one whose estimate (`motion.propagator.RunMatrices.told`) is above what is allowed: flanks
 that come into contact are short, steep ramps of such a machine's coefficients, and all the rest of it is smooth.
 
 Loads that do not change are taken out of the stages and added at the end.
@@ -26,7 +26,7 @@ class Matrices(NamedTuple):
 
     `PF` is ``P F`` below F: the contribution of the forces to z, and to x at the end of the step. `add` and `push` are the
     contributions of constant loads to y and w, and to z and P z, level after level in one row. `W` is described in
-    `gearfe.dynamics.motion.propagator.Plan.told`.
+    `gearfe.dynamics.motion.propagator.RunMatrices.told`.
     """
 
     E: np.ndarray

@@ -25,7 +25,7 @@ SECONDS = {True: (5e-5, 1.9e-10, 5e-9), False: (5e-5, 3.2e-10, 6e-9)}
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class SolveCost:
     """Expected cost of a factorisation.
 
     `unknowns` is their number, `memory` the expected and `free` the available memory [bytes], `seconds` the expected time.
@@ -80,7 +80,7 @@ def plan(unknowns, *, columns=0, free=None):
     first, second, each = SECONDS[ordered]
     numbers = n ** (4 / 3)
     seconds = first * n + second * n**2 + each * columns * numbers
-    cost = Plan(n, matrix * n + factored * numbers + 24.0 * columns * n, seconds, free)
+    cost = SolveCost(n, matrix * n + factored * numbers + 24.0 * columns * n, seconds, free)
     if cost.memory > free:
         raise RuntimeError(
             f"{n} unknowns need about {cost.memory / 1e9:.3g} GB and {float(f'{cost.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "
