@@ -231,6 +231,16 @@ def main(argv=None):
         "gears of the scene; .dxf, .svg: outline of a gear; .step: its solid",
         required=True,
     )
+    add = verb("crack", exchange.grow, "compute crack growth: the path, and the life by Paris's law")
+    add("scene SCENE", "a built-in scene or a .toml file")
+    add("--pair NAME", "pair of the scene (default: its first)")
+    add("--case NAME", "damage case with the initial crack, the only one", required=True)
+    add("--step MM", "growth increment [mm] (default: 0.1 modules)", type=float)
+    add("--steps N", "maximum number of steps (default: 60)", default=60)
+    add("--paris", "constants C [mm/(MPa sqrt(mm))^m] and m of Paris's law", nargs=2, metavar=("C", "M"), type=float)
+    add("--threshold K", "threshold range of K [MPa sqrt(mm)] (default: 0)", default=0.0)
+    add("--refine X", "finite-element resolution: divides the edge lengths (default: 1)", default=1.0)
+    add("--plot FILE", "draw the grown crack in its tooth: .png, .svg or .pdf")
     add = verb("check", tools.check, "summarise a scene file and show which method each case would use")
     add("scene SCENE", "a .toml file, or a built-in scene (see 'gearfe scenes')")
     add("--picture FILE", "draw a pair with its damage to scale: .png, .svg or .pdf")
