@@ -14,8 +14,8 @@ from ..shared import page
 from ..shared.kept_rows import kept, stored
 from ..shared.stages import article, compound, helical, machines, spur, stage
 
-DURATION = 0.01  # of the comparison; the fast path is timed over one second
-RATES = (2e3, 5e3, 1e4, 2.5e4, 5e4)  # of the output [Hz]; the last holds all others
+DURATION = 0.01  # duration of the comparison; the fast path is timed over one second
+RATES = (2e3, 5e3, 1e4, 2.5e4, 5e4)  # rates of the output [Hz]; the last holds all others
 
 HOW = """
 `python -m validation dynamics` makes this page from `tables/dynamics_*.jsonl` and computes them.

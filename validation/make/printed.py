@@ -35,7 +35,7 @@ VERDICTS = """
 ## All printed numbers
 """  # noqa: E501
 CSV = TABLES / "printed.csv"
-PAGES = {  # where the rows of a scene's references stand
+PAGES = {  # pages with the rows of a scene's references
     "planetary_pitting": "planetary_pitting",
     "compound_planetary": "compound_planetary",
     "helical_pitting": "helical_pitting",
@@ -97,7 +97,7 @@ def _found(place):
     return value if isinstance(value, list) else [value]
 
 
-DEFAULTS = {"x": 0.0, "angle_deg": 45.0}  # of a scene's tables, where the file leaves them out
+DEFAULTS = {"x": 0.0, "angle_deg": 45.0}  # values of keys that a scene file omits
 
 
 def counts(rows, article):

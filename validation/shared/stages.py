@@ -66,7 +66,7 @@ def stiff(made):
 
 
 def shaken(made, amplitude=40e-6):
-    """The machine with play and errors that open every mesh."""
+    """The machine with backlash and errors that open every mesh."""
     meshes = [
         replace(m, backlash=1e-4, zeta=0.05, error=((amplitude, 5 * m.frequency, 1.3 * i),)) for i, m in enumerate(made.meshes)
     ]
