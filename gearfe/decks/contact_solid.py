@@ -26,7 +26,7 @@ from ..geometry.tooth.side import on_fillet
 from .contact_deck import ContactDeck
 from .pressed import pressing, write_lines
 from .pressing import Pressing
-from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, placed, surface_lines
+from .solid_deck import DeckBody, element_lines, holed_part, node_lines, part_of, placed, surface_lines
 
 # edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "far": 3.0, "crack": 0.3, "crack tip": 0.08}
@@ -47,7 +47,7 @@ class SolidDeck(ContactDeck):
     `parts` pinion and wheel; `slaves` by number of the tooth pair: gear (0 or 1) and faces ``(corners, k)``.
     """
 
-    parts: tuple[Part, Part]
+    parts: tuple[DeckBody, DeckBody]
     slaves: dict[int, tuple[int, NDArray[np.int64]]]
 
     def carried(self, path: StrPath) -> dict[int, tuple[float, float]]:
@@ -219,7 +219,7 @@ def _strip(gear, found, number, k, tooth, low, per_width):
     return line, 1.5 * found.width[k], found.width[k] / per_width
 
 
-def _holed(gear: Gear, damage, strips, how) -> Part:
+def _holed(gear: Gear, damage, strips, how) -> DeckBody:
     """A whole gear in tets, its pits cut out or not, if it has some; its damaged tooth is tooth 0 while it is meshed."""
     cracks, holes = split(damage)
     if len(cracks) > 1 or not all(crack.through for crack in cracks):

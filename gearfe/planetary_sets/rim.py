@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from ..geometry.aliases import Floats
 from ..geometry.tooth.profile import turned
-from .cracked import CrackedTooth, Faces, faces_of
+from .cracked import CrackedTooth, CrackOpenings, faces_of
 from .pads import Pads, among, by_teeth, pads_on
 from .rim_supports import RimBed, RimSupports, check_support
 from .whole_gear import PLACES, WholeGear, between_teeth, motion
@@ -94,8 +94,8 @@ def _springs(bed):
     return np.array([bed.radial, bed.tangential])
 
 
-def ring_faces(rim: Rim, support: "str | RimBed | RimSupports", teeth: tuple[CrackedTooth, ...]) -> Faces:
-    """`Faces` of a ring's cracks on its support; lugs are left to the contact problem."""
+def ring_faces(rim: Rim, support: "str | RimBed | RimSupports", teeth: tuple[CrackedTooth, ...]) -> CrackOpenings:
+    """`CrackOpenings` of a ring's cracks on its support; lugs are left to the contact problem."""
     whole = rim.whole
     held = faces_of(whole, teeth, whole.held_inverse())
     if isinstance(support, RimBed):

@@ -12,7 +12,7 @@ from ..core.files import check_output
 from ..core.record import ranged
 from ..core.steps import steps
 from ..figures.set_plot import draw_set
-from ..flexibility.finite_elements.elasticity import Body
+from ..flexibility.finite_elements.elasticity import HeldSection
 from ..geometry.aliases import Floats
 from ..geometry.mesh.outline import stations
 from ..geometry.tooth.profile import cartesian, turned
@@ -105,7 +105,7 @@ def _shapes(case, bodies, sides):
     mesh = made.mesh
     facets = mesh.boundaries["held"]
     mesh = mesh.with_boundaries({"held": facets[np.isin(mesh.nvertices + facets, held)]})
-    solver = Body(mesh, material)
+    solver = HeldSection(mesh, material)
     out = []
     for (*_, angle, _), there in zip(bodies, sides, strict=True):
         u = solver.solve(sum(_load(gear, made, rolls, side) for side in there))[:, 0]

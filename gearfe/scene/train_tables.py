@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..core.material import Material
-from ..core.supports.beam import Section
+from ..core.supports.beam import ShaftPiece
 from ..geometry.tooth.gear import Gear
 from .power_flow import Link, speeds_of, torques_of
 from .reading import check_known
@@ -83,7 +83,7 @@ def _shaft(file, name, row, rows, materials):
         if row[key] is not None and len(row[key]) != count:
             raise ValueError(f"{file} [{where}] {key} = {row[key]}: give {count} numbers, one for each section or gear")
     made = TrainShaft(
-        tuple(Section(*section) for section in zip(*columns, strict=True)),
+        tuple(ShaftPiece(*section) for section in zip(*columns, strict=True)),
         materials[row["material"]],
         dict(zip(row["gears"], row["gears_at_mm"], strict=True)),
         dict(zip(row["gears"], map(math.radians, row["gears_turned_deg"] or [0.0] * len(row["gears"])), strict=True)),

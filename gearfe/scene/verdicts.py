@@ -18,7 +18,7 @@ SHOWN_AS = {"N/m": "N/um"}  # units of the sources that are shown in ours
 COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
 
 
-class Row(NamedTuple):
+class PrintedRow(NamedTuple):
     """A printed value and ours.
 
     `difference` is taken from the corrected value if there is one: in percent, or in the unit where the tolerance is. `kind`
@@ -54,7 +54,7 @@ def judge(reference, found, run=""):
         difference = _rounded(math.nan if value is None else _difference(reference, value, row.target))
         numbers = [_rounded(x) for x in (row.value, corrected, math.nan if value is None else value)]
         kind = STATEMENT if reference.unit == STATEMENT and row.kind == "model" else row.kind
-        out.append(Row(reference.id, row.case, row.pair or "", *numbers, difference, word, kind, run))
+        out.append(PrintedRow(reference.id, row.case, row.pair or "", *numbers, difference, word, kind, run))
     return out
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..core.files import written
 from ..core.steps import steps
-from ..flexibility.finite_elements.elasticity import Body
+from ..flexibility.finite_elements.elasticity import HeldSection
 from ..flexibility.finite_elements.fe import EDGES, flank_load
 from ..flexibility.finite_elements.one_tooth import edge_lengths
 from ..flexibility.hertz import contact_modulus, half_width
@@ -143,7 +143,7 @@ def _loaded_gear(gear, material, loads, refine, cracks, broken):
         rolls[tooth] = stations(end, edge["flank"], patches=[(arcs[tooth] - 1.5 * a, arcs[tooth] + 1.5 * a, a / 6)])
     sizes = {"fillet_size": edge["fillet"] / 2, "size": edge["near"] / 2, "far_size": edge["far"]}
     mesh = section(gear, rolls, **sizes, cracks=cracks, broken=broken)
-    body = Body(mesh.mesh, material)
+    body = HeldSection(mesh.mesh, material)
     force = 0.0
     for tooth, (_, line_load, a) in loads.items():
 

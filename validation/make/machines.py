@@ -83,7 +83,7 @@ def text(page):
     """The page as Markdown, from its committed rows and its scene."""
     scene, home = gf.load_scene(PAGES[page]), module(page)
     rows = table_rows.read(page)
-    claim, find, decide = OPENINGS[page](Found(rows))
+    claim, find, decide = OPENINGS[page](CommittedRows(rows))
     rows = decided(page, rows)
     drawn = f"{drawn_jointly(page)}" if joint.rows_of(page) else ""
     lines = [
@@ -138,11 +138,11 @@ def drawn_jointly(page):
     return f"if all of them are drawn at random together, {joint.sentence(page)} {below}."
 
 
-class Found:
+class CommittedRows:
     """Committed rows by id, case and pair."""
 
     def __init__(self, rows):
-        """Sort `verdicts.Row` objects."""
+        """Sort `verdicts.PrintedRow` objects."""
         self.rows = {row[:3]: row for row in rows}
 
     def ours(self, name, case, pair=""):

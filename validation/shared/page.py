@@ -23,7 +23,6 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "three": "Is the stiffness in three dimensions right?",
     "assumptions": "What do values that articles leave out do to the stiffness?",
     "speed": "What does each method cost, and how wrong is it?",
-    "dynamics": "Are simulated vibrations integrated correctly?",
     "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
     "two_minutes": "The articles in two minutes: what do they claim, and what is found?",
     "printed": "What became of every number that the articles print?",

@@ -168,7 +168,7 @@ def points_between(ends, cuts, count):
 
 
 def planned(mesh, patches, more=0):
-    """`finite_elements.solver.Plan` of the influence between patches, with `more` right-hand sides beside theirs."""
+    """`finite_elements.solver.SolveCost` of the influence between patches, with `more` right-hand sides beside theirs."""
     free = mesh.points.shape[1] - np.unique(mesh.held).size
     return plan(3 * free, columns=math.prod(patches.shape) + more)
 
@@ -194,7 +194,7 @@ def influence(mesh, material, patches, *, tell=None, zones=None):
     material : Material
     patches : Patches
     tell : callable, optional
-        Gets the `finite_elements.solver.Plan`, with the expected seconds and memory, before anything costly starts.
+        Gets the `finite_elements.solver.SolveCost`, with the expected seconds and memory, before anything costly starts.
     zones : ndarray, shape (3 nodes, k), optional
         Nodal forces that push apart zones of crack faces, of `gearfe.flexibility.finite_elements.crack_zones.zone_forces`.
 

@@ -24,7 +24,7 @@ SECONDS = {True: (5e-5, 1.9e-10, 5e-9), False: (5e-5, 3.2e-10, 6e-9)}  # of n, n
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class SolveCost:
     """What a factorisation will take.
 
     `unknowns` is their number, `memory` the expected and `free` the available memory [bytes], `seconds` the expected time.
@@ -79,7 +79,7 @@ def plan(unknowns, *, columns=0, free=None):
     first, second, each = SECONDS[ordered]
     numbers = n ** (4 / 3)
     seconds = first * n + second * n**2 + each * columns * numbers
-    cost = Plan(n, matrix * n + factored * numbers + 24.0 * columns * n, seconds, free)
+    cost = SolveCost(n, matrix * n + factored * numbers + 24.0 * columns * n, seconds, free)
     if cost.memory > free:
         raise RuntimeError(
             f"{n} unknowns need about {cost.memory / 1e9:.3g} GB and {float(f'{cost.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "
