@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import MeshTri2
 
-from ..damage.crack import meshed_path, start_arc
+from ..damage.crack import check_sector, meshed_path, start_arc
 from ..tooth.gear import Gear
 from ..tooth.profile import cartesian, lengths
 from .outline import along, doubled, half, spaced, stations
@@ -52,6 +52,8 @@ def periodic_sector(gear, cracks=(), *, refine=1.0):
         if crack.side in lines:
             raise ValueError(f"two cracks on the {crack.side} side of tooth {crack.tooth}: give one to each side of a tooth")
         corners = meshed_path(gear, crack)
+        if crack.path is not None:
+            check_sector(gear, crack)
         length = lengths(corners)[-1]
         tip = min(CRACK_EDGE * FILLET * unit, length / 5)
         marks[crack.side] = start_arc(gear, crack), min(FILLET * unit, length / 4)

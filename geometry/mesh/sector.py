@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from ..damage.crack import meshed_path, start_arc
+from ..damage.crack import check_sector, meshed_path, start_arc
 from ..damage.missing import MissingTooth
 from ..damage.seam import open_seam
 from ..tooth.gear import shortened
@@ -263,6 +263,8 @@ def _chains(gear, size, cracks, loop):
     rim = (loop[..., None] + (np.roll(loop, -1, axis=1) - loop)[..., None] * part).reshape(2, -1)
     for crack in cracks:
         corners = meshed_path(gear, crack)
+        if crack.path is not None:
+            check_sector(gear, crack)
         start = int(np.argmin(np.hypot(*(loop - corners[:, :1]))))
         legs = np.hypot(*np.diff(corners, axis=1))
         ends = np.concatenate([[0.0], np.cumsum(legs)])

@@ -230,6 +230,16 @@ def main(argv=None):
         "gears of the scene; .dxf, .svg: outline of a gear; .step: its solid",
         required=True,
     )
+    add = verb("crack", exchange.grow, "growth of a crack of a scene: its path, and its life by Paris's law")
+    add("scene SCENE", "a built-in scene or a .toml file")
+    add("--pair NAME", "pair of the scene (default: its first)")
+    add("--case NAME", "case of damage with one crack, where the growth starts", required=True)
+    add("--step MM", "growth in each step [mm] (default: 0.1 modules)", type=float)
+    add("--steps N", "at most so many steps (default: 60)", default=60)
+    add("--paris", "constants C [mm/(MPa sqrt(mm))^m] and m of Paris's law", nargs=2, metavar=("C", "M"), type=float)
+    add("--threshold K", "least range of K that grows a crack [MPa sqrt(mm)] (default: 0)", default=0.0)
+    add("--refine X", "finite-element resolution: divides the edge lengths (default: 1)", default=1.0)
+    add("--plot FILE", "draw the grown crack in its tooth: .png, .svg or .pdf")
     add = verb("check", tools.check, "say in words what a scene holds, and how each case would be solved")
     add("scene SCENE", "a .toml file, or a built-in scene (see 'gearfe scenes')")
     add("--picture FILE", "draw a pair with its damage to scale: .png, .svg or .pdf")
