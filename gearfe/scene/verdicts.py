@@ -1,6 +1,7 @@
 """Printed results of the sources of a scene compared with ours: rows with verdicts, and their table."""
 
 import math
+import re
 from typing import NamedTuple
 
 from ..core.table import Table
@@ -159,7 +160,7 @@ def text(references, rows, beside=None):
     table = Table(("quantity", "case", "kind", "printed", "gearfe", "difference", "verdict"), cells).markdown()
     return "\n".join(
         [
-            f"{counts(rows)}.",
+            *(f"- {part}." for part in re.split("; (?:apart from them )?", counts(rows))),
             "",
             table,
             "",

@@ -26,6 +26,7 @@ def loaded(tmp_path, text):
     return gf.load_scene(path)
 
 
+@pytest.mark.slow
 def test_health_and_damage(tmp_path, monkeypatch):
     """The page has the set as it is solved alone, healthy and cracked; of cracked gears there is no picture, and why is said."""
     monkeypatch.setattr(page, "_pictures", lambda found: [])
