@@ -61,8 +61,8 @@ The constants of the estimates (`wide_curves`) are published ones or 2. What the
 page had 11 other pairs at a resolution of 0.7. Three of them had once been missed and were kept for that reason. `ritz3d` covered
 11 and `fe3d` 10 of them. The pair that `fe3d` missed was 14/15, 22 degrees, with a crack of 49 % (0.670 %, estimated 0.651 %).
 That cells at the corners of undercut mates begin where these touch was seen on one pair of that page (0.62 % off, estimated
-0.36 %). A still earlier sample, before cells of modules below 2 mm were made shorter, covered 25 of 29 pairs. Pits are lost contact
-in all three solutions. Estimates of the pitted rows on file do not contain the material that pits lack.
+0.36 %). A still earlier sample, before cells of modules below 2 mm were made shorter, covered 25 of 29 pairs. Pits are lost
+contact in all three solutions. Estimates of the pitted rows on file do not contain the material that pits lack.
 
 Shared by all three: the contact lines, the half-space and the eight hats across a flank, whose error no estimate sees;
 CalculiX judges it in [three.md](three.md).
