@@ -38,7 +38,7 @@ class FlankForm:
         self.kinks = tuple(
             (start, amount / abs(end - start) if exponent == 1 else 0.0)
             for start, end, amount, exponent in self.reliefs
-            if exponent < 2 or exponent == 2 and _bends(gear, start, 2 * amount / (end - start) ** 2)
+            if exponent < 2 or (exponent == 2 and _bends(gear, start, 2 * amount / (end - start) ** 2))
         )
         self.edge = TipEdge(gear, flank.tip_rounding, flank.tip_chamfer) if flank.tip_rounding or flank.tip_chamfer else None
         if self.edge is not None:
