@@ -14,7 +14,7 @@ LONGEST = 200  # characters of a title
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class PageField:
     """One field of the page.
 
     Attributes
@@ -86,7 +86,7 @@ def key_at(place: str) -> Key:
     return scene_schema()[kind].keys[rest[-1]]
 
 
-def _fields() -> Iterator[Field]:
+def _fields() -> Iterator[PageField]:
     text = (resources.files("gearfe.app") / "fields.toml").read_text(encoding="utf-8")
     for group, fields in tomllib.loads(text).items():
         for name, stated in fields.items():
@@ -104,17 +104,17 @@ def _field(name, group, *, start, at=(), label="", choices=(), absent=None, **mo
     """Field of a row of ``fields.toml``."""
     places = (at,) if isinstance(at, str) else tuple(at)
     if not places:
-        return Field(name, group, label, "", start, choices=tuple(choices), **more)
+        return PageField(name, group, label, "", start, choices=tuple(choices), **more)
     key = key_at(places[0])
     label = label or key.label
     label += f" (0: {key.optional})" if absent == 0 and key.optional else ""
     unit = {"um": "µm", "deg": "°"}.get(key.unit, SPELLED.get(key.unit, key.unit.replace("Nm/", "N m/").replace("um", "µm")))
     if key.type in ("string", "gear", "boolean"):
         given = tuple(choices) or key.choices
-        return Field(
+        return PageField(
             name, group, label, "", start, places, choices=given if absent is None else (absent, *given), absent=absent, **more
         )
-    return Field(name, group, label, unit, start, places, *key.usual, whole=key.type == "integer", absent=absent, **more)
+    return PageField(name, group, label, unit, start, places, *key.usual, whole=key.type == "integer", absent=absent, **more)
 
 
 FIELDS = tuple(_fields())
@@ -132,7 +132,7 @@ def form() -> str:
 def checked_state(given: Any) -> dict[str, Any]:
     """A state of the page with what was left out filled in.
 
-    Values by name of a `Field`, ``title``, ``source`` and ``assumption``, a list of such tables of a scene. ValueError if
+    Values by name of a `PageField`, ``title``, ``source`` and ``assumption``, a list of such tables of a scene. ValueError if
     something is unknown, of another kind, or beyond the bounds of its field.
     """
     if not isinstance(given, dict):

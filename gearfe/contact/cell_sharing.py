@@ -20,7 +20,7 @@ SLOW = 0.2  # a step that changes more than this part of the step before makes a
 SLOPE = 1e-4  # relative change of the line load by which the slope of the local law is found
 
 
-class Shared(NamedTuple):
+class SharedLoad(NamedTuple):
     """Forces on the cells, then on the faces [N]; approach [mm]; tangent stiffness d load / d approach [N/mm]."""
 
     force: Floats
@@ -96,7 +96,7 @@ class SharedLines:
             open_ = still
             if not open_:
                 tangents = self._tangents(forces, load, x, local)
-                return [Shared(*values) for values in zip(forces, approaches.tolist(), tangents, strict=True)]
+                return [SharedLoad(*values) for values in zip(forces, approaches.tolist(), tangents, strict=True)]
         raise RuntimeError(f"load sharing along the contact lines did not settle at {load[open_[0]]:g} N")
 
     def _started(self, load):

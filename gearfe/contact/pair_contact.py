@@ -18,7 +18,7 @@ from ..geometry.tooth.profile import arc_at
 from .broken_teeth import with_broken
 from .directions import leaning
 from .kinks import kink_rows, near_kink
-from .rows import LEAST, RESOLVED, SHARP, Row, Wanted, corner_rows, finest_hat
+from .rows import LEAST, RESOLVED, SHARP, HatRow, Wanted, corner_rows, finest_hat
 from .sharing import LineContacts, line_contact, line_contacts, stacked
 from .sliding import bounded, left_out, sliding
 from .thinned import thinned_teeth
@@ -47,7 +47,7 @@ def _within(contacts, reach):
 
 def _aligned(rows):
     """Unknowns of rows of hats of different lengths, as of `_single`, nan as gap after each."""
-    out = {name: stacked([getattr(row, name) for row in rows]) for name in Row._fields}
+    out = {name: stacked([getattr(row, name) for row in rows]) for name in HatRow._fields}
     for k, row in enumerate(rows):
         size = row.gap.size
         out["roll_1"][k, size:], out["roll_2"][k, size:], out["gap"][k, size:] = row.roll_1[-1], row.roll_2[-1], np.nan
@@ -248,7 +248,7 @@ class PairContact:
         return corner, zone, np.where(apart, width, 0.0)
 
     def rows(self, wanted):
-        """`Row` of each `gearfe.contact.rows.Wanted`; those that do not depend on the load are kept."""
+        """`HatRow` of each `gearfe.contact.rows.Wanted`; those that do not depend on the load are kept."""
         new = [request for request in dict.fromkeys(wanted) if request not in self._rows]
         made = dict(zip(new, corner_rows(self, new), strict=True))
         self._rows |= {request: row for request, row in made.items() if not request.width}

@@ -49,7 +49,7 @@ class Carried(NamedTuple):
     off_path: float
 
 
-class Batch(NamedTuple):
+class CellBatch(NamedTuple):
     """Cells of some phases made ready for the force.
 
     `cells` of each phase; `solved` the part of them that is solved for (of halves that are alike one), `alike` whether that is a
@@ -218,7 +218,7 @@ class PhaseContact:
         return cells_of(*arguments, longer=self.longer, fine=fine, pair_of=self.pair_of)
 
     def _batch(self, cells, bodies):
-        """`Batch` of phases; two halves that are alike are solved once."""
+        """`CellBatch` of phases; two halves that are alike are solved once."""
         cos, halves = math.cos(self.beta_b), bodies(max(int(np.ptp(group.order)) for group in cells))
         double = len(halves) > 1 and self.hubs is None and _same(*halves)
         alike = np.array([double and _alike(group, group.half == 0, ALIKE * self.pair.p_bt) for group in cells])
@@ -237,7 +237,7 @@ class PhaseContact:
         lines = SharedLines(systems, sum(body.kernel for body, _ in halves[0]), self.modulus)
         names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")
         whole = Cells(*(np.concatenate([getattr(group, name) for group in solved]) for name in names))
-        return Batch(cells, solved, alike, lines, whole, yields, halves)
+        return CellBatch(cells, solved, alike, lines, whole, yields, halves)
 
     def _shared(self, batch):
         """`Carried` of the phases of a batch."""

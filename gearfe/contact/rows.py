@@ -28,7 +28,7 @@ LEAST = 7.5e-6  # length of the shortest hats, while a half width spans `RESOLVE
 WITHIN = 4.0  # hats over a half width where Hertz's contact shares a row with a corner
 
 
-class Row(NamedTuple):
+class HatRow(NamedTuple):
     """Hats of one row: places on both gears [mm], gaps [mm] and the displacement between them [mm per N/mm].
 
     `turn_1`, `turn_2`: torque of the force along the line of action that a hat carries, over that of the same force on the path.
@@ -113,7 +113,7 @@ def _knots(tops, ends):
 
 
 def corner_rows(contact, wanted):
-    """`Row` of each `Wanted` of a `gearfe.contact.pair_contact.PairContact`."""
+    """`HatRow` of each `Wanted` of a `gearfe.contact.pair_contact.PairContact`."""
     out = [None] * len(wanted)
     for host in (0, 1):
         numbers = [k for k, request in enumerate(wanted) if _host(request) == host]
@@ -190,7 +190,7 @@ def hat_rows(contact, at, knots, kernels, host, tips):
         reach = np.array([tips[k] for k in rows])[:, :, None]
         fillet = reach[:, 0] & on_fillet(pair.gear_2, roll_2) | reach[:, 1] & on_fillet(pair.gear_1, roll_1)
         for k, *row in zip(rows, roll_1, roll_2, gaps, influence, *turns, fillet, strict=True):
-            made[k] = Row(*row)
+            made[k] = HatRow(*row)
     return made
 
 

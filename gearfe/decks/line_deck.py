@@ -15,14 +15,14 @@ from ..geometry.damage.crack import Crack
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import arc_at
 from .pressed import read_rows, write_lines
-from .solid_deck import Part, element_lines, node_lines, part_of, set_lines
+from .solid_deck import DeckBody, element_lines, node_lines, part_of, set_lines
 
 
 @dataclass(frozen=True, slots=True)
 class LineDeck:
     """What is needed to read the result: the meshed gear, the nodal forces ``(nodes, 3)`` and the sum of the pressure [N]."""
 
-    part: Part
+    part: DeckBody
     load: Floats
     force: float
 

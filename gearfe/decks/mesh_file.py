@@ -15,7 +15,7 @@ from ..geometry.mesh.holes import holed_sector
 from ..geometry.mesh.solid import solid
 from ..geometry.tooth.gear import Gear
 from .pressed import write_lines
-from .solid_deck import Part, cell_lines, holed_part, node_lines, part_of, set_lines
+from .solid_deck import DeckBody, cell_lines, holed_part, node_lines, part_of, set_lines
 
 KINDS = {"tetrahedra": "tetra10", "hexahedra": "hexahedron20"}
 LAYER = 1.0  # height of the layers of hexahedra [m_n]
@@ -29,7 +29,7 @@ def export_mesh(
     cells: str | None = None,
     teeth: int | None = None,
     refine: float = 1.0,
-) -> Part:
+) -> DeckBody:
     """Write the mesh of a gear with its cracks opened and its pits cut out, without any load.
 
     Hexahedra (20 nodes): the whole gear, cracks of the whole width or a part of it, missing teeth and chipped tips, no pits.

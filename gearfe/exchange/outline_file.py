@@ -15,11 +15,12 @@ from ..geometry.damage.kinds import Damage
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.mesh.outline import outline, stations
 from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.profile import turned
 
 FINE = 0.02  # of a module: largest distance of two points; a chord leaves the curve by less than 0.1 um per mm of module
 
 
-class Lines(NamedTuple):
+class OutlineLines(NamedTuple):
     """Closed outline of the teeth and open lines of damage, ``(2, n)`` [mm], and the radius of the held edge."""
 
     teeth: Floats
@@ -27,7 +28,7 @@ class Lines(NamedTuple):
     held: float
 
 
-def outline_lines(gear: Gear, damage: Sequence[Damage] = ()) -> Lines:
+def outline_lines(gear: Gear, damage: Sequence[Damage] = ()) -> OutlineLines:
     """Lines of a gear in its transverse section at z = 0; tooth 0 points along y.
 
     Missing teeth and chips are not in the outline. Cracks, and pits and spalls over their height, are lines of their own.
@@ -38,10 +39,8 @@ def outline_lines(gear: Gear, damage: Sequence[Damage] = ()) -> Lines:
     lines = []
     for one in damage:
         if one not in broken:
-            turn = 2 * np.pi * one.tooth / gear.z
-            cos, sin = np.cos(turn), np.sin(turn)
-            lines.append(np.array([[cos, sin], [-sin, cos]]) @ one.outline(gear))
-    return Lines(teeth, lines, gear.held)
+            lines.append(turned(one.outline(gear), 2 * np.pi * one.tooth / gear.z))
+    return OutlineLines(teeth, lines, gear.held)
 
 
 def write_outline(path: StrPath, gear: Gear, damage: Sequence[Damage] = ()) -> None:

@@ -10,14 +10,14 @@ from ..geometry.aliases import Floats
 from .balance import Problem, balance
 from .case import PlanetaryCase
 from .crack_contacts import crack_contacts
-from .cracked import Faces
-from .meshes import Met
+from .cracked import CrackOpenings
+from .meshes import PlacedContacts
 from .rim import Rim
 from .standing import Standing, directions
 from .whole_gear import PLACES, carry
 
 
-class Bodies(NamedTuple):
+class BodyTables(NamedTuple):
     """How gears yield between meshes [mm per N/mm]: tables of `gearfe.planetary_sets.whole_gear`.
 
     `sun` and `ring` ``(z, PLACES, z, PLACES)`` between right flanks, `planet` ``(z, PLACES, PLACES)`` of a right flank by loads
@@ -29,7 +29,7 @@ class Bodies(NamedTuple):
     planet: Floats
     ring: Floats
     rim: Rim
-    faces: dict[Any, Faces]
+    faces: dict[Any, CrackOpenings]
 
 
 class Position(NamedTuple):
@@ -60,7 +60,7 @@ class Position(NamedTuple):
 class _Block(NamedTuple):
     """One mesh: its contacts in the problem, teeth of pinion and wheel by slot, and what carries loads there to the contacts."""
 
-    met: Met
+    met: PlacedContacts
     inner: int
     planet: int
     at: slice
@@ -71,7 +71,7 @@ class _Block(NamedTuple):
 class Set:
     """A case with its flexibilities; solves any of its positions. `coupled` as of `planetary_stiffness`."""
 
-    def __init__(self, case: PlanetaryCase, bodies: Bodies, stand: Standing, coupled: bool) -> None:
+    def __init__(self, case: PlanetaryCase, bodies: BodyTables, stand: Standing, coupled: bool) -> None:
         self.case, self.bodies, self.stand, self.coupled = case, bodies, stand, coupled
         angles = np.array(case.planet_angles)
         outer, inner = directions(case.gears, angles)
@@ -83,7 +83,7 @@ class Set:
         self._modulus = [contact_modulus(case.material[k : k + 2]) for k in (0, 1)]
         self._spread: dict[int, Any] = {}
 
-    def solved(self, i: int, met: list[list[Met]]) -> Position:
+    def solved(self, i: int, met: list[list[PlacedContacts]]) -> Position:
         """`Position` i from what its meshes are."""
         blocks = self._blocks(met)
         problem = self._problem(blocks)

@@ -8,7 +8,7 @@ from scipy.linalg import block_diag
 
 from ..contact.pair_contact import OVERLAP
 from ..geometry.aliases import Floats
-from .cracked import Faces
+from .cracked import CrackOpenings
 from .whole_gear import PLACES
 
 
@@ -16,8 +16,8 @@ class CrackContacts(NamedTuple):
     """All e openings of the cracks at a position under n contact loads.
 
     `more` ``(n, n)`` is what free faces add to the flexibility of the contacts, `by_loads` ``(e, n)`` are the openings of free
-    faces under unit loads, and `ease` ``(e, e)`` those under unit forces on the faces. `touch` ``(e,)`` as of `Faces`; `ring`:
-    those of the ring.
+    faces under unit loads, and `ease` ``(e, e)`` those under unit forces on the faces. `touch` ``(e,)`` as of `CrackOpenings`;
+    `ring`: those of the ring.
     """
 
     more: Floats
@@ -31,7 +31,9 @@ class CrackContacts(NamedTuple):
         return bool(opened[self.touch].min() < -OVERLAP * np.abs(opened).max())
 
 
-def crack_contacts(cracked: dict[Any, Faces], blocks: list[Any], n: int, lugs: int, *, apart: bool) -> CrackContacts | None:
+def crack_contacts(
+    cracked: dict[Any, CrackOpenings], blocks: list[Any], n: int, lugs: int, *, apart: bool
+) -> CrackContacts | None:
     """`CrackContacts` of the `cracked` gears in the meshes `blocks`; None without cracks.
 
     The last `lugs` of the n loads are those of the ring's lugs. `apart`: each mesh has the cracks of its gears for itself.

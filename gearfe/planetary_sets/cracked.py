@@ -37,7 +37,7 @@ class CrackedTooth(NamedTuple):
     touch: NDArray[np.bool_]
 
 
-class Faces(NamedTuple):
+class CrackOpenings(NamedTuple):
     """All e openings of a gear's cracks, as what holds its edge lets them: S, Q of the module.
 
     `stiffness` S ``(e, e)``; `by_teeth` Q ``(e, z, 2 PLACES)``; `touch` ``(e,)`` which of them cannot be negative; `edge`
@@ -97,8 +97,8 @@ def _opened(matrix, load, normal, order):
     return rest[:n, n : n + 2 * m], rest[n:, n : n + 2 * m], rest[n:, n + 2 * m :]
 
 
-def faces_of(whole: WholeGear, teeth: tuple[CrackedTooth, ...], inverse: NDArray[np.complex128]) -> Faces:
-    """`Faces` from the inverses ``(h, n, n)`` of the healthy gear's harmonics, as what holds its edge makes them."""
+def faces_of(whole: WholeGear, teeth: tuple[CrackedTooth, ...], inverse: NDArray[np.complex128]) -> CrackOpenings:
+    """`CrackOpenings` from the inverses ``(h, n, n)`` of the healthy gear's harmonics, as what holds its edge makes them."""
     z, n = whole.gear.z, whole.stiffness.shape[1]
     ends = np.cumsum([0, *(one.faces.shape[0] for one in teeth)])
     parts = [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
@@ -115,4 +115,4 @@ def faces_of(whole: WholeGear, teeth: tuple[CrackedTooth, ...], inverse: NDArray
         by_teeth[at, one.tooth] += one.loads
     touch = np.concatenate([one.touch for one in teeth])
     none = np.zeros((0, ends[-1])), np.zeros((ends[-1], z, PLACES))
-    return Faces((stiffness + stiffness.T) / 2, by_teeth, touch, moved[:, : whole.edge], *none)
+    return CrackOpenings((stiffness + stiffness.T) / 2, by_teeth, touch, moved[:, : whole.edge], *none)

@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.aliases import Floats
-from .cracked import CrackedTooth, Faces, faces_of
+from ..geometry.tooth.profile import turned
+from .cracked import CrackedTooth, CrackOpenings, faces_of
 from .pads import Pads, among, by_teeth, pads_on
 from .rim_supports import RimBed, RimSupports, check_support
 from .whole_gear import PLACES, WholeGear, between_teeth, motion
@@ -93,8 +94,8 @@ def _springs(bed):
     return np.array([bed.radial, bed.tangential])
 
 
-def ring_faces(rim: Rim, support: "str | RimBed | RimSupports", teeth: tuple[CrackedTooth, ...]) -> Faces:
-    """`Faces` of a ring's cracks on its support; lugs are left to the contact problem."""
+def ring_faces(rim: Rim, support: "str | RimBed | RimSupports", teeth: tuple[CrackedTooth, ...]) -> CrackOpenings:
+    """`CrackOpenings` of a ring's cracks on its support; lugs are left to the contact problem."""
     whole = rim.whole
     held = faces_of(whole, teeth, whole.held_inverse())
     if isinstance(support, RimBed):
@@ -118,8 +119,7 @@ def _moves(gear):
     """How loads ``(3, z, PLACES)`` move with the whole ring: along x, along y, by a clockwise turn."""
     x, y, turn = motion(gear)[:, :PLACES]
     angle = 2 * math.pi / gear.z * np.arange(gear.z)[:, None]
-    cos, sin = np.cos(angle), np.sin(angle)
-    return np.array([cos * x + sin * y, cos * y - sin * x, np.broadcast_to(turn, (gear.z, PLACES))])
+    return turned((x, y, np.broadcast_to(turn, (gear.z, PLACES))), angle)
 
 
 def rim_moved(rim: Rim, loads: Floats, tractions: NDArray, whole: NDArray) -> Floats:

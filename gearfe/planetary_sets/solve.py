@@ -12,7 +12,7 @@ from ..core.steps import steps
 from ..core.supports.held import REFUSE
 from ..flexibility.solved import solved_gears
 from ..stiffness.limits import FURTHEST
-from .assembly import Bodies, Position, Set
+from .assembly import BodyTables, Position, Set
 from .case import PlanetaryCase
 from .cracked import cracked_teeth, faces_of
 from .curves import SetCurves
@@ -149,8 +149,8 @@ def _position(of: Set, meshes: Meshes, i: int) -> Position:
     return position
 
 
-def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) -> Bodies:
-    """`Bodies` of a case."""
+def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) -> BodyTables:
+    """`BodyTables` of a case."""
     gears, kept = (case.gears.sun, case.gears.planet, case.ring_gear), solved_gears(cache)
     sun, planet, ring = (whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True))
     key = ring.gear, case.material[2], case.ring, case.width, refine
@@ -164,4 +164,4 @@ def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) ->
         teeth = kept.get(("cracks", whole.gear, whole.material, *of[1:]), partial(cracked_teeth, *of))
         faces[name] = ring_faces(rim, case.ring, teeth) if name == "ring" else faces_of(whole, teeth, whole.held_inverse())
     across = planet.held()[:, :PLACES, PLACES:]
-    return Bodies(between_teeth(sun.held()), across, between_teeth(ring.held()), rim, faces)
+    return BodyTables(between_teeth(sun.held()), across, between_teeth(ring.held()), rim, faces)

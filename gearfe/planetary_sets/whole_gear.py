@@ -25,7 +25,7 @@ from scipy.sparse import coo_array
 
 from ..core.material import Material
 from ..flexibility.condense import condense
-from ..flexibility.finite_elements.elasticity import GAUSS_3, LEAF, Body, edge_nodes, edge_shapes
+from ..flexibility.finite_elements.elasticity import GAUSS_3, LEAF, HeldSection, edge_nodes, edge_shapes
 from ..flexibility.solved import solved_gears
 from ..geometry.aliases import Floats
 from ..geometry.mesh.periodic_sector import periodic_sector
@@ -140,7 +140,7 @@ def sector_stiffness(sector, material, faces=None):
     Unknowns are polar components of the nodes of the left side, of the held edge between its corners, of the right side. With
     pairs of nodes ``(2, m)`` that face each other in its cracks, x and y of these follow: m of one face, m of the other.
     """
-    body = Body(sector.mesh, material, held="rim")  # its own outline: only its elements are used
+    body = HeldSection(sector.mesh, material, held="rim")  # its own outline: only its elements are used
     local, dofs = body.local()
     left, right, edge = (np.array(_chain(sector.mesh, way)) for way in (sector.left, sector.right, sector.held))
     ends = np.concatenate([left, edge[1:-1], right])  # both sides begin with a corner of the held edge

@@ -47,7 +47,7 @@ class ErrorMap:
     `columns` maps names to arrays: the sampled numbers, ``load`` [MPa], ``crack`` (0: healthy), and for each zone ``k`` of
     ritz [N/(mm um)] and the error of each formulation as ``"textbook single"`` and so on (nan: the formulation or the zone
     does not exist there). ``extended mean`` is what contact beyond the path of contact adds to the mean k. `formulations`
-    are their names; `gearfe.figures.stiffness_plots.plot_map` draws them.
+    are their names.
     """
 
     columns: dict[str, Floats]

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from ..flexibility.energy.ritz.solid import flexibility3d
 from ..flexibility.finite_elements import fe
-from ..flexibility.finite_elements.fe_gear3d import WholeGear, solid_flexibility
+from ..flexibility.finite_elements.fe_gear3d import MeshedGear, solid_flexibility
 from ..flexibility.solved import PROCESS, solved_gears
 from ..geometry.damage.crack import Crack, meshed_path
 from ..geometry.damage.kinds import told
@@ -54,8 +54,8 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
 def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options):
     """`Flexibility3D` of a gear of finite width by finite elements of all of it, from the cache if it is there.
 
-    `cache` as of `solved_gear`, `options` as of `finite_elements.fe_gear3d.WholeGear`: neighbours, degree, less, refine, section,
-    shaft. `tell` gets one line of text before each solve: which gear, the unknowns, the expected seconds and memory.
+    `cache` as of `solved_gear`, `options` as of `finite_elements.fe_gear3d.MeshedGear`: neighbours, degree, less, refine, section
+    and shaft. `tell` gets one line of text before each solve: which gear, the unknowns, the expected seconds and memory.
     """
     kept = solved_gears(cache)
     for one in damage:
@@ -69,7 +69,7 @@ def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options)
     def solve():
         healthy = solved_solid(gear, material, cache=kept, tell=tell, **options) if damage else None
         keywords = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
-        return solid_flexibility(WholeGear(gear, damage, **options), material, **keywords)
+        return solid_flexibility(MeshedGear(gear, damage, **options), material, **keywords)
 
     return _kept("solid", gear, _solid_case(material, damage, options), solve, kept)
 
@@ -89,7 +89,7 @@ def _solid_case(material, damage, options):
 
 
 def unsolved(gear, material, damage=(), *, cache=True, **options):
-    """`finite_elements.solver.Plan` by key of what `solved_solid` would solve now, without what is kept or on the disk.
+    """`finite_elements.solver.SolveCost` by key of what `solved_solid` would solve now, without what is kept or on the disk.
 
     RuntimeError, with the numbers, if one of them does not fit into memory.
     """
@@ -98,7 +98,7 @@ def unsolved(gear, material, damage=(), *, cache=True, **options):
     if key in kept or (kept is PROCESS and (file := _file(key)[0]) and file.exists()):
         return {}
     before = unsolved(gear, material, cache=kept, **options) if damage else {}
-    return before | {key: WholeGear(gear, damage, **options).plan()}
+    return before | {key: MeshedGear(gear, damage, **options).plan()}
 
 
 def _file(key):

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..core.files import written
 from ..core.steps import steps
-from ..flexibility.finite_elements.elasticity import Body
+from ..flexibility.finite_elements.elasticity import HeldSection
 from ..flexibility.finite_elements.fe import EDGES, flank_load
 from ..flexibility.finite_elements.one_tooth import edge_lengths
 from ..flexibility.hertz import contact_modulus, half_width
@@ -44,8 +44,13 @@ class Field:
     @property
     def mises(self):
         """Von Mises stress ``(n,)`` [MPa]."""
-        xx, yy, zz, xy, yz, xz = self.stress
-        return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2))
+        return von_mises(self.stress)
+
+
+def von_mises(stress):
+    """Von Mises stress ``(n,)`` of stress ``(6, n)`` (xx, yy, zz, xy, yz, xz)."""
+    xx, yy, zz, xy, yz, xz = stress
+    return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2))
 
 
 def write_vtu(path, fields):
@@ -138,7 +143,7 @@ def _loaded_gear(gear, material, loads, refine, cracks, broken):
         rolls[tooth] = stations(end, edge["flank"], patches=[(arcs[tooth] - 1.5 * a, arcs[tooth] + 1.5 * a, a / 6)])
     sizes = {"fillet_size": edge["fillet"] / 2, "size": edge["near"] / 2, "far_size": edge["far"]}
     mesh = section(gear, rolls, **sizes, cracks=cracks, broken=broken)
-    body = Body(mesh.mesh, material)
+    body = HeldSection(mesh.mesh, material)
     force = 0.0
     for tooth, (_, line_load, a) in loads.items():
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..core.files import suffix_of, written
-from ..decks.solid_deck import FACES, Part
+from ..decks.solid_deck import FACES, DeckBody
 from ..figures.look import GEARS
 from .window import plotting
 
@@ -16,7 +16,7 @@ NEAR = 1.6  # half height of a close-up against the size of what is shown
 
 
 def render_mesh(
-    parts: Part | Sequence[Part],
+    parts: DeckBody | Sequence[DeckBody],
     path: str | os.PathLike[str],
     *,
     close_up: str | None = None,
@@ -46,7 +46,7 @@ def render_mesh(
     """
     if suffix_of(path, "picture") != ".png":
         raise ValueError(f"{path}: meshes are drawn as .png only; give a name that ends in it")
-    parts = (parts,) if isinstance(parts, Part) else tuple(parts)
+    parts = (parts,) if isinstance(parts, DeckBody) else tuple(parts)
     focus, view, half = _camera(parts, close_up)
     with plotting(window_size=list(size)) as plotter:
         plotter.set_background("white")

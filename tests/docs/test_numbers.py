@@ -67,7 +67,14 @@ def middle(pair, count=64):
 
 
 @pytest.mark.parametrize(
-    "page", ["index.md", pytest.param("howto/design.md", marks=pytest.mark.slow), "howto/scene.md", "life_of_a_number.md"]
+    "page",
+    [
+        "index.md",
+        pytest.param("howto/design.md", marks=pytest.mark.slow),
+        "howto/scene.md",
+        "howto/gearbox.md",
+        "life_of_a_number.md",
+    ],
 )
 def test_programs_print_what_the_page_shows(page):
     text = (SITE / page).read_text(encoding="utf-8")
@@ -81,6 +88,7 @@ def test_programs_print_what_the_page_shows(page):
         says(page, "{}".join(parts[::2]), *map(float, parts[1::2]))
 
 
+@pytest.mark.slow
 def test_start(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     gf.new_scene("my.toml")

@@ -6,7 +6,7 @@ from gearfe.scene import verdicts
 from ..shared import herringbone_page, table_rows
 from ..shared.openings import OPENINGS
 from ..shared.page import MACHINES, write
-from .machines import ARTICLES, Found, decided
+from .machines import ARTICLES, CommittedRows, decided
 
 STIFFNESS = (
     "that its formulas for the mesh stiffness are within 3 % of finite elements",
@@ -19,7 +19,7 @@ def rows():
     out = []
     for page in MACHINES:
         found = table_rows.read(page)
-        claim, _, decides = OPENINGS[page](Found(found))
+        claim, _, decides = OPENINGS[page](CommittedRows(found))
         out.append([ARTICLES[page], claim, _told(decided(page, found)), decides, f"[{page}]({page}.md)"])
     claim, decides = STIFFNESS
     out.append(["article S4, stiffness", claim, _told(herringbone_page.judged()[1]), decides, "[herringbone](herringbone.md)"])

@@ -38,7 +38,7 @@ RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class OutsiderCase:
     """A pair in contact: `damage` as of `mesh_stiffness`, the phase, load [N/mm], meshes as options of `write_contact_inp`.
 
     `pits` as of `write_contact_inp`: a case with pits has two controls in the same mesh.
@@ -82,11 +82,11 @@ def cases():
     """Cases in contact, by name, in order of importance."""
     crack, part = gf.Crack(level=0.5), gf.Crack(level=0.5, width=(0.0, 3.0))
     return {
-        SHOWN: Case(pair_of(15.0), meshes=(*STRIP, ALL_FINER)),
-        "helical, crack 50 %": Case(pair_of(15.0), damage={"pinion": [crack]}),
-        "helical, crack 50 % over half the width": Case(pair_of(15.0), damage={"pinion": [part]}),
-        "spur, healthy": Case(pair_of(0.0)),
-        "ring, healthy": Case(ring_pair()),
+        SHOWN: OutsiderCase(pair_of(15.0), meshes=(*STRIP, ALL_FINER)),
+        "helical, crack 50 %": OutsiderCase(pair_of(15.0), damage={"pinion": [crack]}),
+        "helical, crack 50 % over half the width": OutsiderCase(pair_of(15.0), damage={"pinion": [part]}),
+        "spur, healthy": OutsiderCase(pair_of(0.0)),
+        "ring, healthy": OutsiderCase(ring_pair()),
         **_with_control("helical, two pits", pits(), RIMS),
     }
 
@@ -94,7 +94,7 @@ def cases():
 def _with_control(name, damage, meshes):
     """A case with pits cut out; in the same mesh with contact lost there but the material left; and with nothing of them."""
     options = {"damage": {"pinion": damage}, "meshes": meshes, "load": PITTED}
-    return {f"{name} {end}": Case(pair_of(15.0), pits=kind, **options) for kind, end in PITS.items()}
+    return {f"{name} {end}": OutsiderCase(pair_of(15.0), pits=kind, **options) for kind, end in PITS.items()}
 
 
 def lines():

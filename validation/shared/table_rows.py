@@ -3,7 +3,7 @@
 import csv
 
 from gearfe.core.files import written
-from gearfe.scene.verdicts import COLUMNS, Row
+from gearfe.scene.verdicts import COLUMNS, PrintedRow
 
 from .places import TABLES
 
@@ -40,7 +40,7 @@ def write(name, rows):
 def read(name):
     """Rows of a page with verdicts."""
     numbers = COLUMNS[3:7]
-    return [Row(**{c: float(r[c]) if c in numbers else r[c] for c in COLUMNS}) for r in rows_of(TABLES / f"{name}.csv")]
+    return [PrintedRow(**{c: float(r[c]) if c in numbers else r[c] for c in COLUMNS}) for r in rows_of(TABLES / f"{name}.csv")]
 
 
 def write_runs(name, runs):

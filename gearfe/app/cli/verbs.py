@@ -207,7 +207,8 @@ def render(arguments):
         with working("stress"):
             told = render_stress(case, arguments.output, refine=arguments.refine, phase=arguments.phase, title=title)
         print(told["text"])
-        print(f"largest von Mises stress on the fillets {told['root']:.0f} MPa")
+        error = f", estimated error {told['root_error']:.0f} MPa" if "root_error" in told else ""
+        print(f"largest von Mises stress on the fillets {told['root']:.0f} MPa{error}")
         for line in () if arguments.case else told_root(case):
             print(line)
     print(f"written: {arguments.output}")
@@ -240,7 +241,7 @@ def mesh(arguments):
 
 def dynamics(arguments):
     """``gearfe dynamics``."""
-    from ...comparison.vibration import analysis, responses
+    from ...comparison.vibration import analysis, gears_table, responses
     from ...dynamics.machine.modes import natural_frequencies
     from ...scene.load import load_scene
 
@@ -272,6 +273,8 @@ def dynamics(arguments):
             print(f"  {case}: {stats['chaotic']}")
     report = analysis(found, arguments.channel)
     _print_analysis(report, arguments, scene.name)
+    if gears := gears_table(found):
+        print(f"gears, from the average over their turns\n\n{gears}\n")
     if report.too_short:
         print(f"longer: --duration {report.resolving:.3g}")
     _print_assumptions(scene, arguments.assumptions, scene.assumptions)

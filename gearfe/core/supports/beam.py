@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 
-class Section(NamedTuple):
+class ShaftPiece(NamedTuple):
     """A part of a shaft: its length, outside diameter and bore [mm]."""
 
     length: float

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...geometry.aliases import Floats
 from ..checks import is_number
-from .beam import Section, bending_flexibility, twist_flexibility
+from .beam import ShaftPiece, bending_flexibility, twist_flexibility
 from .hub import Hub
 from .support import Support
 
@@ -176,7 +176,7 @@ def _segment(i, row):
         raise ValueError(
             f"shaft: part {i + 1} is {row!r}, but a part needs a length > 0 and a bore smaller than its diameter [mm]"
         )
-    return Section(length, diameter, bore)
+    return ShaftPiece(length, diameter, bore)
 
 
 def _two(name, values, what, least=-math.inf):

@@ -30,9 +30,9 @@ from numpy.typing import NDArray
 from ...core.record import ranged
 from ...flexibility.hertz import contact_modulus
 from .laws.impact import Hertz, Impact
-from .laws.spring import Spring
+from .laws.spring import SpringLaw
 
-LAWS: tuple[Any, ...] = (Spring, Hertz, Impact)
+LAWS: tuple[Any, ...] = (SpringLaw, Hertz, Impact)
 
 
 class Law(Protocol):
@@ -58,7 +58,7 @@ class Law(Protocol):
 def law_of(power: float, full: float) -> Law:
     """Law of an exponent and of the depth from which the damping is full [m]."""
     if power == 1 and full == 0:
-        return Spring()
+        return SpringLaw()
     return Hertz(full) if power == 1.5 else Impact(power, full)
 
 

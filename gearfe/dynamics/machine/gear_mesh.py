@@ -22,7 +22,7 @@ from ...stiffness.curve import StiffnessCurve
 from .contact_law import LAWS, Law, law_of
 from .force_law import ForceLaw
 from .mesh_curves import ALIKE, Change, Stiffness, changed, cycle_table, tooth_phase_of
-from .phase_table import Table, table
+from .phase_table import PhaseTable, table
 from .secant import Secant
 from .tooth_damage import ToothDamage
 
@@ -89,11 +89,11 @@ class GearMesh:
     push: bool = False
     backlash: float = 0.0
     film: float = 1.0
-    friction: tuple[tuple[Floats, Table], ...] = ()
+    friction: tuple[tuple[Floats, PhaseTable], ...] = ()
     gap: float = 0.0
     law: Law | None = None
     contact: Law = field(init=False)
-    cycle: Table = field(init=False)
+    cycle: PhaseTable = field(init=False)
     changes: tuple[Change, ...] = field(init=False)
     shifts: tuple[Change, ...] = field(init=False)
     secants: tuple[Secant, ...] = field(init=False)
@@ -145,7 +145,7 @@ class GearMesh:
         if power != 1 and isinstance(self.stiffness, ForceLaw):
             raise ValueError(f"mesh {self.name}: power = {power} besides a law of force, which says itself how force rises")
 
-    def _changes(self, healthy: Table, name: str = "k") -> tuple[Change, ...]:
+    def _changes(self, healthy: PhaseTable, name: str = "k") -> tuple[Change, ...]:
         """Differences of `name` by damage from a `healthy` cycle; of curves with `every` also from the damage before them."""
         out: list[Change] = []
         for hurt in self.damage:
@@ -221,7 +221,7 @@ class GearMesh:
             out, rate = out + amplitude * np.sin(turn), rate + amplitude * omega * np.cos(turn)
         if self.shifts:
             out = out + changed(self.shifts, phase)
-            rate = rate + self.frequency * changed(self.shifts, phase, Table.slope)
+            rate = rate + self.frequency * changed(self.shifts, phase, PhaseTable.slope)
         return out, rate
 
     def cycles(self) -> int:

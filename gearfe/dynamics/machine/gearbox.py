@@ -7,6 +7,7 @@ its shaft, the planets rotate, their axes follow the carrier rigidly, and the ri
 import math
 from typing import Any
 
+from ...scene.schema import scene_schema
 from ...scene.train import Train, TrainStage
 from .gear_mesh import GearMesh
 from .layout import SPACE, Body, Layout
@@ -14,7 +15,7 @@ from .loads import Load
 from .member import gear_member
 from .planetary import stage_phases
 from .scene_curves import Meshed, scene_machine
-from .shaft_chain import Chain, bearing_springs, chain, lumps, shaft_springs, station
+from .shaft_chain import Chain, bearing_springs, chain, lumps, shaft_springs
 from .springs import Spring
 from .stages import Stage
 from .tables import Machine
@@ -46,8 +47,15 @@ def planets_of(stage: TrainStage) -> list[str]:
 
 
 def check_bearings(scene):
-    """Raise ValueError if a shaft that moves in six directions has no bearing stiffness, or if helical gears push it freely."""
+    """Raise ValueError if a shaft in six directions lacks bearings, or for keys of ``[machine]`` that a gearbox does not use."""
+    if scene.machine["n_planets"] != scene_schema()["machine"].keys["n_planets"].default:
+        raise ValueError(f"{scene.name}.toml [machine] n_planets: the planets of a gearbox are those of [stage.NAME] n_planets")
     if scene.machine["dofs"] == "torsion":
+        for key in ("runout_um", "misplaced_um", "misplaced_y_um"):
+            if scene.machine[key]:
+                raise ValueError(
+                    f"{scene.name}.toml [machine] {key}: stations without translations neglect it; give dofs = 'six'"
+                )
         return
     for name, shaft in scene.train.shafts.items():
         where = f"{scene.name}.toml [shaft.{name}]"
@@ -89,6 +97,9 @@ def gearbox(scene, stiffness, damage):
         "torques [N m]": dict(train.torques),
         "mass of shafts": "lumped at the stations",
     }
+    if len(train.stages) == 1:  # counter-clockwise as the planets are numbered, for sensors on the ring
+        (name, stage), *_ = train.stages.items()
+        notes["carrier frequency [Hz]"] = _sense(scene, name)[1] * train.speeds[stage.carrier] / (2 * math.pi)
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, _stages(scene), rotors=rotors)
 
 
@@ -134,7 +145,7 @@ def _stations(scene, chains):
                 thick = 1e-3 * scene.gears[body].b
                 mass, polar = mass + gear.mass, polar + gear.inertia
                 across += gear.inertia / 2 + gear.mass * thick**2 / 12
-            out.append(station(body, (mass, polar + rigid.get(body, 0.0), across), DOFS[run["dofs"]]))
+            out.append(Body(body, mass, polar + rigid.get(body, 0.0), DOFS[run["dofs"]], across))
     return out
 
 

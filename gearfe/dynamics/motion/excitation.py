@@ -11,7 +11,7 @@ from ..machine.contact_law import depth
 class Flat(NamedTuple):
     """The tables of a machine as arrays for compiled functions.
 
-    `cells` holds the coefficients of all `machine.phase_table.Table` one after the other. Records of them are `cycle` (of each
+    `cells` holds the coefficients of all `machine.phase_table.PhaseTable` one after the other. Records are `cycle` (of each
     mesh), `change` (of each damaged tooth), `shift` (of each tooth off its place) and `rub` (of each friction row). Their fields
     are `mesh`, cycles until it returns (`period`), the first of them, `start` and `width` of the table, `place` and number
     (`size`) of its cells. Records of the sinusoids of all errors are `error`: `mesh`, `amplitude`, angular frequency `omega`,

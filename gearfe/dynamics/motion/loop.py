@@ -1,7 +1,7 @@
 """The fast path: one step of `gearfe.dynamics.motion.propagator` after the other, in scalar arithmetic that numba compiles.
 
 A step in which a mesh opens or closes, or a load bends, is halved up to `motion.propagator.LEVELS` times about it; under a
-law of contact that is not linear so is one whose estimate (`motion.propagator.Plan.told`) is above what is allowed: flanks
+law of contact that is not linear so is one whose estimate (`motion.propagator.RunMatrices.told`) is above what is allowed: flanks
 that come into contact are short, steep ramps of such a machine's coefficients, and all the rest of it is smooth.
 
 Loads that do not change are taken out of the stages and added at the end.
@@ -25,7 +25,7 @@ class Matrices(NamedTuple):
     """Those of the step by level, columns one after the other so that the loops over them run along memory.
 
     `PF` is ``P F`` below F: what the forces add to z, and to x at the end of the step. `add` and `push` are what constant loads
-    add to y and w, and to z and P z, level after level in one row. `W` is of `gearfe.dynamics.motion.propagator.Plan.told`.
+    add to y and w, and to z and P z, level after level in one row. `W` is of `motion.propagator.RunMatrices.told`.
     """
 
     E: np.ndarray

@@ -35,7 +35,7 @@ CONDITION = 1e8  # of the eigenvectors: above it the linear part is kept full
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class RunMatrices:
     """What a run needs: coordinates, linear part, and the matrices of each level of step.
 
     Attributes
@@ -88,7 +88,7 @@ def is_affine(machine):
 
 
 def plan(machine, h, x=None, adapt=False):
-    """`Plan` of a machine for steps of `h` seconds, its laws taken at compressions `x` [m]; `adapt`: with what is `allowed`."""
+    """`RunMatrices` of a machine for steps of `h` seconds, its laws at compressions `x` [m]; `adapt`: with what is `allowed`."""
     K, C, k, c = machine.linear(x)
     squared, modes = modal(K - machine.frame, machine.mass)
     n = len(squared)
@@ -118,7 +118,7 @@ def plan(machine, h, x=None, adapt=False):
     told = [_told(P, F[:, 2 * B.shape[1] :], k, c) for *_, F in levels]
     allowed = LOCAL * (h / default_step(machine)) ** 4 if local else math.inf
     scale = float(np.abs(k * pressed).max()) if local and pressed is not None else 0.0
-    return Plan(basis, inverse, P, affine, rows, k, c, h, levels, told, allowed, scale)
+    return RunMatrices(basis, inverse, P, affine, rows, k, c, h, levels, told, allowed, scale)
 
 
 def _told(P, end, k, c):

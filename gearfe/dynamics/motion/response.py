@@ -3,17 +3,16 @@
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from html import escape
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.files import Content, save_as, suffix_of
-from ...figures.inline import line_svg
 from ...geometry.aliases import Floats
 from ...signal.series import Signal
 from ..machine.contact_law import force, sided_force
+from ..machine.springs import Spring
 from ..machine.tables import Machine
 from . import excitation
 
@@ -26,7 +25,8 @@ class Response:
     """Motion of a machine at equal intervals.
 
     ``response[name]`` is a channel, an array like `time`: a degree of freedom (``"sun.theta"``), with ``" velocity"`` or
-    ``" acceleration"`` after it, or of a mesh ``"compression NAME"``, ``"stiffness NAME"``, ``"force NAME"``.
+    ``" acceleration"`` after it, or of a mesh ``"compression NAME"``, ``"stiffness NAME"``, ``"force NAME"``. The force
+    of a spring with its damper is ``"spring NAME"`` (`springs`): force [N] of a bearing, or torque [N m] of a coupling.
 
     Channels by name, `mesh`, `accelerations`, `signal` and files are filtered to the rate of the response where `gearfe.simulate`
     filtered them (`filtered`): what vibrates above half of it is not in them. `states`, `q` and `v` are those of the integrator
@@ -76,14 +76,6 @@ class Response:
         machine = f"{len(self.machine.dofs)} degrees of freedom, {len(self.machine.meshes)} meshes"
         return f"<Response: {time}, {machine}, by {self.stats.get('method', '?')}; {len(self.names)} channels in .names>"
 
-    def _repr_html_(self):
-        if not self.machine.meshes:
-            return escape(repr(self))
-        name = f"force {self.machine.meshes[0].name}"
-        last = slice(-min(len(self.time), 2000), None)  # the whole would be a black band
-        drawn = line_svg(self.time[last], np.asarray(self[name])[last], "time [s]", f"{name} [{self.unit(name)}]")
-        return f"<div>{drawn}<br>{escape(repr(self))}</div>"
-
     @property
     def names(self) -> list[str]:
         """Names of all channels."""
@@ -97,6 +89,8 @@ class Response:
         if head in MESH and tail in self._meshes:
             power = self.machine.meshes[self._meshes.index(tail)].contact.power
             return MESH[head] if head != "stiffness" or power == 1 else f"N/m^{power:g}"
+        if head == "spring" and tail in self.springs:
+            return "N m" if self._turns(tail) else "N"
         self._dof(head, name)
         return ("rad" if head.endswith((".theta", ".tilt_x", ".tilt_y")) else "m") + KINDS.get(tail, "")
 
@@ -105,11 +99,30 @@ class Response:
         head, _, tail = name.partition(" ")
         if head in MESH and tail in self._meshes:
             return self.mesh(head)[:, self._meshes.index(tail)]
-        dof, n = self._dof(head, name), len(self.machine.dofs)
+        n = len(self.machine.dofs)
+        if head == "spring" and tail in self.springs:
+            spring = self.springs[tail]
+            return self._moving @ (spring.row @ (spring.k * self.basis[:n] + spring.c * self.basis[n:]))
+        dof = self._dof(head, name)
         if tail == "acceleration":
             return self.accelerations()[:, dof]
-        states = self.states if self.filtered is None else self.filtered[:, : 2 * n]
-        return states @ self.basis[dof + (n if tail == "velocity" else 0)]
+        return self._moving @ self.basis[dof + (n if tail == "velocity" else 0)]
+
+    @property
+    def springs(self) -> dict[str, Spring]:
+        """Springs of the machine whose name no other has, by name."""
+        names = [spring.name for spring in self.machine.springs]
+        return {spring.name: spring for spring in self.machine.springs if names.count(spring.name) == 1}
+
+    @property
+    def _moving(self):
+        """States, filtered if the response is."""
+        return self.states if self.filtered is None else self.filtered[:, : 2 * len(self.machine.dofs)]
+
+    def _turns(self, name):
+        """Whether a spring carries a torque: it couples no translation."""
+        moved = {self.machine.dofs[i].partition(".")[2] for i in self.springs[name].row.nonzero()[0]}
+        return not moved & set("xyz")
 
     @property
     def q(self) -> Floats:
@@ -172,7 +185,8 @@ class Response:
 
     def _dof(self, head, name):
         if head not in self.machine.dofs or name.partition(" ")[2] not in ("", *KINDS):
-            raise ValueError(f"no channel {name!r}; there are {', '.join(self.names)}")
+            springs = "".join(f", spring {one}" for one in self.springs)
+            raise ValueError(f"no channel {name!r}; there are {', '.join(self.names)}{springs}")
         return self.machine.dofs.index(head)
 
 

@@ -25,11 +25,11 @@ from ...geometry.damage.chip import loaded_side
 from ...geometry.damage.missing import missing_teeth
 from ...geometry.mesh.outline import GROWTH, stations
 from ...geometry.mesh.section_mesh import section
-from ...geometry.tooth.profile import arc_at, flank_normal
+from ...geometry.tooth.profile import arc_at, flank_normal, turned
 from ..hats import SPAN, hat_knots, wider
 from ..hertz import half_plane, hat_logarithm
 from ..plane import BELOW, TILT, Flexibility, SeamFaces, leaning, reached_teeth
-from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
+from .elasticity import GAUSS_3, HeldSection, edge_nodes, edge_shapes
 
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
 # three next teeth, all other teeth
@@ -101,12 +101,6 @@ def flank_load(section_, tooth, pressure, first, count, tilt=0.0):
     return coo_matrix((force.ravel(), (rows.ravel(), columns.ravel())), shape=shape).tocsc()
 
 
-def turned(vectors, angle):
-    """Vectors ``(2, ...)`` turned clockwise by `angle` [rad]."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    return np.array([cos * vectors[0] + sin * vectors[1], cos * vectors[1] - sin * vectors[0]])
-
-
 def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), broken=()):
     """Section of `gear` meshed for loads on the teeth `loaded` and for reading displacements on the teeth `read`.
 
@@ -152,7 +146,7 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
         As of `mesh_gear`.
     """
     mesh = mesh_gear(gear, read=range(1, neighbours + 1), refine=refine, teeth=teeth)
-    body = Body(mesh.mesh, material, state=state)
+    body = HeldSection(mesh.mesh, material, state=state)
     on = {0: hats(mesh, 0, corner=True)} | {tooth: hats(mesh, tooth) for tooth in range(1, neighbours + 1)}
     tilted = _tilted(mesh, 0)
     influence, at = _between(body, [part.load for part in (*on.values(), *tilted)])
@@ -203,7 +197,7 @@ def damaged_flexibility(
     gone = missing_teeth(gear, broken)
     solved = [tooth for tooth in reached_teeth(gear, (*cracks, *broken), neighbours) if tooth not in gone]
     mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks, broken=broken)
-    body = Body(mesh.mesh, material, state=state)
+    body = HeldSection(mesh.mesh, material, state=state)
     on = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
     faces = _face_columns(mesh)
     tilted = [part for tooth in solved for part in _tilted(mesh, tooth)]

@@ -32,7 +32,7 @@ def axial_modes(width, m_n):
 
 
 @dataclass(frozen=True, slots=True)
-class WholeGear:
+class MeshedGear:
     """A gear of finite width as it is meshed, and which of its teeth are loaded.
 
     Attributes
@@ -86,7 +86,7 @@ class WholeGear:
         return mesh_patches(gear, patches, cracks=cracks, broken=broken, **options), patches
 
     def plan(self):
-        """`finite_elements.solver.Plan` of its `solid_flexibility`, refused if it does not fit; costs its mesh alone."""
+        """`finite_elements.solver.SolveCost` of its `solid_flexibility`, refused if it does not fit; costs its mesh alone."""
         mesh, patches = self.meshed()
         columns = zone_forces(mesh).shape[1]
         if self.shaft is not None:
@@ -96,7 +96,7 @@ class WholeGear:
 
 
 def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
-    """`Flexibility3D` of a `WholeGear` by finite elements.
+    """`Flexibility3D` of a `MeshedGear` by finite elements.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from ...geometry.mesh.outline import stations
 from ...geometry.mesh.section_mesh import section
 from ...geometry.tooth.gear import Gear
 from ...geometry.tooth.profile import arc_at
-from .elasticity import Body
+from .elasticity import HeldSection
 from .fe import flank_load
 
 MOST_LOAD = 0.05  # N/mm over E m_n: no mesh of teeth is stiffer than b E / 5, so that it would approach by m_n / 4
@@ -86,14 +86,14 @@ def edge_lengths(gear, edges, refine):
 
 
 def narrow_section(gear, material, state, edge, load, tooth=0, cracks=()):
-    """Section of a gear meshed for a narrow load on a tooth, its `Body`, and the nodal forces of a unit load.
+    """Section of a gear meshed for a narrow load on a tooth, its `HeldSection`, and the nodal forces of a unit load.
 
     `edge` are its edge lengths [mm], `load` the arc [mm] of the load, its half width [mm] and the edge length there [mm].
     """
     arc, half_width, fine = load
     roll = stations(gear, edge["flank"], patches=[(arc - half_width, arc + half_width, fine)])
     mesh = section(gear, {tooth: roll}, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], cracks=cracks)
-    return mesh, Body(mesh.mesh, material, state=state), narrow_load(mesh, tooth, arc, half_width)
+    return mesh, HeldSection(mesh.mesh, material, state=state), narrow_load(mesh, tooth, arc, half_width)
 
 
 def narrow_load(mesh, tooth, arc, half_width):

@@ -9,7 +9,7 @@ HEALTHY = "healthy"
 CASE = "fault"  # the case of damage that a fault is in its scene
 
 
-class Fault(NamedTuple):
+class FaultKind(NamedTuple):
     """A kind of fault: the key of a scene that its severity is, and the unit of that.
 
     A key without a name after the point has no severity. Its table has the keys of ``KIND_fault`` in ``gearfe/runs/keys.toml``.
@@ -36,10 +36,10 @@ class Fault(NamedTuple):
 
 
 FAULTS = {
-    "crack": Fault("crack.level", "-"),
-    "pits": Fault("pits.axes_mm", "mm"),
-    "missing_tooth": Fault("missing_tooth.", "-"),
-    "chip": Fault("chip.depth_mm", "mm"),
-    "runout": Fault("machine.runout_um", "um"),
-    "misplaced": Fault("machine.misplaced_um", "um"),
+    "crack": FaultKind("crack.level", "-"),
+    "pits": FaultKind("pits.axes_mm", "mm"),
+    "missing_tooth": FaultKind("missing_tooth.", "-"),
+    "chip": FaultKind("chip.depth_mm", "mm"),
+    "runout": FaultKind("machine.runout_um", "um"),
+    "misplaced": FaultKind("machine.misplaced_um", "um"),
 }

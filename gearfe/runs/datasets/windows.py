@@ -13,7 +13,7 @@ from ...dynamics.motion.housing import housing_signal
 from ...dynamics.motion.response import Response
 from ...dynamics.motion.step_control import default_step
 from ...signal.series import Signal, decimate
-from ..store.shards import Field, arrow, fields, schema_of
+from ..store.shards import ShardColumn, arrow, fields, schema_of
 from .conditions import Condition
 from .faults import CASE, FAULTS
 from .plan import Plan
@@ -21,9 +21,9 @@ from .plan import Plan
 EDGE = 64  # samples simulated before and after what is kept: the filter of `decimate` sees no end
 
 
-def columns_of(plan: Plan) -> dict[str, Field]:
+def columns_of(plan: Plan) -> dict[str, ShardColumn]:
     """Columns of the windows but for the signal, with what scatters by key."""
-    return fields("windows") | dict.fromkeys(plan.scatter, Field("number"))
+    return fields("windows") | dict.fromkeys(plan.scatter, ShardColumn("number"))
 
 
 def samples_of(plan: Plan) -> int:

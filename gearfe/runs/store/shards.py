@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 SUFFIX = ".parquet"
 
 
-class Field(NamedTuple):
+class ShardColumn(NamedTuple):
     """A column of a shard: its `kind`, one of `KINDS`, and unit (``"-"``: none)."""
 
     kind: str
@@ -38,14 +38,14 @@ KINDS = {  # what a column holds; list: of any length, json: as JSON text
 
 
 @cache
-def columns(name: str) -> dict[str, tuple[Field, str]]:
+def columns(name: str) -> dict[str, tuple[ShardColumn, str]]:
     """Columns of results, of a table of ``gearfe/runs/columns.toml``, with what they are in words."""
     text = (resources.files("gearfe.runs") / "columns.toml").read_text(encoding="utf-8")
     rows = tomllib.loads(text)[name].items()
-    return {key: (Field(row.get("kind", "number"), row.get("unit", "-")), row.get("text", "")) for key, row in rows}
+    return {key: (ShardColumn(row.get("kind", "number"), row.get("unit", "-")), row.get("text", "")) for key, row in rows}
 
 
-def fields(name: str) -> dict[str, Field]:
+def fields(name: str) -> dict[str, ShardColumn]:
     """Columns of results without their words."""
     return {key: field for key, (field, _) in columns(name).items()}
 
@@ -88,7 +88,7 @@ def where_of(where: Any, names: Sequence[str]) -> Any:
     return out
 
 
-def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, Field]) -> "pyarrow.Table":
+def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, ShardColumn]) -> "pyarrow.Table":
     """Rows as a table with exactly the columns `fields`; what a row lacks is null.
 
     ValueError if a row has a value that `fields` does not name, or that its column cannot hold: text among numbers, 1.5 among
@@ -117,7 +117,7 @@ def _column(name, kind, values, schema):
         raise ValueError(f"{name} = {shown(values[0])}, but the column holds {KINDS[kind]}") from error
 
 
-def schema_of(fields: Mapping[str, Field]) -> "pyarrow.Schema":
+def schema_of(fields: Mapping[str, ShardColumn]) -> "pyarrow.Schema":
     """Schema of `table`, with kind and unit of each column in its metadata."""
     pa = arrow()
     types = {"number": pa.float64(), "whole": pa.int64(), "truth": pa.bool_(), "text": pa.string(), "json": pa.string()}
@@ -125,10 +125,10 @@ def schema_of(fields: Mapping[str, Field]) -> "pyarrow.Schema":
     return pa.schema([pa.field(n, types[f.kind], metadata={"kind": f.kind, "unit": f.unit}) for n, f in fields.items()])
 
 
-def fields_of(schema: "pyarrow.Schema") -> dict[str, Field]:
+def fields_of(schema: "pyarrow.Schema") -> dict[str, ShardColumn]:
     """Columns by name, of a schema that `schema_of` made."""
     metadata = {field.name: {k.decode(): v.decode() for k, v in (field.metadata or {}).items()} for field in schema}
-    return {name: Field(about.get("kind", "text"), about.get("unit", "-")) for name, about in metadata.items()}
+    return {name: ShardColumn(about.get("kind", "text"), about.get("unit", "-")) for name, about in metadata.items()}
 
 
 def encoded(table: "pyarrow.Table") -> bytes:
@@ -248,7 +248,7 @@ def read(folder: StrPath, columns: Sequence[str] | None = None, where: Any = Non
     return found
 
 
-def frame(found: "pyarrow.Table", fields: Mapping[str, Field], index: str | None = None) -> "pandas.DataFrame":
+def frame(found: "pyarrow.Table", fields: Mapping[str, ShardColumn], index: str | None = None) -> "pandas.DataFrame":
     """A table that was read as pandas has it, by `index`; ``attrs["units"]`` has the units by column. Needs pandas."""
     with needing("pandas"):
         data = found.to_pandas()

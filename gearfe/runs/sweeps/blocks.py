@@ -15,7 +15,7 @@ from ...core.threads import own_warnings
 from ...scene.dotted_keys import rank, set_values, trimmed
 from ...scene.load import Scene, scene_of
 from ...stiffness.cache import program
-from ..store.shards import Field, arrow, encoded, fields, table
+from ..store.shards import ShardColumn, arrow, encoded, fields, table
 from .kinds import KINDS
 from .study import Study, of_case, values
 
@@ -37,7 +37,7 @@ class Block:
         return Block(self.name, self.cases[i : i + 1], self.told[i : i + 1])
 
 
-def blocks(study: Study) -> tuple[list[Block], dict[str, Field]]:
+def blocks(study: Study) -> tuple[list[Block], dict[str, ShardColumn]]:
     """All cases of a study in blocks, always the same ones, and the columns of its results.
 
     Cases are sorted by what the healthy gears depend on, then by damage, then by the rest, which shares both. A block holds whole
@@ -51,7 +51,7 @@ def blocks(study: Study) -> tuple[list[Block], dict[str, Field]]:
         cases = tuple({key: column[j] for key, column in columns.items()} for j in members)
         told = tuple({"number": int(j), "point": int(point[j]), "draw": int(draw[j])} for j in members)
         out.append(Block(f"block-{i:06d}", cases, told))
-    inputs = {key: Field(_kind(column)) for key, column in columns.items()}
+    inputs = {key: ShardColumn(_kind(column)) for key, column in columns.items()}
     return out, fields("first") | inputs | fields(study.kind) | fields("last")
 
 
@@ -90,12 +90,12 @@ def _kind(column):
     return next((kind for kind, held in kinds.items() if types <= held), "json")
 
 
-def compute(study: Study, fields: Mapping[str, Field], block: Block) -> tuple[bytes, str]:
+def compute(study: Study, fields: Mapping[str, ShardColumn], block: Block) -> tuple[bytes, str]:
     """Encoded shard of a block, and the source code that made it."""
     return shard(fields, rows(study, block))
 
 
-def shard(fields: Mapping[str, Field], made: Sequence[Mapping[str, Any]]) -> tuple[bytes, str]:
+def shard(fields: Mapping[str, ShardColumn], made: Sequence[Mapping[str, Any]]) -> tuple[bytes, str]:
     """Encoded shard, from the rows of a block, and the source code that made them."""
     return encoded(table(made, fields)), _program()["source"]
 

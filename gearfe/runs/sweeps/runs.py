@@ -12,7 +12,7 @@ import numpy as np
 from ...core.extras import needing
 from ...geometry.aliases import StrPath
 from ..store.folder import read_about
-from ..store.shards import Field, fields_of, frame, opened, read, shard_names
+from ..store.shards import ShardColumn, fields_of, frame, opened, read, shard_names
 from .study import inputs_of
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ class Runs:
 
     folder: Path
     about: dict[str, Any]
-    fields: dict[str, Field]
+    fields: dict[str, ShardColumn]
 
     def __repr__(self):
         """One line: what it is, and how far."""

@@ -19,7 +19,7 @@ FAR, FILLET, FLANK = 0.8, 0.16, 0.3  # edge lengths of far teeth, and of fillets
 NEAR = 1  # teeth beside loaded ones that are meshed like them
 
 
-class Body:
+class MeshedBody:
     """A gear, meshed and factorised.
 
     Parameters

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True, slots=True)
-class Spring:
+class SpringLaw:
     """``F = k depth + c rate``."""
 
     power: float = field(default=1.0, init=False)

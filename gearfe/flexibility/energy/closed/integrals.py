@@ -12,12 +12,12 @@ from scipy.optimize import brentq
 from ....geometry.damage.hollow import breaks, check_hollows
 from ....geometry.tooth.profile import arc_at, cartesian, fillet, flank, form_point
 from .beam import load_angle
-from .section import ToothDamage, limits, section
+from .section import DamagedTooth, limits, section
 
 ROOTS = ("fillet", "base", "line", "prism")
 FLANK, FOOT = leggauss(24), leggauss(64)
 NODES = 40  # of a part of a damaged tooth
-HEALTHY = ToothDamage()
+HEALTHY = DamagedTooth()
 
 
 def beam_parts(gear, material, roll, root="fillet", damage=HEALTHY):

@@ -12,7 +12,7 @@ from ...section_contact import Solved
 from . import herringbone_article
 from .beam import load_angle
 from .integrals import flank_edges
-from .section import ToothDamage
+from .section import DamagedTooth
 from .slices import faces_of, stations
 
 CONTACTS = ("linear", "herringbone_article", "weber", "palmgren")
@@ -88,15 +88,15 @@ def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lo
 
 
 def _by_tooth(gear, tooth, damage, crack_model):
-    """Stations of the healthy teeth and of each damaged one, as (mask, `ToothDamage`)."""
+    """Stations of the healthy teeth and of each damaged one, as (mask, `DamagedTooth`)."""
     damaged = {defect.tooth % gear.z for kind in damage for defect in kind}
     healthy = ~np.isin(tooth % gear.z, list(damaged))
     if healthy.any():
-        yield healthy, ToothDamage()
+        yield healthy, DamagedTooth()
     for number in sorted(damaged):
         where = tooth % gear.z == number
         if where.any():
-            yield where, ToothDamage(*(tuple(d for d in kind if d.tooth % gear.z == number) for kind in damage), crack_model)
+            yield where, DamagedTooth(*(tuple(d for d in kind if d.tooth % gear.z == number) for kind in damage), crack_model)
 
 
 def _edges(pair, order, *, damage, crack_model, root):

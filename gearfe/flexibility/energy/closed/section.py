@@ -38,7 +38,7 @@ CRACK_MODELS = ("constant", "straight", "parabola")
 
 
 @dataclass(frozen=True, slots=True)
-class ToothDamage:
+class DamagedTooth:
     """Damage of one tooth, whatever the numbers in it say, and `crack_model`, the limit line of what a crack leaves alive."""
 
     cracks: tuple[Any, ...] = ()
@@ -80,7 +80,7 @@ class Limit:
 
 
 def limits(gear, damage, foot=None):
-    """Limit lines of the cracks of a `ToothDamage`; `foot` is where the modelled beam begins if that is not the true fillet."""
+    """Limit lines of the cracks of a `DamagedTooth`; `foot` is where the modelled beam begins if that is not the true fillet."""
     if damage.crack_model not in CRACK_MODELS:
         raise ValueError(f"crack_model = {damage.crack_model!r}, but it must be one of {', '.join(CRACK_MODELS)}")
     x, y = cartesian(*flank(gear, gear.roll_a))

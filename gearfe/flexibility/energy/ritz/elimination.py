@@ -75,7 +75,7 @@ def all_nodes(numbers, count, order):
     return every, count + triangles * inside
 
 
-class Section(NamedTuple):
+class LoadedSection(NamedTuple):
     """The section of a sector with its loads.
 
     `numbers` (n, m): nodes of the triangles, of `all_nodes`; `stiffness` (3, m, 3 n, 3 n): their ``K00, K01, K11``; `load`
@@ -92,7 +92,7 @@ class Section(NamedTuple):
 
 
 def body_of(section, axial, *, seams=(), kinds=None, bent=None):
-    """`SectorBody` of a `Section` and the functions along its width.
+    """`SectorBody` of a `LoadedSection` and the functions along its width.
 
     `seams` and `bent` are as of `SectorBody`, and `kinds` is its `kind`, by default that all have the polynomials over the width.
     """

@@ -27,7 +27,7 @@ from .bent import bent_triangles
 from .crack_faces import face_forces
 from .depth import degrees
 from .dissection import dissect
-from .elimination import Section, all_nodes, body_of, front, places
+from .elimination import LoadedSection, all_nodes, body_of, front, places
 from .panel import Panel, numbering
 from .parity import front_by_parity
 from .short_edges import ORDER, bind, quadratic_edges
@@ -121,7 +121,7 @@ def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
 
 
 def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
-    """The `Section` of a sector, short edges bound.
+    """The `LoadedSection` of a sector, short edges bound.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
     held = chain(sector.held)
     if order == ORDER and not cubic:
         held = np.append(held, bind(stiffness, load, every, quadratic_edges(gear, sector)))
-    return Section(every, stiffness, load, sides, held, chain)
+    return LoadedSection(every, stiffness, load, sides, held, chain)
 
 
 def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
