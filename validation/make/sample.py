@@ -18,7 +18,7 @@ TABLE = TABLES / "sample.csv"
 FIRST, COUNT = 84_000, 100  # seeds from here on; none was looked at while the methods were made
 FIELDS = ("seed", "date", "pair", "damage", "load_N_mm", "difference", "fe_error", "fe_estimate", "ritz_error", "ritz_estimate")
 FIELDS += ("apart_covered", "fe_covered", "ritz_covered", "cpu_s")
-FINE = {"refine": 2.0, "order": 5}  # of `ritz`, the reference of both errors
+FINE = {"refine": 2.0, "order": 5}  # refinement of `ritz`, the reference of both errors
 
 
 def random_case(seed):
