@@ -21,7 +21,7 @@ PAGES = (
 DAYS = 10  # within which every page has its turn
 LIMIT = 1e-4  # relative
 MOST = 5.0  # CPU s
-SECONDS = 75.0  # of the clock
+SECONDS = 75.0  # limit of the clock time
 
 
 def pages_of(day):

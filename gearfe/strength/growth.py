@@ -10,7 +10,7 @@ from ..core.case import SIDES, Case
 from ..core.checks import number, one_of, whole
 from ..core.table import Column, Table
 from ..core.threads import single
-from ..flexibility.finite_elements.elasticity import Body
+from ..flexibility.finite_elements.elasticity import HeldSection
 from ..flexibility.finite_elements.fe import EDGES
 from ..flexibility.finite_elements.one_tooth import edge_lengths, narrow_load
 from ..geometry.aliases import Floats
@@ -239,7 +239,7 @@ def _over_the_mesh(gear, material, crack, loads, refine):
     mesh = section(
         gear, dict.fromkeys(loads, roll), fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], cracks=[crack]
     )
-    body = Body(mesh.mesh, material)
+    body = HeldSection(mesh.mesh, material)
     carried = np.concatenate([rolls[load > 0] for rolls, load in loads.values()])
     places = np.linspace(carried.min(), carried.max(), PLACES)
     units = [narrow_load(mesh, k, float(arc_at(gear, place)), WIDE * gear.m_n) for k in loads for place in places]

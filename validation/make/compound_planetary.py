@@ -32,13 +32,13 @@ TEETH = {  # sun, its mesh, and its tooth 0: a case of the scene; None: it carri
 BROKEN, CRACKED = ("sun 1 broken", "sun 2 broken"), ("sun 1", "crack80")  # readings of a broken tooth in sun 1 and in sun 2
 RATE, SECONDS, SETTLE = 5120.0, 3.3, 0.5  # the rate of S2
 SAMPLED = 24 * 2184.0  # Hz, 2184 is the least common multiple of both mesh frequencies: what folds, folds onto multiples of 14 Hz
-NOISE = 0.5  # of the standard deviation of the healthy signal; assumed
+NOISE = 0.5  # relative to the standard deviation of the healthy signal; assumed
 SENSOR = "ring.theta acceleration"  # planets in phase cancel in x and y
 SUN, HOUSING = "sun2.theta velocity", "ring's acceleration through a mode"
 CRACK = (f"{SENSOR}, crack of 80 %", SENSOR, CRACKED)  # name, channel, reading
 DRAWN, DRAWN_SETTLE = 10 / 7, 0.5  # s, of a draw of the unprinted inputs: whole periods of all lines, 1.4 Hz apart
 BAND = (500.0, 1000.0)  # Hz, in which S2 sees more and larger sidebands of the broken sun 2
-ABOVE = 3.0  # of the healthy line: a larger one
+ABOVE = 3.0  # relative to the healthy line: a larger line
 HIGHEST = 2000.0  # Hz, below which S2 expects the dominant frequencies
 
 
@@ -87,7 +87,7 @@ def heard(case, law=HEARD, channel=SENSOR):
     ratio = Fraction(round(RATE), round(SAMPLED))
     values = resample_poly(_whole(case, law, channel).values, ratio.numerator, ratio.denominator)
     length = DRAWN if isinstance(law, Draw) else SECONDS
-    cut = slice(round(0.05 * RATE), round((length - 0.05) * RATE))  # where the filter has its whole length
+    cut = slice(round(0.05 * RATE), round((length - 0.05) * RATE))  # the filter has its whole length there
     return gf.Signal(values[cut], RATE, _whole(case, law, channel).unit, case or "healthy")
 
 
@@ -102,7 +102,7 @@ def _noisy(case, law=HEARD, channel=SENSOR):
 
 
 def kurtosis(law=HEARD, channel=SENSOR, broken=BROKEN):
-    """Of 1 s of the signals with noise."""
+    """Kurtosis of 1 s of the signals with noise."""
     return {name: _of_second(case, law, channel) for name, case in zip(("healthy", *BROKEN), (None, *broken), strict=True)}
 
 
@@ -135,7 +135,7 @@ def _sideband(case, mesh, fault, law=HEARD, channel=SENSOR):
 
 
 def statements(law=HEARD, channel=SENSOR, broken=BROKEN):
-    """What S2 says of its spectra, by one reading of a broken tooth; see the scene for the words."""
+    """Statements of article S2 on its spectra, by one reading of a broken tooth, as worded in the scene."""
     mesh, fault = frequencies()
     grown = [_sideband(case, mesh[1], fault[1], law, channel) for case in LEVELS.values()]
     healthy = _sideband(None, mesh[1], fault[1], law, channel)
@@ -188,7 +188,7 @@ def _of_second(case, law=HEARD, channel=SENSOR):
     return gf.Signal(one.values[: round(RATE)], RATE, one.unit).indicators()["kurtosis"]
 
 
-PRINTED = {  # numbers that draws are set beside: by name, the reference
+PRINTED = {  # numbers that draws are compared with: by name, the reference
     f"{word}, {channel}": reference
     for channel in (SENSOR, HOUSING, CRACK[0])
     for word, reference in (("kurtosis", "kurtosis"), ("centre", "kurtogram_centre"))
@@ -216,7 +216,7 @@ def left(broken):
 
 
 def write_more():
-    """Tables: phases of the meshes, and what each ingredient leaves of the stiffness."""
+    """Tables: phases of the meshes, and the stiffness left by each ingredient."""
     made = _made(None)
     beside("compound_planetary", BESIDE, *VIEWS)
     phases = [(name, *map(float, pair)) for name, pair in made.notes["relative phases"].items()]
@@ -233,7 +233,7 @@ def write_more():
 
 
 def more():
-    """Lines of the page beside the verdicts."""
+    """Further sections of the page."""
     parts = [row.values() for row in rows_of(PARTS)]
     first = float(rows_of(PARTS)[0]["mean k [N/m]"])
     lines = [
@@ -277,7 +277,7 @@ SAID_OF = (
 
 
 def runs():
-    """What the simulations were made with."""
+    """Settings of the simulations."""
     return {HEARD: told(_response(None)) + f"; then an anti-aliasing filter and {RATE:g} samples per second"}
 
 

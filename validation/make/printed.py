@@ -32,7 +32,7 @@ VERDICTS = """
 ## All printed numbers
 """  # noqa: E501
 CSV = TABLES / "printed.csv"
-PAGES = {  # where the rows of a scene's references stand
+PAGES = {  # pages with the rows of a scene's references
     "planetary_pitting": "planetary_pitting",
     "compound_planetary": "compound_planetary",
     "helical_pitting": "helical_pitting",

@@ -30,7 +30,7 @@ KINDS = {
     "wide": (196_000, (12, 13), (12, 14), (8.0, 12.0), 0.6, 3),
 }  # none of these seeds was looked at while the methods were made
 PHASES = 5
-FINE = {"order": 4, "refine": 1.25}  # of `ritz3d`, the reference of both errors
+FINE = {"order": 4, "refine": 1.25}  # refinement of `ritz3d`, the reference of both errors
 FURTHER = 4  # axial degrees more in it
 ASKED = {
     "difference of the two": ("fe3d", "ritz3d"),
@@ -111,7 +111,7 @@ def pits(rng, gear):
 
 
 def row(kind, seed):
-    """What is kept of a pair: k, estimates, the finer solution at each phase; why not, if a method refuses."""
+    """Stored values of a pair: k, estimates, the finer solution at each phase; why not, if a method refuses."""
     pair, load, damage, phases = drawn(kind, seed)
     case, run = (pair, load * pair.gear_1.b, gf.Material()), {"phases": phases, "damage": damage, "error": True, "cache": False}
     out = {"kind": kind, "pair": named(pair, damage), "load": load, "phase": phases.tolist()}
@@ -127,7 +127,7 @@ def row(kind, seed):
 
 
 def timed(work):
-    """What `work` gives and its seconds of the processor."""
+    """Result of `work` and its CPU seconds."""
     started = time.process_time()
     found = work()
     return found, time.process_time() - started
@@ -204,6 +204,13 @@ def covered(found):
     """Pairs that `ritz3d` and `fe3d` cover at every phase, and how many there are."""
     said = [judged(one) for one in found]
     return [sum(bool(one[name].all()) for one in said) for name in reversed(ASKED)][:2], len(said)
+
+
+def ratio(found, name):
+    """Median estimate of a method over its median error, both of the worst phase of each pair."""
+    solved = [one for one in found if "failed" not in one]
+    off = [np.abs(np.subtract(one[name], one["fine"]) / one["fine"]).max() for one in solved]
+    return float(np.median([np.divide(one[f"{name}_error"], one["fine"]).max() for one in solved]) / np.median(off))
 
 
 def section(found):

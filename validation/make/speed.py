@@ -99,7 +99,7 @@ def text():
 
 
 def sections():
-    """What is measured of sections."""
+    """Measured values of sections."""
     scene = gf.load_scene("planetary_pitting").pair()
     case = {"force": scene.force, "material": scene.materials, "cache": False}
     for method in ("fe", "ritz"):

@@ -1,4 +1,4 @@
-"""gearfe beside everything independent of it: published values, other codes, CalculiX on its own meshes and in contact."""
+"""gearfe compared with independent values: published values, other codes, CalculiX on its own meshes and in contact."""
 
 import math
 import tempfile
@@ -20,7 +20,7 @@ from ..shared.table_rows import rows_of, write_table
 CSV = TABLES / "truth.csv"
 CONTACT = TABLES / "calculix.csv"
 LINE_LOAD, PHASES, NEAR = 150.0, 12, 0.06  # N/mm; phases; cycles from the ends of double contact
-PENALTY = 500.0  # of `write_contact_inp`: pressure per overlap, in units of E per mm
+PENALTY = 500.0  # setting of `write_contact_inp`: pressure per overlap, in units of E per mm
 RING = "the source does not give its ring fillet; a sharper one (cutter of 40 teeth, tip radius 0.1) gives 17.17"
 REASONS = {  # rows outside their tolerance
     ("stage_17_37_91", "f_m"): "the source multiplies its rounded carrier frequency, 2.1 Hz, by 91; 800 rpm give 190.99 Hz",
@@ -149,7 +149,7 @@ def contact_row(phase):
 
 
 def springs(phases):
-    """What CalculiX's contact adds to the approach, relative: its pressure is `PENALTY` E times the overlap, not infinitely hard.
+    """Approach added by the contact of CalculiX, relative: its pressure is `PENALTY` E times the overlap, not infinitely hard.
 
     Under Hertz's pressure a pair overlaps by ``8 p0 / (3 pi)`` over that stiffness, weighted by the work of the pressure; the
     pairs count by the load they carry. None where a corner carries: its pressure has no peak.

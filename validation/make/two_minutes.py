@@ -1,4 +1,4 @@
-"""The page `two_minutes`: each article, what it claims, the verdict and what decides it, from the tables of the other pages."""
+"""The page `two_minutes`: each article with its claim, the verdict and the cause, from the tables of the other pages."""
 
 from gearfe.core.table import Table
 from gearfe.scene import verdicts

@@ -1,4 +1,4 @@
-"""CalculiX on whole gears, under line loads and in contact, beside `ritz3d`: the cases, and every run kept in a table.
+"""CalculiX on whole gears, under line loads and in contact, compared with `ritz3d`: the cases, and every run kept in a table.
 
 A run depends on its deck alone, whose digest is in its row: gears in contact are turned by the approach that `ritz3d` had when
 the run was made, which the row keeps, so that a change of `ritz3d` alone asks for no other deck.
@@ -27,9 +27,9 @@ TABLE, OURS = "outsider_three", "outsider_three_ritz3d"  # tables of rows: runs 
 STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 300.0  # N/mm
 PITTED = 600.0  # N/mm of pairs with pits: a contact 1.4 times as wide, so that fewer elements follow it around the pits
-PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by what the deck does with them
+PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by their treatment in the deck
 STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # finer along the contact lines only
-# of pairs with pits, whose rims follow; with contact springs ten times softer than by default, which cost k less than 0.1 %
+# pairs with pits, whose rims follow; with contact springs ten times softer than by default, which cost k less than 0.1 %
 RIMS = ({"per_width": 0.67, "penalty": 50}, {"per_width": 1.0, "refine": 1.4, "penalty": 50})
 ALL_FINER = {"per_width": 1.0, "refine": 1.3}  # everywhere
 SHOWN = "helical, healthy"  # whose load sharing is kept
@@ -39,9 +39,9 @@ RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 
 @dataclass(frozen=True, slots=True)
 class OutsiderCase:
-    """A pair in contact: `damage` as of `mesh_stiffness`, the phase, load [N/mm], meshes as options of `write_contact_inp`.
+    """A pair in contact: `damage` as in `mesh_stiffness`, the phase, load [N/mm], meshes as options of `write_contact_inp`.
 
-    `pits` as of `write_contact_inp`: a case with pits has two controls in the same mesh.
+    `pits` as in `write_contact_inp`: a case with pits has two controls in the same mesh.
     """
 
     pair: gf.GearPair
@@ -165,7 +165,7 @@ def contact_row(name, mesh):
 
 
 def ritz3d_row(name):
-    """What `ritz3d` finds in a case: deflection [nm/N], or stiffness [N/um], approach [mm] and what tooth pairs carry."""
+    """Result of `ritz3d` in a case: deflection [nm/N], or stiffness [N/um], approach [mm] and what tooth pairs carry."""
     if name in lines():
         return {"value": line_deflection(name)}
     case = cases()[name]
@@ -222,7 +222,7 @@ def refresh(again=False):
 
 
 def reference():
-    """Compute the finest mesh of each case, coarser ones only if they are not on file; without CalculiX say so."""
+    """Compute the finest mesh of each case, coarser ones only if they are not on file; without CalculiX print a message."""
     if not installed():
         return
     for name, mesh in wanted():

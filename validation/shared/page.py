@@ -46,7 +46,7 @@ def text(name, answer, *sections):
 
 
 def filled(parts):
-    """Lines of `parts` with their paragraphs, which are neither tables, lists, headings nor pictures, broken anew."""
+    """Lines of `parts` with their paragraphs, which are neither tables, lists, headings nor pictures, wrapped again."""
     lines = (line for part in parts for line in (textwrap.dedent(part).rstrip().splitlines() if "\n" in part else [part]))
     for prose, group in groupby(lines, lambda line: re.match(r"(?!\d+\. |- )[^|#!\s]", line) is not None):
         own = list(group)

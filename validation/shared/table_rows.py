@@ -44,10 +44,10 @@ def read(name):
 
 
 def write_runs(name, runs):
-    """Write what the simulations behind a page were made with, by their names."""
+    """Write the settings of the simulations behind a page, by their names."""
     write_table(TABLES / f"{name}_runs.csv", ("run", "made with"), runs.items())
 
 
 def read_runs(name):
-    """What `write_runs` wrote."""
+    """Settings that `write_runs` wrote."""
     return {row["run"]: row["made with"] for row in rows_of(TABLES / f"{name}_runs.csv")}
