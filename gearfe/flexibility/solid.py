@@ -1,7 +1,7 @@
-"""`Flexibility3D`: what a gear of finite width is to its contact lines, whoever solved for it.
+"""`Flexibility3D`: elastic flexibility of a gear of finite width between its contact lines, for all solvers.
 
-Loads are patches: hats of unit area across the flank times orthonormal polynomials along the width. What a patch does to itself
-like a half-space is taken out (`halfspace`), the rest is smooth and carried between the patches by polynomials.
+Loads are patches: hats of unit area across the flank times orthonormal polynomials along the width. The half-space's part of a
+patch's effect on itself is removed (`halfspace`). The rest is smooth and interpolated by polynomials.
 """
 
 import math
@@ -43,7 +43,7 @@ class Flexibility3D:
     Attributes
     ----------
     gear : Gear
-        Its `beta` says how the section turns.
+        The gear; its `beta` is the helix angle of the sections.
     degree : int
         Highest axial mode kept.
     kernel : float
@@ -96,7 +96,7 @@ class Flexibility3D:
         return None
 
     def opening(self, tooth, roll, z):
-        """Opening ``(k, n)`` [mm/N] of the points of `seam` under loads at `roll`, `z` [mm] of teeth `tooth`."""
+        """Return the opening ``(k, n)`` [mm/N] of the points of `seam` under loads at `roll`, `z` [mm] of teeth `tooth`."""
         tooth, rows = np.asarray(tooth) % self.gear.z, self.basis(roll, z, tooth)
         out = np.zeros((self.seam.influence.shape[0], tooth.size))
         for number in np.unique(tooth).tolist():
@@ -173,7 +173,7 @@ def own_mirrors(gear, degree, *, cache=True):
 
 
 def _scale(gear):
-    """Ends of the flank as arcs, and the offset in the logarithm of the distance to the tip corner [mm]."""
+    """Return the ends of the flank as arcs, and the offset in the logarithm of the distance to the tip corner [mm]."""
     return arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a), OFFSET * gear.m_n
 
 

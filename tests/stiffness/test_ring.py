@@ -173,7 +173,7 @@ def test_radial_assembly(pair):
     [
         (lambda: ring(72, r_rim=70.0), "r_rim = 70.0 mm"),
         (lambda: gf.Gear(z=72, **RACK), "give r_bore for an external gear or r_rim"),
-        (lambda: gf.Gear(z=72, r_rim=90.0, r_bore=3.0, **RACK), "not both"),
+        (lambda: gf.Gear(z=72, r_rim=90.0, r_bore=3.0, **RACK), "are both given"),
         (lambda: ring(30), "inside the base circle"),
         (lambda: ring(60, z_cutter=60), "z_cutter = 60"),
         (lambda: ring(60, dedendum=2.2, addendum=0.5), "pointed|fillets overlap|cutter"),
