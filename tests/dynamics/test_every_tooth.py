@@ -241,3 +241,31 @@ def test_slow_rotation_with_a_missing_tooth_has_the_transmission_error():
     machine = gf.single_mesh(1e-2, cycle.healthy, 1.0, force=1669.298, **options)
     run = gf.simulate(machine, 17.0, rate=32.0, filtered=False)
     assert_allclose(run["pair.x"][32:544], te[32:], atol=1e-3 * np.ptp(te))
+
+
+BALANCED = {
+    "shifts": {"flank": {"gear": "pinion", "pitch_um": [0.0] * 5 + [20.0] + [0.0] * 11}, "crack": [{"gear": "pinion", "tooth": 3}]},
+    "gap": {"missing_tooth": [{"gear": "pinion", "tooth": 3}]},
+}
+
+
+@pytest.mark.parametrize("name", BALANCED)
+def test_energy_and_momentum_balance_with_shifts_and_gaps(name):
+    """Over a revolution: what the load, the changing stiffness and the error put in is stored or taken by the damper."""
+    made = scene(**BALANCED[name])
+    case = replace(made.case(case=next(iter(made.pair().damage))), force=1669.298)
+    cycle = gf.mesh_cycle(case, gf.Solve(phases=32))
+    options = {"teeth": (17, 38), "damage": teeth_of(cycle), "zeta": 0.03, "backlash": 1e-3}
+    machine = gf.single_mesh(0.15, cycle.healthy, MESH, force=1669.298, **options)
+    run = gf.simulate(machine, 17 / MESH, dt=1 / MESH / 2048)
+    t, v, force, mesh = run.time, run["pair.x velocity"], run["force mesh"], machine.meshes[0]
+    error, rate = mesh.e(t)[:2]
+    x = np.maximum(run["pair.x"] - error, 0.0)
+    assert ((x == 0).any(), np.ptp(error) > 5e-6) == (name == "gap", True)
+    spent = machine.law["damping"][0] * (v - rate) ** 2
+    power = 1669.298 * v + np.gradient(mesh.k(t), t, edge_order=2) * x**2 / 2 - spent - force * rate
+    energy = 0.15 * v**2 / 2 + mesh.k(t) * x**2 / 2
+    moved = np.trapezoid(np.abs(force * rate) + spent, t)
+    assert abs(energy[-1] - energy[0] - np.trapezoid(power, t)) < 1e-3 * moved
+    push = 1669.298 - force
+    assert abs(0.15 * (v[-1] - v[0]) - np.trapezoid(push, t)) < 1e-5 * np.trapezoid(np.abs(push), t)
