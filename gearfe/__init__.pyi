@@ -61,7 +61,11 @@ from .dynamics.motion.portrait import poincare_section as poincare_section
 from .dynamics.motion.response import Response as Response
 from .dynamics.motion.simulate import simulate as simulate
 from .dynamics.motion.steady import steady_state as steady_state
+from .exchange.fmu import write_fmu as write_fmu
+from .exchange.mesh_table import write_mesh_table as write_mesh_table
+from .exchange.outline_file import write_outline as write_outline
 from .exchange.rexs import import_rexs as import_rexs
+from .exchange.rexs_write import write_rexs as write_rexs
 from .figures.campbell_plot import plot_campbell as plot_campbell
 from .figures.contact_plot import plot_contact as plot_contact
 from .figures.pair_plot import plot_pair as plot_pair
@@ -74,6 +78,7 @@ from .geometry.damage.crack import Crack as Crack
 from .geometry.damage.missing import MissingTooth as MissingTooth
 from .geometry.damage.pit import Pit as Pit
 from .geometry.damage.spall import Spall as Spall
+from .geometry.mesh.step_file import write_step as write_step
 from .geometry.pair.flanks import Misalignment as Misalignment
 from .geometry.pair.gear_pair import GearPair as GearPair
 from .geometry.pair.planetary import PlanetarySet as PlanetarySet

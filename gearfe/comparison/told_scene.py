@@ -11,6 +11,7 @@ from ..geometry.tooth.modified import Flank
 from ..planetary_sets.of_scene import build_set
 from ..scene.load import Scene, ScenePair
 from ..scene.schema import in_words, scene_schema
+from ..scene.train import thrusts_of
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.solve import Solve
 from .losses import told_damage
@@ -31,7 +32,7 @@ def told(scene: Scene) -> list[str]:
         lines += ["", f"gear {name}: {told_gear(gear)}"]
     for name, chosen in scene.pairs.items():
         lines += ["", *_pair(name, chosen)]
-    lines += ["", _machine(scene), *_set(scene)]
+    lines += ["", _machine(scene), *_train(scene), *_set(scene)]
     lines += [f"assumed: {note['what']}" for note in scene.assumptions]
     return lines + [f"changed: {text}" for text in scene.changed]
 
@@ -143,6 +144,21 @@ def _machine(scene: Scene) -> str:
     run = scene.machine
     law = "Hertz's impact law" if run["contact"] == "impact" else "stiffness curves"
     return f"machine: {run['model']}, {run['speed_rpm']:g} rpm, {run['torque_Nm']:g} N m, contact by {law}"
+
+
+def _train(scene: Scene) -> Iterator[str]:
+    """Shafts of a gearbox with their speeds, and the axial forces of their gears, positive along z; torques on shafts."""
+    if scene.train is None:
+        return
+    train, thrusts = scene.train, dict.fromkeys(scene.train.shafts, 0.0)
+    for name, pushes in thrusts_of(train, scene.gears).items():
+        thrusts[train.homes[name]] += pushes
+    for name, shaft in train.shafts.items():
+        gears = ", ".join(f"{gear} at {at:g} mm" for gear, at in shaft.gears.items()) or "no gear"
+        thrust = f"; axial force of its gears {thrusts[name]:.4g} N" if abs(thrusts[name]) > 1e-9 else ""
+        yield f"  shaft {name}: {train.speeds[name] * 30 / math.pi:.6g} rpm; {gears}{thrust}"
+    ends = (f"{name} {train.torques[name]:.5g} N m at {end['shaft']}" for name, end in train.ends.items())
+    yield f"  torques on shafts: {', '.join(ends)}"
 
 
 def _set(scene: Scene) -> Iterator[str]:

@@ -257,6 +257,8 @@ class _Unit:
             self.reader.assume(
                 f"pair {name}: the centre distance without backlash", "the file states neither distance nor positions"
             )
+        if name not in forces and (torque := self._stage_torque(name)):
+            forces[name] = 1e3 * torque / self.meshes[list(self.pairs).index(name)].radii[0]
         if name in forces:
             row["force_N"] = round(forces[name], 6)
         else:
@@ -266,6 +268,14 @@ class _Unit:
                 f"pair {name}: {PER_WIDTH:g} N for each mm of width", "the loads of the file do not give its force"
             )
         return row
+
+    def _stage_torque(self, name):
+        """Torque of the driving gear that the data of a stage state [N m]; None if they do not."""
+        one, _, stage = self.pairs[name]
+        for data in self.model.related("stage_gear_data", "stage", stage.id, "stage_gear_data"):
+            if self.gears[one] in self.model.related("stage_gear_data", "stage_gear_data", data.id, "gear"):
+                return abs(data.number("torque", "N m") or 0.0)
+        return None
 
     def _flank(self, name):
         side = None

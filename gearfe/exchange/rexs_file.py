@@ -20,7 +20,7 @@ MODELS = (".rexs", ".rexs.xml", ".rexsj", ".rexs.json", ".xml", ".json")
 ZIPPED = (".rexsz", ".zip")
 RENAMED = {  # ids of older versions by those of today
     "tip_radius_factor": "tip_corner_radius_factor_reference_profile",
-    "rack_tip_radius": "tip_corner_radius_reference_profile",
+    "tip_radius": "tip_corner_radius_reference_profile",
     "load_duration_fraction": "operating_time_fraction",
     "din_3967_deviation_tolerance_series": "tooth_thickness_deviation_tolerance_series_din_3967_1978",
 }

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast
 
-from .load import read_tables
+from .load import read_tables, scene_of
 from .parts import DAMAGE
 from .schema import LISTS, Key, scene_schema
 
@@ -97,8 +97,14 @@ def _with_number(home, name, at, value):
 
 
 def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
-    """Tables that one pair in one case of damage needs: the rest would be checked for every case of a sweep, for nothing."""
+    """Tables that one pair in one case of damage needs: the rest would be checked for every case of a sweep, for nothing.
+
+    The pair of a gearbox has the force that the gearbox puts on it.
+    """
     chosen = tables["pair"][pair]
+    if tables.get("machine", {}).get("model") == "gearbox":
+        whole = {kind: table for kind, table in tables.items() if kind not in (*DAMAGE, *PRINTED)}
+        chosen = chosen | {"force_N": scene_of("scene", whole).pair(pair).force}
     gears = {chosen.get(name) for name in ("gear_1", "gear_2")}
     out: Tables = {name: tables[name] for name in ("title", "source") if name in tables}
     out |= {"pair": {pair: chosen}, "gear": {name: table for name, table in tables["gear"].items() if name in gears}}

@@ -22,6 +22,7 @@ from .references import Reference, read_references
 from .schema import arguments, scene_schema
 from .set_table import SceneSet, set_of
 from .toml_file import read_toml
+from .train import Train, train_of
 
 HEALTHY = "healthy"  # the case without damage
 
@@ -73,6 +74,7 @@ class Scene:
     references: tuple[Reference, ...] = ()
     changed: tuple[str, ...] = ()
     set: SceneSet | None = None  # a whole planetary set, `gearfe.planetary_sets.of_scene.build_set` gives its case
+    train: Train | None = None  # shafts of a gearbox, their speeds and torques
 
     def pair(self, name: str | None = None) -> ScenePair:
         """The pair called `name`; the first one if None. ValueError if there is no such pair."""
@@ -132,7 +134,8 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
         for name, row in rows[kind].items():
             with located(file, f"{kind}.{name}", row):
                 out[name] = make(**arguments(kind, row))
-    pairs = {name: _pair(file, name, rows, gears, materials) for name in rows["pair"]}
+    train = train_of(file, rows, gears, materials)
+    pairs = {name: _pair(file, name, rows, gears, materials, train.forces if train else {}) for name in rows["pair"]}
     made = set_of(file, rows, pairs)
     run = dict(rows["machine"] or {})
     if run:
@@ -147,13 +150,16 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
         title, source = f"{title}, changed", f"own scene; changed from: {source}"
     return Scene(
         file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(rows["later"]),
-        machine=run, references=() if own else read_references(file, rows["reference"]), changed=changed, set=made,
+        machine=run, references=() if own else read_references(file, rows["reference"]), changed=changed, set=made, train=train,
     )  # fmt: skip
 
 
-def _pair(file, name, rows, gears, materials):
-    """`ScenePair` of the checked tables of a scene."""
+def _pair(file, name, rows, gears, materials, forces):
+    """`ScenePair` of the checked tables of a scene; `forces` are those of the pairs of a gearbox [N]."""
     row = rows["pair"][name]
+    force = row["force_N"] or forces.get(name)
+    if force is None:
+        raise ValueError(f"{file} [pair.{name}]: missing key 'force_N'; expected a number in N")
     names = row["gear_1"], row["gear_2"]
     with located(file, f"pair.{name}", row):
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
@@ -161,7 +167,7 @@ def _pair(file, name, rows, gears, materials):
     return ScenePair(
         made,
         materials=tuple(materials[rows["gear"][gear]["material"]] for gear in names),
-        force=float(row["force_N"]),
+        force=float(force),
         face=row["face"],
         groove=float(row["groove_mm"]),
         damage={case: {side: _of_one_body(found) for side, found in by_side.items()} for case, by_side in owned.items()},

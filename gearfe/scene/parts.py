@@ -152,7 +152,7 @@ def supports_of(file: str, rows: Row, name: str, materials: dict[str, Any]) -> d
     """Supports of the pair `name` by side."""
     out: dict[str, Support | Shaft] = {}
     there = dict.fromkeys(row[side] for row in rows["pair"].values() for side in ("gear_1", "gear_2"))
-    for where, row in ((f"{kind}.{key}", row) for kind in HELD for key, row in rows[kind].items()):
+    for where, row in ((f"{kind}.{key}", row) for kind in HELD for key, row in rows[kind].items() if row["gear"]):
         check_known(file, where, "gear", row["gear"], there, "gear in a pair")
     for where, row, side in _placed(file, rows, name, HELD, out):
         with located(file, where, row):
@@ -177,6 +177,8 @@ def _shaft(row, materials):
         raise ValueError(
             f"shaft of {len(columns[0])} lengths: give as many diameters_mm, and bores_mm (0: none) if there are any"
         )
+    if row["bearings_at_mm"] is None:
+        raise ValueError("missing key 'bearings_at_mm'; expected two numbers in mm")
     names = ("bearings_at_mm", "gear_at_mm", "torque_at_mm", "integral", "bearings_N_per_um")
     return Shaft(
         segments=list(zip(*columns, strict=True)), material=materials[row["material"]], **arguments("shaft", row, *names)

@@ -17,7 +17,7 @@ from typing import Any
 REQUIRED = object()
 SHOWN = 60  # characters of a value in a message
 LISTS = {"numbers": "number", "strings": "string", "tables": "values"}  # type of list: type of its entries
-NAMES = ("gear", "pair", "material")  # types of keys that name a table
+NAMES = ("gear", "pair", "material", "shaft", "bearing")  # types of keys that name a table
 TYPES = {
     "number": "a number", "integer": "a whole number", "string": "a text", "boolean": "true or false",
     "numbers": "a list of numbers", "strings": "a list of texts", "tables": "a list of tables",

@@ -1,10 +1,14 @@
 """Where the lines of a planetary stage lie in what a sensor on its ring or housing receives."""
 
 import math
+from collections.abc import Sequence
 
-from ..core.checks import whole
+import numpy as np
+
+from ..core.checks import numbers, whole
 from .given import hertz
 
+NEAR = 1e-3  # of a tooth, or of the sum over all planets
 HIGHEST = {"harmonics": 1, "turns": 3, "window": 1}
 
 
@@ -16,9 +20,10 @@ def stage_lines(
     *,
     damaged: str | None = None,
     equal: bool = True,
+    angles: Sequence[float] | None = None,
     **highest: int,
 ) -> dict[str, float]:
-    """Frequencies of a planetary stage with a fixed ring and equally spaced planets, as a sensor that stands still finds them.
+    """Frequencies of a planetary stage with a fixed ring, as a sensor that stands still finds them.
 
     Planet p is at the angle ``2 pi (f_c t + p / N)`` and is heard through a window over that angle, whose harmonics j up to
     `window` shift its lines by j f_c. Its forces are those of planet 0 at another time: multiples n of the mesh frequency
@@ -29,7 +34,8 @@ def stage_lines(
         n f_m + q f_t + j f_c   if n ring - q + j is a multiple of N   (a damaged sun tooth)
         n f_m + q f_t + j f_c   all of them   (a damaged tooth of one planet: f_t = f_m / planet)
 
-    Planets that are not equal leave all lines of the first row, too.
+    Planets that are not equal leave all lines of the first row, too. Of planets at other `angles` psi_p a line is left unless the
+    sum of ``exp(i m psi_p)`` over them is zero. Here m is the number that is a multiple of N above.
 
     Parameters
     ----------
@@ -42,6 +48,8 @@ def stage_lines(
         Which gear has a damaged tooth.
     equal : bool
         Whether all planets are alike and share the load alike.
+    angles : sequence of float, optional
+        Angles of the planets [rad], at which they can be assembled; default: equal spacing.
     **highest
         ``harmonics`` (default 1): n goes up to it. ``turns`` (3) of a damaged gear: q goes up to it, j of a damaged ring up to it
         times `n_planets`. ``window`` (1): its highest harmonic, 1 for that of `gearfe.housing_signal`.
@@ -56,7 +64,8 @@ def stage_lines(
     ------
     ValueError
         If a number of teeth or of planets is no whole number from 1 on, the ring has no more teeth than the sun,
-        ``(sun + ring) / n_planets`` is not whole, `carrier` is no positive number of Hz, or `damaged` is none of the three gears.
+        ``(sun + ring) / n_planets`` is not whole, planets cannot be assembled at their `angles`, `carrier` is no positive number
+        of Hz, or `damaged` is none of the three gears.
     TypeError
         If `highest` has another name.
 
@@ -72,7 +81,7 @@ def stage_lines(
     >>> stage_lines(20, 82, 3, 5.0)
     {'f_m - f_c': 405.0}
     """
-    _check(sun, ring, n_planets, carrier, damaged)
+    at = _check(sun, ring, n_planets, carrier, damaged, angles)
     if unknown := sorted(set(highest) - set(HIGHEST)):
         raise TypeError(f"stage_lines() has no argument {unknown[0]!r}; it has {', '.join(HIGHEST)}")
     harmonics, turns, window = (whole(name, value, 0, 1000) for name, value in (HIGHEST | highest).items())
@@ -82,7 +91,8 @@ def stage_lines(
     lines: dict[str, float] = {}
     rows = [(n, q, j) for n in range(harmonics + 1) for q in range(-reach, reach + 1) for j in range(-spread, spread + 1)]
     for n, q, j in sorted(rows, key=lambda row: (sum(map(bool, row)), sum(map(abs, row)))):
-        agree = (n * ring - (q if damaged == "sun" else 0) + j) % n_planets == 0
+        around = n * ring - (q if damaged == "sun" else 0) + j
+        agree = abs(np.exp(2j * math.pi * around * at).mean()) > NEAR
         free = damaged == "planet" or (not equal and (damaged == "sun" or not q))
         value = n * mesh + q * turn + j * carrier
         if value > 1e-9 * mesh and (agree or free) and not any(math.isclose(value, other) for other in lines.values()):
@@ -90,16 +100,27 @@ def stage_lines(
     return dict(sorted(lines.items(), key=lambda item: item[1]))
 
 
-def _check(sun, ring, n_planets, carrier, damaged):
+def _check(sun, ring, n_planets, carrier, damaged, angles):
+    """Angles of the planets as parts of a revolution."""
     for name, value in {"sun": sun, "ring": ring, "n_planets": n_planets}.items():
         whole(name, value, 1)
     if ring <= sun:
         raise ValueError(f"ring = {ring}, sun = {sun}: a ring has more teeth than its sun")
-    if (sun + ring) % n_planets:
+    at = np.arange(n_planets) / n_planets if angles is None else numbers("angles", angles, " in rad") / (2 * math.pi)
+    if at.shape != (n_planets,):
+        raise ValueError(f"angles has {at.size} values, but there are {n_planets} planets: give one for each")
+    apart = (sun + ring) * (at - at[0])
+    if angles is not None and np.abs(apart - np.round(apart)).max() > NEAR:
+        raise ValueError(
+            f"angles = {angles}: planets can be assembled where ({sun} + {ring}) angle / (2 pi) is whole, counted from "
+            "the first; angles are radians"
+        )
+    if angles is None and (sun + ring) % n_planets:
         raise ValueError(f"{n_planets} equally spaced planets cannot be assembled: ({sun} + {ring}) / {n_planets} is not whole")
     hertz("carrier", carrier)
     if damaged not in (None, "sun", "planet", "ring"):
         raise ValueError(f"damaged = {damaged!r}, but it must be 'sun', 'planet' or 'ring'")
+    return at
 
 
 def _named(*counts):

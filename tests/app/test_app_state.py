@@ -89,17 +89,18 @@ def test_a_built_in_scene_is_refused_until_a_pair_and_a_case_are_chosen(scene):
         read(scene, text)
     whole = gf.load_scene(scene)
     assert caught.value.choices == {name: ["", *one.damage] for name, one in whole.pairs.items()}
-    pair, cases = next(iter(caught.value.choices.items()))
+    pair, cases = next((name, cases) for name, cases in caught.value.choices.items() if len(cases) > 1)
     if scene == "herringbone_contact_line":
         with pytest.raises(ValueError, match=r"pits\.middle_mm = 15\.0, but the page has None there"):
             read(scene, text, pair, cases[1])
         return
-    state, notes = read(scene, text, pair, cases[1])
+    case = "" if whole.train else cases[1]  # the page has no missing teeth and chips
+    state, notes = read(scene, text, pair, case)
     assert any("not taken" in one for one in notes)
     mine, own = scene_from(state).pair(), whole.pair(pair)
     assert mine.pair.gear_1 == own.pair.gear_1
     assert mine.materials == own.materials
-    assert mine.damage[CASE] == own.damage[cases[1]]
+    assert mine.damage.get(CASE) == own.damage.get(case)
     assert mine.force == own.force
 
 

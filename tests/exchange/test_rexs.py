@@ -224,6 +224,21 @@ def test_a_planetary_stage_closes_with_the_missing_shift_and_the_sign_of_the_rin
     assert unit.scene.machine["n_planets"] == 3
 
 
+def test_the_stiffness_is_that_of_gears_typed_by_hand(tmp_path):
+    """Ring and planet of the stage, with the numbers that the file states or that it assumes."""
+    unit = import_rexs(planetary().write(tmp_path / "set.rexsj"))
+    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 30.0}
+    planet = gf.Gear(z=25, r_bore=unit.scene.gears["planet"].r_bore, addendum=unit.scene.gears["planet"].addendum, **rack)
+    addendum = 0.20651052467175202 - (137.6 / 2 - 70) / 2
+    ring = gf.Gear(
+        z=70, x=0.20651052467175202, addendum=addendum, rack_tip_radius=0.2, r_rim=unit.scene.gears["ring"].r_rim, **rack
+    )
+    case = gf.Case(gf.GearPair(planet, ring, 45.4), unit.scene.pairs["planet_ring"].force, gf.Material(E=206e3, nu=0.3))
+    solve = gf.Solve(method="ritz", phases=8)
+    curves = [gf.solve(one, solve).k for one in (case, unit.scene.case("planet_ring"))]
+    assert curves[1] == pytest.approx(curves[0], rel=1e-6)
+
+
 def test_torque_goes_through_a_gearbox_and_speeds_follow(tmp_path):
     unit, shafts = Unit(), [1, 2, 3]
     shafts = [unit.add("shaft", rotational_speed=(1500.0, "1 / min")), unit.add("shaft"), unit.add("shaft")]

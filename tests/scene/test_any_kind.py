@@ -8,6 +8,7 @@ import warnings
 from functools import cache
 
 import pytest
+from gearboxes import PLANETARY, SHAFT, end
 
 import gearfe as gf
 from gearfe.geometry.pair import gear_pair
@@ -100,6 +101,18 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
         }
     ],
 }  # fmt: skip
+TRAIN = ("shaft", "bearing", "motor", "load", "coupling", "stage", "machine")  # tables of a gearbox
+WHOLE_GEARBOX = PLANETARY | {  # every key of these that stands in no other scene
+    "shaft": {
+        name: SHAFT | row | {
+            "bearings_at_mm": [0.0, 80.0], "bearings": ["needle", "needle"], "bearings_axial_N_per_um": [100.0, 0.0],
+            "gears_turned_deg": [0.0] * len(row["gears"]),
+        }
+        for name, row in PLANETARY["shaft"].items()
+    },
+    "load": {"brake": end("out", at_mm=120.0, slope_Nms_per_rad=0.1), "pump": end("two", torque_Nm=5.0)},
+    "machine": PLANETARY["machine"] | {"dofs": "six", "density_kg_per_m3": 7800.0, "damping_per_stiffness_s": 1e-6},
+}  # fmt: skip
 ELSE = [
     3, -1, 0, 10**9, 10**5000, -(10**30), 1e300, math.nan, -math.inf, True, "", "21", "sun", [], [1], [[]], ["x"], [True, False],
     [1e300, 10**400], [math.nan, 1.0], {}, [{}], {"x": 1}, {"x": {}}, [{"x": [1]}], datetime.date(1979, 5, 27),
@@ -118,9 +131,9 @@ def places(value, path=()):
             yield from places(one, (*path, i))
 
 
-def replaced(path, value):
-    """The whole scene with another value at a place; only what leads there is copied."""
-    out = home = copy.copy(WHOLE_SCENE)
+def replaced(path, value, whole=WHOLE_SCENE):
+    """A whole scene with another value at a place; only what leads there is copied."""
+    out = home = copy.copy(whole)
     for part in path[:-1]:
         home[part] = copy.copy(home[part])
         home = home[part]
@@ -138,7 +151,8 @@ def test_the_whole_scene_has_every_key():
     """Those left out exclude another, and stand in `ALSO`."""
     scene = scene_of("whole.toml", copy.deepcopy(WHOLE_SCENE))
     assert set(scene.pair().damage) == {"chipped", "cracked", "missing", "pitted", "spalled"}
-    keys = {part for path in places(WHOLE_SCENE) for part in path if isinstance(part, str)}
+    scene_of("gearbox.toml", copy.deepcopy(WHOLE_GEARBOX))
+    keys = {part for whole in (WHOLE_SCENE, WHOLE_GEARBOX) for path in places(whole) for part in path if isinstance(part, str)}
     assert vocabulary() - keys == {path[-1] for path, _ in ALSO}
 
 
@@ -168,6 +182,9 @@ def attempts():
     for turn, path in enumerate(places(WHOLE_SCENE)):
         for value in ELSE[turn % 4 :: 4]:  # keys of a kind are many, so that each kind is given all of them
             yield path, value, replaced(path, value)
+    for turn, path in enumerate(path for path in places(WHOLE_GEARBOX) if path[0] in TRAIN):
+        for value in ELSE[turn % 4 :: 4]:
+            yield path, value, replaced(path, value, WHOLE_GEARBOX)
     for path, instead in ALSO:
         for value in ELSE:
             yield path, value, without(replaced(path, value), instead)
@@ -210,7 +227,7 @@ def test_what_no_parser_reads(tmp_path, text):
 def test_any_place_of_a_scene_given_as_anything(monkeypatch):
     cut = cache(lambda pair, *nominals: overlap(pair, nominals))  # most attempts leave the teeth as they are
     monkeypatch.setattr(gear_pair, "overlap", lambda pair, nominals: cut(pair, *nominals))
-    wrong, told, before = [], {"a scene": 0, "refused": 0}, copy.deepcopy(WHOLE_SCENE)
+    wrong, told, before = [], {"a scene": 0, "refused": 0}, copy.deepcopy((WHOLE_SCENE, WHOLE_GEARBOX))
     for path, value, tables in attempts():
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)
@@ -226,6 +243,6 @@ def test_any_place_of_a_scene_given_as_anything(monkeypatch):
             else:
                 told["a scene"] += 1
     print(told)
-    assert before == WHOLE_SCENE, "what is read is not changed"
+    assert before == (WHOLE_SCENE, WHOLE_GEARBOX), "what is read is not changed"
     assert min(told.values()) > 100, told
     assert not wrong, f"{len(wrong)}:\n" + "\n".join(wrong)

@@ -129,7 +129,7 @@ MESSAGES = [  # of a scene: text, what is there instead, the whole message but t
     ("a_mm = 52.0", "face = 'straight'", "[pair.sun_planet] face = 'straight', but it must be one of spur, helical, herringbone"),
     ("axes_mm = [", "axes_mm = [-1.0, 1.0] # ", "[pits 1] axes_mm = [-1.0, 1.0], but each number must be above 0 mm"),
     ('model = "planetary"', 'model = "planetry"', "[machine] model = 'planetry', but it must be one of planetary, "
-     "compound_planetary, helical_pair, herringbone_planetary"),
+     "compound_planetary, helical_pair, herringbone_planetary, gearbox"),
     ('gear = "sun"', 'gear = "son"', "[pits 1] gear = 'son': no such gear; there is sun, planet, ring"),
     ("[given]\n", '[given]\n"gear.sun" = 21\n', "[given] 'gear.sun' is a table, but give single values: gear.sun.KEY = VALUE"),
 ]  # fmt: skip

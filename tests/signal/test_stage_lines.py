@@ -111,3 +111,33 @@ def test_a_stiff_ring_moves_as_a_whole_and_a_soft_one_as_a_beam_on_its_foundatio
     bending, foundation = 1e-2, 4e8  # of a straight beam: exp(-s) (cos s + sin s)
     s = soft * 0.1 * (foundation / (4 * bending)) ** 0.25
     assert_allclose(gf.ring_window(0.1, bending, foundation)(soft), np.exp(-s) * (np.cos(s) + np.sin(s)), atol=0.02)
+
+
+@pytest.mark.parametrize("damaged", [None, "sun", "planet"])
+def test_planets_at_given_angles_leave_the_lines_of_their_summed_records(damaged):
+    """Brute force: the record of each planet as a series of pulses at its own times, heard through its window."""
+    sun, ring, carrier = 20, 82, 5.0
+    teeth = np.array([0, 31, 68])  # places where a planet can be put in, of 102
+    angles = 2 * math.pi * teeth / (sun + ring)
+    lines = gf.stage_lines(sun, ring, 3, carrier, damaged=damaged, angles=angles, harmonics=1, turns=2)
+    rate, planet = 4096, 31
+    t = np.arange(rate * 2 * planet) / rate  # whole periods of everything, carrier turns included
+    turn = {"sun": ring * carrier / sun, "planet": ring * carrier / planet}.get(damaged, 0.0)
+    heard = np.zeros(t.size)
+    for p, angle in enumerate(angles / (2 * math.pi)):
+        mesh = np.cos(2 * math.pi * ring * (carrier * t + angle))
+        own = angle if damaged == "sun" else 0.37 * p  # the damaged tooth of the sun comes later to a planet ahead
+        knock = 1 + (0.5 * np.cos(2 * math.pi * (turn * t - own)) if turn and (damaged == "sun" or p == 0) else 0.0)
+        heard += (1 + np.cos(2 * math.pi * (carrier * t + angle))) * knock * mesh
+    spectrum = 2 * np.abs(np.fft.rfft(heard)) / t.size
+    frequency = np.fft.rfftfreq(t.size, 1 / rate)
+    strong = frequency[spectrum > 1e-3]
+    assert strong.size
+    assert all(min(abs(line - value) for value in lines.values()) < 1e-6 for line in strong)
+
+
+def test_angles_at_which_no_planet_fits_are_refused():
+    with pytest.raises(ValueError, match=r"planets can be assembled where \(20 \+ 82\) angle"):
+        gf.stage_lines(20, 82, 2, 5.0, angles=[0.0, 3.0])
+    with pytest.raises(ValueError, match="angles has 2 values, but there are 3 planets"):
+        gf.stage_lines(20, 82, 3, 5.0, angles=[0.0, 2 * math.pi / 3])

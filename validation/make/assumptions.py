@@ -18,7 +18,9 @@ from ..shared.table_rows import rows_of, write_table
 
 BASE = "as assumed [N/m]"
 CSV = TABLES / "assumptions.csv"
-SCENES = [name for name in scene_names() if name != "herringbone_contact_line"]  # its bores are chosen, not assumed
+SCENES = [  # scenes of articles; the bores of herringbone_contact_line are chosen and not assumed
+    name for name in scene_names() if name != "herringbone_contact_line" and gf.load_scene(name).references
+]
 WIDE = 8  # phases in three dimensions
 PITTED = {"planetary_pitting": "mild", "helical_pitting": "severe"}  # scene: case whose pits are changed
 

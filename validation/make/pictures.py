@@ -38,6 +38,7 @@ def pressure(told):
     return f"largest pressure of Hertz {told['pressure']:.0f} MPa{elsewhere}"
 
 
+ARTICLES = [name for name in scene_names() if gf.load_scene(name).references]  # the other scenes are of rigs
 UNDRAWN = {
     ("herringbone_contact_line", "case4")
 }  # the lowest pits reach 0.08 mm below the form circle: holes cannot be cut there
@@ -46,7 +47,7 @@ UNDRAWN = {
 def tasks():
     """Scene, case and kind of every picture."""
     out = []
-    for name in scene_names():
+    for name in ARTICLES:
         damage = next(iter(gf.load_scene(name).pairs.values())).damage
         out += [(name, case, "stress") for case in damage if (name, case) not in UNDRAWN]
         last = [*damage][-1]
@@ -84,7 +85,7 @@ def sections(parts):
         cracks, where no mesh gives a finite value. Cracks of spur gears: the transverse section, in grey both gears unloaded.
         """,
     ]
-    for name in scene_names():
+    for name in ARTICLES:
         scene = gf.load_scene(name)
         lines = [f"## {scene.title}", "", f"Pair `{next(iter(scene.pairs))}` of scene `{name}`.", ""]
         yield lines + [line for task, part in parts.items() if task[0] == name for line in part]

@@ -215,11 +215,27 @@ def main(argv=None):
     add("file FILE", "the file: .rexs, .rexsj or .zip")
     add("--load-case N", "load case of its load spectrum (default: 1)", default=1)
     add("-o --output FILE", "the new scene (default: its name with .toml, in the present folder)")
+    add = verb(
+        "export", exchange.export_file, "write a pair or a gear for other programs: FMU, lookup table, REXS, outline, solid"
+    )
+    _scene_arguments(add, count=False)
+    add("--gear", "which gear an outline or a solid has (default: pinion)", choices=("pinion", "wheel"), default="pinion")
+    add("--method", "of the stiffness (default: ritz or ritz3d)", default="auto")
+    add("--phases N", "phases per mesh cycle (default: 64)", default=64)
+    add(
+        "-o --output FILE",
+        ".fmu: the pair as an FMU 2.0; .mat, .txt: stiffness over the angle of the pinion for Simscape and Modelica; .rexs: all "
+        "gears of the scene; .dxf, .svg: outline of a gear; .step: its solid",
+        required=True,
+    )
     add = verb("check", tools.check, "say in words what a scene holds, and how each case would be solved")
     add("scene SCENE", "a .toml file, or a built-in scene (see 'gearfe scenes')")
     add("--picture FILE", "draw a pair with its damage to scale: .png, .svg or .pdf")
     add("--pair NAME", "which pair is drawn (default: its first)")
     add("--case NAME", "which case of damage is drawn (default: the first of the pair)")
+    add = verb("lines", tools.lines, "table of the frequencies of a scene's machine: meshes, shafts, teeth, planets, bearings")
+    add("scene SCENE", "a .toml file, or a built-in scene with a machine (see 'gearfe scenes')")
+    add("-o --output FILE", "save the table: .csv, .md or .tex")
     add = verb("schema", tools.schema, "print the JSON schema of scenes, by which an editor completes and checks their keys")
     add("--page", "instead a page of all keys of scenes, studies and data sets, as Markdown")
     add = verb("app", tools.app, "a page in the browser: turn a slider, see mesh, stiffness and transmission error at once")

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from .progress import working
+
 
 def import_file(arguments):
     """``gearfe import``."""
@@ -22,3 +24,15 @@ def import_file(arguments):
     with written(out) as name:
         Path(name).write_text(toml(unit.tables), encoding="utf-8")
     print(f"written: {out}\n\n  gearfe check {out}\n  gearfe compare {out}")
+
+
+def export_file(arguments):
+    """``gearfe export``."""
+    from ...exchange.exports import export
+
+    scene_file, out = arguments.scene, arguments.output
+    options = {name: getattr(arguments, name) for name in ("pair", "case", "gear", "method", "phases", "refine")}
+    with working("export"):
+        for line in export(scene_file, out, **options):
+            print(line)
+    print(f"written: {out}")

@@ -14,6 +14,7 @@ OPTIONAL = {  # package: (module, what it is good for); of the project's extras
     "h5py": ("h5py", "signals in HDF5 and MATLAB 7.3"),
     "pyuff": ("pyuff", "signals in universal files (UFF58)"),
     "npTDMS": ("nptdms", "signals in TDMS"),
+    "ezdxf": ("ezdxf", "outlines of gears as DXF"),
     "lvm-read": ("lvm_read", "LabVIEW measurement files"),
     "pyarrow": ("pyarrow", "sweeps, and signals in Parquet"),
     "dask": ("dask", "sweeps on a cluster"),

@@ -59,6 +59,22 @@ def check(arguments):
         print(f"written: {arguments.picture}")
 
 
+def lines(arguments):
+    """``gearfe lines``."""
+    from ...core.files import check_output
+    from ...dynamics.machine.lines import lines_table
+    from ...scene.load import load_scene
+
+    if arguments.output:
+        check_output(arguments.output, "table")
+    scene = load_scene(arguments.scene)
+    table = lines_table(scene)
+    print(f"{scene.title}\n\n{table.title}\n\n{table}")
+    if arguments.output:
+        table.save(arguments.output)
+        print(f"written: {arguments.output}")
+
+
 def schema(arguments):
     """``gearfe schema``."""
     from ...scene.describe import json_schema, keys_page

@@ -15,6 +15,7 @@ from ...scene.load import Scene
 from ...stiffness.curve import StiffnessCurve
 from .compound_planetary import scene_compound
 from .force_law import ForceLaw
+from .gearbox import scene_gearbox
 from .helical_pair import scene_pair
 from .herringbone_planetary import scene_herringbone
 from .impact import impact_helical, impact_planetary
@@ -29,6 +30,7 @@ MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it i
     "compound_planetary": {"linear": scene_compound},
     "helical_pair": {"linear": scene_pair, "impact": impact_helical},
     "herringbone_planetary": {"linear": scene_herringbone},
+    "gearbox": {"linear": scene_gearbox},
 }
 EVEN = 1e-9  # how far phases may lie from equal distances
 ROUGH = 8  # phases per cycle of the curves from which the forces at rest are computed

@@ -1,0 +1,283 @@
+"""The gearbox of a scene: shafts with several gears, motor, loads, couplings and planetary stages.
+
+Stations move in rotation alone (``dofs = "torsion"``) or in six directions. Planetary stages are torsional: the sun is a gear of
+its shaft, the planets rotate, their axes follow the carrier rigidly, and the ring stands.
+"""
+
+import math
+from typing import Any
+
+from ...scene.train import Train, TrainStage
+from .gear_mesh import GearMesh
+from .layout import SPACE, Body, Layout
+from .loads import Load
+from .member import gear_member
+from .planetary import stage_phases
+from .scene_curves import Meshed, scene_machine
+from .shaft_chain import Chain, bearing_springs, chain, lumps, shaft_springs, station
+from .springs import Spring
+from .stages import Stage
+from .tables import Machine
+
+KINDS = ("sun_planet", "planet_ring")
+DOFS = {"torsion": "theta", "six": SPACE}
+
+
+def scene_gearbox(scene, case, **options):
+    """Machine of a scene with a `Train`: the stiffness curves of its pairs."""
+    train = scene.train
+    homes = {name: (one, two) for name, (one, two, _) in train.pairs.items()}
+    meshes = {name: Meshed(name, bodies) for name, bodies in homes.items()}
+    for name, stage in train.stages.items():
+        sun, _, ring = stage.gears
+        names, fields = planets_of(stage), _phases(scene, name)
+        for i, planet in enumerate(names):
+            bodies = dict(zip(KINDS, ((sun, planet), (planet, ring)), strict=True))
+            for kind, pair in zip(KINDS, stage.pairs, strict=True):
+                meshes[f"{pair}{i + 1}"] = Meshed(pair, bodies[kind], fields[f"{kind}{i + 1}"].get("first", (0, 0)))
+        homes |= dict(zip(stage.pairs, ((sun, names[0]), (names[0], ring)), strict=True))
+    check_bearings(scene)
+    return scene_machine(scene, case, options, meshes, homes, lambda healthy, **drive: gearbox(scene, healthy, drive["damage"]))
+
+
+def planets_of(stage: TrainStage) -> list[str]:
+    """Names of the bodies of the planets of a stage."""
+    return [f"{stage.gears[1]}{i + 1}" for i in range(stage.n_planets)]
+
+
+def check_bearings(scene):
+    """Raise ValueError if a shaft that moves in six directions has no bearing stiffness, or if helical gears push it freely."""
+    if scene.machine["dofs"] == "torsion":
+        return
+    for name, shaft in scene.train.shafts.items():
+        where = f"{scene.name}.toml [shaft.{name}]"
+        if not shaft.radial:
+            raise ValueError(f"{where}: dofs = 'six' needs bearings_at_mm and bearings_N_per_um; give them, or dofs = 'torsion'")
+        if not any(shaft.axial):
+            raise ValueError(f"{where} bearings_axial_N_per_um = [0, 0]: no bearing locates the shaft along its axis; give one")
+
+
+def gearbox(scene, stiffness, damage):
+    """`Machine` of a scene with a `Train`.
+
+    Parameters
+    ----------
+    scene : Scene
+    stiffness : dict
+        By pair, anything that `GearMesh` takes.
+    damage : dict
+        By mesh, tuples of `ToothDamage`.
+
+    Returns
+    -------
+    Machine
+        Mass of gears and shafts is lumped at the stations. Stages are in the order of power, the one of the motor last.
+    """
+    train, run = scene.train, scene.machine
+    chains = _chains(train)
+    layout = Layout([*_stations(scene, chains), *_ends(train), *_planets(scene)])
+    springs = []
+    for name, made in chains.items():
+        springs += shaft_springs(layout, made, f"shaft {name}", run["damping_per_stiffness_s"])
+        springs += bearing_springs(layout, made, f"bearing {name}") if run["dofs"] == "six" else []
+    springs += _joints(layout, train, chains)
+    meshes = [*_parallel(scene, layout, stiffness, damage), *_planetary(scene, layout, chains, (stiffness, damage))]
+    loads = [Load(name, layout.unit(_end(train, chains, name), "theta"), train.torques[name]) for name in train.ends]
+    rotors = {body: train.speeds[name] for name, made in chains.items() for body in made.names} if run["dofs"] == "six" else {}
+    notes = {
+        "shaft speeds [rpm]": {name: speed * 30 / math.pi for name, speed in train.speeds.items()},
+        "torques [N m]": dict(train.torques),
+        "mass of shafts": "lumped at the stations",
+    }
+    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, _stages(scene), rotors=rotors)
+
+
+def _chains(train: Train) -> dict[str, Chain]:
+    """`Chain` of each shaft, with stations of its motor, loads, couplings and carriers."""
+    places: dict[str, dict[str, float]] = {name: {} for name in train.shafts}
+    for name, end in train.ends.items():
+        shaft = end["shaft"]
+        default = 0.0 if name == "motor" else train.shafts[shaft].length
+        places[shaft][name if end["torsion_Nm_per_mrad"] is None else f"{name}_end"] = (
+            default if end["at_mm"] is None else end["at_mm"]
+        )
+    for name, stage in train.stages.items():
+        places[stage.carrier][f"{name}_carrier"] = stage.at
+    return {name: chain(name, shaft, places[name]) for name, shaft in train.shafts.items()}
+
+
+def _end(train, chains, name):
+    """Body on which a motor or load acts."""
+    end = train.ends[name]
+    return name if end["torsion_Nm_per_mrad"] is not None else _held(train, chains, name)
+
+
+def _held(train, chains, name):
+    """Station of a motor or load on its shaft."""
+    made, at = chains[train.ends[name]["shaft"]], train.ends[name]["at_mm"]
+    return made.at(0.0 if name == "motor" else made.shaft.length) if at is None else made.at(at)
+
+
+def _stations(scene, chains):
+    """`Body` of each station: shaft, gears, rotors that are held rigidly, and carriers with the mass of their planets."""
+    train, run, out = scene.train, scene.machine, []
+    rigid = {_held(train, chains, n): e["inertia_kgm2"] for n, e in train.ends.items() if e["torsion_Nm_per_mrad"] is None}
+    for stage in train.stages.values():
+        planets = stage.n_planets * _disc(scene, stage.gears[1]).mass * (1e-3 * scene.pair(stage.pairs[0]).pair.a) ** 2
+        carrier = chains[stage.carrier].at(stage.at)
+        rigid[carrier] = rigid.get(carrier, 0.0) + planets + (planets if stage.inertia is None else stage.inertia)
+    for made in chains.values():
+        for body, lump in zip(made.names, lumps(made, run["density_kg_per_m3"]), strict=True):
+            mass, polar, across = lump
+            if body in made.shaft.gears:
+                gear = _disc(scene, body)
+                thick = 1e-3 * scene.gears[body].b
+                mass, polar = mass + gear.mass, polar + gear.inertia
+                across += gear.inertia / 2 + gear.mass * thick**2 / 12
+            out.append(station(body, (mass, polar + rigid.get(body, 0.0), across), DOFS[run["dofs"]]))
+    return out
+
+
+def _disc(scene, gear):
+    return gear_member(scene.gears[gear], scene.machine["density_kg_per_m3"], 0.0)
+
+
+def _ends(train):
+    """`Body` of each motor and load behind an elastic coupling."""
+    out = []
+    for name, end in train.ends.items():
+        if end["torsion_Nm_per_mrad"] is not None:
+            if not end["inertia_kgm2"] > 0:
+                raise ValueError(f"[{name}] inertia_kgm2 = 0, but what stands behind an elastic coupling has a moment of inertia")
+            out.append(Body(name, 0.0, end["inertia_kgm2"], "theta"))
+    return out
+
+
+def _planets(scene):
+    """`Body` of each planet, which rotates about its own axis."""
+    stages = scene.train.stages.values()
+    inertias = {name: _disc(scene, stage.gears[1]).inertia for stage in stages for name in planets_of(stage)}
+    return [Body(name, 0.0, inertia, "theta") for name, inertia in inertias.items()]
+
+
+def _joints(layout: Layout, train: Train, chains: dict[str, Chain]) -> list[Spring]:
+    """Couplings between shafts and to motor and loads, and the slopes of torque-speed lines as dampers to the ground."""
+    out = []
+    for name, row in train.couplings.items():
+        one, two = chains[row["shaft_1"]].names[-1], chains[row["shaft_2"]].names[0]
+        turn = layout.unit(two, "theta") - layout.unit(one, "theta")
+        out.append(Spring(f"coupling {name}", turn, 1e3 * row["torsion_Nm_per_mrad"], row["damping_Nms_per_rad"]))
+    for name, end in train.ends.items():
+        body, held = _end(train, chains, name), _held(train, chains, name)
+        if body != held:
+            turn = layout.unit(body, "theta") - layout.unit(held, "theta")
+            out.append(Spring(f"coupling {name}", turn, 1e3 * end["torsion_Nm_per_mrad"], end["damping_Nms_per_rad"]))
+        if end["slope_Nms_per_rad"]:
+            out.append(Spring(f"line {name}", layout.unit(body, "theta"), 0.0, end["slope_Nms_per_rad"]))
+    return out
+
+
+def pair_phases(scene):
+    """Phase at t = 0 of each pair between shafts, which follows from where the teeth of the gears on each shaft stand.
+
+    Tooth 0 of the first gear of the motor's shaft stands at 0; tooth 0 of a driven gear meets tooth 0 of its driver. The driving
+    flank of a tooth at the angle c passes the pitch point, at the angle d, where ``sense (c - d) + half thickness = 0``.
+    """
+    train, out = scene.train, {}
+    base = {train.ends["motor"]["shaft"]: 0.0}  # angle of the mark of each shaft, 0 after couplings and planetary stages
+    for link in train.links:
+        if link.name not in train.pairs:
+            base.setdefault(link.one, 0.0), base.setdefault(link.two, 0.0)
+            continue
+        (one, two, angle), pair = train.pairs[link.name], scene.pair(link.name).pair
+        sense, turn = (math.copysign(1, train.speeds[shaft]) for shaft in (link.one, link.two))
+        tooth = base[link.one] + train.shafts[link.one].turned[one]
+        ahead = sense * (tooth - angle) + pair.gear_1.half_thickness(pair.pitch_radius_1)
+        out[link.name] = pair.pitch_phase + pair.gear_1.z / (2 * math.pi) * ahead
+        z_2, place = pair.gear_2.z, angle if pair.gear_2.internal else angle + math.pi
+        behind = pair.gear_2.half_thickness(pair.pitch_radius_2) + 2 * math.pi / z_2 * (out[link.name] - pair.pitch_phase)
+        base[link.two] = place + turn * behind - train.shafts[link.two].turned[two]
+    return out
+
+
+def _parallel(scene, layout, stiffness, damage):
+    """Meshes between shafts; a positive helix angle is a right-hand helix, whose driver is pushed forward by its rotation."""
+    train, out, phases = scene.train, [], pair_phases(scene)
+    for link in train.links:
+        if link.name not in train.pairs:
+            continue
+        (one, two, angle), pair, speed = train.pairs[link.name], scene.pair(link.name).pair, train.speeds[link.one]
+        sense = 1 if speed > 0 else -1
+        row = layout.pair_mesh(one, two, pair, angle, sense=sense, helix=-sense * math.tan(pair.gear_1.beta_b))
+        fields: dict[str, Any] = {"teeth": (pair.gear_1.z, pair.gear_2.z), "damage": damage[link.name]}
+        fields |= {"phase": phases[link.name], "frequency": abs(speed) * pair.gear_1.z / (2 * math.pi)}
+        out.append(
+            GearMesh(
+                link.name, row, stiffness[link.name], damping_per_stiffness=scene.machine["damping_per_stiffness_s"], **fields
+            )
+        )
+    return out
+
+
+def _sense(scene, name):
+    """`Link` of a planetary stage and sense of the torque of the sun's shaft on the sun."""
+    link = next(link for link in scene.train.links if link.name == name)
+    return link, (1 if link.ratio * scene.train.torques[name] > 0 else -1)
+
+
+def _rate(scene, name):
+    """Mesh frequency of a planetary stage [Hz], negative where the sun is driven: contacts then run backwards."""
+    (link, sense), speeds = _sense(scene, name), scene.train.speeds
+    return sense * (speeds[link.one] - speeds[link.two]) * scene.gears[scene.train.stages[name].gears[0]].z / (2 * math.pi)
+
+
+def _phases(scene, name):
+    stage = scene.train.stages[name]
+    pairs = scene.pair(stage.pairs[0]).pair, scene.pair(stage.pairs[1]).pair
+    return stage_phases(pairs, stage.n_planets, frequency=_rate(scene, name))
+
+
+def _planetary(scene, layout, chains, curves):
+    """Meshes of planetary stages: compressions of sun and planet, and of planet and ring, by rotations alone.
+
+    The planets are numbered in the sense of the torque on the sun. With the angle c of the carrier::
+
+        sense (r_s (s - c) + r_p (p - c)),   -sense (r_p (p - c) + r_r c)
+    """
+    out, (stiffness, damage) = [], curves
+    for name, stage in scene.train.stages.items():
+        fields, sense = _phases(scene, name), _sense(scene, name)[1]
+        r_sun, r_planet, r_ring = (1e-3 * scene.gears[gear].r_b for gear in stage.gears)
+        sun, carrier = (layout.unit(body, "theta") for body in (stage.gears[0], chains[stage.carrier].at(stage.at)))
+        for i, body in enumerate(planets_of(stage)):
+            planet = r_planet * (layout.unit(body, "theta") - carrier)
+            for kind, pair, row in zip(
+                KINDS, stage.pairs, (r_sun * (sun - carrier) + planet, -planet - r_ring * carrier), strict=True
+            ):
+                mesh = f"{pair}{i + 1}"
+                more = fields[f"{kind}{i + 1}"] | {
+                    "damping_per_stiffness": scene.machine["damping_per_stiffness_s"],
+                    "damage": damage[mesh],
+                }
+                out.append(GearMesh(mesh, sense * row, stiffness[pair], **more))
+    return out
+
+
+def _stages(scene):
+    """`Stage` of each pair and planetary stage, from the last one of the flow of power to that of the motor."""
+    train, out = scene.train, []
+    for link in train.links:
+        turns = [abs(train.speeds[shaft]) / (2 * math.pi) for shaft in (link.one, link.two)]
+        if link.name in train.pairs:
+            bodies = train.pairs[link.name][:2]
+            mesh = turns[0] * scene.gears[bodies[0]].z
+            returns = dict(zip(bodies, turns, strict=True))
+            out.append(Stage(link.name, bodies[:1], bodies[1:], mesh, turns[0], returns=returns))
+        elif link.name in train.stages:
+            stage, mesh = train.stages[link.name], abs(_rate(scene, link.name))
+            sun, planet, ring = (mesh / scene.gears[gear].z for gear in stage.gears)
+            names, n = planets_of(stage), stage.n_planets
+            returns = {stage.gears[0]: n * sun, stage.gears[2]: n * ring} | dict.fromkeys(names, planet)
+            more = {"fault": n * sun, "carrier": turns[1], "returns": returns}
+            out.append(Stage(link.name, stage.gears[:1], (names[0],), mesh, sun, **more))
+    return tuple(reversed(out))

@@ -1,0 +1,110 @@
+"""``gearfe lines``: frequencies of gearboxes, pairs and planetary scenes, with their origin."""
+
+import math
+import time
+
+import pytest
+from gearboxes import PLANETARY, TWO_STAGE
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.app.cli import main
+from gearfe.dynamics.machine.lines import scene_lines
+from gearfe.scene.load import scene_names, scene_of
+
+
+def found(scene):
+    return {(line.part, line.name): line.frequency for line in scene_lines(scene)}
+
+
+def test_lines_of_a_published_train():
+    """PHM 2009, page "Apparatus": 32/96, 48/80, ratio 5; ER-10K, 8 balls of 0.3125 on 1.319 in; orders of the input shaft."""
+    lines = {key: value / 30.0 for key, value in found(gf.load_scene("phm2009_spur")).items()}
+    assert_allclose(lines["shaft output", "shaft frequency"], 1 / 5, rtol=1e-12)
+    assert_allclose(lines["shaft idler", "shaft frequency"], 1 / 3, rtol=1e-12)
+    assert_allclose([lines["stage first", "mesh frequency"], lines["stage second", "mesh frequency"]], [32, 16], rtol=1e-12)
+    ratio = 0.3125 / 1.319
+    races = {"BPFO, outer race": 4 * (1 - ratio), "BPFI, inner race": 4 * (1 + ratio), "FTF, cage": (1 - ratio) / 2}
+    races["BSF, rotation of a roller"] = (1 - ratio**2) / ratio / 2
+    for shaft, turns in {"input": 1.0, "idler": 1 / 3, "output": 1 / 5}.items():
+        for name, order in races.items():
+            assert_allclose(lines[f"ER10K of shaft {shaft}", name], order * turns, rtol=1e-9, err_msg=name)
+    # one tooth of the 48 meets the same one of the 80 every lcm(48, 80) = 240 mesh cycles
+    assert_allclose(lines["teeth 48 and 80", "hunting tooth frequency"], 16 / 240, rtol=1e-12)
+
+
+def test_lines_of_a_planetary_and_parallel_train():
+    """Sun 21, planets 31, ring 84 behind 25/50: by the relative motion to the carrier (Willis)."""
+    lines, f = found(scene_of("own.toml", PLANETARY)), 1200 / 60
+    sun = f * 25 / 50
+    carrier = sun * 21 / (21 + 84)
+    assert_allclose(lines["shaft out", "shaft frequency"], carrier, rtol=1e-12)
+    assert_allclose(lines["stage set", "mesh frequency"], 84 * carrier, rtol=1e-12)
+    assert_allclose(lines["stage set", "planet-pass frequency"], 3 * carrier, rtol=1e-12)
+    planet = 84 * carrier / 31
+    assert_allclose(lines["planet1", "a tooth meshes with either flank"], 2 * planet, rtol=1e-12)
+    assert_allclose(lines["sun", "a tooth meshes with the same flank"], 3 * (sun - carrier), rtol=1e-12)
+    assert_allclose(lines["bearing of each planet", "BPFI, inner race"], 17 / 2 * planet * (1 + 3 / 22), rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", [name for name in scene_names() if gf.load_scene(name).machine])
+def test_every_machine_has_its_mesh_and_hunting_lines(name):
+    scene = gf.load_scene(name)
+    names = [line.name for line in scene_lines(scene)]
+    assert names.count("mesh frequency") >= 1
+    assert names.count("hunting tooth frequency") >= 1
+    assert all(math.isfinite(line.frequency) and line.frequency > 0 and line.origin for line in scene_lines(scene))
+
+
+def test_the_verb_prints_and_saves_them(tmp_path, capsys):
+    start = time.perf_counter()
+    assert main(["lines", "phm2009_spur", "-o", str(tmp_path / "lines.csv")]) == 0
+    told = capsys.readouterr().out
+    assert "32 teeth of input x its rotation" in told
+    assert 'ER10K of shaft input,"BPFO, outer race",91.569' in (tmp_path / "lines.csv").read_text(encoding="utf-8")
+    print(f"{time.perf_counter() - start:.2f} s")
+    text = str(tmp_path / "pair.toml")
+    gf.new_scene(text)
+    assert main(["lines", text]) == 1
+    assert "has no [machine] table" in capsys.readouterr().err
+
+
+CHANGES = [  # what is changed in the tables of two stages, and what is said of it
+    ({"pair": {"slow": {"force_N": 3.0}}}, r"\[pair.slow\] force_N: it is \d.* N by the torque of the gearbox; leave it out"),
+    ({"pair": {"slow": {"gear_1": "d", "gear_2": "c"}}}, r"\[pair.slow\]: gear_1 must drive, but power flows from 'c' to 'd'"),
+    ({"shaft": {"two": {"gears": ["b", "a"]}}}, r"\[shaft.two\] gears: 'a' is on \[shaft.one\] already"),
+    ({"shaft": {"two": {"gears_at_mm": [60.0, 60.0]}}}, r"give each gear a place of its own"),
+    ({"shaft": {"two": {"gears_at_mm": [60.0, 190.0]}}}, r"gears_at_mm = 190, but the shaft reaches from 0 to 180 mm"),
+    ({"shaft": {"two": {"bearings": ["x", "x"]}}}, r"\[shaft.two\] bearings = 'x': no such bearing"),
+    ({"motor": {"shaft": "four"}}, r"\[motor\] shaft = 'four': no such shaft"),
+    ({"load": {"brake": {"torque_Nm": 3.0}}}, r"0 loads without torque_Nm"),
+    ({"load": {"pump": {"shaft": "two", "torque_Nm": 500.0}}}, r"\[load.brake\]: nothing is left for it"),
+    ({"coupling": {"x": {"shaft_1": "one", "shaft_2": "three", "torsion_Nm_per_mrad": 1.0}}}, r"closes a loop of shafts"),
+    ({"machine": {"model": "helical_pair"}}, r"\[motor\]: this belongs to a gearbox"),
+    ({"gear": {"c": {"beta_deg": 12.0}}}, r"beta_deg of 'c' and 'd' are 12 and 12, but an external pair has opposite hands"),
+]  # fmt: skip
+
+
+def merged(tables, change):
+    return {**tables, **{key: merged(tables.get(key, {}), one) if isinstance(one, dict) else one for key, one in change.items()}}
+
+
+@pytest.mark.parametrize(("change", "message"), CHANGES, ids=[message[:25] for _, message in CHANGES])
+def test_what_is_said_of_an_impossible_train(change, message):
+    with pytest.raises(ValueError, match=f"own.toml.*{message}"):
+        scene_of("own.toml", merged(TWO_STAGE, change))
+
+
+def test_hands_of_helix_add_or_subtract_the_thrusts():
+    """By hand: F_a = T / r tan(beta) of each gear; the wheel b and the pinion c of one hand push apart, of two hands add."""
+    from gearfe.scene.train import thrusts_of
+
+    sums = {}
+    for hand in (-12.0, 12.0):
+        scene = scene_of("own.toml", merged(TWO_STAGE, {"gear": {"c": {"beta_deg": hand}, "d": {"beta_deg": -hand}}}))
+        pushes, torque = thrusts_of(scene.train, scene.gears), 30.0 * 61 / 23
+        radii = [61 * 2e-3 / math.cos(math.radians(15)) / 2, 19 * 2.5e-3 / math.cos(math.radians(12)) / 2]
+        sizes = [torque / radii[0] * math.tan(math.radians(15)), torque / radii[1] * math.tan(math.radians(12))]
+        assert_allclose([abs(pushes["b"]), abs(pushes["c"])], sizes, rtol=1e-12)
+        sums[hand] = abs(pushes["b"] + pushes["c"])
+    assert_allclose([sums[-12.0], sums[12.0]], [abs(sizes[1] - sizes[0]), sum(sizes)], rtol=1e-9)
