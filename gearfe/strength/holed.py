@@ -54,8 +54,9 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, size
     """`Pressed`: the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
 
     The damage is that of one tooth of one gear, its pits in one half if herringbone, or the same in both; without any it is tooth
-    0 of the pinion. `phases`: default the one of 16 at which the damaged tooth carries most. `refine`, `teeth`, `sizes` as of
-    `geometry.mesh.holes.holed_sector`; `strip` is the edge length along the loaded contact lines of the damaged tooth [modules],
+    0 of the pinion. Of a missing tooth it is the next one, which carries alone before the gap. `phases`: default the one of 16 at
+    which the tooth carries most. `refine`, `teeth`, `sizes` as of `geometry.mesh.holes.holed_sector`; `strip` is the edge length
+    along the loaded contact lines of the damaged tooth [modules],
     default that of the flank; `spread` that of the load to either side of its line, as a hat [modules]: one of 1.2 Hertz half
     widths is as wide as his pressure. With `removal` the tooth without its holes is solved too, for `Pressed.extra`.
 
@@ -64,23 +65,22 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, size
     """
     if not spread > 0:
         raise ValueError(f"spread = {spread}, but it is a length to either side of the contact line: give spread > 0")
-    case.without_broken("a tooth with holes")
     pair, materials, face, cracks, pits = case.pair, case.materials, case.runs, case.cracks, case.pits
-    which = [i for i in (0, 1) if cracks[i] or pits[i]] or [0]
-    if len(which) > 1 or len(cracks[which[0]]) > 1:
+    which = [i for i in (0, 1) if cracks[i] or pits[i] or case.broken[i]] or [0]
+    side, broken = which[0], case.broken[which[0]]
+    if len(which) > 1 or len(cracks[side]) > 1 or (broken and len([*cracks[side], *pits[side], *broken]) > 1):
         raise ValueError("give damage of the flank, one crack or both, of one tooth of one gear: holes are cut into one tooth")
-    side = which[0]
     gear, half, own_pits = _own(pair, side, face, case.groove, pits[side])
     crack = next(iter(cracks[side]), None)
-    tooth = next((one.tooth for one in (*pits[side], *cracks[side])), 0)
-    order = (1, -1)[side] * tooth
+    tooth = next((one.tooth for one in (*pits[side], *cracks[side], *broken)), 0) + (1, -1)[side] * case.missing
+    broken, order = [replace(one, tooth=one.tooth - tooth) for one in broken], (1, -1)[side] * tooth
     with part("contact", 0.0, 0.2):
         contact = contact_of(case, phases, order, extended=False)
     lines = [_lines(pair, of_phase, side, tooth, half) for of_phase in contact.cells]
     spread *= gear.m_n
     strips = () if strip is None else _strips(gear, lines, strip * gear.m_n / refine, spread)
     with part("mesh", 0.2, 0.5):
-        sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes, strips=strips)
+        sector = holed_sector(gear, own_pits, crack, broken=broken, teeth=teeth, refine=refine, sizes=sizes, strips=strips)
     nodes, cells, number = second_order(sector.points, sector.cells)
     kept = cells[:, sector.plug < 0]
     loads = np.column_stack([_pressure(sector, nodes, number, of_phase, spread) for of_phase in lines])

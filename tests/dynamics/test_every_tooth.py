@@ -244,7 +244,10 @@ def test_slow_rotation_with_a_missing_tooth_has_the_transmission_error():
 
 
 BALANCED = {
-    "shifts": {"flank": {"gear": "pinion", "pitch_um": [0.0] * 5 + [20.0] + [0.0] * 11}, "crack": [{"gear": "pinion", "tooth": 3}]},
+    "shifts": {
+        "flank": {"gear": "pinion", "pitch_um": [0.0] * 5 + [20.0] + [0.0] * 11},
+        "crack": [{"gear": "pinion", "tooth": 3}],
+    },
     "gap": {"missing_tooth": [{"gear": "pinion", "tooth": 3}]},
 }
 
