@@ -32,6 +32,7 @@ from .dynamics.machine.law_error import converged_force_law as converged_force_l
 from .dynamics.machine.law_error import law_error as law_error
 from .dynamics.machine.layout import Body as Body
 from .dynamics.machine.layout import Layout as Layout
+from .dynamics.machine.lines import scene_lines as scene_lines
 from .dynamics.machine.loads import Load as Load
 from .dynamics.machine.loads import pulses as pulses
 from .dynamics.machine.member import Member as Member
@@ -40,6 +41,8 @@ from .dynamics.machine.mesh_curves import Samples as Samples
 from .dynamics.machine.mesh_errors import with_errors as with_errors
 from .dynamics.machine.mesh_excitation import mesh_excitation as mesh_excitation
 from .dynamics.machine.modal_energy import modal_energy as modal_energy
+from .dynamics.machine.mode_words import critical_speeds as critical_speeds
+from .dynamics.machine.mode_words import mode_words as mode_words
 from .dynamics.machine.modes import natural_frequencies as natural_frequencies
 from .dynamics.machine.of_scene import build_machine as build_machine
 from .dynamics.machine.pitted_planetary import pitted_planetary as pitted_planetary
@@ -61,6 +64,8 @@ from .dynamics.motion.portrait import poincare_section as poincare_section
 from .dynamics.motion.response import Response as Response
 from .dynamics.motion.simulate import simulate as simulate
 from .dynamics.motion.steady import steady_state as steady_state
+from .dynamics.motion.transfer_path import through_frf as through_frf
+from .dynamics.motion.transfer_path import through_modes as through_modes
 from .exchange.fmu import write_fmu as write_fmu
 from .exchange.mesh_table import write_mesh_table as write_mesh_table
 from .exchange.outline_file import write_outline as write_outline

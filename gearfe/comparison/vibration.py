@@ -15,8 +15,10 @@ from ..dynamics.motion.simulate import simulate
 from ..dynamics.motion.step_control import default_step
 from ..dynamics.motion.thinned import REACH
 from ..signal.demodulation import Demodulated, demodulate
+from ..signal.gear_indicators import gear_indicators
 from ..signal.indicator_table import indicator_table, tabulate_indicators
 from ..signal.indicators import LOBES
+from ..signal.orders import synchronous_average
 from ..signal.series import Signal
 from ..signal.spectra import spectrum
 from ..signal.spectral_lines import BINS, expected_lines, find_lines
@@ -31,6 +33,7 @@ FLOOR = 5.0  # times its noise floor at least is a line; the largest of five bin
 RANGE = 1e-4  # of the rms of a record: smaller lines are lost in any recorder (80 dB; 16 bits are 96 dB below full scale)
 PULSES = 2  # harmonics of the fault at least in an envelope: pulses of a tooth have many, run-out and misplaced planets one
 RISE = 2.0  # times the healthy machine's at least is a line of a fault
+OF_GEARS = ("FM4", "NA4", "energy ratio")  # indicators by gear, of `gearfe.signal.gear_indicators`
 WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "turns of the gear", "f_carrier": "carrier frequency"}
 
 
@@ -248,8 +251,7 @@ def analysis(found, channel=None):
     gears = {one.gear: one for one in reversed(faults)}
     main = faults[0] if faults else None
     stage = first.machine.stages[-1] if main is None else first.machine.stage_of(main.gear)
-    driven = next(one for one in first.machine.meshes if abs(one.frequency - stage.mesh) < 1e-6 * stage.mesh)
-    channel = channel or f"force {driven.name}"
+    channel = channel or f"force {_mesh_of(first.machine, stage).name}"
     rate = 1 / (first.time[1] - first.time[0])
     signals = {
         case: Signal(np.asarray(one[channel], dtype=float), rate, one.unit(channel), name=case) for case, one in found.items()
@@ -262,6 +264,29 @@ def analysis(found, channel=None):
     if set(found) == {"healthy"}:
         return analyse(signals, stage.mesh, **options)
     return analyse(signals, stage.mesh, stage.fault, turning=stage.turning, **options)
+
+
+def _mesh_of(machine, stage):
+    """Mesh of the name of a stage, else the first one of its frequency."""
+    alike = [one for one in machine.meshes if abs(abs(one.frequency) - stage.mesh) < 1e-6 * stage.mesh]
+    return next((one for one in alike if one.name == stage.name), alike[0])
+
+
+def gears_table(found):
+    """`Table` of indicators of the gears of parallel stages by case of `responses`; None of a machine with one stage.
+
+    They are those of the synchronous average of the mesh force. Records of fewer than two revolutions have none.
+    """
+    machine, rows = next(iter(found.values())).machine, []
+    for stage in reversed(machine.stages) if len(machine.stages) > 1 else ():
+        mesh = _mesh_of(machine, stage)
+        for z, (gear, turning) in zip(mesh.teeth, stage.returns.items(), strict=False) if stage.carrier is None else ():
+            signals = [one.signal(f"force {mesh.name}", turning) for one in found.values()]
+            if min(signal.duration for signal in signals) * turning >= 2:
+                of_cases = [gear_indicators(synchronous_average(signal)[0], z) for signal in signals]
+                rows.append([gear, mesh.name, *(of_case[name] for name in OF_GEARS for of_case in of_cases)])
+    columns = [f"{name}, {case}" for name in OF_GEARS for case in found]
+    return Table(["gear", "force of mesh", *(Column(name, "", "{:.4g}") for name in columns)], rows) if rows else None
 
 
 def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="signal", others=None):

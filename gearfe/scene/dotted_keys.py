@@ -102,7 +102,7 @@ def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
     The pair of a gearbox has the force that the gearbox puts on it.
     """
     chosen = tables["pair"][pair]
-    if tables.get("machine", {}).get("model") == "gearbox":
+    if is_gearbox(tables):
         whole = {kind: table for kind, table in tables.items() if kind not in (*DAMAGE, *PRINTED)}
         chosen = chosen | {"force_N": scene_of("scene", whole).pair(pair).force}
     gears = {chosen.get(name) for name in ("gear_1", "gear_2")}
@@ -118,6 +118,11 @@ def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
             out[kind] = {name: row for name, row in tables.get(kind, {}).items() if wanted(row)}
     used = {row.get("material") for kind in ("gear", "shaft") for row in out[kind].values()}
     return out | {"material": {name: table for name, table in tables["material"].items() if name in used}}
+
+
+def is_gearbox(tables: Tables) -> bool:
+    """Whether the forces of the pairs follow from the torque of a gearbox."""
+    return bool(tables.get("machine", {}).get("model") == "gearbox")
 
 
 def rank(dotted: str) -> int:

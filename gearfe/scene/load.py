@@ -22,7 +22,8 @@ from .references import Reference, read_references
 from .schema import arguments, scene_schema
 from .set_table import SceneSet, set_of
 from .toml_file import read_toml
-from .train import Train, train_of
+from .train import Train
+from .train_tables import train_of
 
 HEALTHY = "healthy"  # the case without damage
 

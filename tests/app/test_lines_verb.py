@@ -3,6 +3,7 @@
 import math
 import time
 
+import numpy as np
 import pytest
 from gearboxes import PLANETARY, TWO_STAGE
 from numpy.testing import assert_allclose
@@ -10,6 +11,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.dynamics.machine.lines import scene_lines
+from gearfe.figures.train_plot import plot_train
 from gearfe.scene.load import scene_names, scene_of
 
 
@@ -31,6 +33,21 @@ def test_lines_of_a_published_train():
             assert_allclose(lines[f"ER10K of shaft {shaft}", name], order * turns, rtol=1e-9, err_msg=name)
     # one tooth of the 48 meets the same one of the 80 every lcm(48, 80) = 240 mesh cycles
     assert_allclose(lines["teeth 48 and 80", "hunting tooth frequency"], 16 / 240, rtol=1e-12)
+
+
+def test_lines_of_a_wind_turbine_gearbox(tmp_path):
+    """NREL GRC: overall ratio 81.491 as printed (NacelleSE, 750 kW); frequencies at 1800 rpm by hand from the tooth numbers."""
+    scene = gf.load_scene("nrel_grc")
+    lines, rotor = found(scene), 22.088 / 60
+    assert_allclose(lines["shaft high", "shaft frequency"] / rotor, 81.491, atol=5e-4)
+    ratios = {"low": 1 + 99 / 21, "intermediate": (1 + 99 / 21) * 82 / 23, "high": (1 + 99 / 21) * 82 / 23 * 4}
+    for shaft, ratio in ratios.items():
+        assert_allclose(lines[f"shaft {shaft}", "shaft frequency"], rotor * ratio, rtol=1e-12)
+    meshes = {"planetary": 99 * rotor, "low": 82 * rotor * ratios["low"], "high": 88 * rotor * ratios["intermediate"]}
+    for stage, value in meshes.items():
+        assert_allclose(lines[f"stage {stage}", "mesh frequency"], value, rtol=1e-12)
+    plot_train(scene, tmp_path / "box.png")
+    assert (tmp_path / "box.png").stat().st_size > 5000
 
 
 def test_lines_of_a_planetary_and_parallel_train():
@@ -67,6 +84,22 @@ def test_the_verb_prints_and_saves_them(tmp_path, capsys):
     gf.new_scene(text)
     assert main(["lines", text]) == 1
     assert "has no [machine] table" in capsys.readouterr().err
+
+
+def test_signals_take_the_frequencies_of_a_gear(tmp_path, capsys):
+    """Two seconds of a mesh at 480 Hz whose amplitude dips with the rotation of the gear at 10 Hz."""
+    time = np.arange(20_480) / 10_240
+    values = (1 + 0.3 * np.cos(2 * np.pi * 10 * time)) * np.sin(2 * np.pi * 480 * time)
+    values += 0.01 * np.random.default_rng(1).standard_normal(time.size)
+    rows = "\n".join(f"{t:.9f},{v:.9f}" for t, v in zip(time, values, strict=True))
+    (tmp_path / "a.csv").write_text(f"time [s],a [m/s^2]\n{rows}\n", encoding="utf-8")
+    assert main(["signal", str(tmp_path / "a.csv"), "--scene", "phm2009_spur", "--gear", "idler_out"]) == 0
+    told = capsys.readouterr().out
+    assert "idler_out of phm2009_spur, 48 teeth: mesh 480 Hz, fault 10 Hz, shaft 10 Hz" in told
+    assert "mesh frequency + fault frequency" in told
+    assert "3 of 3 lines of 10 times the local median are named" in told
+    assert main(["signal", str(tmp_path / "a.csv"), "--gear", "idler_out"]) == 1
+    assert "give --scene too" in capsys.readouterr().err
 
 
 CHANGES = [  # what is changed in the tables of two stages, and what is said of it

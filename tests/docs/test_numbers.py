@@ -67,7 +67,14 @@ def middle(pair, count=64):
 
 
 @pytest.mark.parametrize(
-    "page", ["index.md", pytest.param("howto/design.md", marks=pytest.mark.slow), "howto/scene.md", "life_of_a_number.md"]
+    "page",
+    [
+        "index.md",
+        pytest.param("howto/design.md", marks=pytest.mark.slow),
+        "howto/scene.md",
+        "howto/gearbox.md",
+        "life_of_a_number.md",
+    ],
 )
 def test_programs_print_what_the_page_shows(page):
     text = (SITE / page).read_text(encoding="utf-8")

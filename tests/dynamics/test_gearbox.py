@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 
 import gearfe as gf
 from gearfe.dynamics.machine.gearbox import gearbox
+from gearfe.dynamics.machine.of_scene import flat_machine
 from gearfe.scene.load import scene_of
 
 Z, DENSITY, NU, E = np.array([0.0, 0.0, 1.0]), 7850.0, 0.3, 2.06e11
@@ -331,6 +332,27 @@ def test_torques_balance_on_every_shaft_and_powers_in_all(name):
     flat = machine.with_meshes(stiffness=2e8)
     for mesh, force in zip(flat.meshes, 2e8 * (flat.G @ flat.rest()), strict=True):
         assert_allclose(force, train.forces[mesh.name.rstrip("0123456789")], rtol=1e-7, err_msg=mesh.name)
+
+
+@pytest.mark.parametrize(("key", "value", "message"), [
+    ("runout_um", 20.0, "neglect it; give dofs = 'six'"), ("misplaced_y_um", 1.0, "neglect it; give dofs = 'six'"),
+    ("n_planets", 4, r"those of \[stage.NAME\]"), ("contact", "impact", "has linear contact only"),
+])  # fmt: skip
+def test_keys_that_a_gearbox_neglects_are_rejected(key, value, message):
+    tables = copy.deepcopy(PLANETARY)
+    tables["machine"][key] = value
+    with pytest.raises(ValueError, match=message):
+        flat_machine(scene_of("own.toml", tables))
+
+
+@pytest.mark.parametrize("given", [{}, {"bearings_N_per_um": [1.0, 1.0], "bearings_axial_N_per_um": [0.0, 0.0]}])
+def test_shafts_in_six_directions_need_bearings(given):
+    tables = copy.deepcopy(TWO_STAGE)
+    for key in ("bearings_N_per_um", "bearings_axial_N_per_um", "bearings_Ns_per_mm"):
+        tables["shaft"]["three"].pop(key, None)
+    tables["shaft"]["three"] |= given
+    with pytest.raises(ValueError, match=r"\[shaft.three\].*(bearings_N_per_um|no bearing locates)"):
+        flat_machine(scene_of("own.toml", tables))
 
 
 def test_work_of_the_loads_is_stored_or_lost():

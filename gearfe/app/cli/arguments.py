@@ -155,6 +155,8 @@ def main(argv=None):
     add("--column NAME", "column, if there are several")
     add("--header TEXT", "names of the columns of a table without, 'time [s], a [m/s^2]'")
     add("--scale X", "factor on the values; --unit is then theirs", default=1.0)
+    add("--scene SCENE", "scene whose machine, at its speed, names the lines of the last spectrum")
+    add("--gear NAME", "gear of --scene: mesh, fault, carrier and shaft frequencies and teeth that are not given")
     add("--mesh HZ", "mesh frequency", type=float)
     add("--fault HZ", "how often the faulty tooth meshes", type=float)
     add("--carrier HZ", "carrier frequency", type=float)
@@ -236,6 +238,20 @@ def main(argv=None):
     add = verb("lines", tools.lines, "table of the frequencies of a scene's machine: meshes, shafts, teeth, planets, bearings")
     add("scene SCENE", "a .toml file, or a built-in scene with a machine (see 'gearfe scenes')")
     add("-o --output FILE", "save the table: .csv, .md or .tex")
+    add("--picture FILE", "draw the shafts and gears of a gearbox: .png, .svg or .pdf")
+    add = verb("modes", tools.modes, "natural frequencies in words, critical speeds and Campbell diagram of a scene's machine")
+    add("scene SCENE", "a .toml file, or a built-in scene with a machine (see 'gearfe scenes')")
+    add("--case NAME", "case of damage (default: healthy)")
+    add("--top HZ", "largest natural frequency printed [Hz] (default: 3 times the largest mesh frequency)", type=float)
+    add(
+        "--speeds",
+        "speeds over that of the scene (default: 0.5 1.5)",
+        nargs=2,
+        metavar=("LOW", "HIGH"),
+        type=float,
+        default=(0.5, 1.5),
+    )
+    add("--plot FILE", "draw the Campbell diagram: .png, .svg or .pdf")
     add = verb("schema", tools.schema, "print the JSON schema of scenes, by which an editor completes and checks their keys")
     add("--page", "instead a page of all keys of scenes, studies and data sets, as Markdown")
     add = verb("app", tools.app, "a page in the browser: turn a slider, see mesh, stiffness and transmission error at once")

@@ -10,6 +10,7 @@ def signal(arguments):
     from .progress import working
     from .verbs import _check_outputs, _print_analysis
 
+    _of_scene(arguments)
     _check_outputs(arguments, plot="picture", kurtogram="picture", cepstrum="picture", spectrogram="picture", orders="picture")
     if arguments.list:
         _print_channels(arguments)
@@ -27,6 +28,12 @@ def signal(arguments):
     for record in signals.values():
         print(_told(record))
     _print_analysis(analysed, arguments)
+    if arguments.scene is not None:
+        from ...comparison.named_lines import named_table
+        from ...scene.load import load_scene
+
+        table, named = named_table(list(analysed.spectra.values())[-1], load_scene(arguments.scene))
+        print(f"\n{named}\n\n{table}")
     if arguments.teeth is not None:
         from ...signal.gear_indicators import gear_indicator_table, tabulate_gear_indicators
 
@@ -35,6 +42,26 @@ def signal(arguments):
     _draw(list(signals.values())[-1], arguments)
     if arguments.orders:
         _draw_orders(signals, arguments)
+
+
+def _of_scene(arguments):
+    """Set the frequencies and teeth that are not given to those of a gear of a scene."""
+    if arguments.gear is None:
+        return
+    if arguments.scene is None:
+        raise ValueError("--gear is a gear of a scene: give --scene too")
+    from ...dynamics.machine.lines import gear_lines
+    from ...scene.load import load_scene
+
+    found = gear_lines(load_scene(arguments.scene), arguments.gear)
+    own = {"mesh": found.mesh, "fault": found.fault, "carrier": found.carrier, "teeth": found.teeth}
+    if arguments.tacho is None:
+        own["shaft"] = found.turning
+    for name, value in own.items():
+        if getattr(arguments, name) is None:
+            setattr(arguments, name, value)
+    shown = ", ".join(f"{name} {value:.6g} Hz" for name, value in own.items() if value is not None and name != "teeth")
+    print(f"{arguments.gear} of {arguments.scene}, {found.teeth} teeth: {shown}\n")
 
 
 def _told(one):

@@ -4,6 +4,8 @@ import os
 
 from .progress import working
 
+SPEEDS = 121  # of a Campbell diagram
+
 
 def report(arguments):
     """``gearfe report``."""
@@ -67,12 +69,47 @@ def lines(arguments):
 
     if arguments.output:
         check_output(arguments.output, "table")
+    if arguments.picture:
+        check_output(arguments.picture, "picture")
     scene = load_scene(arguments.scene)
     table = lines_table(scene)
     print(f"{scene.title}\n\n{table.title}\n\n{table}")
     if arguments.output:
         table.save(arguments.output)
         print(f"written: {arguments.output}")
+    if arguments.picture:
+        from ...figures.train_plot import plot_train
+
+        plot_train(scene, arguments.picture)
+        print(f"written: {arguments.picture}")
+
+
+def modes(arguments):
+    """``gearfe modes``."""
+    import numpy as np
+
+    from ...core.files import check_output
+    from ...dynamics.machine.mode_words import critical_speeds, modes_table
+    from ...dynamics.machine.of_scene import build_machine
+    from ...scene.load import load_scene
+
+    if arguments.plot:
+        check_output(arguments.plot, "picture")
+    low, high = arguments.speeds
+    if not 0 < low < high:
+        raise ValueError(f"--speeds {low:g} {high:g}: give two rising parts of the speed of the scene, above 0")
+    scene = load_scene(arguments.scene)
+    with working("stiffness of the meshes"):
+        machine = build_machine(scene, arguments.case)
+    top = arguments.top or 3 * max(stage.mesh for stage in machine.stages)
+    table, found = critical_speeds(machine, scene.machine["speed_rpm"], np.linspace(low, high, SPEEDS))
+    print(f"{scene.title}\n\nnatural frequencies up to {top:.5g} Hz, mean mesh stiffness\n\n{modes_table(machine, top)}\n")
+    print(f"critical speeds of the driving shaft\n\n{table}")
+    if arguments.plot:
+        from ...figures.campbell_plot import plot_campbell
+
+        plot_campbell(found, arguments.plot)
+        print(f"written: {arguments.plot}")
 
 
 def schema(arguments):

@@ -242,7 +242,7 @@ def mesh(arguments):
 
 def dynamics(arguments):
     """``gearfe dynamics``."""
-    from ...comparison.vibration import analysis, responses
+    from ...comparison.vibration import analysis, gears_table, responses
     from ...dynamics.machine.modes import natural_frequencies
     from ...scene.load import load_scene
 
@@ -274,6 +274,8 @@ def dynamics(arguments):
             print(f"  {case}: {stats['chaotic']}")
     report = analysis(found, arguments.channel)
     _print_analysis(report, arguments, scene.name)
+    if gears := gears_table(found):
+        print(f"gears, from the average over their turns\n\n{gears}\n")
     if report.too_short:
         print(f"longer: --duration {report.resolving:.3g}")
     _print_assumptions(scene, arguments.assumptions, scene.assumptions)

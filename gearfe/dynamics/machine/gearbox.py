@@ -7,6 +7,7 @@ its shaft, the planets rotate, their axes follow the carrier rigidly, and the ri
 import math
 from typing import Any
 
+from ...scene.schema import scene_schema
 from ...scene.train import Train, TrainStage
 from .gear_mesh import GearMesh
 from .layout import SPACE, Body, Layout
@@ -46,8 +47,15 @@ def planets_of(stage: TrainStage) -> list[str]:
 
 
 def check_bearings(scene):
-    """Raise ValueError if a shaft that moves in six directions has no bearing stiffness, or if helical gears push it freely."""
+    """Raise ValueError if a shaft in six directions lacks bearings, or for keys of ``[machine]`` that a gearbox does not use."""
+    if scene.machine["n_planets"] != scene_schema()["machine"].keys["n_planets"].default:
+        raise ValueError(f"{scene.name}.toml [machine] n_planets: the planets of a gearbox are those of [stage.NAME] n_planets")
     if scene.machine["dofs"] == "torsion":
+        for key in ("runout_um", "misplaced_um", "misplaced_y_um"):
+            if scene.machine[key]:
+                raise ValueError(
+                    f"{scene.name}.toml [machine] {key}: stations without translations neglect it; give dofs = 'six'"
+                )
         return
     for name, shaft in scene.train.shafts.items():
         where = f"{scene.name}.toml [shaft.{name}]"

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import NamedTuple
 
+from ...core.record import check_named
 from ...core.table import Column, Table
 from ...scene.load import Scene
 from ...signal.bearing_lines import bearing_lines
@@ -52,6 +53,33 @@ def scene_lines(scene: Scene) -> list[Line]:
     return sorted(out.values())
 
 
+class GearLines(NamedTuple):
+    """Frequencies of one gear [Hz]: its mesh, meshes of one of its teeth, its rotation relative to the carrier, the carrier."""
+
+    teeth: int
+    mesh: float
+    fault: float
+    turning: float
+    carrier: float | None
+
+
+def gear_lines(scene: Scene, gear: str) -> GearLines:
+    """`GearLines` of a gear of a scene's machine.
+
+    Raises
+    ------
+    ValueError
+        If the scene has no machine, or its machine no such gear.
+    """
+    check_named("gear", gear, scene.gears)
+    machine, z = flat_machine(scene), scene.gears[gear].z
+    for stage in reversed(machine.stages):
+        for body in (gear, f"{gear}1"):
+            if body in stage.returns and abs(stage.returns[body] * z / stage.mesh % 1.0 - 0.5) > 0.5 - SAME:
+                return GearLines(z, stage.mesh, stage.returns[body], stage.mesh / z, stage.carrier)
+    raise ValueError(f"gear {gear!r} is in no stage of the machine of scene {scene.name}")
+
+
 def lines_table(scene: Scene) -> Table:
     """`scene_lines` as a table, with orders of the driving shaft."""
     found = scene_lines(scene)
@@ -68,8 +96,8 @@ def _shafts(scene):
         return
     motor, speeds = scene.train.ends["motor"]["shaft"], scene.train.speeds
     for name, speed in speeds.items():
-        ratio = speeds[motor] / speed
-        origin = "[machine] speed_rpm / 60" if name == motor else f"{motor} / {abs(ratio):.6g}{'' if ratio > 0 else ', reversed'}"
+        ratio = speed / speeds[motor]
+        origin = "[machine] speed_rpm / 60" if name == motor else f"{motor} x {abs(ratio):.6g}{'' if ratio > 0 else ', reversed'}"
         yield Line(abs(speed) / (2 * math.pi), f"shaft {name}", "shaft frequency", origin)
 
 

@@ -5,13 +5,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.signal import cont2discrete, lfilter, ss2tf
 
 from ...core.record import ranged
 from ...geometry.aliases import Floats
 from ...geometry.renamed import renamed
 from ...signal.series import Signal
 from .response import Response
+from .transfer_path import through_modes
 
 
 @renamed(places="planet_angles")
@@ -97,25 +97,11 @@ def housing_signal(
     rate = 1 / float(time[1] - time[0])
     if not modes:
         return Signal(values, rate, "N", f"housing, {kind}")
-    return Signal(np.sum([_answer(values, rate, *mode) for mode in modes], axis=0), rate, "m/s^2", f"housing, {kind}")
+    return through_modes(Signal(values, rate, "N", f"housing, {kind}"), modes)
 
 
 def _raised(angle):
     return (1 + np.cos(angle)) / 2
-
-
-def _answer(force, rate, frequency, zeta, mass):
-    """Acceleration of an oscillator under a force, from rest under its first value."""
-    if not (0 < frequency < rate / 2 and 0 <= zeta < 1 and mass > 0):
-        raise ValueError(
-            f"mode ({frequency} Hz, {zeta}, {mass} kg): the frequency must lie between 0 and {rate / 2:g} Hz, half the rate, the "
-            "damping ratio from 0 to below 1, and the mass above 0"
-        )
-    omega = 2 * np.pi * frequency
-    inner = np.array([[0.0, 1.0], [-(omega**2), -2 * zeta * omega]])
-    discrete = cont2discrete((inner, np.array([[0.0], [1 / mass]]), inner[1:], np.array([[1 / mass]])), 1 / rate, method="foh")
-    above, below = ss2tf(*discrete[:4])
-    return lfilter(above[0], below, force - force[0])
 
 
 def ring_window(radius: float, bending: float, foundation: float) -> Callable[[Floats], Floats]:

@@ -14,6 +14,7 @@ from ...figures.inline import line_svg
 from ...geometry.aliases import Floats
 from ...signal.series import Signal
 from ..machine.contact_law import force, sided_force
+from ..machine.springs import Spring
 from ..machine.tables import Machine
 from . import excitation
 
@@ -26,7 +27,8 @@ class Response:
     """Motion of a machine at equal intervals.
 
     ``response[name]`` is a channel, an array like `time`: a degree of freedom (``"sun.theta"``), with ``" velocity"`` or
-    ``" acceleration"`` after it, or of a mesh ``"compression NAME"``, ``"stiffness NAME"``, ``"force NAME"``.
+    ``" acceleration"`` after it, or of a mesh ``"compression NAME"``, ``"stiffness NAME"``, ``"force NAME"``. The force
+    of a spring with its damper is ``"spring NAME"`` (`springs`): force [N] of a bearing, or torque [N m] of a coupling.
 
     Channels by name, `mesh`, `accelerations`, `signal` and files are filtered to the rate of the response where `gearfe.simulate`
     filtered them (`filtered`): what vibrates above half of it is not in them. `states`, `q` and `v` are those of the integrator
@@ -97,6 +99,8 @@ class Response:
         if head in MESH and tail in self._meshes:
             power = self.machine.meshes[self._meshes.index(tail)].contact.power
             return MESH[head] if head != "stiffness" or power == 1 else f"N/m^{power:g}"
+        if head == "spring" and tail in self.springs:
+            return "N m" if self._turns(tail) else "N"
         self._dof(head, name)
         return ("rad" if head.endswith((".theta", ".tilt_x", ".tilt_y")) else "m") + KINDS.get(tail, "")
 
@@ -105,11 +109,30 @@ class Response:
         head, _, tail = name.partition(" ")
         if head in MESH and tail in self._meshes:
             return self.mesh(head)[:, self._meshes.index(tail)]
-        dof, n = self._dof(head, name), len(self.machine.dofs)
+        n = len(self.machine.dofs)
+        if head == "spring" and tail in self.springs:
+            spring = self.springs[tail]
+            return self._moving @ (spring.row @ (spring.k * self.basis[:n] + spring.c * self.basis[n:]))
+        dof = self._dof(head, name)
         if tail == "acceleration":
             return self.accelerations()[:, dof]
-        states = self.states if self.filtered is None else self.filtered[:, : 2 * n]
-        return states @ self.basis[dof + (n if tail == "velocity" else 0)]
+        return self._moving @ self.basis[dof + (n if tail == "velocity" else 0)]
+
+    @property
+    def springs(self) -> dict[str, Spring]:
+        """Springs of the machine whose name no other has, by name."""
+        names = [spring.name for spring in self.machine.springs]
+        return {spring.name: spring for spring in self.machine.springs if names.count(spring.name) == 1}
+
+    @property
+    def _moving(self):
+        """States, filtered if the response is."""
+        return self.states if self.filtered is None else self.filtered[:, : 2 * len(self.machine.dofs)]
+
+    def _turns(self, name):
+        """Whether a spring carries a torque: it couples no translation."""
+        moved = {self.machine.dofs[i].partition(".")[2] for i in self.springs[name].row.nonzero()[0]}
+        return not moved & set("xyz")
 
     @property
     def q(self) -> Floats:
@@ -172,7 +195,8 @@ class Response:
 
     def _dof(self, head, name):
         if head not in self.machine.dofs or name.partition(" ")[2] not in ("", *KINDS):
-            raise ValueError(f"no channel {name!r}; there are {', '.join(self.names)}")
+            springs = "".join(f", spring {one}" for one in self.springs)
+            raise ValueError(f"no channel {name!r}; there are {', '.join(self.names)}{springs}")
         return self.machine.dofs.index(head)
 
 

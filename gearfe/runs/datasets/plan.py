@@ -48,7 +48,7 @@ from typing import Any
 
 from ...dynamics.machine.of_scene import flat_machine
 from ...geometry.aliases import StrPath
-from ...scene.dotted_keys import check_key, set_values, tables_near
+from ...scene.dotted_keys import check_key, is_gearbox, set_values, tables_near
 from ...scene.load import Scene, scene_of
 from ...scene.parts import DAMAGE
 from ...scene.reading import checked
@@ -87,11 +87,11 @@ class Plan:
     def scene_at(self, values: Mapping[str, Any], fault: Mapping[str, Any] | None = None, severity: float = 0.0) -> Scene:
         """Scene of one condition: the speed, the torque and what scatters by key, and its fault.
 
-        The forces of all pairs, at which their stiffness is computed, go with the torque.
+        The forces of all pairs, at which their stiffness is computed, go with the torque; those of a gearbox follow from it.
         """
         base = self.tables["machine"]["torque_Nm"]
         tables = set_values(self.tables, values)
-        for pair in tables["pair"].values():
+        for pair in () if is_gearbox(tables) else tables["pair"].values():
             pair["force_N"] *= tables["machine"]["torque_Nm"] / base
         if fault is not None:
             FAULTS[fault["kind"]].enter(tables, severity, fault)

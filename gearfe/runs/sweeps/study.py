@@ -43,7 +43,7 @@ from typing import Any
 import numpy as np
 
 from ...geometry.aliases import StrPath
-from ...scene.dotted_keys import check_key, tables_near, trimmed
+from ...scene.dotted_keys import check_key, is_gearbox, tables_near, trimmed
 from ...scene.load import scene_of
 from ...scene.parts import DAMAGE
 from ...scene.reading import check_listed, check_named, checked
@@ -181,7 +181,7 @@ def of_case(study: Study, case: Mapping[str, Any]) -> tuple[str, str, dict[str, 
 
 
 def slim(study: Study) -> Study:
-    """The study with the tables that its cases need, to be sent to other processes."""
-    if KINDS[study.kind].whole or {"pair", "case"} & set(study.keys):
+    """The study with the tables that its cases need, to be sent to other processes; a pair of a gearbox needs all of them."""
+    if KINDS[study.kind].whole or {"pair", "case"} & set(study.keys) or is_gearbox(study.tables):
         return replace(study, axes=(), sample={})
     return replace(study, axes=(), sample={}, tables=trimmed(study.tables, study.pair, study.case))

@@ -1,0 +1,102 @@
+"""Lines of a measured or computed spectrum, named by the frequencies of a scene's machine."""
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from ..core.table import Column, Table
+from ..dynamics.machine.lines import scene_lines
+from ..dynamics.machine.of_scene import flat_machine
+from ..scene.load import Scene
+from ..signal.spectrum import Spectrum
+
+AROUND = 50  # bins on either side of which the median is taken
+NEAR = 2  # bins between a line and the frequency that names it
+ROTATIONS, BEARINGS, SIDEBANDS = 5, 3, 30  # harmonics of shafts and of bearing faults; sidebands of meshes at most
+
+
+class Named(NamedTuple):
+    """A line of a spectrum: frequency [Hz], amplitude, how often the local median it is, and its name (empty: none)."""
+
+    frequency: float
+    amplitude: float
+    times: float
+    name: str
+
+
+def named_lines(found: Spectrum, scene: Scene, times: float = 10.0) -> tuple[list[Named], float]:
+    """Lines of a spectrum above the local median, with the simplest name that the scene's machine gives them.
+
+    Names are harmonics of rotations and bearing faults, mesh harmonics up to the end of the spectrum, and their sidebands at the
+    rotations of the stage, which a local fault has many of. Harmonics come before sidebands, and low ones before high ones.
+
+    Parameters
+    ----------
+    found : Spectrum
+        Of amplitudes, over frequency [Hz].
+    scene : Scene
+        At the speed of the record.
+    times : float
+        Least amplitude over the local median.
+
+    Returns
+    -------
+    lines : list of Named
+        By rising frequency.
+    covered : float
+        Part of the bins that some name would fit: the probability that a line by chance is named.
+    """
+    values, step = found.values, found.resolution
+    floor = median_filter(values, 2 * AROUND + 1, mode="mirror")
+    inner = values[1:-1]
+    peak = np.flatnonzero((inner >= values[:-2]) & (inner > values[2:]) & (inner >= times * floor[1:-1])) + 1
+    names = sorted(_names(scene, float(found.frequency[-1])))
+    places = np.array([frequency for _, frequency, _ in names])
+    fits = np.zeros(values.size, dtype=bool)
+    for place in np.rint(places / step).astype(int):
+        fits[max(place - NEAR, 0) : place + NEAR + 1] = True
+    out = []
+    for i in peak:
+        near = np.flatnonzero(np.abs(places - found.frequency[i]) <= NEAR * step)
+        name = names[near[0]][2] if near.size else ""
+        ratio = float(values[i] / floor[i]) if floor[i] else math.inf
+        out.append(Named(float(found.frequency[i]), float(values[i]), ratio, name))
+    return out, float(fits.mean())
+
+
+def _names(scene, top) -> Iterator[tuple[int, float, str]]:
+    """Rank, frequency and text of all names below `top` [Hz]."""
+    for line in scene_lines(scene):
+        bearing = line.name[:2] in ("FT", "BP", "BS")
+        mesh = line.name == "mesh frequency"
+        most = math.floor(top / line.frequency) if mesh else BEARINGS if bearing else ROTATIONS
+        for k in range(1, most + 1):
+            if k * line.frequency < top and "hunting" not in line.name:
+                times = f"{k} x " if k > 1 else ""
+                yield k + ROTATIONS * bearing, k * line.frequency, f"{times}{line.name}, {line.part}"
+    for stage in flat_machine(scene).stages:
+        spacings = {f"f({body})": value for body, value in stage.returns.items()} | {f"f({stage.driver[0]})": stage.turning}
+        spacings |= {"carrier": abs(stage.carrier)} if stage.carrier else {}
+        for n in range(1, math.floor(top / stage.mesh) + 1):
+            for name, spacing in spacings.items():
+                most = min(SIDEBANDS, math.floor(stage.mesh / spacing / 2))  # they meet those of the next harmonic
+                for j in (*range(-most, 0), *range(1, most + 1)):
+                    text = f"{n} x mesh frequency {'+' if j > 0 else '-'} {abs(j)} {name}, stage {stage.name}"
+                    yield 100 + abs(j), n * stage.mesh + j * spacing, text
+
+
+def named_table(found: Spectrum, scene: Scene, times: float = 10.0) -> tuple[Table, str]:
+    """`named_lines` as a table, and how many are named, in words."""
+    lines, covered = named_lines(found, scene, times)
+    columns = [
+        Column("frequency", "Hz", "{:.2f}"),
+        Column("amplitude", found.unit, "{:.3g}"),
+        Column("times the median", "", "{:.3g}"),
+        "name",
+    ]
+    named = sum(bool(line.name) for line in lines)
+    told = f"{named} of {len(lines)} lines of {times:g} times the local median are named"
+    return Table(columns, [list(line) for line in lines]), f"{told}; names fit {100 * covered:.2g} % of all bins"

@@ -1,0 +1,172 @@
+"""Teeth of a gearbox keep their identity: when a damaged tooth meshes, in which meshes, and what sensors receive of it."""
+
+import copy
+import math
+
+import numpy as np
+import pytest
+from gearboxes import BRANCHING, PLANETARY, TWO_STAGE, gear
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.comparison.named_lines import named_lines
+from gearfe.comparison.vibration import analysis, gears_table, recorded
+from gearfe.dynamics.machine.gearbox import gearbox, pair_phases
+from gearfe.dynamics.machine.layout import through
+from gearfe.dynamics.machine.mode_words import critical_speeds, mode_words, modes_table
+from gearfe.dynamics.machine.of_scene import build_machine, flat_machine
+from gearfe.scene.load import scene_of
+
+CRACK = {"case": "hurt", "gear": "a", "tooth": 3, "level": 0.4}
+
+
+def with_crack(tables, **crack):
+    return scene_of("own.toml", copy.deepcopy(tables) | {"crack": [CRACK | crack]})
+
+
+@pytest.fixture(scope="module")
+def branching():
+    return build_machine(with_crack(BRANCHING), "hurt", phases=24)
+
+
+def test_a_tooth_passes_both_meshes_of_its_gear_by_its_rotation(branching):
+    """Tooth 3 of the driver meshes at 20 and at 205 degrees: the second mesh has it 185 / 360 of a rotation later."""
+    turn, pairs = 60 / 1500, with_crack(BRANCHING).pairs
+    meshes = {mesh.name: mesh for mesh in branching.meshes}
+    left, right = (  # when the tooth is at the pitch point
+        meshes[name].entries(2 * turn)[0] + pairs[name].pair.pitch_phase / meshes[name].frequency for name in ("left", "right")
+    )
+    after = (right[:, None] - left[None, :]) / turn % 1.0
+    assert_allclose(after, 185 / 360, atol=1e-9)
+    assert [fault.gear for fault in branching.faults] == ["a"]
+    assert_allclose(branching.faults[0].frequency, 25.0, rtol=1e-12)
+
+
+def test_the_other_gear_has_its_own_rotation():
+    made = flat_machine(with_crack(BRANCHING, gear="c", tooth=52), "hurt")
+    assert [(fault.gear, fault.tooth) for fault in made.faults] == [("c", 52)]
+    assert_allclose(made.faults[0].frequency, 25 * 20 / 53, rtol=1e-12)
+
+
+def test_two_equal_gears_on_a_shaft_are_one_idler():
+    """Gears b and c alike and not turned against each other: the phases are those of an idler of one gear."""
+    tables = copy.deepcopy(TWO_STAGE)
+    tables["gear"] = {"a": gear(23, 2.0, 20.0), "b": gear(31, 2.0, 20.0), "c": gear(31, 2.0, 20.0), "d": gear(47, 2.0, 20.0)}
+    tables["pair"]["fast"]["angle_deg"] = 25.0
+    tables["shaft"]["two"]["gears_turned_deg"] = [0.0, 0.0]
+    scene = scene_of("own.toml", tables)
+    first, second = scene.pair("fast").pair, scene.pair("slow").pair
+    phases, turn = pair_phases(scene), math.radians(70.0) - (math.radians(25.0) + math.pi)
+    assert_allclose(phases["slow"], through(phases["fast"], first, second, -1, turn), rtol=1e-12)
+
+
+def test_a_gear_turned_on_its_shaft_by_a_pitch_meshes_a_cycle_later_or_sooner():
+    """Shaft two turns clockwise: tooth 0 of c placed a pitch counter-clockwise comes a mesh cycle later."""
+    tables, turned = copy.deepcopy(TWO_STAGE), []
+    for angle in (0.0, 360 / 19, 4.0):
+        tables["shaft"]["two"]["gears_turned_deg"] = [0.0, angle]
+        turned.append(pair_phases(scene_of("own.toml", tables))["slow"])
+    assert_allclose(np.diff(turned[:2]), -1.0, rtol=1e-9)
+    assert_allclose(turned[2] - turned[0], -4.0 * 19 / 360, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("crack", "body", "mesh"), [
+    ({"gear": "sun", "tooth": 2}, "sun", ("outer1", "outer2", "outer3")),
+    ({"gear": "planet", "tooth": 4, "body": "planet2"}, "planet2", ("outer2", "inner2")),
+    ({"gear": "b", "tooth": 9}, "b", ("fast",)),
+    ({"gear": "ring", "tooth": 7}, "ring", ("inner1", "inner2", "inner3")),
+])  # fmt: skip
+def test_any_tooth_of_any_gear_of_a_planetary_train(crack, body, mesh):
+    made = flat_machine(with_crack(PLANETARY, **crack), "hurt")
+    assert tuple(fault.gear for fault in made.faults) == (body,)
+    damaged = tuple(one.name for one in gf.build_machine(with_crack(PLANETARY, **crack), "hurt", phases=8).meshes if one.damage)
+    assert damaged == mesh
+
+
+def test_a_carrier_that_drives_runs_the_contacts_backwards():
+    """The GRC gearbox: the sun is driven, so that its torque opposes its rotation; forces press in all meshes."""
+    scene = gf.load_scene("nrel_grc")
+    made = flat_machine(scene)
+    negative = {mesh.name.rstrip("0123456789") for mesh in made.meshes if mesh.frequency < 0}
+    assert negative == {"sun_planet", "planet_ring"}
+    flat = gearbox(scene, dict.fromkeys(scene.pairs, 1e9), {mesh.name: () for mesh in made.meshes})
+    at_rest = 1e9 * (flat.G @ flat.rest())
+    for mesh, force in zip(flat.meshes, at_rest, strict=True):
+        assert_allclose(force, scene.pairs[mesh.name.rstrip("0123456789")].force, rtol=1e-6)
+
+
+@pytest.fixture(scope="module")
+def records(branching):
+    healthy = build_machine(with_crack(BRANCHING), phases=24)
+    return {name: recorded(made, 0.4, 20_000.0) for name, made in (("healthy", healthy), ("hurt", branching))}
+
+
+def test_sensors_at_bearings_and_couplings(records):
+    """Bearing forces carry the mesh forces, the coupling the torque of its load, on average."""
+    run = records["hurt"]
+    forces = {dof: sum(run[f"spring bearing in{i} {dof}"] for i in (1, 2)).mean() for dof in "xy"}
+    sums = np.zeros(2)
+    for name, angle in (("left", 20.0), ("right", 205.0)):
+        at = math.radians(angle + 90 - 20)  # along the line of action, from the driver that turns counter-clockwise
+        sums += run[f"force {name}"].mean() * np.array([math.cos(at), math.sin(at)])
+    assert_allclose([forces["x"], forces["y"]], -sums, rtol=1e-3)
+    assert_allclose(run["spring coupling pump"].mean(), 20.0, rtol=1e-3)  # against the rotation, which is clockwise
+    assert run.unit("spring coupling pump") == "N m"
+    assert run.unit("spring bearing in1 x") == "N"
+    with pytest.raises(ValueError, match=r"no channel 'spring bearing'.*spring bearing in1 x"):
+        run["spring bearing"]
+
+
+def test_indicators_by_gear_point_at_the_damaged_one(records):
+    table = gears_table(records)
+    rows = {row[0]: dict(zip([c.name for c in table.columns], row, strict=True)) for row in table.rows}
+    grown = {name: row["energy ratio, hurt"] / row["energy ratio, healthy"] for name, row in rows.items()}
+    assert max(grown, key=grown.get) == "a"
+    report = analysis(records)
+    assert any("f_r" in name for name in report.standing()), "sidebands at the rotation of the damaged gear"
+
+
+def test_lines_of_a_noisy_record_are_named(branching):
+    """Every line of ten times the local median of a bearing's force has a name; an alien line has none."""
+    run, rng = recorded(branching, 4.0, 5120.0), np.random.default_rng(1)
+    force = np.asarray(run["spring bearing in1 y"])
+    noisy = force + 0.05 * force.std() * rng.standard_normal(force.size)
+    scene = with_crack(BRANCHING)
+    lines, covered = named_lines(gf.spectrum(gf.Signal(noisy, 5120.0, "N")), scene)
+    assert len(lines) > 10
+    assert all(line.name for line in lines), [line for line in lines if not line.name]
+    print(f"{len(lines)} lines named, {100 * covered:.1f} % of the bins fit a name")
+    assert covered < 0.5
+    alien = noisy + force.std() * np.sin(2 * np.pi * 728.6 * run.time)
+    others = [line for line in named_lines(gf.spectrum(gf.Signal(alien, 5120.0, "N")), scene)[0] if not line.name]
+    assert [round(line.frequency) for line in others] == [729]
+
+
+def test_transfer_paths_agree(records):
+    """One mode as an oscillator and as its own frequency response function: the same acceleration of a steady record."""
+    force, mode = records["hurt"].signal("spring bearing up1 y"), (1500.0, 0.05, 3.0)
+    by_mode = gf.through_modes(force, [mode])
+    f = np.linspace(0.0, 10_000.0, 20_001)
+    frf = -((2 * math.pi * f) ** 2) / mode[2] / ((2 * math.pi) ** 2 * (mode[0] ** 2 - f**2 + 2j * mode[1] * mode[0] * f))
+    by_frf = gf.through_frf(force, f, frf)
+    middle = slice(force.values.size // 4, -force.values.size // 4)
+    assert np.abs(by_mode.values - by_frf.values)[middle].max() < 0.05 * np.ptp(by_mode.values[middle])
+    with pytest.raises(ValueError, match="as many values as rising frequencies"):
+        gf.through_frf(force, [1.0, 0.5], [1.0, 1.0])
+
+
+def test_modes_in_words_and_critical_speeds():
+    tables = copy.deepcopy(TWO_STAGE)
+    tables["machine"]["dofs"] = "torsion"
+    made = gearbox(scene_of("own.toml", tables), {"fast": 2e8, "slow": 3e8}, {"fast": (), "slow": ()})
+    energy = gf.modal_energy(made)
+    assert mode_words(made, energy, 0) == "rotation of the train as a whole"
+    first = mode_words(made, energy, 1)  # the brake, by far the largest inertia, on its soft coupling
+    assert first.startswith("torsion: brake against motor; strain energy 9")
+    assert "in coupling brake" in first
+    assert len(modes_table(made, 2000.0).rows) == (energy.frequencies <= 2000).sum()
+    table, found = critical_speeds(made, 1500.0, np.linspace(0.1, 2.0, 96))
+    assert table.rows
+    for (rpm, line, f, *_), one in zip(table.rows, found.crossings, strict=True):
+        assert_allclose(f, found.orders[line] * rpm / 1500, rtol=1e-9)
+        assert_allclose(f, energy.frequencies[one.mode], rtol=1e-9)
