@@ -118,8 +118,8 @@ def test_pits_of_a_level_lie_on_one_line():
     assert_allclose([found[f"{case}, least"] for case in planetary_numbers.CASES], [15.0, 10.0, 5.0], rtol=1e-3)
     own = simulated.scene("planetary_pitting").pairs["sun_planet"]
     for case in planetary_numbers.CASES:
-        row = planetary_numbers.lined().pairs["sun_planet"].damage[case]["pinion"]
-        assert len(row) == len(own.damage[case]["pinion"])
+        row = own.damage[case]["pinion"]
+        assert len(row) == len(own.damage[f"{case}_rows"]["pinion"])
         assert {pit.radius for pit in row} == {own.pair.pitch_radius_1}
         assert min(b.z - a.z for a, b in zip(row, row[1:], strict=False)) > 2 * row[0].axes[1], "they do not overlap"
 

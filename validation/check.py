@@ -15,7 +15,7 @@ import numpy as np
 from .shared.page import MACHINES
 
 PAGES = (
-    *("assumptions", "truth", "outlines", "sample", "three", "sets", "flanks", "map", "dynamics", "herringbone", "joint"),
+    *("assumptions", "truth", "outlines", "sample", "three", "dynamics", "herringbone", "joint"),
     *MACHINES,
 )
 DAYS = 10  # within which every page has its turn

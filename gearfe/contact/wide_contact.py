@@ -19,6 +19,7 @@ from ..geometry.damage.hollow import check_hollows
 from .bodies import bodies_of, energy_bodies
 from .cells import Cells
 from .corner import in_fillet
+from .missing_material import missing_material
 from .phase_contact import PhaseContact
 from .thinned import unmodelled
 from .unloaded import least_gap
@@ -86,7 +87,8 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
     error : bool
         The difference of every k from that of cells `LONGER` times as long, and from that of coarser bodies, added: a measure of
         the discretisation error at that phase alone. Of the energy model an error that falls with the power 2.4 of the degree,
-        and with the power 1 of the cells, or faster, is below it.
+        and with the power 1 of the cells, or faster, is below it. The effect of the material that pits and spalls lack is added
+        (`gearfe.contact.missing_material`).
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 
@@ -142,7 +144,9 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
             if bodies.coarser:
                 others.append(solve(contacts, bodies_by(bodies.coarser)))
         away = [sum(np.abs(less.k - one.k) for less in rest) for one, *rest in zip(solved, *others, strict=True)]
-        solved = [replace(one, error=one.error + doubt + unmodelled(case, one)) for one, doubt in zip(solved, away, strict=True)]
+        left_out = [unmodelled(case, one) + missing_material(case, one) for one in solved]
+        parts = zip(solved, away, left_out, strict=True)
+        solved = [replace(one, error=one.error + doubt + less) for one, doubt, less in parts]
     else:
         solved = [replace(one, error=None) for one in solved]
     return solved if case.several else solved[0]

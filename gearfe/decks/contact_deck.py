@@ -1,6 +1,5 @@
 """A whole gear pair in nonlinear contact as a CalculiX deck: the second opinion on load sharing and corner contact."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +14,7 @@ from ..geometry.mesh.outline import stations
 from ..geometry.mesh.relieved import relieved
 from ..geometry.mesh.section_mesh import section
 from ..geometry.pair.modified import flank_contacts
-from ..geometry.tooth.profile import arc_at
+from ..geometry.tooth.profile import arc_at, turned
 from .deck import held_nodes
 from .pressed import Sections, pressing, read_rows, write_lines
 from .pressing import Pressing
@@ -59,17 +58,17 @@ def write_contact_section(path: StrPath, case: Case, phase: float, approach: flo
     ]
     if forms is not None:
         bodies = [relieved(body, form, order, sense) for body, form, sense in zip(bodies, forms, (1, -1), strict=True)]
-    turned = how.turned(pair, approach)
+    pressed = how.turned(pair, approach)
     turns = pair.turn(candidates.nominal[0, near[0]] - order[0] * pair.p_bt)
     text = Sections()
     for i, (body, material) in enumerate(zip(bodies, materials, strict=True)):
-        points = np.array(posed(body.mesh.doflocs, turns[i], (1, pair.outward)[i]))
+        points = turned(body.mesh.doflocs * [[(1, pair.outward)[i]], [1]], turns[i])
         teeth = ((1, -1)[i] * order % body.gear.z).tolist()
         surfaces = {f"C{i + 1}P{k}": tooth for k, tooth in enumerate(teeth)}
         centre = 0.0, (0.0, pair.centre_2)[i]
 
-        def moved(place, angle=turned[i]):
-            return np.array(posed(place, angle, 1)) - place
+        def moved(place, angle=pressed[i]):
+            return turned(place, angle) - place
 
         text.add(i + 1, body, material, points, centre, held_nodes(body.mesh), surfaces, moved)
     corners = np.abs(rolls[1] - pair.gear_2.roll_a) <= 1e-9 * pair.gear_2.m_n
@@ -91,9 +90,3 @@ def _meshed(gear, teeth, arcs, widths, per_width, refine):
         tip = min(a / per_width / 2, TIP * gear.m_n) if top - arc < 2 * a else a / per_width / 2
         rolls[int(tooth)] = stations(gear, edge["flank"], tip=tip, low=edge["low"], patches=[patch])
     return section(gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"])
-
-
-def posed(points, turn, mirror):
-    """Points `(2, n)` of a gear's frame turned clockwise by an angle [rad]; `mirror` -1: seen in the mirror first."""
-    x, y = mirror * points[0], points[1]
-    return math.cos(turn) * x + math.sin(turn) * y, math.cos(turn) * y - math.sin(turn) * x

@@ -21,9 +21,9 @@ from ..geometry.pair.contacts import touching as touching_sections
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.modified import first_touch
 from ..geometry.tooth.gear import Gear
-from ..geometry.tooth.profile import arc_at, cartesian, flank
+from ..geometry.tooth.profile import arc_at, cartesian, flank, turned
 from ..geometry.tooth.side import on_fillet
-from .contact_deck import ContactDeck, posed
+from .contact_deck import ContactDeck
 from .pressed import pressing, write_lines
 from .pressing import Pressing
 from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, placed, surface_lines
@@ -180,15 +180,15 @@ def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float
             body = replace(body, points=relieved_points(body.points, gear, forms[number], teeth))
         turn = float(pair.turn(nominal_at(pair, phase, low))[number])
         mirror = (1, pair.outward)[number]
-        x, y = posed(body.points[:2], turn, mirror)
+        x, y = turned([mirror * body.points[0], body.points[1]], turn)
         place = np.array([x, y + (0.0, pair.centre_2)[number], body.points[2] + low])
         parts.append(placed(body, place, mirrored=mirror < 0))
-    turned = how.turned(pair, approach)
+    angles = how.turned(pair, approach)
     slaves = {}
     for k, order in enumerate(touch.order):
         side = touch.slave[k]
         slaves[order] = side, _faces(pair, parts[side], touch, side, k)
-    write_lines(path, _text(case, parts, touch, turned, how.penalty))
+    write_lines(path, _text(case, parts, touch, angles, how.penalty))
     starts = [0, parts[0].points.shape[1]]
     held = [part.held + start + 1 for part, start in zip(parts, starts, strict=True)]
     centred = [_from_centre(pair, part, number) for number, part in enumerate(parts)]
@@ -226,15 +226,15 @@ def _holed(gear: Gear, damage, strips, how) -> Part:
         raise ValueError("beside holes cut out a gear has at most one crack, through the whole width: leave out the others")
     tooth = damage[0].tooth % gear.z if damage else 0
     turn = 2 * math.pi * tooth / gear.z
-    turned = [(np.array([*posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
+    strips = [(turned(line, -turn), *rest) for line, *rest in strips]
     least = min((min(pit.axes) for pit in holes), default=1.0)
     rim = RIM * how.refine * min(size for *_, size in strips) / least
     sizes = TETS | {"rim": min(rim, HOLES["rim"])}
-    sector = holed_sector(gear, holes, *cracks, teeth=None, refine=how.refine, sizes=sizes, strips=turned, stretch=STRETCH)
-    body = holed_part(sector if how.pits == "cut" else filled(sector, teeth=None), turned)
+    sector = holed_sector(gear, holes, *cracks, teeth=None, refine=how.refine, sizes=sizes, strips=strips, stretch=STRETCH)
+    body = holed_part(sector if how.pits == "cut" else filled(sector, teeth=None), strips)
     if how.pits == "lost":
         body = replace(body, faces=_uncovered(body.faces))
-    points = np.array([*posed(body.points[:2], turn, 1), body.points[2]])
+    points = turned(body.points, turn)
     faces = {_renamed(name, tooth, gear.z): corners for name, corners in body.faces.items()}
     return replace(body, points=points, faces=faces)
 
@@ -255,7 +255,7 @@ def _from_centre(pair, part, number):
     return part.points[:2, part.held] - [[0.0], [(0.0, pair.centre_2)[number]]]
 
 
-def _text(case, parts, found, turned, penalty):
+def _text(case, parts, found, angles, penalty):
     pair, materials = case.pair, case.materials
     yield "** gearfe: gear pair of finite width in contact; mm, N, MPa"
     yield "*NODE, NSET=ALL"
@@ -272,7 +272,7 @@ def _text(case, parts, found, turned, penalty):
         yield f"*NSET, NSET=H{number + 1}"
         yield from (f"{n}," for n in held.tolist())
         at = _from_centre(pair, part, number)
-        moved = np.array(posed(at, turned[number], 1)) - at
+        moved = turned(at, angles[number]) - at
         for n, u, v in zip(held.tolist(), *moved, strict=True):
             ends += [f"{n}, 1, 1, {u:.10e}", f"{n}, 2, 2, {v:.10e}", f"{n}, 3, 3"]
         first, element = first + part.points.shape[1], element + part.cells.shape[1]

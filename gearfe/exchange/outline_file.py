@@ -15,6 +15,7 @@ from ..geometry.damage.kinds import Damage
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.mesh.outline import outline, stations
 from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.profile import turned
 
 FINE = 0.02  # of a module: largest distance of two points; a chord leaves the curve by less than 0.1 um per mm of module
 
@@ -38,9 +39,7 @@ def outline_lines(gear: Gear, damage: Sequence[Damage] = ()) -> Lines:
     lines = []
     for one in damage:
         if one not in broken:
-            turn = 2 * np.pi * one.tooth / gear.z
-            cos, sin = np.cos(turn), np.sin(turn)
-            lines.append(np.array([[cos, sin], [-sin, cos]]) @ one.outline(gear))
+            lines.append(turned(one.outline(gear), 2 * np.pi * one.tooth / gear.z))
     return Lines(teeth, lines, gear.held)
 
 

@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from ..core.checks import checked_refine
 from ..core.files import check_output
 from ..core.record import ranged
-from ..decks.contact_deck import TIP, posed
+from ..decks.contact_deck import TIP
 from ..decks.deck import held_nodes
 from ..decks.pressed import Sections, pressing, read_rows, write_lines
 from ..flexibility.finite_elements.fe import EDGES
 from ..flexibility.finite_elements.one_tooth import edge_lengths
 from ..geometry.aliases import Floats, StrPath
 from ..geometry.mesh.outline import stations
-from ..geometry.tooth.profile import arc_at
+from ..geometry.tooth.profile import arc_at, turned
 from .case import PlanetaryCase
 from .curves import SetCurves
 from .loaded_gears import drawable, meshed, placed, touching
@@ -130,7 +130,7 @@ def write_set_inp(
         rolls = _rolls(gear, [side for pair in pressed for side in pair if side["body"] == number], per_width, refine)
         edge = edge_lengths(gear, EDGES, refine)
         section, fixed = meshed(case, gear, rolls, edge["fillet"], edge["near"], edge["far"], 0.05 / refine)
-        points = np.array(posed(section.mesh.doflocs, angle, 1))
+        points = turned(section.mesh.doflocs, angle)
         surfaces = {_surface(number, *flank): flank for flank in section.flank}
 
         def moved(place, turn=turn, shift=shift):

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.aliases import Floats
+from ..geometry.tooth.profile import turned
 from .cracked import CrackedTooth, Faces, faces_of
 from .pads import Pads, among, by_teeth, pads_on
 from .rim_supports import RimBed, RimSupports, check_support
@@ -118,8 +119,7 @@ def _moves(gear):
     """How loads ``(3, z, PLACES)`` move with the whole ring: along x, along y, by a clockwise turn."""
     x, y, turn = motion(gear)[:, :PLACES]
     angle = 2 * math.pi / gear.z * np.arange(gear.z)[:, None]
-    cos, sin = np.cos(angle), np.sin(angle)
-    return np.array([cos * x + sin * y, cos * y - sin * x, np.broadcast_to(turn, (gear.z, PLACES))])
+    return turned((x, y, np.broadcast_to(turn, (gear.z, PLACES))), angle)
 
 
 def rim_moved(rim: Rim, loads: Floats, tractions: NDArray, whole: NDArray) -> Floats:

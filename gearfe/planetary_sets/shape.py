@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 from ..core.files import check_output
 from ..core.record import ranged
 from ..core.steps import steps
-from ..decks.contact_deck import posed
 from ..figures.set_plot import draw_set
 from ..flexibility.finite_elements.elasticity import Body
 from ..geometry.aliases import Floats
 from ..geometry.mesh.outline import stations
-from ..geometry.tooth.profile import cartesian
+from ..geometry.tooth.profile import cartesian, turned
 from .curves import SetCurves
 from .loaded_gears import drawable, meshed, placed, touching
 from .whole_gear import line_loads
@@ -110,7 +109,7 @@ def _shapes(case, bodies, sides):
     out = []
     for (*_, angle, _), there in zip(bodies, sides, strict=True):
         u = solver.solve(sum(_load(gear, made, rolls, side) for side in there))[:, 0]
-        place, moved = (np.array(posed(one, angle, 1)) for one in (mesh.doflocs, u.reshape(-1, 2).T))
+        place, moved = (turned(one, angle) for one in (mesh.doflocs, u.reshape(-1, 2).T))
         out.append(Shape(place + centre[:, None], moved, solver.nodes, _mises(*solver.stress(u), material.nu)))
     return out
 
@@ -119,8 +118,8 @@ def _load(gear, made, rolls, side):
     """Nodal forces ``(2 n, 1)`` of the load of a flank."""
     at = side["tooth"], side["side"]
     unit = line_loads(gear, made.mesh, made.flank[at], rolls[at], np.array([side["roll"]]), side["side"])
-    turned = posed(unit.reshape(-1, 2).T, 2 * math.pi * side["tooth"] / gear.z, 1)
-    return side["force"] * np.array(turned).T.reshape(-1, 1)
+    forces = turned(unit.reshape(-1, 2).T, 2 * math.pi * side["tooth"] / gear.z)
+    return side["force"] * forces.T.reshape(-1, 1)
 
 
 def _mises(xx, yy, xy, nu):

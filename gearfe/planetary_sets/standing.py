@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.checks import numbers
 from ..geometry.aliases import Floats
+from ..geometry.tooth.profile import turned
 
 if TYPE_CHECKING:
     from ..geometry.pair.planetary import PlanetarySet
@@ -111,10 +112,5 @@ def tooth_angles(set_: "PlanetarySet", angles: Floats, stand: Standing) -> tuple
 
 def directions(set_: "PlanetarySet", angles: Floats) -> tuple[Floats, Floats]:
     """Unit forces ``(2, planets)`` on the planets, along x and y: of the sun, and of the ring."""
-    cos, sin = np.cos(angles), np.sin(angles)
-
-    def turned(x, y):
-        return np.array([x * cos + y * sin, y * cos - x * sin])
-
-    alpha_outer, alpha_inner = set_.sun_planet.alpha_wt, set_.planet_ring.alpha_wt
-    return turned(math.cos(alpha_outer), math.sin(alpha_outer)), turned(math.cos(alpha_inner), -math.sin(alpha_inner))
+    outer, inner = set_.sun_planet.alpha_wt, -set_.planet_ring.alpha_wt
+    return turned((math.cos(outer), math.sin(outer)), angles), turned((math.cos(inner), math.sin(inner)), angles)

@@ -139,11 +139,11 @@ def _words(rows):
 
 def text(references, rows, beside=None):
     """Rows as Markdown, with sources, tolerances and reasons below; `beside`: more words on verdicts of a model, by case."""
-    cells, notes = [], []
+    cells, notes, codes = [], [], reason_codes(references, rows)
     for reference in references:
         mark = ""
         judged = [row for row in rows if row.id == reference.id]
-        note = _told(reference, judged)
+        note = _told(reference, judged, codes)
         if note:
             notes.append(note)
             mark = f" [{len(notes)}]"
@@ -166,11 +166,24 @@ def text(references, rows, beside=None):
             "Sources, tolerances, reasons:",
             "",
             *(f"{i}. {line}" for i, line in enumerate(notes, 1)),
+            *(["", "Reasons that hold for several quantities:", ""] if codes else []),
+            *(f"- {code}: {why}." for why, code in codes.items()),
         ]
     )
 
 
-def _told(reference, rows):
+def reason_codes(references, rows):
+    """Codes R1, R2, ... of the reasons that several references share, by reason."""
+    by_reason = {}
+    for reference in references:
+        for row in rows:
+            if row.id == reference.id and (why := reason(reference, row)):
+                by_reason.setdefault(why, set()).add(reference.id)
+    shared = [why for why, names in by_reason.items() if len(names) > 1]
+    return {why: f"R{number}" for number, why in enumerate(shared, 1)}
+
+
+def _told(reference, rows, codes):
     silent = reference.unit == "statement" or all(row.verdict == FORMULA for row in rows)
     size = "" if silent else f" {_tolerance(reference)} ({reference.tolerance})."
     parts = [f"{reference.source}.{size}"]
@@ -182,7 +195,7 @@ def _told(reference, rows):
             by_reason.setdefault((row.verdict, why), []).append(f"{row.case}, {row.pair}" if row.pair else row.case)
     for (word, why), cases in by_reason.items():
         which = "" if len(cases) == len(rows) else f" ({'; '.join(cases)})"
-        parts.append(f"{_sentence(word)[:-1]}{which}: {why}.")
+        parts.append(f"{_sentence(word)[:-1]}{which}: {codes.get(why, why)}.")
     return " ".join(parts)
 
 

@@ -43,7 +43,7 @@ class Solve:
         their gear, ``ritz3d`` for helical gears and for what changes along the width (pits, spalls, cracks of part of the width,
         lead, misalignment, hubs that tilt), otherwise ``ritz``; ``meta["why"]`` says why. To compare a damaged curve with the
         healthy one ask for both by the same method.
-        ``fe``: finite elements of whole sections, the independent reference (`gearfe.flexibility.finite_elements.fe`).
+        ``fe``: finite elements of whole sections, not those of `ritz` (`gearfe.flexibility.finite_elements.fe`).
         ``fe3d``: hexahedra of whole gears of finite width, the same for ``ritz3d``, minutes (`finite_elements.fe_gear3d`).
         ``coupled``: closed forms repaired by known means, external healthy gears (`energy.closed.coupled`). All with line
         contact, neighbour coupling and load sharing. ``textbook``, ``herringbone_article``: beam energies and a plain sum of the

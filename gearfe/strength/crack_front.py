@@ -16,6 +16,7 @@ from ..geometry.damage.front import open_part, shallowest, whole
 from ..geometry.damage.kinds import check_crack
 from ..geometry.mesh.solid import solid
 from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.profile import turned
 from .front_integral import front_intensity
 
 # edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`
@@ -163,13 +164,8 @@ def _followed(mesh, crack):
 def _axes(gear, mouth, tip, z, part):
     """Places of the front in space ``(n, 3)``, unit vectors ahead of it in the crack's surface, and at right angles to that."""
     turn, rate = gear.twist_rate * z, gear.twist_rate
-    cos, sin = np.cos(turn), np.sin(turn)
-
-    def turned(x, y):
-        return np.array([cos * x + sin * y, cos * y - sin * x])
-
     place = mouth[:, None] + (tip - mouth)[:, None] * part[0]
-    flat, heading = turned(*place), turned(*np.tile((tip - mouth)[:, None], z.size))
+    flat, heading = turned(place, turn), turned((tip - mouth)[:, None], turn)
     rise = heading * part[1] + rate * np.array([flat[1], -flat[0]])
     along = np.vstack([rise, np.ones(z.size)]).T
     along /= np.linalg.norm(along, axis=1)[:, None]

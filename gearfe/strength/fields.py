@@ -44,8 +44,13 @@ class Field:
     @property
     def mises(self):
         """Von Mises stress ``(n,)`` [MPa]."""
-        xx, yy, zz, xy, yz, xz = self.stress
-        return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2))
+        return von_mises(self.stress)
+
+
+def von_mises(stress):
+    """Von Mises stress ``(n,)`` of stress ``(6, n)`` (xx, yy, zz, xy, yz, xz)."""
+    xx, yy, zz, xy, yz, xz = stress
+    return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2))
 
 
 def write_vtu(path, fields):

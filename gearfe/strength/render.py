@@ -17,7 +17,7 @@ from ..flexibility.finite_elements.solver import plan
 from ..scene.load import ScenePair
 from ..stiffness.limits import check_section
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
-from .holed import contact_of, pressed_tooth, tooth_field
+from .holed import contact_of, pressed_tooth, root_error, tooth_field
 from .window import drawing_library, plotting
 
 COLOURS, ABOVE = "viridis", "#d55e00"  # even steps, told apart by the colour-blind too; beyond the scale
@@ -70,6 +70,7 @@ def render_stress(
     -------
     dict
         What is shown: ``phase``, ``largest`` and ``root`` (von Mises stress anywhere and on the loaded fillets) [MPa],
+        ``root_error`` (its estimated error [MPa], in three dimensions only: `gearfe.strength.holed.root_error`),
         ``enlarged`` (by which displacements are), ``load`` [N] (on the tooth shown; in a plane on the pair), ``text``.
 
     Raises
@@ -133,6 +134,7 @@ def _tooth(case, phase, refine):
         "load": float(pressed.load[0]),
         "where": "on this tooth",
         "sector": pressed.sector,
+        "root_error": root_error(pressed, case.materials[pressed.gear == "wheel"]),
     }
     return [field], told | {"enlarged": enlarged(field.opening, pressed.sector.gear.m_n)}
 

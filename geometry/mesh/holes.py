@@ -17,7 +17,7 @@ from ..damage.hollow import centre_arc, check_hollows
 from ..damage.hollow_volume import removed_volume
 from ..damage.kinds import check_crack
 from ..tooth.gear import Gear
-from ..tooth.profile import arc_at, cartesian, fillet_length, flank, root_curve
+from ..tooth.profile import arc_at, cartesian, fillet_length, flank, root_curve, turned
 from .holed_drawing import fine, numbers_of, on_outline, section, tool
 from .tetrahedra import UnmeshedError, tetrahedra
 
@@ -126,7 +126,7 @@ def filled(sector, *, teeth=3):
     `holed_sector`.
     """
     plug = np.full_like(sector.plug, -1)
-    flat = _twisted(sector.points, -sector.gear.twist_rate)
+    flat = turned(sector.points, -sector.gear.twist_rate * sector.points[2])
     faces = _named(sector.gear, flat, sector.cells, plug, teeth)
     bare = {tuple(face) for face in skin(sector.cells[:, sector.plug < 0]).T.tolist()}
     whole = skin(sector.cells)
@@ -149,7 +149,7 @@ def _attempt(gear, pits, crack, drawn, teeth, size, strips, stretch):
     nodes, cells, seam = _opened(gear, crack, made)
     flat = np.hstack([made.points, made.points[:, nodes]])
     named = _named(gear, flat, cells, made.plug, teeth) | seam
-    return Holed(gear, _twisted(flat, gear.twist_rate), cells, made.plug, named, volumes)
+    return Holed(gear, turned(flat, gear.twist_rate * flat[2]), cells, made.plug, named, volumes)
 
 
 def _check_place(gear, pits, crack):
@@ -183,12 +183,6 @@ def _check_volume(gear, pits, volumes, made):
             + ": a boolean operation failed or "
             "the mesh is too coarse; change refine, or move the holes by a little"
         )
-
-
-def _twisted(points, rate):
-    x, y, z = points
-    cos, sin = np.cos(rate * z), np.sin(rate * z)
-    return np.array([cos * x + sin * y, cos * y - sin * x, z])
 
 
 def _opened(gear, crack, made):

@@ -14,7 +14,7 @@ from ..damage.chip import chip_of
 from ..damage.crack import check_apart, check_single, meshed_path, mirrored, start_arc
 from ..damage.missing import missing_teeth
 from ..tooth.gear import Gear
-from ..tooth.profile import cartesian, lengths
+from ..tooth.profile import cartesian, lengths, turned
 from .mesher import quadrangulate
 from .outline import spaced
 from .tooth_pieces import GROWTH, half_tooth, no_tooth, quarters
@@ -232,13 +232,12 @@ def _cut(gear, draft, size, tooth, found, mouths, marks):
     middle = (np.column_stack([ends["loaded"], ends["unloaded"]]), -1, np.zeros(2), [spots["loaded"], spots["unloaded"]])
     back = [(path[:, ::-1], number, places[::-1], sizes[::-1]) for path, number, places, sizes in legs["unloaded"][::-1]]
     chain, lines, crack, depth, last = [*legs["loaded"], middle, *back], [], [], [], marks[tooth, "loaded"]
-    cos, sin = math.cos(2 * math.pi * tooth / gear.z), math.sin(2 * math.pi * tooth / gear.z)
     for k, (path, number, places, sizes) in enumerate(chain):
         length = math.dist(*path.T)
         part = quarters(spaced(0.0, length, 2 * size["crack"], [(0, 0, 2 * sizes[0]), (length, length, 2 * sizes[1])], 1, GROWTH))
-        x, y = (np.interp(part, [0.0, length], row) for row in path)
+        points = turned([np.interp(part, [0.0, length], row) for row in path], 2 * math.pi * tooth / gear.z)
         final = marks[tooth, "unloaded"] if k == len(chain) - 1 else None
-        new = draft.add(np.array([cos * x + sin * y, cos * y - sin * x]), first=last, last=final)
+        new = draft.add(points, first=last, last=final)
         last = draft.lines[new[-1] - 1][2]
         lines += new
         crack += [number] * (part.size // 2)

@@ -13,7 +13,7 @@ from skfem import MeshTri, MeshTri2
 from ..damage.crack import check_apart, check_through, meshed_path, mirrored, start_arc
 from ..damage.seam import open_seam
 from ..tooth.gear import Gear
-from ..tooth.profile import lengths
+from ..tooth.profile import lengths, turned
 from .mesher import triangulate
 from .outline import along, held_circle, inside, outline
 
@@ -82,12 +82,12 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), 
     paths, marks, tips = {}, {}, {}
     for crack in cracks:
         place = crack.tooth % gear.z, crack.side
-        paths[place] = corners = _turned(meshed_path(gear, crack), 2 * math.pi * crack.tooth / gear.z)
+        paths[place] = corners = turned(meshed_path(gear, crack), 2 * math.pi * crack.tooth / gear.z)
         length = lengths(corners)[-1]
         marks[place] = start_arc(gear, crack), min(fillet_size, length / 4)
         tips[place] = min(CRACK_EDGE * fillet_size, length / 5)
         if crack.turning and crack.level > 0.5:  # it runs towards its mirror image: refine there as the ligament shrinks
-            left = math.dist(corners[:, -1], _turned(mirrored(gear, crack), 2 * math.pi * crack.tooth / gear.z))
+            left = math.dist(corners[:, -1], turned(mirrored(gear, crack), 2 * math.pi * crack.tooth / gear.z))
             opposite = "unloaded" if crack.side == "loaded" else "loaded"
             marks.setdefault((crack.tooth % gear.z, opposite), (marks[place][0], min(fillet_size, left / 4)))
             tips[place] = min(tips[place], left / 8)
@@ -121,12 +121,6 @@ def _check_within(gear, crack, rim, start, line):
             f"crack from {crack.start!r} at {math.degrees(crack.angle):.3g} degrees on tooth {crack.tooth} of z = {gear.z} "
             "leaves the body along its outline: no mesh can follow it; start it elsewhere, or change its angle or its length"
         )
-
-
-def _turned(points, angle):
-    """Points turned clockwise by `angle`."""
-    cos, sin = math.cos(angle), math.sin(angle)
-    return np.array([cos * points[0] + sin * points[1], cos * points[1] - sin * points[0]])
 
 
 def fill(rim, held, chains=(), *, ring=False):

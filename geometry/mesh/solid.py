@@ -14,6 +14,7 @@ import numpy as np
 from ..damage.crack import check_apart, check_single, deepest
 from ..damage.front import open_part, whole
 from ..tooth.gear import Gear
+from ..tooth.profile import turned
 from .front import follow
 from .outline import spaced
 from .quads import QuadSection, jacobian, quad_section
@@ -200,10 +201,8 @@ def _moved(points, heights, moves):
 
 def _turned(points, heights, rate):
     """Section points ``(2, heights, n)`` turned with their heights: ``(3, heights * n)``, height by height."""
-    cos, sin = np.cos(rate * heights)[:, None], np.sin(rate * heights)[:, None]
-    x, y = points
-    z = np.broadcast_to(heights[:, None], x.shape)
-    return np.array([cos * x + sin * y, cos * y - sin * x, z]).reshape(3, -1)
+    z = np.broadcast_to(heights[:, None], points[0].shape)
+    return turned((*points, z), rate * heights[:, None]).reshape(3, -1)
 
 
 def _open(made, cut, part, cracks):

@@ -87,11 +87,6 @@ class GearPair:
         """Gears and centre distance: enough to make it again."""
         return f"GearPair({self.gear_1!r}, {self.gear_2!r}, a={self.a!r})"
 
-    def _repr_html_(self):
-        from ..tooth.drawing import pair_html
-
-        return pair_html(self)
-
     def _check_distance(self):
         pinion, wheel = self.gear_1, self.gear_2
         least = self.outward * pinion.r_b + wheel.r_b

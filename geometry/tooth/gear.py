@@ -106,11 +106,6 @@ class Gear:
         given = ((field.name, getattr(self, field.name)) for field in fields(self) if getattr(self, field.name) != field.default)
         return f"Gear({', '.join(f'{name}={value!r}' for name, value in given)})"
 
-    def _repr_html_(self):
-        from .drawing import gear_html
-
-        return gear_html(self)
-
     def _check_numbers(self):
         if (self.r_bore is None) == (self.r_rim is None):
             raise ValueError(

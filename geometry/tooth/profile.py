@@ -19,6 +19,12 @@ def cartesian(radius, angle):
     return np.array([radius * np.sin(angle), radius * np.cos(angle)])
 
 
+def turned(points, angle):
+    """Points or vectors ``(2, ...)`` or ``(3, ...)`` of x, y and z, rotated clockwise about the z axis by `angle` [rad]."""
+    (x, y, *z), cos, sin = points, np.cos(angle), np.sin(angle)
+    return np.array([cos * x + sin * y, cos * y - sin * x, *z])
+
+
 def lengths(points):
     """Lengths ``(n,)`` [mm] along a polyline of points ``(2, n)``, from its start."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=1)))])

@@ -71,7 +71,6 @@ def test_any_tooth_loses_as_tooth_nought():
 def test_every_method_has_a_column_or_a_reason(found, scene):
     for one in (
         found,
-        gf.compare(scene, phases=4, refine=0.35),
         gf.compare("planetary_pitting", "planet_ring", phases=4, refine=0.35),
     ):
         assert one.curves.keys() | one.left_out.keys() == set(METHODS)

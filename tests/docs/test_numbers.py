@@ -88,6 +88,7 @@ def test_programs_print_what_the_page_shows(page):
         says(page, "{}".join(parts[::2]), *map(float, parts[1::2]))
 
 
+@pytest.mark.slow
 def test_start(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     gf.new_scene("my.toml")

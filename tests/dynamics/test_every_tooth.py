@@ -167,6 +167,7 @@ def test_pitch_of_one_tooth_reaches_the_vibration():
     assert f"{machine.faults[0]}" == "tooth 3 of the pinion: off its place; it meshes at 40 Hz"
 
 
+@pytest.mark.slow
 def test_several_loads_with_damage_of_both_gears():
     """Laws of force: at the load of the curves they give the same force as curves do."""
     both = scene(crack=[{"gear": "pinion", "tooth": 3}, {"gear": "wheel", "tooth": 3}])

@@ -48,7 +48,7 @@ def test_pits_of_a_helical_tooth_are_met_as_the_line_passes(hand):
 
 def test_the_article_s_stage_runs_from_its_scene():
     scene = with_keys(STAGE, contact="impact")
-    machine = gf.build_machine(scene, "severe")
+    machine = gf.build_machine(scene, "severe_rows")
     assert {mesh.power for mesh in machine.meshes} == {1.5}
     assert_allclose(machine.meshes[0].damping, 3.0459e5, rtol=1e-3, err_msg="S0: 0.1 % of K")
     load = next(one for one in machine.loads if one.name == "carrier torque")

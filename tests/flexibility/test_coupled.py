@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from ladder import ladder, plane_strain_textbook
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
@@ -14,7 +15,6 @@ from gearfe.flexibility.energy.closed.beam import along_fillet, along_flank
 from gearfe.flexibility.finite_elements import fe
 from gearfe.flexibility.hertz import half_plane
 from gearfe.geometry.tooth.profile import cartesian, fillet, flank, form_point, root_half_angle, tangent_point
-from validation.shared.ladder import ladder, plane_strain_textbook
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 WIDTH = 20.0

@@ -4,16 +4,28 @@ import math
 
 import numpy as np
 import pytest
+from independent import AT, STANDS, small
 from numpy.testing import assert_allclose
 from sets import case, unequal
 
 import gearfe as gf
+from validation.shared.kept_rows import stored
 
 PADS = gf.RimSupports(6, 4.8, first=0.2)
 
 
 def solved(given, at=0.3):
     return gf.planetary_stiffness(given, [at])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", STANDS)
+def test_forces_of_all_meshes_are_those_of_calculix(name):
+    """A planet ahead by 2 um; CalculiX solved the deck of `gearfe.write_set_inp` with all flanks in contact."""
+    row = stored("sets_calculix")[name]
+    force = gf.planetary_stiffness(small(STANDS[name]), [AT]).force[:, 0]
+    assert_allclose(force, list(row["forces"].values()), rtol=2.2e-3)
+    assert_allclose(force, list(row["ours"].values()), rtol=1e-4, err_msg="page sets")
 
 
 @pytest.mark.slow

@@ -5,13 +5,13 @@ import re
 
 import numpy as np
 import pytest
+from independent import beside_whole_bodies
 from numpy.testing import assert_allclose
 from sets import case
 
 import gearfe as gf
 from gearfe.planetary_sets.rim_supports import RimBed, RimSupports
 from gearfe.planetary_sets.solve import planetary_stiffness
-from validation.make.sets_cracks import beside_whole_bodies
 
 
 @pytest.mark.slow

@@ -11,7 +11,6 @@ import gearfe as gf
 from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.pair.flanks import flank_forms
 from gearfe.geometry.pair.modified import flank_contacts
-from validation.make.flanks_wide import against_fe
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -150,6 +149,30 @@ def test_harmonics_need_whole_cycles():
     turn = 2 * np.pi * two.phase
     made = replace(two, te=(1e-6 * (9 + 3 * np.cos(turn + 0.4) + 0.5 * np.sin(3 * turn)))[None, :])
     assert_allclose(made.harmonics(), [[3e-6, 0, 0.5e-6, 0]], atol=1e-18)
+
+
+def seeded_section(seed):
+    """Spur pair with flanks modified along their profiles, the same along the width: pair, flanks, force."""
+    rng = np.random.default_rng(seed)
+    m = float(rng.choice([1.5, 2.0, 3.0]))
+    rack = {"m_n": m, "alpha_n": math.radians(20), "b": 10.0 * m}
+    pair = gf.GearPair(*(gf.Gear(z=int(z), r_bore=0.25 * z * m, **rack) for z in rng.integers(20, 50, 2)))
+    flanks = {}
+    for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2)):
+        length = (gear.roll_a - gear.roll_f) * rng.uniform(0.15, 0.45)
+        exponent = float(rng.choice([1, 1.5, 2]))
+        flanks[name] = gf.Flank(
+            tip_relief=m * rng.uniform(0.001, 0.012), tip_start_roll=gear.roll_a - length, tip_exponent=exponent,
+            profile_crowning=m * rng.uniform(0, 0.002), profile_slope=m * rng.uniform(-0.001, 0.002),
+        )  # fmt: skip
+    return pair, flanks, 10.0 * m * m * rng.uniform(20, 100)
+
+
+def against_fe(seed):
+    """Largest difference of `ritz` and `fe` in the transmission error over the mean deflection, 24 phases."""
+    pair, flanks, force = seeded_section(seed)
+    ritz, fe = (gf.mesh_stiffness(pair, force, STEEL, method=name, flanks=flanks, phases=24) for name in ("ritz", "fe"))
+    return float(np.abs(ritz.te - fe.te).max() / fe.deflection.mean())
 
 
 @pytest.mark.slow

@@ -46,7 +46,7 @@ CASES = {
 }
 
 
-COSTLY = ("pitch of both gears", "three teeth of both gears")
+COSTLY = ("pitch of both gears", "three teeth of both gears", "an eccentric pinion, a cracked wheel")
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow if name in COSTLY else ()) for name in CASES])

@@ -1,6 +1,5 @@
 """What a notebook shows of objects, and tables of a curve."""
 
-import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +8,7 @@ from numpy.testing import assert_array_equal
 
 import gearfe as gf
 from gearfe.figures.stiffness_plots import closed
-from gearfe.geometry.tooth.drawing import gear_svg, outline_points
+from gearfe.geometry.tooth.drawing import outline_points
 
 
 @pytest.fixture(scope="module")
@@ -31,20 +30,16 @@ def test_gears_and_pairs_can_be_made_again_from_what_they_show(pair):
 
 
 def test_drawing_is_the_gear(pair):
-    ElementTree.fromstring(gear_svg((pair.gear_1, 0.0, 0.0)))
     x, y = outline_points(pair.gear_1)
     radius = np.hypot(x, y)
     assert radius.max() == pytest.approx(pair.gear_1.r_a)
     assert radius.min() == pytest.approx(pair.gear_1.r_f)
     assert (np.diff(np.unwrap(np.arctan2(x, y))) > -0.02).all(), "around once"
-    assert "21 / 31" in pair._repr_html_()
-    assert "<svg" in pair.gear_2._repr_html_()
 
 
 def test_curve_shows_its_range(curve):
     assert f"{curve.k.min() / 1e6:.4g} to {curve.k.max() / 1e6:.4g} N/um" in repr(curve)
     assert "2000 N on 20 mm" in repr(curve)
-    assert "polyline" in curve._repr_html_()
 
 
 def test_tables_hold_the_numbers(curve):
@@ -67,10 +62,8 @@ def test_jumps_are_drawn_where_pairs_enter_and_leave(pair):
     assert np.abs(np.diff(k)[np.diff(phase) > 0]).max() < 0.1 * np.abs(np.diff(k)).max(), "no slope stands for a jump"
 
 
-def test_machine_and_response_show_what_they_are(curve, pair):
-    scene = gf.load_scene("compound_planetary")
-    machine = gf.build_machine(scene)
+def test_machine_and_response_show_what_they_are():
+    machine = gf.single_mesh(1.0, 1e8, 500.0)
     assert f"{len(machine.dofs)} degrees of freedom" in repr(machine)
     response = gf.simulate(machine, 0.01)
     assert f"{len(response.time)} samples" in repr(response)
-    assert "polyline" in response._repr_html_()

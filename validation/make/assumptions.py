@@ -22,7 +22,7 @@ SCENES = [  # scenes of articles; the bores of herringbone_contact_line are chos
     name for name in scene_names() if name != "herringbone_contact_line" and gf.load_scene(name).references
 ]
 WIDE = 8  # phases in three dimensions
-PITTED = {"planetary_pitting": "mild", "helical_pitting": "severe"}  # scene: case whose pits are changed
+PITTED = {"planetary_pitting": "mild_rows", "helical_pitting": "severe"}  # scene: case whose pits are changed
 
 CONVENTIONS = {
     "30-degree tangent, 45 degrees": {},

@@ -82,7 +82,6 @@ def quick_rows(page):
 def text(page):
     """The page as Markdown, from its committed rows and its scene."""
     scene, home = gf.load_scene(PAGES[page]), module(page)
-    told = scene.assumptions
     rows = table_rows.read(page)
     claim, find, decide = OPENINGS[page](Found(rows))
     rows = decided(page, rows)
@@ -90,24 +89,9 @@ def text(page):
     lines = [
         f"# {scene.title}: which printed numbers of {ARTICLES[page]} are reproduced?",
         "",
-        f"{Found(rows).counted()}.",
-        "",
-        f"**The article claims** {claim}. **gearfe finds** {find}. **What decides it**: {decide}.{drawn}",
-        "",
-        f"{scene.source}.",
-        "",
-        f"Made by `python -m validation {page}` from [tables/{page}.csv](tables/{page}.csv); the printed values",
-        f"are the `[[reference]]` rows of `gearfe/scene/scenes/{PAGES[page]}.toml`, the last statements those of "
-        "`validation/sources/statements.toml`.",
-        "Verdicts are computed: *reproduced*: within the tolerance; *after a stated correction*: of the corrected value, "
-        "which alone",
-        "counts where there is one; *trend only*: all cases have the printed order, each 0.1 % from the next, and their",
-        "relative changes from the first are a third to three times the printed ones; *not reproduced*; *depends*: a",
-        "statement that holds in some [draws](joint.md) of all inputs that are not printed, and fails in others;",
-        "*set by an assumption*: agrees, by a value that the scene assumes; *not reproducible*: nothing computed is that",
-        "quantity. Beside statements: in how many draws they hold. The last statements were added after a first run. Kinds:",
-        "*input*: put in, or found from this very value; *arithmetic*: follows from printed numbers; *model*:",
-        "could have come out otherwise. Reasons: below.",
+        f"- Claim of the article: {claim}.",
+        f"- Result of gearfe: {find}.",
+        f"- Cause of the difference: {decide}.{drawn}",
         "",
         verdicts.text(references(page), rows, draws(page)),
         "",
@@ -118,11 +102,15 @@ def text(page):
     for name, caption in home.PICTURES.items():
         lines += [f"![{caption}]({name}.png)", "", f"{caption}.", ""]
     lines += [
-        "What the scene assumes, and how much depends on it:",
+        "## Method and source",
         "",
-        Table(
-            ("assumed", "why", "what depends on it"), [[one[key] for key in ("what", "why", "depends")] for one in told]
-        ).markdown(),
+        f"{scene.source}.",
+        "",
+        f"`python -m validation {page}` computes this page and [tables/{page}.csv](tables/{page}.csv).",
+        f"The printed values are the `[[reference]]` rows of `gearfe/scene/scenes/{PAGES[page]}.toml`.",
+        "The last statements are those of `validation/sources/statements.toml`, which were added after a first run.",
+        f"`gearfe stiffness {PAGES[page]} --assumptions` prints the {len(scene.assumptions)} assumptions of the scene with",
+        "their reasons and effects. Verdicts and kinds are defined on [printed.md](printed.md).",
     ]
     return "\n".join(lines) + "\n"
 
@@ -184,7 +172,7 @@ def runs_of(page, rows):
     told = table_rows.read_runs(page)
     named = [(name, made, ", ".join(dict.fromkeys(by_run.get(name, []))) or "beside") for name, made in told.items()]
     table = Table(("run", "what it was made with", "rows"), named).markdown()
-    return ["Simulations behind the rows, as read from the machines that ran:", "", table, ""]
+    return ["## Simulations", "", "The settings are read from the machines that ran.", "", table, ""]
 
 
 def write_page(page):

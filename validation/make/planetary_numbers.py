@@ -1,8 +1,5 @@
 """What articles S0 and S1 print and no simulation is needed for: frequencies, geometry, contact lines."""
 
-from dataclasses import replace
-from functools import cache
-
 import numpy as np
 
 import gearfe as gf
@@ -20,14 +17,6 @@ BINS = 61440 / 307200  # Hz, of the measured spectra
 def stage():
     """Pairs sun-planet and planet-ring."""
     return scene(NAME).pairs["sun_planet"], scene(NAME).pairs["planet_ring"]
-
-
-@cache
-def lined():
-    """The scene with the cases that have the N pits of a level on one line, as the articles' L = 2 b - N l has them."""
-    own, pair = scene(NAME), scene(NAME).pairs["sun_planet"]
-    damage = {case: pair.damage[f"{case}_line"] for case in CASES}
-    return replace(own, pairs=own.pairs | {"sun_planet": replace(pair, damage=damage)})
 
 
 def speeds():
@@ -102,7 +91,7 @@ def lengths(count=400):
     S0: a pit takes the chord ``l = sqrt((D/2)**2 - (D/2 - d)**2)`` (half of a circle's chord), d the distance of the contact
     from the pit's edge; N pits take N l.
     """
-    outer = lined().pairs["sun_planet"]
+    outer, _ = stage()
     pair = outer.pair
     phase = (np.arange(count) + 0.5) / count * (pair.eps_alpha + 0.5) - 0.25
     out = {"healthy": total_length(pair, phase)}

@@ -198,9 +198,9 @@ def more():
 CENTROID = "What the two formulas of SC do on synthetic lines: [sideband_centroid.md](sideband_centroid.md)."
 BOTH = (
     "The articles' formula, L = 2 b - N l, has the N = 5, 10, 15 pits of a level on one line of contact. So they are judged "
-    "above: on the pitch circle, evenly over the width, 1 mm wide, so that 5, 10 and 15 of the 20 mm are lost at once. These "
-    "are the cases mild_line, moderate_line and severe_line of the scene. Its cases mild, moderate and severe, which other pages "
-    "run, have rows of five on one, two and three lines: there a severe fault is longer, not deeper. Both under the "
+    "above: on the pitch circle, evenly over the width, 1 mm wide, so that 5, 10 and 15 of the 20 mm are lost at once. The "
+    "cases mild_rows, moderate_rows and severe_rows of the scene have rows of five on one, two and three lines: there a severe "
+    "fault is longer, not deeper. Both under the "
     "articles' own law, and one line with the linear stiffness curves of the pitted teeth; the healthy sidebands are "
     "what 'pits raise sidebands' compares with"
 )

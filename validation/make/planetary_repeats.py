@@ -6,6 +6,7 @@ from ..shared.laws import beside, tables
 from ..shared.simulated import amplitude, scene
 from .planetary_numbers import CASES, speeds
 from .planetary_runs import (
+    CARRIER,
     FORCE,
     HOUSING,
     OWN,
@@ -23,6 +24,8 @@ from .planetary_runs import (
 IMPACTS = (0.5, 1.0, 2.0)  # of the scene's pulses: the three repeats of each level
 INDICATORS = {"SC by S0's formula [Hz]": "SC (S0)", "SC by S1's formula [mm/s^2]": "SC (S1)", "RMS [m/s^2]": "rms"}
 INDICATORS |= {"kurtosis": "kurtosis", "shape factor": "shape factor"}
+ACCELERATES = "impacts raise the carrier's angular acceleration"
+SIZES = {"peak to peak": np.ptp, "RMS": np.std}
 STANDS_OUT = 1.5  # as for article S3
 ROUNDING = 1e-9  # of the mesh force's sidebands [N]
 MEASURED, RISES = ("rms", "kurtosis", "shape factor", "peak"), "{} rises with severity"
@@ -46,12 +49,14 @@ def about_spectra(law=OWN, channel=FORCE):
 
 
 def about_impacts(law=OWN):
-    """What they say of impacts, of the force of a sun mesh."""
+    """Statements on impacts by the force of a sun mesh and the acceleration of the carrier, and whether they hold."""
     rate, mesh = 1 / scene("planetary_pitting").machine["impact"]["pulse_period_s"], speeds()[2]
     peak = [np.ptp(signal_of("healthy", impact, law=law).values) for impact in (False, True)]
     found = [spectrum_of("healthy", impact, law=law) for impact in (False, True)]
     beside = [amplitude(one, mesh + rate, one.resolution / 2) for one in found]
+    carrier = [signal_of("healthy", impact, CARRIER, law).values for impact in (False, True)]
     return {
+        **{f"{ACCELERATES}, {name}": bool(size(carrier[1]) > 1.1 * size(carrier[0])) for name, size in SIZES.items()},
         "impacts raise the force": peak[1] > 1.1 * peak[0],
         "impacts bring close sidebands of the mesh line": beside[1] > 10 * beside[0],
     }
@@ -79,7 +84,12 @@ def further():
             out[f"three repeats: {word} tells the levels apart"] = apart(found)
         else:
             out[f"three repeats: {word} does not tell the levels apart"] = not apart(found, rising=False)
-    return about_spectra() | out | {"the larger the impacts, the larger the force": bool((np.diff(peaks) > 0).all())}
+    return (
+        about_spectra()
+        | about_impacts()
+        | out
+        | {"the larger the impacts, the larger the force": bool((np.diff(peaks) > 0).all())}
+    )
 
 
 def repeats():
@@ -125,7 +135,7 @@ TEXT = (
 
 def drawn(draw):
     """Whether statements hold with the inputs of a draw, by statement and channel, and indicators of the ring's acceleration."""
-    holds = {name: {FORCE: bool(found)} for name, found in about_impacts(draw).items()}
+    holds = {name: {CARRIER if ACCELERATES in name else FORCE: bool(found)} for name, found in about_impacts(draw).items()}
     for channel in (FORCE, SENSOR, HOUSING):
         for name, found in about_spectra(draw, channel).items():
             holds.setdefault(name, {})[channel] = bool(found)

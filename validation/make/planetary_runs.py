@@ -9,7 +9,7 @@ import gearfe as gf
 
 from ..shared.joint_inputs import Draw, changed, noise
 from ..shared.simulated import amplitude, knocked, machine, record, scene, signal, spectrum
-from .planetary_numbers import CASES, NAME, lined, speeds
+from .planetary_numbers import CASES, NAME, speeds
 
 SECONDS, SETTLE = 10.0, 0.25
 DRAWN, DRAWN_SETTLE = 1.0, 0.25  # of a draw of the unprinted inputs
@@ -17,7 +17,12 @@ RATE = 10000.0  # S0: 100 000 steps in 10 s
 FINE = 256 * 280.0  # above twice the highest natural frequency, 16.5 kHz; a multiple of f_m
 OWN, ROWS, LINEAR = "impact law", "impact law, rows of five", "linear stiffness"
 STEADY = ", no pulses"
-FORCE, SENSOR, HOUSING = "force sun_planet1", "ring.y acceleration", "ring's forces through its window"
+CARRIER, FORCE, SENSOR, HOUSING = (
+    "carrier.theta acceleration",
+    "force sun_planet1",
+    "ring.y acceleration",
+    "ring's forces through its window",
+)
 BEARING = 1e8  # N/m, of the ring: the default of `gf.pitted_planetary`
 HIGHEST = 6  # of the fault frequency: sidebands that the bandwidth counts
 
@@ -25,7 +30,7 @@ HIGHEST = 6  # of the fault frequency: sidebands that the bandwidth counts
 @cache
 def _built(case, impact, layout):
     """Machine under the impact law, its pulses `impact` times those of the scene."""
-    own = scene(NAME) if layout == ROWS else lined()
+    own, case = scene(NAME), f"{case}_rows" if case and layout == ROWS else case
     options = own.machine["impact"] | {"pulse_Nm": impact * own.machine["impact"]["pulse_Nm"]}
     if not impact:
         options = {key: value for key, value in options.items() if not key.startswith("pulse")}
@@ -35,7 +40,7 @@ def _built(case, impact, layout):
 @cache
 def linear(case):
     """Machine with linear stiffness curves."""
-    return machine(NAME) if case is None else gf.build_machine(lined(), case, method="ritz3d", phases=64)
+    return machine(NAME, case)
 
 
 @cache

@@ -12,6 +12,28 @@ from ..shared.places import ROOT, SOURCES, TABLES
 from ..shared.table_rows import write_table
 
 KINDS = {"verdict": "judged", "used": "input: used", "unused": "input: not used"}
+VERDICTS = """
+## Verdicts and kinds
+
+| verdict | meaning |
+|---|---|
+| reproduced | within the tolerance |
+| reproduced after a stated correction | the corrected value is within the tolerance; only the corrected value counts |
+| trend only | all cases have the printed order, each 0.1 % from the next; their relative changes from the first case are a third to three times the printed ones |
+| set by an assumption | agrees because of a value that the scene assumes |
+| depends | a statement that holds in some [random draws](joint.md) of the unprinted inputs and fails in others |
+| not reproduced | outside the tolerance |
+| not reproducible | gearfe computes no such quantity |
+
+| kind | meaning |
+|---|---|
+| input | put in, or found from this very value |
+| arithmetic | follows from printed numbers |
+| model | the result of a model, which could have been different |
+| statement | a sentence of the article without a number; the table states in how many draws it holds |
+
+## All printed numbers
+"""  # noqa: E501
 CSV = TABLES / "printed.csv"
 PAGES = {  # where the rows of a scene's references stand
     "planetary_pitting": "planetary_pitting",
@@ -122,10 +144,10 @@ def run(again=True):
     rows = ledger()
     write_table(CSV, ("article", *KINDS.values()), [(name, *counts(rows, name)) for name in articles(rows)])
     how = [
-        "`python -m validation printed` writes this page from `sources/printed.toml`, which has every number as printed; a test",
-        "compares it with scenes, references and code. A number that is printed twice stands where its rows do. Statements",
-        "without a number are rows of the pages of the machines.",
+        "`python -m validation printed` writes this page from `sources/printed.toml`, which contains every number as printed.",
+        "A test compares it with scenes, references and code. A number that is printed twice is listed where its rows are.",
+        "Statements without a number are rows on the pages of the machines.",
     ]
     head = ("article", *(Column(name, form="{}") for name in ("results", "inputs used", "inputs not used")))
     small = Table(head, [[name, *counts(rows, name)] for name in articles(rows)]).markdown()
-    page.write("printed", answer(rows), how, small, lines(rows))
+    page.write("printed", answer(rows), small, VERDICTS, lines(rows), ["## Method", "", *how])

@@ -21,9 +21,6 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "outlines": "Is the contact of teeth right, beside whole outlines pressed together?",
     "sample": "Do the error estimates cover, on pairs that nobody chose?",
     "three": "Is the stiffness in three dimensions right?",
-    "sets": "What does a whole planetary set do to the stiffness of its meshes?",
-    "flanks": "Are modified flanks right?",
-    "map": "How wrong are closed forms, and where may they be used?",
     "assumptions": "What do values that articles leave out do to the stiffness?",
     "speed": "What does each method cost, and how wrong is it?",
     "dynamics": "Are simulated vibrations integrated correctly?",
@@ -31,7 +28,6 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "two_minutes": "The articles in two minutes: what do they claim, and what is found?",
     "printed": "What became of every number that the articles print?",
     "joint": "Which statements of the articles hold whatever the inputs that they do not print?",
-    "pictures": "What do the damaged teeth of the scenes look like under load?",
 }
 
 MACHINES = {

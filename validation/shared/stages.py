@@ -73,7 +73,7 @@ def shaken(made, amplitude=40e-6):
     return replace(made, meshes=tuple(meshes))
 
 
-def article(case="severe"):
+def article(case="severe_rows"):
     """The planetary stage of S0 under its impact law, with friction and pulses on the carrier."""
     scene = gf.load_scene("planetary_pitting")
     return gf.build_machine(replace(scene, machine=scene.machine | {"contact": "impact"}), case)

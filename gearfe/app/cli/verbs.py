@@ -209,7 +209,8 @@ def render(arguments):
         with working("stress"):
             told = render_stress(case, arguments.output, refine=arguments.refine, phase=arguments.phase, title=title)
         print(told["text"])
-        print(f"largest von Mises stress on the fillets {told['root']:.0f} MPa")
+        error = f", estimated error {told['root_error']:.0f} MPa" if "root_error" in told else ""
+        print(f"largest von Mises stress on the fillets {told['root']:.0f} MPa{error}")
         for line in () if arguments.case else told_root(case):
             print(line)
     print(f"written: {arguments.output}")

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, field, replace
-from html import escape
 from typing import Any
 
 import numpy as np
@@ -122,11 +121,6 @@ class Machine:
             f"<Machine: {len(self.dofs)} degrees of freedom, {len(self.springs)} springs, {len(self.meshes)} meshes ({meshes}), "
             f"{len(self.loads)} loads{f', mesh frequency {speeds}' if speeds else ''}>"
         )
-
-    def _repr_html_(self):
-        rows = {"degrees of freedom": ", ".join(self.dofs), "meshes": ", ".join(mesh.name for mesh in self.meshes)}
-        notes = "".join(f"<tr><td>{escape(str(k))}</td><td>{escape(str(v))}</td></tr>" for k, v in (rows | self.notes).items())
-        return f"<table><caption>{escape(repr(self))}</caption>{notes}</table>"
 
     def row(self, name: str) -> Floats:
         """Unit row of a degree of freedom.

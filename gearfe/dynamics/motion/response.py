@@ -3,14 +3,12 @@
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from html import escape
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.files import Content, save_as, suffix_of
-from ...figures.inline import line_svg
 from ...geometry.aliases import Floats
 from ...signal.series import Signal
 from ..machine.contact_law import force, sided_force
@@ -77,14 +75,6 @@ class Response:
         time = f"{len(self.time)} samples from {self.time[0]:.4g} to {self.time[-1]:.4g} s"
         machine = f"{len(self.machine.dofs)} degrees of freedom, {len(self.machine.meshes)} meshes"
         return f"<Response: {time}, {machine}, by {self.stats.get('method', '?')}; {len(self.names)} channels in .names>"
-
-    def _repr_html_(self):
-        if not self.machine.meshes:
-            return escape(repr(self))
-        name = f"force {self.machine.meshes[0].name}"
-        last = slice(-min(len(self.time), 2000), None)  # the whole would be a black band
-        drawn = line_svg(self.time[last], np.asarray(self[name])[last], "time [s]", f"{name} [{self.unit(name)}]")
-        return f"<div>{drawn}<br>{escape(repr(self))}</div>"
 
     @property
     def names(self) -> list[str]:

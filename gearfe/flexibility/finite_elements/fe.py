@@ -25,7 +25,7 @@ from ...geometry.damage.chip import loaded_side
 from ...geometry.damage.missing import missing_teeth
 from ...geometry.mesh.outline import GROWTH, stations
 from ...geometry.mesh.section_mesh import section
-from ...geometry.tooth.profile import arc_at, flank_normal
+from ...geometry.tooth.profile import arc_at, flank_normal, turned
 from ..hats import SPAN, hat_knots, wider
 from ..hertz import half_plane, hat_logarithm
 from ..plane import BELOW, TILT, Flexibility, SeamFaces, leaning, reached_teeth
@@ -99,12 +99,6 @@ def flank_load(section_, tooth, pressure, first, count, tilt=0.0):
     columns = np.broadcast_to(np.arange(edge.shape[0])[:, None, None], force.shape)
     shape = (2 * mesh.doflocs.shape[1], edge.shape[0])
     return coo_matrix((force.ravel(), (rows.ravel(), columns.ravel())), shape=shape).tocsc()
-
-
-def turned(vectors, angle):
-    """Vectors ``(2, ...)`` turned clockwise by `angle` [rad]."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    return np.array([cos * vectors[0] + sin * vectors[1], cos * vectors[1] - sin * vectors[0]])
 
 
 def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), broken=()):

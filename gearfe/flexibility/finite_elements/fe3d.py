@@ -17,7 +17,7 @@ from numpy.polynomial import legendre
 from scipy.sparse import coo_matrix, csc_array, hstack
 
 from ...geometry.mesh.solid import solid
-from ...geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
+from ...geometry.tooth.profile import arc_at, flank_normal, roll_at_arc, turned
 from .hexahedron import face_shapes
 from .solid_assembly import assemble
 from .solver import factor, plan
@@ -151,10 +151,7 @@ def helicoid_normal(gear, roll, z, turn=0.0):
     Of the tooth `turn` [rad] from tooth 0.
     """
     plane, turn, tilt = flank_normal(gear, roll), turn + gear.twist_rate * z, math.cos(gear.beta_b)
-    cos, sin = np.cos(turn), np.sin(turn)
-    x = tilt * (np.outer(plane[0], cos) + np.outer(plane[1], sin))
-    y = tilt * (np.outer(plane[1], cos) - np.outer(plane[0], sin))
-    return np.array([x, y, np.full(x.shape, -math.sin(gear.beta_b))])
+    return turned((*tilt * plane[:, :, None], np.full((roll.size, z.size), -math.sin(gear.beta_b))), turn)
 
 
 def points_between(ends, cuts, count):

@@ -8,7 +8,7 @@ import importlib.util
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array, issparse, tril
+from scipy.sparse import coo_array, csc_array, hstack, issparse, tril
 
 from ...core.memory import free_memory
 from ...core.steps import reached
@@ -18,6 +18,7 @@ A, L, P = 0, 4, 7  # what CHOLMOD solves with: all of it, the lower factor, the 
 # and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
 BLOCK = 2**27
 MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] of n and n**(4/3), with and without METIS, see `plan`
+ROWS = 8192  # of a half solution that are multiplied at a time
 PLANE = 8000.0  # bytes for each unknown of a plane body that is factored, 7300 measured
 SECONDS = {True: (5e-5, 1.9e-10, 5e-9), False: (5e-5, 3.2e-10, 6e-9)}  # of n, n**2 and n**(4/3) for each right-hand side
 
@@ -104,7 +105,7 @@ def factor(matrix, plan_=None, *, node=3):
     callable
         From right-hand sides ``(n,)`` or ``(n, k)``, which may be sparse, to solutions of the same shape. Its attribute ``gram``
         maps right-hand sides F ``(n, k)`` to ``F' K^-1 F`` by half a solution: with ``K = L L'`` it is the product of ``L^-1 F``
-        with itself.
+        with itself. It stays sparse: a load on a tooth reaches the rows of that tooth and of the separators above it only.
 
     Raises
     ------
@@ -134,25 +135,43 @@ def factor(matrix, plan_=None, *, node=3):
     except ArithmeticError as error:
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
-    def solve(rhs, part=A):
+    def solve(rhs):
         sides = csc_array(rhs) if issparse(rhs) else np.reshape(rhs, (matrix.shape[0], -1))
         out, width = np.empty(sides.shape, order="F"), max(1, BLOCK // (8 * matrix.shape[0]))
         for start in range(0, sides.shape[1], width):
             span = slice(start, start + width)
             columns = sides[:, span].toarray() if issparse(rhs) else sides[:, span]
             block = dense(np.asfortranarray(columns, dtype=float))
-            if part == L:
-                cholmod.solve(factored, block, sys=P)
             # as sparse columns CHOLMOD takes several at once, so that the factor is read less often: half the time
-            out[:, span] = np.asarray(dense(cholmod.spsolve(factored, sparse(block), sys=part)))
+            out[:, span] = np.asarray(dense(cholmod.spsolve(factored, sparse(block), sys=A)))
         return out.reshape(rhs.shape if issparse(rhs) else np.shape(rhs))
 
     def gram(rhs):
-        moved = solve(rhs, L)
-        return moved.T @ moved
+        order = np.arange(matrix.shape[0], dtype=float)
+        cholmod.solve(factored, order := dense(order), sys=P)
+        sides = csc_array(csc_array(rhs)[np.asarray(order, dtype=int).ravel()])
+        width = max(1, BLOCK // (8 * matrix.shape[0]))
+        return _products(hstack([half(sides[:, start : start + width]) for start in range(0, sides.shape[1], width)], "csr"))
+
+    def half(sides):
+        columns = np.repeat(np.arange(sides.shape[1]), np.diff(sides.indptr))
+        given = spmatrix(dense(sides.data), dense(sides.indices.astype(np.int64)), dense(columns), sides.shape)
+        starts, rows, values = (np.asarray(part).ravel() for part in cholmod.spsolve(factored, given, sys=L).CCS)
+        return csc_array((values, rows, starts), sides.shape)
 
     solve.gram = gram
     return solve
+
+
+def _products(half):
+    """Product of the transpose of a sparse matrix with itself, dense; few of its columns share rows."""
+    out = np.zeros((half.shape[1],) * 2)
+    for start in range(0, half.shape[0], ROWS):
+        part = half[start : start + ROWS]
+        used = np.unique(part.indices)
+        block = part[:, used].toarray()
+        out[np.ix_(used, used)] += block.T @ block
+    return out
 
 
 def dissection(rows, columns, node=3):

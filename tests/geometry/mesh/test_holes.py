@@ -14,7 +14,7 @@ from gearfe.geometry.damage.hollow import centre_arc
 from gearfe.geometry.damage.hollow_volume import hollow_frame, removed_volume
 from gearfe.geometry.mesh import holes
 from gearfe.geometry.mesh.holes import filled, holed_sector
-from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal, roll_at_arc
+from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal, roll_at_arc, turned
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 GEAR = gf.Gear(z=18, r_bore=9.0, **RACK)
@@ -60,14 +60,14 @@ def test_pits_are_cut_along_the_normal_of_the_helicoid(beta, side):
 
     def surface(roll, z):
         xy = cartesian(*flank(gear, roll)) * [sign, 1]
-        return holes._twisted(np.array([*xy, z]), gear.twist_rate)
+        return turned(np.array([*xy, z]), gear.twist_rate * z)
 
     roll, step = math.sqrt(one.radius**2 - gear.r_b**2), 1e-5
     along = [surface(roll + a, one.z + b) - surface(roll - a, one.z - b) for a, b in ((step, 0), (0, step))]
     normal = np.cross(*along)
     normal *= np.sign(normal[0] * sign * math.cos(gear.twist_rate * one.z)) / np.linalg.norm(normal)
     centre, _, push, _ = hollow_frame(gear, one)
-    ends = [holes._twisted(centre + step * k * push, gear.twist_rate) for k in (-1, 1)]
+    ends = [turned(place, gear.twist_rate * place[2]) for place in (centre - step * push, centre + step * push)]
     assert_allclose((ends[1] - ends[0]) / (2 * step), -one.depth * normal, atol=1e-8)
 
 
