@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import hstack
 
 from gearfe.contact.sharing import share
-from gearfe.flexibility.finite_elements.elasticity import Body
+from gearfe.flexibility.finite_elements.elasticity import HeldSection
 from gearfe.flexibility.finite_elements.fe import EDGES, flank_load
 from gearfe.flexibility.hertz import contact_modulus, half_width
 from gearfe.geometry.mesh.outline import stations
@@ -157,7 +157,7 @@ def _influence(gear, material, state, zones, refine):
     for tooth, tops in zones.items():
         loads[tooth] = _hats_at(mesh, tooth, tops)
     load = hstack([loads[tooth] for tooth in zones]).tocsc()
-    body = Body(mesh.mesh, material, state=state)
+    body = HeldSection(mesh.mesh, material, state=state)
     return load.T @ body.solve(load)
 
 

@@ -57,7 +57,7 @@ def test_the_errors_of_the_herringbone_stage_are_those_of_its_scene():
 
 @pytest.mark.parametrize("page", PAGES)
 def test_pages_open_with_what_is_claimed_found_and_decides(page):
-    parts = OPENINGS[page](machines.Found(table_rows.read(page)))
+    parts = OPENINGS[page](machines.CommittedRows(table_rows.read(page)))
     assert len(parts) == 3
     head = pages.read(page)[0].partition("\n|")[0]
     assert "of a model" in head, "the counts are the answer"
@@ -96,14 +96,14 @@ def test_statements_that_the_places_of_pits_set_are_not_counted():
         if row.id in ("statements", "further") and "lost contact line" not in row.case and "the same" not in row.case
     ]
     held = sum(row.verdict == verdicts.REPRODUCED for row in said)
-    assert f"{held} of its {len(said)} statements hold" in openings.helical_pitting(machines.Found(rows))[1]
+    assert f"{held} of its {len(said)} statements hold" in openings.helical_pitting(machines.CommittedRows(rows))[1]
 
 
 def test_repeats_tell_levels_apart_by_what_the_rows_say():
     rows = table_rows.read("planetary_pitting")
-    assert "apart by SC by S1's formula, RMS, kurtosis" in openings.planetary_pitting(machines.Found(rows))[1]
+    assert "apart by SC by S1's formula, RMS, kurtosis" in openings.planetary_pitting(machines.CommittedRows(rows))[1]
     none = [row._replace(ours=float("does not" in row.case)) if "three repeats" in row.case else row for row in rows]
-    assert "apart by none of its indicators" in openings.planetary_pitting(machines.Found(none))[1]
+    assert "apart by none of its indicators" in openings.planetary_pitting(machines.CommittedRows(none))[1]
 
 
 def test_power_of_mesh_lines_is_found_in_records_of_any_length():

@@ -66,8 +66,8 @@ def test_conclusions_are_judged_by_what_each_fault_takes():
 def test_the_page_opens_with_the_answer_and_old_sentences_are_gone():
     text = pages.read("herringbone")[0]
     first = text.splitlines()[2]
-    assert first.startswith("S4's finite element column comes out")
-    assert "a fit, no evidence" in first
+    assert first.startswith("- S4's finite element column can be fitted")
+    assert "This reading is a fit and no evidence." in text
     assert "in any reading" not in text
     assert "falsify" in text
     for scene in ("herringbone", line.SCENE):

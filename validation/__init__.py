@@ -1,7 +1,7 @@
-"""What the literature and independent solvers report, and how close gearfe is.
+"""Comparison of gearfe with the literature and with independent solvers.
 
 `make` computes one page each, `shared` is what several pages use, `sources` are printed values, `pages` is what was generated:
-Markdown, pictures, tables. Everything runs on one thread, since seconds stand beside errors::
+Markdown, pictures, tables. Everything runs on one thread, because seconds and errors are compared::
 
     python -m validation --list                 # pages, and the CPU seconds of each
     python -m validation truth map              # computes these pages; all: every page

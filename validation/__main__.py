@@ -21,7 +21,7 @@ PAGES = (
 
 
 def main():
-    """Compute what the command line names."""
+    """Compute the pages named on the command line."""
     parser = argparse.ArgumentParser(prog="python -m validation", description="Compute validation pages.")
     parser.add_argument("pages", nargs="*", choices=[*PAGES, "all", "check", []], metavar="PAGE", help="pages, all, or check")
     parser.add_argument("--list", action="store_true", help="list the pages and the CPU seconds of each")

@@ -15,13 +15,13 @@ import numpy as np
 from .shared.page import MACHINES
 
 PAGES = (
-    *("assumptions", "truth", "outlines", "sample", "three", "dynamics", "herringbone", "joint"),
+    *("assumptions", "truth", "outlines", "sample", "three", "herringbone", "joint"),
     *MACHINES,
 )
 DAYS = 10  # within which every page has its turn
 LIMIT = 1e-4  # relative
 MOST = 5.0  # CPU s
-SECONDS = 75.0  # of the clock
+SECONDS = 75.0  # limit of the clock time
 
 
 def pages_of(day):

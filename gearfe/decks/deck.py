@@ -1,4 +1,4 @@
-"""The finite-element model of one loaded gear as a CalculiX / Abaqus input deck, for a second opinion."""
+"""Finite-element model of one loaded gear as a CalculiX / Abaqus input deck, as an independent reference."""
 
 import os
 from collections.abc import Sequence
@@ -9,7 +9,7 @@ from scipy.sparse import spmatrix
 
 from ..core.files import check_output, written
 from ..core.material import Material, check_state
-from ..flexibility.finite_elements.elasticity import Body
+from ..flexibility.finite_elements.elasticity import HeldSection
 from ..flexibility.finite_elements.fe import EDGES
 from ..flexibility.finite_elements.one_tooth import (
     NARROW,
@@ -34,7 +34,7 @@ def write_inp(
     cracks: Sequence[Crack] = (),
     state: str = "plane strain",
     refine: float = 1.0,
-) -> tuple[Body, spmatrix]:
+) -> tuple[HeldSection, spmatrix]:
     """Write a static deck: second-order triangles, held edge, consistent nodal forces of the flank load.
 
     Cracks are seams: their faces have their own nodes at the same places. The load is spread as ``cos**2`` over 0.1 m_n of arc

@@ -25,7 +25,7 @@ ROW = 15  # numbers on a line; at most 16 are read
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class DeckBody:
     """A meshed body: `points` (3, n) [mm], `cells` (20 or 10, m) in CalculiX's order, `held` nodes, `faces` by name.
 
     Every face of `faces` is named by its corners ``(4 or 3, k)``.
@@ -37,17 +37,17 @@ class Part:
     faces: dict[str, NDArray[np.int64]]
 
 
-def part_of(mesh: Solid) -> Part:
+def part_of(mesh: Solid) -> DeckBody:
     """Hexahedra of a gear in its own frame."""
-    return Part(mesh.points, mesh.cells[TWENTY], mesh.held, {name: nodes[:4] for name, nodes in mesh.faces.items()})
+    return DeckBody(mesh.points, mesh.cells[TWENTY], mesh.held, {name: nodes[:4] for name, nodes in mesh.faces.items()})
 
 
-def holed_part(mesh: Holed, strips=()) -> Part:
-    """Second-order tets of a gear without what its pits take, in its own frame.
+def holed_part(mesh: Holed, strips=()) -> DeckBody:
+    """Return the second-order tets of a gear with its pits cut out, in its own frame.
 
-    Nodes on flanks lie on the involute helicoid, those on the rest of the outline and on the bore on these, save those in the
-    middle of edges whose tets would fold: they are nearer to their chords (`folds.unfolded`). RuntimeError if one of these is
-    in one of the `strips` (as of `holed_sector`), where the gear touches.
+    Nodes on flanks lie on the involute helicoid, those on the rest of the outline and on the bore on these surfaces. Nodes in the
+    middle of edges whose tets would fold are nearer to their chords (`folds.unfolded`). RuntimeError if one of these is in one of
+    the `strips` (see `holed_sector`), where the gear touches.
     """
     nodes, cells, number = second_order(mesh.points, mesh.cells[:, mesh.plug < 0])
     gear = mesh.gear
@@ -64,7 +64,7 @@ def holed_part(mesh: Holed, strips=()) -> Part:
     place = np.full(nodes.shape[1], -1)
     place[used] = np.arange(used.size)
     faces = {name: place[corners] for name, corners in mesh.faces.items()}
-    return Part(nodes[:, used], kept.reshape(cells.shape), place[held], faces)
+    return DeckBody(nodes[:, used], kept.reshape(cells.shape), place[held], faces)
 
 
 def _on_surface(gear, name, radius, angle):
@@ -90,8 +90,8 @@ def _check_strips(gear, off, strips):
             )
 
 
-def placed(part: Part, points: Floats, *, mirrored: bool = False) -> Part:
-    """A body with its nodes at `points`; `mirrored` if they are a mirror image of its own."""
+def placed(part: DeckBody, points: Floats, *, mirrored: bool = False) -> DeckBody:
+    """Return a body with its nodes at `points`; `mirrored` if they are its mirror image."""
     cells = part.cells[MIRRORED[len(part.cells)]] if mirrored else part.cells
     return replace(part, points=points, cells=cells)
 

@@ -17,10 +17,10 @@ from ..geometry.mesh.outline import outline, stations
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import turned
 
-FINE = 0.02  # of a module: largest distance of two points; a chord leaves the curve by less than 0.1 um per mm of module
+FINE = 0.02  # largest distance of two points [m_n]; the error of a chord is below 0.1 um per mm of module
 
 
-class Lines(NamedTuple):
+class OutlineLines(NamedTuple):
     """Closed outline of the teeth and open lines of damage, ``(2, n)`` [mm], and the radius of the held edge."""
 
     teeth: Floats
@@ -28,10 +28,10 @@ class Lines(NamedTuple):
     held: float
 
 
-def outline_lines(gear: Gear, damage: Sequence[Damage] = ()) -> Lines:
+def outline_lines(gear: Gear, damage: Sequence[Damage] = ()) -> OutlineLines:
     """Lines of a gear in its transverse section at z = 0; tooth 0 points along y.
 
-    Missing teeth and chips are not in the outline. Cracks, and pits and spalls over their height, are lines of their own.
+    Missing teeth and chips are not in the outline. Cracks, and pits and spalls over their height, are separate lines.
     """
     broken = [one for one in damage if isinstance(one, (MissingTooth, Chip))]
     size = FINE * gear.m_n
@@ -40,7 +40,7 @@ def outline_lines(gear: Gear, damage: Sequence[Damage] = ()) -> Lines:
     for one in damage:
         if one not in broken:
             lines.append(turned(one.outline(gear), 2 * np.pi * one.tooth / gear.z))
-    return Lines(teeth, lines, gear.held)
+    return OutlineLines(teeth, lines, gear.held)
 
 
 def write_outline(path: StrPath, gear: Gear, damage: Sequence[Damage] = ()) -> None:

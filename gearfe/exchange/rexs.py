@@ -14,7 +14,7 @@ from ..scene.load import Scene, scene_of
 from .rexs_file import Component, Model, read_model
 from .rexs_flank import flank_row
 from .rexs_gear import GEARS, GearReader
-from .rexs_power import Mesh, Power
+from .rexs_power import Power, PowerMesh
 from .rexs_shifts import Shifts
 
 CLOSES = 1e-3  # mm: a centre distance that shifts close
@@ -33,7 +33,7 @@ POSITION = {
 
 
 class Imported(NamedTuple):
-    """A gear unit as tables of a scene, the scene, and what gearfe does not model of the file."""
+    """Gear unit as tables of a scene, the scene, and contents of the file that gearfe does not model."""
 
     tables: dict[str, Any]
     scene: Scene
@@ -133,7 +133,7 @@ class _Unit:
         self.rows: dict[str, dict[str, Any]] = {}
         self.gears: dict[str, Component] = {}
         self.pairs: dict[str, tuple[str, str, Component]] = {}
-        self.meshes: list[Mesh] = []
+        self.meshes: list[PowerMesh] = []
         self.sets: list[PlanetSet] = []
         self.copies: set[int] = set()
         inside = set()
@@ -210,7 +210,7 @@ class _Unit:
             radius = row["z"] * row["m_n_mm"] / math.cos(beta) / 2
             radius *= math.cos(math.atan(math.tan(math.radians(row["alpha_n_deg"])) / math.cos(beta)))
             radii.append(-radius if gear.type == "ring_gear" else radius)
-        self.meshes.append(Mesh(name, tuple(gear.id for gear in gears), tuple(radii), *planets))
+        self.meshes.append(PowerMesh(name, tuple(gear.id for gear in gears), tuple(radii), *planets))
 
     def _named(self, gear, stated):
         """Name of a gear in the scene; its row is made the first time."""
@@ -303,7 +303,7 @@ class _Unit:
         return total * 1e-6 if 0 < total < 1e15 else None
 
     def _machine(self, forces):
-        """A machine where one model fits: a single pair, or a single planetary stage."""
+        """Return a machine if one model fits: a single pair, or a single planetary stage."""
         name = next(iter(self.pairs))
         one = self.pairs[name][0]
         speed = self.power.speed_of(self.gears[one].id, self.meshes)

@@ -1,4 +1,4 @@
-"""Torques and speeds of a REXS model: what the file states of its loads, spread over shafts, meshes and planetary stages."""
+"""Torques and speeds of a REXS model: stated loads, distributed over shafts, meshes and planetary stages."""
 
 import math
 from typing import NamedTuple
@@ -11,7 +11,7 @@ COUPLED = ("coupling", "switchable_coupling")
 KNOWN = 1e-9  # part of a unit vector that may lie in the null space
 
 
-class Mesh(NamedTuple):
+class PowerMesh(NamedTuple):
     """A mesh: both gears, their base radii [mm], and how many equal ones share the force. A ring has a negative radius."""
 
     name: str
@@ -68,7 +68,7 @@ class Power:
                 out[self._root(shaft.id)] = value
         return out
 
-    def speed_of(self, gear: int, meshes: list[Mesh]) -> float | None:
+    def speed_of(self, gear: int, meshes: list[PowerMesh]) -> float | None:
         """Speed of a gear [rpm] through meshes of fixed axes, None if it does not follow."""
         known = self.speeds()
         for _ in meshes:
@@ -79,7 +79,7 @@ class Power:
                         known[roots[there]] = -known[roots[here]] * radii[here] / radii[there]
         return known.get(self._root(gear))
 
-    def forces(self, meshes: list[Mesh]) -> dict[str, float]:
+    def forces(self, meshes: list[PowerMesh]) -> dict[str, float]:
         """Force of each mesh along its transverse line of action [N], of those that follow from the loads of the file."""
         bodies = sorted({self._root(one) for mesh in meshes for one in (*mesh.gears, *([mesh.carrier] if mesh.carrier else []))})
         rows = {body: i for i, body in enumerate(bodies)}

@@ -40,7 +40,7 @@ def write_rexs(path: StrPath, scene: Scene, curves: Mapping[str, StiffnessCurve]
         raise ValueError(f"{path}: REXS is written as .rexs")
     for name in curves or ():
         scene.pair(name)
-    unit = _Unit(scene, curves or {})
+    unit = _UnitWriter(scene, curves or {})
     date = datetime.now(UTC).isoformat(timespec="seconds")
     root = ElementTree.Element("model", version=VERSION, applicationId="gearfe", applicationVersion="1", date=date)
     relations, components = (ElementTree.SubElement(root, kind) for kind in ("relations", "components"))
@@ -68,7 +68,7 @@ def _write_value(attribute, value):
         attribute.text = str(value).lower() if isinstance(value, bool) else str(value)
 
 
-class _Unit:
+class _UnitWriter:
     """Components and relations of a scene."""
 
     def __init__(self, scene, curves):

@@ -1,4 +1,4 @@
-"""Plots (matplotlib) of stiffness: curves, error maps."""
+"""Plots (matplotlib) of stiffness curves."""
 
 import math
 
@@ -7,15 +7,6 @@ import numpy as np
 from ..core.files import save_figure
 from ..core.units import NEWTON_PER_UM
 from .look import SQUASHED, blank, look
-
-COLUMNS = {  # of an error map
-    "load": "load F / (b m_n) [MPa]",
-    "bore_1": "pinion bore / root radius",
-    "bore_2": "wheel bore / root radius",
-    "z_1": "teeth of the pinion",
-    "z_2": "teeth of the wheel",
-    "crack": "crack level",
-}
 
 
 def plot_curves(curves, path=None, title=None):
@@ -46,7 +37,7 @@ def plot_curves(curves, path=None, title=None):
 
 
 def told(curve, *, load=True):
-    """Teeth, damage, width and (if `load`) load of a curve in one line, as far as its `meta` has them."""
+    """Return teeth, damage, width and (if `load`) load of a curve in one line, from its `meta`."""
     meta = curve.meta
     parts = []
     if "gear_1" in meta and "gear_2" in meta:
@@ -88,46 +79,8 @@ def closed(curve):
 
 
 def _extended(phase, k, rows, place):
-    """Straight line through two samples at `place`; beside the ends of the curve the nearer sample."""
+    """Return the straight line through two samples at `place`; outside the curve the nearer sample."""
     a, b = rows
     if a < 0 or b >= phase.size or phase[a] == phase[b]:
         return k[min(max(a, 0), phase.size - 1)] if a >= 0 else k[b]
     return k[a] + (k[b] - k[a]) / (phase[b] - phase[a]) * (place - phase[a])
-
-
-def plot_map(found, formulations, x, y, zone, path=None, bins=8):
-    """Heat maps of the median error over two columns of an `gearfe.runs.errormap.ErrorMap`, one for each formulation.
-
-    Columns with few different values (loads) get one bin each, others `bins` of equal width.
-    """
-    size = (3.4 * len(formulations) + 1, 3.4)
-    figure, (row,) = blank(size, 1, len(formulations), sharex=True, sharey=True, squeeze=False)
-    (place_x, names_x), (place_y, names_y) = (_binned(found.columns[name], bins) for name in (x, y))
-    for axes, name in zip(row, formulations, strict=True):
-        error = 100 * found.columns[f"{name} {zone}"]
-        table = np.full((len(names_y), len(names_x)), np.nan)
-        for i in range(len(names_y)):
-            for j in range(len(names_x)):
-                cell = error[(place_x == j) & (place_y == i) & np.isfinite(error)]
-                table[i, j] = np.median(cell) if cell.size else np.nan
-                if cell.size:
-                    color = "white" if abs(table[i, j]) > 20 else "black"
-                    axes.text(j, i, f"{table[i, j]:+.0f}", ha="center", va="center", fontsize=7, color=color)
-        image = axes.imshow(table, cmap="RdBu_r", vmin=-30, vmax=30, origin="lower", aspect="auto")
-        axes.set_title(name, fontsize=9)
-        axes.set_xlabel(COLUMNS.get(x, x), fontsize=9)
-        axes.set_xticks(range(len(names_x)), names_x, fontsize=7)
-        axes.set_yticks(range(len(names_y)), names_y, fontsize=7)
-    row[0].set_ylabel(COLUMNS.get(y, y), fontsize=9)
-    figure.colorbar(image, ax=row, label=f"median error of k, {zone} [%]")
-    figure.suptitle(f"{found.columns['load'].size} gears, loads and cracks, errors against ritz", fontsize=9)
-    return save_figure(figure, path, dpi=100)
-
-
-def _binned(values, bins):
-    """Bin of every value, and the names of the bins."""
-    few = np.unique(values)
-    if few.size <= bins:
-        return np.searchsorted(few, values), [f"{v:g}" for v in few]
-    edges = np.linspace(values.min(), values.max(), bins + 1)
-    return np.clip(np.digitize(values, edges) - 1, 0, bins - 1), [f"{v:.3g}" for v in (edges[1:] + edges[:-1]) / 2]

@@ -1,6 +1,6 @@
-"""What the contact of a pair says of one mesh of a set at one phase: contacts, their gaps, how they yield among themselves.
+"""Contacts of one mesh of a set at one phase: gaps and local flexibility, from the contact of its pair.
 
-All of it is the pair's (`gearfe.contact.pair_contact.PairContact`): smooth contacts with Hertz's logarithm, rows of hats at
+All of it is computed by `gearfe.contact.pair_contact.PairContact`: smooth contacts with Hertz's logarithm, rows of hats at
 corners and kinks, exact gaps, cracks.
 """
 
@@ -21,10 +21,10 @@ from .faults import faults
 from .standing import DIGITS, Standing
 
 TOGETHER = 64  # positions whose pairs are solved at once, where teeth differ
-APART = 0.05  # of the load: mesh loads closer than that ask for the same rows of hats
+APART = 0.05  # mesh loads closer than this part of the load use the same rows of hats
 
 
-class Contacts(NamedTuple):
+class MeshContacts(NamedTuple):
     """Contacts ``(n,)`` of one mesh at one phase.
 
     `flexibility` ``(n, n)`` of both gears [mm per N/mm], `gap` [mm], `coefficient`, `radius` and `tilt` as of
@@ -47,67 +47,67 @@ class Contacts(NamedTuple):
     reach: float
 
 
-class Mesh:
+class SetMesh:
     """One mesh of a set at the phases of its `PairContact`, under any load."""
 
     def __init__(self, contact: PairContact) -> None:
         self.contact = contact
-        self._found: dict[tuple[int, float, float], Contacts] = {}
+        self._found: dict[tuple[int, float, float], MeshContacts] = {}
         self._alone: tuple[float, Solved] | None = None
 
-    def at(self, i: int, line_load: float, reach: float) -> Contacts:
-        """Contacts at a phase by its number, as many as a load of about `line_load` [N/mm] may close, or an approach [mm]."""
+    def at(self, i: int, line_load: float, reach: float) -> MeshContacts:
+        """Return the contacts at phase number i that a load of about `line_load` [N/mm], or an approach [mm], may close."""
         key = i, line_load, reach
         if key not in self._found:
             self._found[key] = _contacts(self.contact, i, line_load, reach)
         return self._found[key]
 
     def alone(self, line_load: float) -> Solved:
-        """The pair under a load of its own."""
+        """Solve the pair alone under a load."""
         if self._alone is None or self._alone[0] != line_load:
             self._alone = line_load, self.contact.solve(line_load)
         return self._alone[1]
 
 
-class Met(NamedTuple):
-    """`Contacts` of a mesh at one position, pinion tooth `first` of pair 0, and how many pairs are ahead of the newest one."""
+class PlacedContacts(NamedTuple):
+    """`MeshContacts` of a mesh at one position, pinion tooth `first` of pair 0, and how many pairs are ahead of the newest."""
 
-    contacts: Contacts
+    contacts: MeshContacts
     first: int
     newest: int
 
 
 class Meshes:
-    """All meshes of a case at the positions of a `Standing`; equal planets share what they have in common."""
+    """All meshes of a case at the positions of a `Standing`; equal planets share their solutions."""
 
     def __init__(self, case: Any, stand: Standing, options: dict[str, Any]) -> None:
         self.case, self._options = case, options
         self._phases = (stand.outer, stand.inner)
         self._firsts = (stand.planet, stand.ring)
-        self._mesh: dict[Any, tuple[Mesh, dict[float, int]]] = {}
+        self._mesh: dict[Any, tuple[SetMesh, dict[float, int]]] = {}
         self._kind = {(k, p): self._key(k, p) for k in (0, 1) for p in range(case.planets)}
 
     def _key(self, inner, planet):
         differs = faults(self.case, bool(inner), planet, int(self._firsts[inner][planet]))[2]
         return inner, planet, differs, None if differs else self.case.flanks.get(("planet", planet))
 
-    def at(self, i: int, loads: Floats, reach: Floats) -> list[list[Met]]:
-        """`Met` of all meshes at position i by ``[inner][planet]``, for loads [N/mm] and approaches [mm] ``(2, planets)``."""
+    def at(self, i: int, loads: Floats, reach: Floats) -> list[list[PlacedContacts]]:
+        """`PlacedContacts` of all meshes at position i by ``[inner][planet]``, for loads [N/mm] and approaches [mm]."""
         return [[self._met(i, k, p, float(loads[k, p]), float(reach[k, p])) for p in range(self.case.planets)] for k in (0, 1)]
 
     def _met(self, i, inner, planet, load, reach):
         mesh, number, phase, whole = self._of(i, inner, planet)
         first = 0 if self._kind[inner, planet][2] else -whole
-        return Met(mesh.at(number[phase], load, reach), first, whole if self._kind[inner, planet][2] else 0)
+        return PlacedContacts(mesh.at(number[phase], load, reach), first, whole if self._kind[inner, planet][2] else 0)
 
     def alone(self, i: int, inner: int, planet: int, load: float) -> tuple[float, float]:
-        """How far a line load alone closes the pair of a mesh [mm], and which part of it the model of contact may be off by."""
+        """Return the approach of the pair of a mesh under a line load alone [mm], and the part of it that is the model error."""
         mesh, number, phase, _ = self._of(i, inner, planet)
         solved = mesh.alone(load)
         return float(solved.closing[number[phase]]), float(solved.left_out[number[phase]])
 
     def _of(self, i, inner, planet):
-        """`Mesh`, its phases' numbers, phase, and whole cycles of tooth 0 at position i."""
+        """`SetMesh`, its phases' numbers, phase, and whole cycles of tooth 0 at position i."""
         key = self._kind[inner, planet]
         phase = float(self._phases[inner][i, planet])
         whole = math.floor(phase)
@@ -132,17 +132,17 @@ class Meshes:
         gears = zip((pair.gear_1, pair.gear_2), materials, cracks, strict=True)
         bodies = [flexibility(gear, m, gear_cracks, neighbours=near, **self._options) for gear, m, gear_cracks in gears]
         contact = PairContact(pair, materials, bodies, phase, extended=True, state="plane strain", flanks=forms)
-        return Mesh(contact), {value: k for k, value in enumerate(phase.tolist())}
+        return SetMesh(contact), {value: k for k, value in enumerate(phase.tolist())}
 
 
 def near_load(line_load: float, unit: float) -> float:
-    """`unit` times a power of ``1 + APART``, the one next to `line_load`: loads alike share their rows of hats."""
+    """Return the power of ``1 + APART`` times `unit` nearest to `line_load`, so that equal loads share rows of hats."""
     step = np.log1p(APART)
     return float(unit * np.exp(step * round(np.log(max(line_load, 1e-3 * unit) / unit) / step)))
 
 
-def _contacts(contact: Any, i: int, line_load: float, reach: float) -> Contacts:
-    """`Contacts` at phase i, chosen as `PairContact.solve` does; `reach` is the least approach [mm] that they are chosen for."""
+def _contacts(contact: Any, i: int, line_load: float, reach: float) -> MeshContacts:
+    """`MeshContacts` at phase i, chosen as `PairContact.solve` does; `reach` is the least approach [mm] they are chosen for."""
     candidates, tilt = contact.found, bounded(contact, line_load)
     least = candidates.gap.min(axis=1)
     reaches = np.maximum(contact._reach(line_load), reach)
@@ -154,7 +154,7 @@ def _contacts(contact: Any, i: int, line_load: float, reach: float) -> Contacts:
 
 
 def _one(contact, i, built, rows, possible, least, reach):
-    """`Contacts` of one phase from what `PairContact.contacts_at` gives, with the places it leaves out."""
+    """`MeshContacts` of one phase from the result of `PairContact.contacts_at`, with the places it leaves out."""
     candidates, places = contact.found, []
     for k in np.flatnonzero(possible).tolist():
         row = rows.get((i, k))
@@ -164,7 +164,7 @@ def _one(contact, i, built, rows, possible, least, reach):
             places.append([row.roll_1, row.roll_2, row.turn_1, row.turn_2])
     values = np.hstack([np.reshape(place, (4, -1)) for place in places])
     near = built["gap"] - least <= reach
-    return Contacts(
+    return MeshContacts(
         built["flexibility"][np.ix_(near, near)],
         *(built[name][near] for name in ("gap", "coefficient", "radius", "tilt")),
         *values[:, near],

@@ -1,4 +1,4 @@
-"""The loaded set as finite elements see it gear by gear, under the loads that the set's one contact gave: for pictures."""
+"""Pictures of the loaded set: finite elements gear by gear under the loads of the set's contact problem."""
 
 import math
 import os
@@ -12,7 +12,7 @@ from ..core.files import check_output
 from ..core.record import ranged
 from ..core.steps import steps
 from ..figures.set_plot import draw_set
-from ..flexibility.finite_elements.elasticity import Body
+from ..flexibility.finite_elements.elasticity import HeldSection
 from ..geometry.aliases import Floats
 from ..geometry.mesh.outline import stations
 from ..geometry.tooth.profile import cartesian, turned
@@ -42,10 +42,10 @@ class Shape(NamedTuple):
 def plot_planetary_set(
     curves: SetCurves, at: int = 0, path: str | os.PathLike[str] | None = None, *, magnified: float | None = None, dpi: int = 150
 ) -> "Figure":
-    """Draw one position of a loaded set, all gears bent and coloured by von Mises stress; save to `path` if given.
+    """Draw one position of a loaded set, all gears deformed and coloured by von Mises stress; save to `path` if given.
 
-    Each gear is solved by finite elements of its own under the loads of the set's meshes. That sun and planets turn and shift as
-    whole gears is left out. Each load stands on three nodes: close to it stress means nothing.
+    Each gear is solved separately by finite elements under the loads of the set's meshes. Rigid rotations and shifts of sun and
+    planets are not drawn. Each load acts on three nodes: near it the stress is not meaningful.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def plot_planetary_set(
         Number of the position, from 0.
     path : path, optional
     magnified : float, optional
-        How many times as large displacements are drawn; default: so that the largest is seen.
+        Magnification of displacements; default: the largest is visible.
     dpi : int
         Dots per inch.
 
@@ -66,7 +66,7 @@ def plot_planetary_set(
     Raises
     ------
     ValueError
-        If the set cannot be meshed gear by gear, as of `planetary_sets.loaded_gears.drawable`, or an argument is out of range.
+        If the set cannot be meshed gear by gear (see `planetary_sets.loaded_gears.drawable`), or an argument is out of range.
     """
     if path is not None:
         check_output(path, "picture")
@@ -77,10 +77,10 @@ def plot_planetary_set(
 
 
 def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[list[Shape], Floats | None]]:
-    """At each of these positions, by their numbers: `Shape` of every gear, and where the ring is held ``(2, n)`` [mm].
+    """Return the `Shape` of every gear, and the held places of the ring ``(2, n)`` [mm], at these position numbers.
 
-    The latter is None if it is held all around; pads turn with the ring, since the carrier stands still. Each gear is meshed and
-    factored once. ValueError as of `gearfe.planetary_sets.loaded_gears.drawable`.
+    The latter is None if it is held all around. Pads rotate with the ring, since the carrier is fixed. Each gear is meshed and
+    factored once. ValueError for the reasons of `gearfe.planetary_sets.loaded_gears.drawable`.
     """
     sides, bodies = [], []
     for at in positions:
@@ -105,7 +105,7 @@ def _shapes(case, bodies, sides):
     mesh = made.mesh
     facets = mesh.boundaries["held"]
     mesh = mesh.with_boundaries({"held": facets[np.isin(mesh.nvertices + facets, held)]})
-    solver = Body(mesh, material)
+    solver = HeldSection(mesh, material)
     out = []
     for (*_, angle, _), there in zip(bodies, sides, strict=True):
         u = solver.solve(sum(_load(gear, made, rolls, side) for side in there))[:, 0]

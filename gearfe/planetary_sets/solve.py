@@ -12,7 +12,7 @@ from ..core.steps import steps
 from ..core.supports.held import REFUSE
 from ..flexibility.solved import solved_gears
 from ..stiffness.limits import FURTHEST
-from .assembly import Bodies, Position, Set
+from .assembly import BodyTables, Position, Set
 from .case import PlanetaryCase
 from .cracked import cracked_teeth, faces_of
 from .curves import SetCurves
@@ -22,9 +22,9 @@ from .set_error import set_error
 from .standing import standing
 from .whole_gear import PLACES, between_teeth, whole_gear
 
-CHECKED = 8  # positions of the estimate
+CHECKED = 8  # number of positions at which the error is estimated
 COARSER, ORDER = 0.7, 3  # its resolution relative to that of the curves, and the order of its polynomials
-PASSES = 5  # at most, until corners, kinks and pairs in reach are those of the loads that the meshes have
+PASSES = 5  # maximum number of repetitions until corners, kinks and pairs in reach agree with the loads of the meshes
 
 
 def planetary_stiffness(
@@ -37,7 +37,7 @@ def planetary_stiffness(
     error: bool = True,
     cache: Any = True,
 ) -> SetCurves:
-    """Load and stiffness of every mesh of a planetary set, loads of its teeth, transmission error, and how the ring bends.
+    """Solve a planetary set: load and stiffness of every mesh, tooth loads, transmission error, ring deformation.
 
     One contact problem at each position: each gear's flexibility over all its teeth, planets on both flanks, the ring on what
     holds it, and in every mesh the contact that `mesh_stiffness` has for its pair alone, tip corners included.
@@ -118,7 +118,7 @@ def _curves(case, at, coupled, options):
 
 
 def _positions(positions, cycles):
-    """Turns of the sun [pitches] ``(p,)`` as `planetary_stiffness` is given them."""
+    """Return the rotations of the sun [pitches] ``(p,)`` from the arguments of `planetary_stiffness`."""
     at = numbers("positions", positions, " [pitches of the sun]")
     if not at.ndim:
         count = whole("positions", positions, 1)
@@ -129,9 +129,9 @@ def _positions(positions, cycles):
 
 
 def _position(of: Set, meshes: Meshes, i: int) -> Position:
-    """One position: pressures at corners and kinks are resolved for the nominal load, then for the one that each mesh has.
+    """Solve one position: pressures at corners and kinks for the nominal load first, then for the load of each mesh.
 
-    Where teeth give way so much that further pairs may touch, these are taken in. RuntimeError if there is no end of them.
+    Further pairs that may touch under the deflection of the teeth are added. RuntimeError if this does not settle.
     """
     nominal, reach = of.case.force / of.case.width, np.zeros((2, of.case.planets))
     loads = np.full(reach.shape, nominal)
@@ -145,12 +145,12 @@ def _position(of: Set, meshes: Meshes, i: int) -> Position:
             return position
         loads, reach = new, np.where(short, 2 * approach, reach)
     if short.any():
-        raise RuntimeError("the teeth of a mesh give way so much that the contact has no end: give shorter cracks or less load")
+        raise RuntimeError("the teeth of a mesh deflect so much that ever more pairs touch: give shorter cracks or less load")
     return position
 
 
-def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) -> Bodies:
-    """`Bodies` of a case."""
+def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) -> BodyTables:
+    """`BodyTables` of a case."""
     gears, kept = (case.gears.sun, case.gears.planet, case.ring_gear), solved_gears(cache)
     sun, planet, ring = (whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True))
     key = ring.gear, case.material[2], case.ring, case.width, refine
@@ -164,4 +164,4 @@ def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) ->
         teeth = kept.get(("cracks", whole.gear, whole.material, *of[1:]), partial(cracked_teeth, *of))
         faces[name] = ring_faces(rim, case.ring, teeth) if name == "ring" else faces_of(whole, teeth, whole.held_inverse())
     across = planet.held()[:, :PLACES, PLACES:]
-    return Bodies(between_teeth(sun.held()), across, between_teeth(ring.held()), rim, faces)
+    return BodyTables(between_teeth(sun.held()), across, between_teeth(ring.held()), rim, faces)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from ..core.material import Material
-from ..core.supports.beam import Section
+from ..core.supports.beam import ShaftPiece
 from ..geometry.tooth.gear import Gear
 from .power_flow import Link
 
@@ -50,7 +50,7 @@ class TrainShaft:
         Rows of the tables ``[bearing.NAME]`` of its bearings.
     """
 
-    sections: tuple[Section, ...]
+    sections: tuple[ShaftPiece, ...]
     material: Material
     gears: dict[str, float]
     turned: dict[str, float]

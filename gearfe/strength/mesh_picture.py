@@ -6,17 +6,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..core.files import suffix_of, written
-from ..decks.solid_deck import FACES, Part
+from ..decks.solid_deck import FACES, DeckBody
 from ..figures.look import GEARS
 from .window import plotting
 
 HURT = "#d55e00"  # pits, and the rims of crack faces
 IN_FRONT = -1e5  # units of depth by which rims of cracks are drawn before what hides them
-NEAR = 1.6  # half height of a close-up against the size of what is shown
+NEAR = 1.6  # half height of a close-up relative to the size of the damage
 
 
 def render_mesh(
-    parts: Part | Sequence[Part],
+    parts: DeckBody | Sequence[DeckBody],
     path: str | os.PathLike[str],
     *,
     close_up: str | None = None,
@@ -46,7 +46,7 @@ def render_mesh(
     """
     if suffix_of(path, "picture") != ".png":
         raise ValueError(f"{path}: meshes are drawn as .png only; give a name that ends in it")
-    parts = (parts,) if isinstance(parts, Part) else tuple(parts)
+    parts = (parts,) if isinstance(parts, DeckBody) else tuple(parts)
     focus, view, half = _camera(parts, close_up)
     with plotting(window_size=list(size)) as plotter:
         plotter.set_background("white")
@@ -91,7 +91,7 @@ def _camera(parts, close_up):
 
 
 def _into_pits(part, faces):
-    """Direction from pits to who looks into them over the next tooth: out of the flank, and away from what is held."""
+    """Return the direction of view into pits over the next tooth: out of the flank, and away from the held edge."""
     edges = np.sort(np.hstack([faces[[0, 1]], faces[[1, 2]], faces[[0, 2]]]), axis=0)
     sides, count = np.unique(edges, axis=1, return_counts=True)
     middle = part.points[:, np.unique(faces)].mean(axis=1)

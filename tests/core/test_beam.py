@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.core.supports.beam import Section
+from gearfe.core.supports.beam import ShaftPiece
 
 pytestmark = pytest.mark.quick
 
@@ -28,16 +28,16 @@ def shear(section, material=STEEL):
 def test_between_bearings(a):
     """Roark, Formulas for Stress and Strain, Table 8.1 case 1e; shear of both reactions adds a b / L."""
     b, found = L - a, shaft(a).support()
-    bend, slip = a**2 * b**2 / (3 * EI * L), a * b / L * shear(Section(L, D))
+    bend, slip = a**2 * b**2 / (3 * EI * L), a * b / L * shear(ShaftPiece(L, D))
     assert_allclose(1 / found.radial, bend + slip, rtol=1e-10)
     assert_allclose(found.coupling, a * b * (b - a) / (3 * EI * L), rtol=1e-9, atol=1e-18)
-    assert_allclose(1 / found.tilt, (a**3 + b**3) / (3 * EI * L**2) + shear(Section(L, D)) / L, rtol=1e-10)
+    assert_allclose(1 / found.tilt, (a**3 + b**3) / (3 * EI * L**2) + shear(ShaftPiece(L, D)) / L, rtol=1e-10)
 
 
 def test_overhung():
     """A gear outside of both bearings: span s, overhang c; F c**2 (s + c) / (3 E I)."""
     span, c = 60.0, 40.0
-    found, slip = shaft(L, (0.0, span)).support(), shear(Section(L, D))
+    found, slip = shaft(L, (0.0, span)).support(), shear(ShaftPiece(L, D))
     assert_allclose(1 / found.radial, c**2 * (span + c) / (3 * EI) + (c + c**2 / span) * slip, rtol=1e-10)
     assert_allclose(found.coupling, c * (2 * span + 3 * c) / (6 * EI) + c / span * slip, rtol=1e-10)
     assert found.coupling > 0  # the free end, z = b, gives way more
@@ -63,7 +63,7 @@ def test_a_stepped_shaft_by_castigliano():
         place, part = (low + high) / 2 + (high - low) / 2 * x, (high - low) / 2 * w
         moment = np.where(place < at, place * (L - at) / L, (L - place) * at / L)
         push = (L - at) / L if high <= at else at / L
-        energy += part @ moment**2 / (207e3 * math.pi * d**4 / 64) + (high - low) * push**2 * shear(Section(1.0, d))
+        energy += part @ moment**2 / (207e3 * math.pi * d**4 / 64) + (high - low) * push**2 * shear(ShaftPiece(1.0, d))
     assert_allclose(1 / shaft(at, segments=segments).support().radial, energy, rtol=1e-10)
 
 
@@ -76,8 +76,8 @@ def test_bearings_are_springs_in_series():
 
 
 def test_shear_factors_of_cowper():
-    assert Section(1.0, 2.0).shear_factor(0.3) == pytest.approx(0.8864, abs=1e-4)  # his table, circle
-    assert Section(1.0, 2.0, 2.0 - 1e-9).shear_factor(0.3) == pytest.approx(2 * 1.3 / (4 + 3 * 0.3), rel=1e-6)  # thin tube
+    assert ShaftPiece(1.0, 2.0).shear_factor(0.3) == pytest.approx(0.8864, abs=1e-4)  # his table, circle
+    assert ShaftPiece(1.0, 2.0, 2.0 - 1e-9).shear_factor(0.3) == pytest.approx(2 * 1.3 / (4 + 3 * 0.3), rel=1e-6)  # thin tube
 
 
 @pytest.mark.parametrize("bore", [0.2, 0.5, 0.8])
@@ -89,7 +89,7 @@ def test_shear_of_tubes_without_contraction(bore):
     a, b = 1.0, bore
     big, small = 3 / 8 * (a**2 + b**2), 3 / 8 * a**2 * b**2
     energy = math.pi * (big * (a**4 - b**4) / 4 + small * (a**2 - b**2) / 2 - (a**6 - b**6) / 48)  # of (V / I)**2
-    tube = Section(1.0, 2 * a, 2 * b)
+    tube = ShaftPiece(1.0, 2 * a, 2 * b)
     assert tube.shear_factor(0.0) == pytest.approx(tube.second_moment**2 / (tube.area * energy), rel=1e-12)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import gearfe as gf
-from gearfe.flexibility.finite_elements.elasticity import Body
+from gearfe.flexibility.finite_elements.elasticity import HeldSection
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -47,7 +47,7 @@ def test_calculix_gives_the_same_displacements(name, tmp_path):
     gear, radius, cracks = CASES[name]
     body, load = gf.write_inp(tmp_path / f"{name}.inp", gear, radius, 100.0, STEEL, cracks=cracks, refine=0.6)
     # CalculiX integrates a triangle at three points; so does this body
-    same = Body(body.mesh, STEEL, order=2)
+    same = HeldSection(body.mesh, STEEL, order=2)
     ours = same.solve(load)[:, 0].reshape(-1, 2)
     theirs = displacements(tmp_path, name, ours.shape[0])
     assert np.abs(ours - theirs).max() < 1e-6 * np.abs(ours).max()

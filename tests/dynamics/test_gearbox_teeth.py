@@ -155,6 +155,19 @@ def test_transfer_paths_agree(records):
         gf.through_frf(force, [1.0, 0.5], [1.0, 1.0])
 
 
+def test_a_sensor_on_the_ring_hears_the_planets_pass():
+    """Three planets in phase on a ring of 72: a cracked planet tooth brings sidebands of the carrier, a healthy set none."""
+    scene = gf.load_scene("sdust_planetary")
+    rows = {}
+    for case in (None, "planet"):
+        run = recorded(build_machine(scene, case, phases=16), 1.2, 10_000.0)
+        found = gf.spectrum(gf.housing_signal(run, kind="planet_ring"))
+        rows[case] = {f: found.values[round(f / found.resolution)] for f in (360.0, 355.0, 365.0, 360 - 40 / 3 + 5)}
+    assert max(rows[None][355.0], rows[None][365.0]) < 1e-3 * rows[None][360.0]
+    for line in (355.0, 365.0, 360 - 40 / 3 + 5):
+        assert rows["planet"][line] > 10 * rows[None][line]
+
+
 def test_modes_in_words_and_critical_speeds():
     tables = copy.deepcopy(TWO_STAGE)
     tables["machine"]["dofs"] = "torsion"

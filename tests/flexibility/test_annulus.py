@@ -12,7 +12,7 @@ from skfem import MeshTri, MeshTri2
 import gearfe as gf
 from gearfe.flexibility.energy.closed import annulus
 from gearfe.flexibility.finite_elements import fe
-from gearfe.flexibility.finite_elements.elasticity import Body, edge_shapes
+from gearfe.flexibility.finite_elements.elasticity import HeldSection, edge_shapes
 from gearfe.geometry.tooth.profile import cartesian
 
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -97,7 +97,7 @@ def test_body_equals_finite_elements_under_the_same_tractions(ring_mesh):
             for d in range(2):
                 for pattern in range(3):
                     np.add.at(load[:, 3 * tooth + pattern], 2 * node + d, shape * turned[d, pattern])
-    want = load.T @ Body(mesh, STEEL).solve(load)
+    want = load.T @ HeldSection(mesh, STEEL).solve(load)
     got = annulus.root_flexibility(6.0, 10.0, half_angle, [0.0, pitch], STEEL)
     scale = np.sqrt(np.outer(np.diag(want), np.diag(want)))
     print(np.round(100 * (got[0] - want[:3, :3]) / scale[:3, :3], 3), np.round(100 * (got[1] - want[3:, :3]) / scale[:3, :3], 3))

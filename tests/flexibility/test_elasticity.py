@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from skfem import MeshTri, MeshTri2
 
 import gearfe as gf
-from gearfe.flexibility.finite_elements.elasticity import Body, edge_nodes, edge_shapes
+from gearfe.flexibility.finite_elements.elasticity import HeldSection, edge_nodes, edge_shapes
 
 pytestmark = pytest.mark.quick
 
@@ -43,7 +43,7 @@ def lame(r, inner, outer, pressure, material, state):
 
 def error(n, material, state):
     mesh = ring(1.0, 2.0, n)
-    body = Body(mesh, material, state=state, held="inner")
+    body = HeldSection(mesh, material, state=state, held="inner")
     facets = mesh.boundaries["outer"]
     nodes = np.vstack([mesh.facets[:, facets], mesh.nvertices + facets])
     t, w = np.polynomial.legendre.leggauss(3)
@@ -91,7 +91,7 @@ def test_stress_inside_of_triangles(inset):
     At a corner of one triangle alone it is that of a point `inset` of the way to its middle.
     """
     mesh = MeshTri2.from_mesh(MeshTri(np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]]), np.array([[0, 0], [1, 2], [2, 3]])))
-    body = Body(mesh.with_boundaries({"left": lambda x: x[0] < 1e-9}), gf.Material(E=1000.0, nu=0.3), held="left")
+    body = HeldSection(mesh.with_boundaries({"left": lambda x: x[0] < 1e-9}), gf.Material(E=1000.0, nu=0.3), held="left")
     x, y = body.mesh.doflocs
     stress = body.stress(np.column_stack([x**2, 0 * x]).ravel(), inset)
     lam, mu = body.material.lame(body.state)
@@ -103,7 +103,7 @@ def test_stress_inside_of_triangles(inset):
 
 def test_unknown_boundary_is_named():
     with pytest.raises(ValueError, match="no boundary 'flnak'; this mesh has inner, outer"):
-        Body(ring(1.0, 2.0, 1), gf.Material(), held="flnak")
+        HeldSection(ring(1.0, 2.0, 1), gf.Material(), held="flnak")
 
 
 def test_edge_nodes_follow_the_chain():

@@ -14,7 +14,7 @@ import gearfe as gf
 from gearfe.flexibility.energy.closed import herringbone_article, textbook
 from gearfe.flexibility.energy.closed.beam import load_angle
 from gearfe.flexibility.energy.closed.plain_sum import plain_sum
-from gearfe.flexibility.energy.closed.section import ToothDamage, limits, section
+from gearfe.flexibility.energy.closed.section import DamagedTooth, limits, section
 from gearfe.geometry.damage.crack import crack_path
 from gearfe.geometry.damage.hollow import centre_arc
 from gearfe.geometry.damage.pit import pit_row
@@ -132,7 +132,7 @@ def test_textbook_with_a_crack_equals_independent_quadrature(crack, model):
         return area, area**3 / 12, 2 * x
 
     want = expected(GEAR, roll, true_profile(GEAR, roll), living, breaks)
-    got = textbook.components(GEAR, STEEL, roll, damage=ToothDamage((crack,), crack_model=model))
+    got = textbook.components(GEAR, STEEL, roll, damage=DamagedTooth((crack,), crack_model=model))
     assert_allclose([float(v[0]) for v in (got.bending, got.shear, got.axial)], want, rtol=1e-8)
 
 
@@ -149,7 +149,7 @@ def test_published_with_a_crack_equals_independent_quadrature(level):
         return area, area**3 / 12, 2 * x
 
     want = expected(GEAR, roll, profiles, living, breaks[1:])
-    got = herringbone_article.components(GEAR, STEEL, roll, damage=ToothDamage((gf.Crack(level=level),)))
+    got = herringbone_article.components(GEAR, STEEL, roll, damage=DamagedTooth((gf.Crack(level=level),)))
     assert_allclose([float(v[0]) for v in (got.bending, got.shear, got.axial)], want, rtol=1e-8)
 
 
@@ -176,7 +176,7 @@ def test_pits_equal_independent_quadrature(formulas):
     living_below = lambda x, y, t: (2 * x, 2 * x**3 / 3, 2 * x)  # noqa: E731
     above = [(curve, a, b) for a, b in zip([start, *ends], [*ends, stop], strict=True)]
     want = np.add(expected(GEAR, roll, [lower], living_below, []), expected(GEAR, roll, above, living, []))
-    got = formulas.components(GEAR, STEEL, roll, damage=ToothDamage((), (pit,)))
+    got = formulas.components(GEAR, STEEL, roll, damage=DamagedTooth((), (pit,)))
     assert_allclose([float(v[0]) for v in (got.bending, got.shear, got.axial)], want, rtol=1e-7)
     healthy = formulas.components(GEAR, STEEL, roll)
     assert want[0] > healthy.bending[0] * 1.001, "the pit matters"
@@ -193,7 +193,7 @@ def test_section_equals_a_sum_over_its_width(seed):
         )
         for k in range(6)
     ]  # fmt: skip
-    found = limits(GEAR, ToothDamage((gf.Crack(level=rng.uniform(0.05, 0.5)),), crack_model=MODELS[seed % 3]))
+    found = limits(GEAR, DamagedTooth((gf.Crack(level=rng.uniform(0.05, 0.5)),), crack_model=MODELS[seed % 3]))
     roll = rng.uniform(GEAR.roll_f, GEAR.roll_a, 9)
     h, y = cartesian(*flank(GEAR, roll))
     arc = arc_at(GEAR, roll)
@@ -282,11 +282,11 @@ def test_rings_have_beams_but_no_sainsot():
     rack = RACK | {"rack_tip_radius": 0.3}
     ring = gf.Gear(z=72, r_rim=90.0, **rack)
     for formulas in (textbook, herringbone_article):
-        with pytest.raises(ValueError, match="does not hold for a ring"):
+        with pytest.raises(ValueError, match="is invalid for a ring"):
             formulas.components(ring, STEEL, np.array([ring.roll_a]))
     roll = np.linspace(ring.roll_f, ring.roll_a, 5)
     whole = textbook.components(ring, STEEL, roll, foundation="none")
-    cracked = textbook.components(ring, STEEL, roll, foundation="none", damage=ToothDamage((gf.Crack(level=0.3),)))
+    cracked = textbook.components(ring, STEEL, roll, foundation="none", damage=DamagedTooth((gf.Crack(level=0.3),)))
     assert (np.diff(whole.total) > 0).all(), "softer towards the tip"
     assert (cracked.bending > whole.bending).all()
     x_f, y_f = cartesian(*flank(ring, ring.roll_a))

@@ -10,7 +10,7 @@ from scipy.sparse import tril
 from scipy.sparse.linalg import splu
 
 import gearfe as gf
-from gearfe.flexibility.finite_elements.elasticity import Body
+from gearfe.flexibility.finite_elements.elasticity import HeldSection
 from gearfe.flexibility.finite_elements.fe import flank_load
 from gearfe.flexibility.finite_elements.fe3d import Patches, influence, mesh_patches, patch_loads
 from gearfe.flexibility.finite_elements.hexahedron import face_shapes, gauss, shapes, slopes_at
@@ -188,7 +188,7 @@ def plane_reference(gear, found, steel, cracks=()):
         return np.stack([np.maximum(1 - np.abs(part - top) / W, 0) / W for part, top in zip(arc, found.knots[1], strict=True)])
 
     load = flank_load(made, 0, pressure, np.zeros(found.knots.shape[1], dtype=int), roll.size - 1)
-    return load.T @ Body(made.mesh, steel).solve(load)
+    return load.T @ HeldSection(made.mesh, steel).solve(load)
 
 
 @pytest.mark.quick

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.flexibility.finite_elements import fe3d, section_error, solver
 from gearfe.flexibility.finite_elements.crack_zones import zone_forces
-from gearfe.flexibility.finite_elements.fe_gear3d import WholeGear, solid_flexibility
+from gearfe.flexibility.finite_elements.fe_gear3d import MeshedGear, solid_flexibility
 from gearfe.flexibility.halfspace import half_space
 from gearfe.flexibility.solid import PLACES, hats, solved_teeth
 from gearfe.stiffness import cache
@@ -26,8 +26,8 @@ SMALL = replace(GEAR, z=9, x=0.5, b=2.0, r_bore=4.0)
 def test_only_the_teeth_that_share_load_are_solved():
     assert solved_teeth(GEAR, (), 2) == [0, 1, 2]
     assert solved_teeth(GEAR, (), 30) == list(range(12))
-    assert solved_teeth(GEAR, (gf.Crack(level=0.3, tooth=3),), 1) == [2, 3, 4]
-    assert solved_teeth(GEAR, (gf.Crack(level=0.3),), 1) == [0, 1, 11]
+    assert solved_teeth(GEAR, (gf.Crack(level=0.3, tooth=3),), 1) == [1, 2, 3, 4, 5]
+    assert solved_teeth(GEAR, (gf.Crack(level=0.3),), 1) == [0, 1, 2, 10, 11]
 
 
 def pair_of(b=4.0, beta=0.2):
@@ -71,7 +71,7 @@ def test_both_gears_are_looked_at_before_the_first_is_solved(steel, monkeypatch)
     """The mate does not fit: that is said at once, not after the minutes of the first."""
     pair = pair_of()
     pair = gf.GearPair(pair.gear_1, replace(pair.gear_2, z=30, x=0.0, r_bore=20.0))
-    small, large = (WholeGear(gear, refine=0.4).plan().memory for gear in (pair.gear_1, pair.gear_2))
+    small, large = (MeshedGear(gear, refine=0.4).plan().memory for gear in (pair.gear_1, pair.gear_2))
     assert small < large
     monkeypatch.setattr(solver, "free_memory", lambda: (small + large) / 2)
     monkeypatch.setattr(fe3d, "factor", lambda *given: pytest.fail("solved"))
@@ -170,18 +170,18 @@ def test_what_does_not_fit_is_refused_before_it_is_solved(steel, monkeypatch):
 @pytest.mark.slow
 def test_a_mesh_too_coarse_for_its_patches_is_refused(steel):
     with pytest.raises(RuntimeError, match="too coarse for patches of degree 10 along the width"):
-        solid_flexibility(WholeGear(SMALL, refine=0.4, degree=12), steel)
+        solid_flexibility(MeshedGear(SMALL, refine=0.4, degree=12), steel)
 
 
 @pytest.mark.slow
 def test_degrees_the_layers_do_not_carry_are_dropped(steel):
     """The rest is what it would be without them, also of a cracked gear."""
     coarse = {"refine": 0.36}
-    whole = solid_flexibility(WholeGear(SMALL, degree=8, **coarse), steel)
+    whole = solid_flexibility(MeshedGear(SMALL, degree=8, **coarse), steel)
     assert whole.degree == 6
-    less = solid_flexibility(WholeGear(SMALL, degree=6, **coarse), steel)
+    less = solid_flexibility(MeshedGear(SMALL, degree=6, **coarse), steel)
     assert_allclose(whole.near[0], less.near[0], rtol=1e-9, atol=1e-12 * np.abs(less.near[0]).max())
-    cracked = solid_flexibility(WholeGear(SMALL, (gf.Crack(level=0.3),), degree=8, **coarse), steel, healthy=whole)
+    cracked = solid_flexibility(MeshedGear(SMALL, (gf.Crack(level=0.3),), degree=8, **coarse), steel, healthy=whole)
     assert cracked.degree == 6
     assert cracked.near[0].shape == whole.near[0].shape
 

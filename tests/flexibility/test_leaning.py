@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.flexibility.energy.ritz import plane as ritz
 from gearfe.flexibility.finite_elements import fe
-from gearfe.flexibility.finite_elements.elasticity import Body
+from gearfe.flexibility.finite_elements.elasticity import HeldSection
 from gearfe.flexibility.hertz import half_plane, hat_logarithm
 from gearfe.flexibility.plane import towards
 from gearfe.geometry.tooth.profile import roll_at_arc
@@ -25,7 +25,7 @@ GEARS = [
 def test_a_tooth_yields_to_the_direction_of_a_force(gear, angle):
     mesh = fe.mesh_gear(gear, refine=1.4)
     on = fe.hats(mesh, 0, corner=True, tilt=angle)
-    found = np.diag(Body(mesh.mesh, STEEL).between(on.load.tocoo()))
+    found = np.diag(HeldSection(mesh.mesh, STEEL).between(on.load.tocoo()))
     want = found - half_plane(STEEL) * np.diag(hat_logarithm(on.knots, on.knots))
     parts = np.array([[math.cos(angle)], [math.sin(angle)]])
     for found, part in ((ritz.flexibility(gear, STEEL), 0.02), (fe.flexibility(gear, STEEL), 0.03)):

@@ -15,7 +15,7 @@ from gearfe.flexibility import hertz
 from gearfe.flexibility.energy.closed import herringbone_article, textbook
 from gearfe.flexibility.energy.closed.beam import SAINSOT, Validity, load_angle
 from gearfe.flexibility.energy.closed.plain_sum import plain_sum
-from gearfe.flexibility.energy.closed.section import ToothDamage
+from gearfe.flexibility.energy.closed.section import DamagedTooth
 from gearfe.flexibility.energy.closed.slices import faces
 from gearfe.geometry.damage.hollow import centre_arc
 from gearfe.geometry.damage.pit import pit_row
@@ -64,7 +64,7 @@ def test_damage_belongs_to_its_tooth():
 
 
 def test_cracks_and_pits_that_leave_nothing_are_refused():
-    with pytest.raises(ValueError, match="leave nothing of the tooth of z = 21"):
+    with pytest.raises(ValueError, match="leave no section of the tooth of z = 21"):
         stiffness(gf.Crack(level=0.9))
     assert (stiffness(gf.Crack(level=0.9), crack_model="straight") < stiffness(gf.Crack(level=0.3))).any()
     with pytest.raises(ValueError, match="no contact is left at phase"):
@@ -125,7 +125,7 @@ def test_beam_and_body_of_the_article_end_where_they_are_told_to():
     prism = GEAR.r_b * cos - math.sqrt(GEAR.r_f**2 - (GEAR.r_b * sin) ** 2)
     force = load_angle(GEAR, roll)
     assert_allclose(whole.axial - beam.axial, np.sin(force) ** 2 * prism / (2 * STEEL.E * GEAR.r_b * sin), rtol=1e-9)
-    crack = ToothDamage((gf.Crack(level=0.3),))
+    crack = DamagedTooth((gf.Crack(level=0.3),))
     hurt = herringbone_article.components(GEAR, STEEL, roll, damage=crack, root="base")
     assert (hurt.bending < herringbone_article.components(GEAR, STEEL, roll, damage=crack).bending).all()
     on_base = replace(GEAR, dedendum=(GEAR.r - GEAR.r_b) / GEAR.m_n)  # its root circle is the base circle
@@ -209,7 +209,7 @@ def test_slices_converge_to_the_damaged_helical_sum(lost):
         if not on.any():
             continue
         rolls = gears.curvature_radii(place[on])
-        here = ToothDamage(tuple(whole[:1]), tuple(whole[1:])) if number == 0 else ToothDamage()
+        here = DamagedTooth(tuple(whole[:1]), tuple(whole[1:])) if number == 0 else DamagedTooth()
         teeth = textbook.components(gears.gear_1, STEEL, rolls[0], damage=here).total
         teeth = teeth + textbook.components(gears.gear_2, STEEL, rolls[1]).total
         free = np.ones(on.sum(), dtype=bool)
@@ -285,7 +285,7 @@ def test_a_ring_has_beams_and_its_planet_a_foundation(formulas):
     assert_allclose(inner.total, bare.total, rtol=0)
     assert (inner.bending > 0).all()
     assert inner.bending[0] > inner.bending[1]  # nearer the tip
-    with pytest.raises(ValueError, match="does not hold for a ring"):
+    with pytest.raises(ValueError, match="is invalid for a ring"):
         formulas.components(ring, STEEL, at)
 
 

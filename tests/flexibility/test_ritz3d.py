@@ -89,7 +89,7 @@ def test_rigid_motions_store_no_energy():
     numbers, _ = elimination.all_nodes(numbers, count, order)
     section = panel3d._section(panel3d.SolidModel(GEAR, STEEL, order), made, math.tan(BETA) / GEAR.r)
     no = np.zeros(0, dtype=int)
-    section = elimination.Section(numbers, section, np.zeros((count, 3, 1)), np.arange(1), no)
+    section = elimination.LoadedSection(numbers, section, np.zeros((count, 3, 1)), np.arange(1), no)
     body = elimination.body_of(section, axial(width, degree))
     size = int(body.size[: body.first_load].sum())
     blocks = [np.zeros(shape, order="F") for shape in ((0, 0), (size, 0), (size, size))]

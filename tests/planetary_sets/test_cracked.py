@@ -11,7 +11,7 @@ from sets import STEEL, case, gears
 from test_rim import pads_ends
 
 import gearfe as gf
-from gearfe.flexibility.finite_elements.elasticity import Body
+from gearfe.flexibility.finite_elements.elasticity import HeldSection
 from gearfe.flexibility.finite_elements.fe import _face_columns
 from gearfe.flexibility.finite_elements.solver import factor
 from gearfe.geometry.mesh import section_mesh
@@ -39,7 +39,7 @@ def direct(gear, cracks, teeth, monkeypatch, support=None):
     rolls = stations(gear, 0.3)
     rolls[np.argmin(abs(rolls - roll))] = roll
     made = section(gear, dict.fromkeys(teeth, rolls), fillet_size=0.15, size=0.5, far_size=0.8, cracks=cracks)
-    stiffness, places = Body(made.mesh, STEEL).stiffness(), made.mesh.doflocs
+    stiffness, places = HeldSection(made.mesh, STEEL).stiffness(), made.mesh.doflocs
     load, count = np.zeros((stiffness.shape[0], len(teeth))), len(teeth)
     for k, tooth in enumerate(teeth):
         turn = 2 * math.pi * tooth / gear.z

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.flexibility.finite_elements.fe_gear3d import WholeGear, solid_flexibility
+from gearfe.flexibility.finite_elements.fe_gear3d import MeshedGear, solid_flexibility
 
 STEEL = gf.Material(206e3, 0.3)
 PHASES = np.array([0.05, 0.3, 0.62, 0.9, 0.98])
@@ -109,8 +109,8 @@ def test_hexahedra_of_another_size_are_alike():
         small = gear(s, 9, b=2.0, beta=12.0, x=0.5)
         cracks = (gf.Crack(length=0.8 * s, width=(0.0, s), ends=(1.0, 0.6)),)
         run = {"degree": 3, "refine": 0.4}
-        healthy = solid_flexibility(WholeGear(small, **run), STEEL, cache=False)
-        found = solid_flexibility(WholeGear(small, cracks, **run), STEEL, healthy=healthy, cache=False)
+        healthy = solid_flexibility(MeshedGear(small, **run), STEEL, cache=False)
+        found = solid_flexibility(MeshedGear(small, cracks, **run), STEEL, healthy=healthy, cache=False)
         return found.near | found.far
 
     one, other = influences(1.0), influences(25.0)

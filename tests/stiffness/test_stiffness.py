@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements import fe
-from gearfe.flexibility.finite_elements.elasticity import Body
+from gearfe.flexibility.finite_elements.elasticity import HeldSection
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 FORCE = 2000.0
@@ -23,7 +23,7 @@ def curve(pair, steel):
 
 def test_influence_between_teeth_is_symmetric(pair, steel):
     mesh = fe.mesh_gear(pair.gear_1, read=range(1, 2))
-    body = Body(mesh.mesh, steel)
+    body = HeldSection(mesh.mesh, steel)
     loads = [fe.hats(mesh, tooth).load for tooth in (0, 1)]
     moved = [body.solve(load) for load in loads]
     whole = np.block([[np.asarray(a.T @ u) for u in moved] for a in loads])

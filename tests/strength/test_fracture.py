@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.flexibility.finite_elements.elasticity import Body, edge_shapes
+from gearfe.flexibility.finite_elements.elasticity import HeldSection, edge_shapes
 from gearfe.geometry.mesh.outline import along
 from gearfe.geometry.mesh.section_mesh import fill
 from gearfe.geometry.tooth.profile import arc_at
@@ -38,7 +38,7 @@ def strip(width, height, a, angle, near):
         name: mesh.facets_satisfying(lambda x, y=y: np.isclose(x[1], y)) for name, y in (("top", height), ("bottom", -height))
     }
     held = ends["bottom"][:1]  # far from the crack; the load is in balance
-    body = Body(mesh.with_boundaries(mesh.boundaries | {"held": held}), STEEL)
+    body = HeldSection(mesh.with_boundaries(mesh.boundaries | {"held": held}), STEEL)
     force = np.zeros((2 * mesh.doflocs.shape[1], 1))
     t, w = np.polynomial.legendre.leggauss(3)
     for name, sign in (("top", 1), ("bottom", -1)):

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.geometry.pair.contacts import approach
 from validation.shared.arbiter.cases import LOADED, loaded_case, random_pair
-from validation.shared.arbiter.cutting import Space
+from validation.shared.arbiter.cutting import ToothSpace
 from validation.shared.arbiter.elements import gradients, solver, stiffness
 from validation.shared.arbiter.outline import Outline
 from validation.shared.arbiter.pressing import complementary, pressed
@@ -36,7 +36,7 @@ def answer(undercut):
 )
 def test_flank_is_the_involute(held):
     gear = gf.Gear(**held, **RACK)
-    space = Space(gear)
+    space = ToothSpace(gear)
     radius = np.linspace(space.form_radius(), space.r_a, 9)
     turn = np.sqrt((radius / space.r_b) ** 2 - 1)
     half = (math.pi / 2 + 2 * gear.x * math.tan(gear.alpha_n)) / gear.z + math.tan(gear.alpha_n) - gear.alpha_n
@@ -48,7 +48,7 @@ def test_flank_is_the_involute(held):
 def test_a_sharp_tool_cuts_the_path_of_its_corner():
     """A point of the rack at height eta, rolled by s, lies at radius hypot(r + eta, s)."""
     gear = gf.Gear(z=11, r_bore=5.0, rack_tip_radius=0.0, **RACK)
-    space = Space(gear)
+    space = ToothSpace(gear)
     eta = -1.25 * 2.5
     corner = math.pi * 2.5 / 4 + eta * math.tan(gear.alpha_n)
     radius = np.linspace(space.r_f + 0.1, space.form_radius(), 7)

@@ -1,4 +1,4 @@
-"""The page `assumptions`: the stiffness of each scene by what it assumes, one change at a time, and conventions of cracks."""
+"""The page `assumptions`: the stiffness of each scene by its assumptions, one change at a time, and conventions of cracks."""
 
 import math
 import warnings
@@ -39,7 +39,7 @@ CONVENTIONS = {
 def mean(one, changes=({}, {}), force=None):
     """Mean stiffness [N/m] with changed gears or force: of spur gears by `ritz`, of others by `ritz3d`.
 
-    The section of a helical gear knows nothing of its ends: of `helical_pitting` it is 1.6 times too stiff, and its bore half as
+    The section of a helical gear neglects its ends: of `helical_pitting` it is 1.6 times too stiff, and its bore half as
     important.
     """
     gears = (replace(gear, **change) for gear, change in zip((one.pair.gear_1, one.pair.gear_2), changes, strict=True))
@@ -148,7 +148,7 @@ def text():
 
 
 def conventions(again=False):
-    """Lines: what the conventions of a crack do to the reduction of k."""
+    """Lines: effect of the conventions of a crack on the reduction of k."""
     rows = reference.load()["crack"]["rows"][:3]
     levels = " | ".join(f"{100 * row['level']:.0f} %" for row in rows)
     lines = [

@@ -1,4 +1,4 @@
-"""What article S2 prints and no simulation is needed for: stiffnesses, frequencies, times, cracks."""
+"""Printed values of article S2 that need no simulation: stiffnesses, frequencies, times, cracks."""
 
 import math
 from dataclasses import replace
@@ -40,7 +40,7 @@ def converged(pair):
 
 
 def converged_stiffness():
-    """Of the same gears with everything that yields: teeth, what is under them, contact, the other teeth's pull."""
+    """Mean stiffness of the same gears with teeth, foundation, contact and neighbouring teeth."""
     return {(name, pair): converged(pair) for name, pair in PAIRS.items()}
 
 
@@ -57,7 +57,7 @@ def without_tooth(curve):
 
 
 def broken_tooth():
-    """What is left of the mean over the broken tooth's engagement, if it carries nothing."""
+    """Remaining share of the mean stiffness over the engagement of the broken tooth, if it carries no load."""
     curve = beams("sun_planet", span="tooth")
     engaged = curve.force[:, np.flatnonzero(curve.order == 0)[0]] > 0
     return {"sudden break": float(without_tooth(curve)[engaged].mean() / curve.k[engaged].mean())}

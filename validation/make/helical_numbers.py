@@ -1,4 +1,4 @@
-"""What article S3 prints and no simulation is needed for: frequencies, errors, contact ratios, contact lines."""
+"""Printed values of article S3 that need no simulation: frequencies, errors, contact ratios, contact lines."""
 
 from dataclasses import replace
 
@@ -25,7 +25,7 @@ def frequencies():
 
 
 def theory():
-    """Of the article's table."""
+    """Values of the article's table."""
     return frequencies()
 
 
@@ -68,7 +68,7 @@ def contact_ratios():
 
 
 def line_length():
-    """Of all contact lines over a cycle [mm], and the least with pits."""
+    """Total length of all contact lines over a cycle [mm], and the least with pits."""
     length = total_length(pair(), np.arange(400) / 400)
     out = {"mean": length.mean(), "least": length.min(), "most": length.max()}
     phase = np.linspace(-0.1, sum(contact_ratios()[name] for name in ("transverse", "overlap")) + 0.1, 1200)

@@ -17,8 +17,8 @@ RATE = 128 * 2500 / 60 * 17  # a multiple of f_m
 FORCE = "force mesh"
 PINION, HOUSING = "pinion.y acceleration", "pinion's acceleration through a mode"
 OWN, LINEAR = "impact law", "linear stiffness"
-HIGH = 1.1  # of the healthy signal's largest deviation: a high impact
-SLIGHTLY = 0.1  # of the healthy mesh line
+HIGH = 1.1  # relative to the largest deviation of the healthy signal: a high impact
+SLIGHTLY = 0.1  # relative to the healthy mesh line
 
 
 @cache
@@ -101,7 +101,7 @@ def _mesh_lines(case, law=OWN, channel=FORCE):
 
 
 def statements(law=OWN, channel=FORCE):
-    """What S3 says of its spectra; see the scene for the words."""
+    """Statements of article S3 on its spectra, as worded in the scene."""
     mesh = frequencies()["f_m"]
     healthy = _found("healthy", law, channel)
     main = amplitude(healthy, mesh) ** 2 + amplitude(healthy, 2 * mesh) ** 2
@@ -166,7 +166,7 @@ def _about_mesh(law=OWN):
 
 
 def _standing_out(law=OWN):
-    """How far the damaged tooth's largest force stands out."""
+    """Largest force of the damaged tooth relative to the others."""
     return {case: _impacts(case, law) for case in CASES}
 
 
@@ -186,7 +186,7 @@ BOTH = (
 
 
 def runs():
-    """What the simulations were made with."""
+    """Settings of the simulations."""
     return {OWN: told(_record("healthy")), LINEAR: told(_record("healthy", LINEAR))}
 
 
@@ -196,7 +196,7 @@ def write_more():
 
 
 def more():
-    """Lines of the page beside the verdicts."""
+    """Further sections of the page."""
     return tables("helical_pitting", BOTH, OWN, LINEAR)
 
 

@@ -1,4 +1,4 @@
-"""The page `herringbone`: article S4's ten rows by every method, and under every reading of what it does not print."""
+"""The page `herringbone`: article S4's ten rows by every method, and under every reading of its unprinted values."""
 
 import math
 import time
@@ -23,7 +23,7 @@ from ..shared.herringbone_page import SCENE, TABLES
 from ..shared.kept_rows import begin
 from ..shared.table_rows import write_table
 
-REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}  # of the finite elements: 0.2 to 0.55 million unknowns a gear
+REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}  # refinement of the finite elements: 0.2 to 0.55 million unknowns a gear
 
 
 def reference():
@@ -38,7 +38,7 @@ def reference():
             print(f"{name} {case or 'healthy'}: finite elements", flush=True)
             pair = scene.pairs[name]
             phase = damage_cycle(pair)
-            # of the ring pair a coarser mesh cannot carry the patches, and a finer one does not fit into 24 GB
+            # for the ring pair, a coarser mesh cannot carry the patches, and a finer one does not fit into 24 GB
             how = gf.Solve("fe3d", phase, error=name != "planet_ring", refine=REFINE[name], tell=_tell)
             started, one = time.perf_counter(), solve_fitted(pair.case(case), how)
             seconds, estimate = time.perf_counter() - started, _estimate(one)
@@ -84,11 +84,11 @@ def text():
         "The finite elements, in `gearfe/scene/scenes/herringbone_fe3d.csv`, are computed by `... herringbone --reference`.",
     ]
     reading, said = herringbone_reading.section(), herringbone_statements.section()
-    return answer, how, reading, said, herringbone_page.ten_rows(), herringbone_page.as_printed()
+    return answer, reading, said, herringbone_page.ten_rows(), herringbone_page.as_printed(), ["## Method", "", *how]
 
 
 def _claim():
-    """What the frozen scan of readings opens with, and a link to it."""
+    """First sentence of the frozen scan of readings, with a link to it."""
     return page.read("herringbone_readings")[0].splitlines()[2].replace("The claim", "[The claim](herringbone_readings.md)", 1)
 
 

@@ -44,17 +44,17 @@ ERRORS = ("profile_error_um", "runout_um", "misplaced_y_um", "backlash_um")
 
 
 def degrees():
-    """Of freedom."""
+    """Degrees of freedom of the whole machine."""
     return {"whole machine": float(len(machine(NAME).dofs))}
 
 
 def displacement_upper():
-    """Of the sun along x [um]."""
+    """Upper end of the sun displacement along x [um]."""
     return {name: range_of(case)[1] for name, case in STATES.items()}
 
 
 def displacement_lower():
-    """Of the sun along x [um]."""
+    """Lower end of the sun displacement along x [um]."""
     return {name: range_of(case)[0] for name, case in STATES.items()}
 
 
@@ -64,7 +64,7 @@ def displacement_span():
 
 
 def healthy_spectrum():
-    """Of the sun along x [um]."""
+    """Lines of the sun displacement along x [um]."""
     found, mesh = spectrum(signal(record_of(None), SUN)), speeds()[2]
     lines = {f"{n} f_m" if n > 1 else "f_m": UM * amplitude(found, n * mesh) for n in (1, 2, 3)}
     return {name: value if value > ROUNDING else 0.0 for name, value in lines.items()}
@@ -118,7 +118,7 @@ def crest_least():
 
 
 def crest_most():
-    """Largest over the cracks."""
+    """Largest value over the cracks."""
     return _increments("crest factor", max)
 
 
@@ -128,7 +128,7 @@ def kurtosis_least():
 
 
 def kurtosis_most():
-    """Largest over the cracks."""
+    """Largest value over the cracks."""
     return _increments("kurtosis", max)
 
 
@@ -142,7 +142,7 @@ def sideband_least():
 
 
 def sideband_most():
-    """Largest over the cracks."""
+    """Largest value over the cracks."""
     return _sideband(max)
 
 
@@ -152,7 +152,7 @@ def poincare():
 
 
 def statements():
-    """What S4 says of its motions and spectra; see the scene for the words."""
+    """Statements of article S4 on its motions and spectra, as worded in the scene."""
     changes = kurtosis_most()["severe"] > crest_most()["severe"]
     return about_motion() | {"kurtosis changes more than the crest factor": changes}
 
@@ -175,7 +175,7 @@ def _moved(**changes):
 
 
 def write_more():
-    """Tables: with and without errors, and what each error does."""
+    """Tables: with and without errors, and the effect of each error."""
     beside("herringbone_machine", BESIDE, ERRING, PERFECT)
     play.write_play()
     own = scene(NAME).machine
@@ -186,7 +186,7 @@ def write_more():
 
 
 def more():
-    """Lines of the page beside the verdicts."""
+    """Further sections of the page."""
     rows = rows_of(MOVED)
     lines = [
         "What each assumed error does to the healthy sun along x (from rest; of the transient some is left):",
@@ -235,7 +235,7 @@ BOTH = "With the errors that the scene assumes, which is judged above, and witho
 
 
 def runs():
-    """What the simulations were made with."""
+    """Settings of the simulations."""
     return {ERRING: told(record_of(None)), PERFECT: told(record_of(None, PERFECT))}
 
 

@@ -1,4 +1,4 @@
-"""What article S4 prints and no simulation is needed for: frequencies, coefficients, masses, counts."""
+"""Printed values of article S4 that need no simulation: frequencies, coefficients, masses, counts."""
 
 import math
 
@@ -38,7 +38,7 @@ def fault_frequency():
 
 
 def periods():
-    """Of sun and fault [s]."""
+    """Periods of sun and fault [s]."""
     turn, _, _, fault = speeds()
     return {"sun": 1 / turn, "fault": 1 / fault}
 
@@ -50,7 +50,7 @@ def mesh_period():
 
 
 def impulses():
-    """Of one damaged sun tooth: in a turn of the sun, and in a turn relative to the carrier."""
+    """Impulses of one damaged sun tooth: in a turn of the sun, and in a turn relative to the carrier."""
     turn, carrier, _, fault = speeds()
     return {"turn of the sun": fault / turn, "turn relative to the carrier": fault / (turn - carrier)}
 
@@ -62,7 +62,7 @@ def sainsot():
 
 
 def masses():
-    """Of discs up to the reference circle, without bore, 60 mm wide [kg]."""
+    """Masses of discs up to the reference circle, without bore, 60 mm wide [kg]."""
     out = {}
     for name in ("sun", "planet"):
         gear = scene(NAME).gears[name]
@@ -71,7 +71,7 @@ def masses():
 
 
 def inertias():
-    """Of discs of the printed mass up to the reference circle, of the ring as a hoop of that radius [kg m2]."""
+    """Moments of inertia of discs of the printed mass up to the reference circle, the ring as a hoop [kg m2]."""
     out = {}
     for name, part in (("sun", 0.5), ("planet", 0.5), ("ring", 1.0)):
         out[name] = part * scene(NAME).machine["bodies"][name][0] * (1e-3 * scene(NAME).gears[name].r) ** 2

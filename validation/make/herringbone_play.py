@@ -1,4 +1,4 @@
-"""A part of the page `herringbone_machine`: play that is crossed, and the relief groove stiff and flexible."""
+"""A part of the page `herringbone_machine`: crossed backlash, and the relief groove stiff and flexible."""
 
 from dataclasses import replace
 from functools import cache
@@ -12,9 +12,9 @@ from ..shared.simulated import record, signal
 from .herringbone_numbers import speeds
 from .herringbone_runs import RATE, SECONDS, UNSETTLED, made, record_of, settled
 
-LOADS = (400.0, 100.0, 25.0, 6.0, 0.0, -100.0)  # N m on the sun; S4 has the first, the last crosses the play
-GROOVES = {"stiff, 0.2 mm": 100.0, "20 mm": 1.0, "flexible, 2 m": 0.01}  # of the stiffness assumed
-MODES = 3.0  # of f_m: modes below it are counted
+LOADS = (400.0, 100.0, 25.0, 6.0, 0.0, -100.0)  # N m on the sun; S4 has the first, the last crosses the backlash
+GROOVES = {"stiff, 0.2 mm": 100.0, "20 mm": 1.0, "flexible, 2 m": 0.01}  # relative to the assumed stiffness
+MODES = 3.0  # relative to f_m: lower modes are counted
 MESH = "sun_planet1L"
 
 
@@ -33,7 +33,7 @@ def opened(case):
     for torque in LOADS:
         found = loaded(case, torque)
         play = next(one.backlash for one in found.machine.meshes if one.name == MESH)
-        x = np.asarray(found.raw[f"compression {MESH}"])  # of the driving flanks; their play is below 0
+        x = np.asarray(found.raw[f"compression {MESH}"])  # driving flanks; the backlash is below 0
         out[f"{torque:g} N m, open"] = 100 * float(((x < 0) & (x > -play)).mean())
         out[f"{torque:g} N m, back flank"] = 100 * float((x <= -play).mean())
     return out
@@ -68,7 +68,7 @@ def modes(factor):
 
 
 def statements():
-    """What S4 says of damage and groove."""
+    """Statements of article S4 on damage and groove."""
     stiff, _, soft = GROOVES.values()
     return {
         "damage raises the transmission error": error_of("case4") > 1.01 * error_of(None),
@@ -80,7 +80,7 @@ def statements():
 
 
 def write_play():
-    """Tables of play and groove."""
+    """Tables of backlash and groove."""
     columns = {"healthy": None, "case 4": "case4"}
     beside("herringbone_machine_play", {"time [%]": lambda name: opened(columns[name])}, *columns)
     rows = {
@@ -94,7 +94,7 @@ def write_play():
 def section():
     """Lines of the page."""
     return [
-        "## Play and groove",
+        "## Backlash and groove",
         "",
         *tables("herringbone_machine_play", PLAY, "healthy", "case 4"),
         *tables("herringbone_machine_groove", GROOVE, *GROOVES),
@@ -102,11 +102,12 @@ def section():
 
 
 PLAY = (
-    "Time in which the first sun mesh is open, or touches with its back flank, with the errors and the play of 96 um that the "
-    "scene assumes, by the torque of the sun; S4 has 400 N m, prints no play and says of it only that it makes the motion rich. "
-    "Turned round, from rest on the driving flanks, the torque crosses the play once"
+    "The table lists the share of time in which the first sun mesh is open, or in contact on its back flank, by the torque of "
+    "the sun. The errors and the backlash of 96 um are those that the scene assumes. S4 has 400 N m and prints no backlash. With "
+    "the torque reversed, the mesh crosses the backlash once, from rest on the driving flanks"
 )
 GROOVE = (
-    "The shaft under the relief groove, a hundred times as stiff and as soft as that of 20 mm that is assumed, as long as would "
-    "be 0.2 mm and 2 m; case 2, the damage in one half or in both: the sun's halves against each other over their common motion"
+    "The scene assumes a shaft of 20 mm under the relief groove. The table also has shafts a hundred times as stiff and as soft, "
+    "which correspond to 0.2 mm and 2 m. Case 2 has its damage in one half or in both. The first rows give the motion of "
+    "the sun's halves relative to each other, divided by their common motion"
 )

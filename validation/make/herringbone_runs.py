@@ -1,4 +1,4 @@
-"""Records of the stage of S4 that the parts of its page share, what it says of them, and what a draw of inputs gives."""
+"""Records of the stage of S4 that the parts of its page share, its statements on them, and the result of a draw of inputs."""
 
 from dataclasses import replace
 from functools import cache
@@ -20,7 +20,7 @@ RING = "ring.y acceleration"
 UM = 1e6
 ERRING, PERFECT = "with errors", "without errors"
 ROUNDING = 1e-9  # um: what cancels leaves 1e-13
-CLOSE = 0.1  # of what the crack alone changes
+CLOSE = 0.1  # relative to the change by the crack alone
 CRACK60 = "crack60"  # case 3 without its pits, which the scene does not have
 
 
@@ -110,7 +110,7 @@ def impulse_of(case, errors=ERRING, channel=TURNING):
 
 
 def beside_crack(errors=ERRING, channel=TURNING):
-    """What the pits of case 3 change beside what its crack alone does: RMS of both differences, their ratio."""
+    """Ratio of the changes by the pits of case 3 and by its crack alone, as RMS of both differences."""
     whole, crack, both = (heard(case, errors, channel).values for case in (None, CRACK60, "case3"))
     return float((both - crack).std() / (crack - whole).std())
 
@@ -121,7 +121,7 @@ def line_of(case, frequency, errors=ERRING, channel=TURNING):
 
 
 def about_motion(errors=ERRING, channel=TURNING):
-    """What S4 says of its motions and spectra, of the signal of a channel; see the scene for the words."""
+    """Statements of article S4 on its motions and spectra, of the signal of a channel, as worded in the scene."""
     _, _, mesh, fault = speeds()
     own = sum(line_of(None, n * mesh, errors, channel) ** 2 for n in range(1, 31)) / 2
     side = {
@@ -150,7 +150,7 @@ def about_motion(errors=ERRING, channel=TURNING):
     }
 
 
-PRINTED = {"span": "displacement_span"}  # numbers that draws are set beside: by name, the reference
+PRINTED = {"span": "displacement_span"}  # numbers that draws are compared with: by name, the reference
 
 
 def drawn(draw):

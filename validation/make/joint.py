@@ -106,10 +106,10 @@ def section(name):
     lines = [
         "## Within which unprinted inputs statements hold",
         "",
-        f"{sentence(name)[0].upper()}{sentence(name)[1:]}; what the scene's assumptions set is not counted. How they are "
-        f"drawn: [joint.md](joint.md). The inputs, without a unit as factors of what is assumed: {'; '.join(told(name))}. Below, "
-        "in how many draws a statement holds, by channel, and the input that goes with it most on the channel that is judged "
-        f"and counted: {judges(name)}.",
+        f"{sentence(name)[0].upper()}{sentence(name)[1:]}. Statements that an assumption of the scene sets are not counted. "
+        "[joint.md](joint.md) lists the inputs with their ranges. The table gives the number of draws in which a statement "
+        f"holds, by channel. A statement is judged on this channel: {judges(name)}. The last column is the input with the "
+        "strongest relation to it.",
         "",
     ]
     rows = []
@@ -132,7 +132,7 @@ def told(name):
 
 
 def numbers(name):
-    """Lines with printed numbers beside the least and largest of the draws; none if the page names none."""
+    """Lines with printed numbers with the least and largest of the draws; none if the page names none."""
     named = getattr(home(name), "PRINTED", {})
     if not named:
         return []
@@ -168,7 +168,7 @@ def answer():
 
 
 def notes():
-    """Lines: what is not counted, and what the tables of the four pages can tell of single inputs."""
+    """Lines: cases that are not counted, and the limits of the tables for single inputs."""
     return [
         "Not counted are statements that an assumption of the scene sets. So few draws hardly tell which input decides: the four "
         f"pages name the one whose larger and smaller half of draws differ most, from {DECIDES} draws on, and say how often "

@@ -1,4 +1,4 @@
-"""Every printed number of the four machines beside ours: `tables/*.csv`, a page for each scene."""
+"""Every printed number of the four machines and the computed values: `tables/*.csv`, a page for each scene."""
 
 import importlib
 import time
@@ -83,15 +83,16 @@ def text(page):
     """The page as Markdown, from its committed rows and its scene."""
     scene, home = gf.load_scene(PAGES[page]), module(page)
     rows = table_rows.read(page)
-    claim, find, decide = OPENINGS[page](Found(rows))
+    claim, find, decide = OPENINGS[page](CommittedRows(rows))
     rows = decided(page, rows)
-    drawn = f" {drawn_jointly(page)}" if joint.rows_of(page) else ""
+    drawn = f"{drawn_jointly(page)}" if joint.rows_of(page) else ""
     lines = [
         f"# {scene.title}: which printed numbers of {ARTICLES[page]} are reproduced?",
         "",
         f"- Claim of the article: {claim}.",
         f"- Result of gearfe: {find}.",
-        f"- Cause of the difference: {decide}.{drawn}",
+        f"- Cause of the difference: {decide}.",
+        *([f"- Unprinted inputs: {drawn}"] if drawn else []),
         "",
         verdicts.text(references(page), rows, draws(page)),
         "",
@@ -134,14 +135,14 @@ def draws(page):
 def drawn_jointly(page):
     """Sentence of the opening: how many statements hang on inputs that the article does not print."""
     below = "([below](#within-which-unprinted-inputs-statements-hold))"
-    return f"With all inputs that are not printed drawn at random together, {joint.sentence(page)} {below}."
+    return f"if all of them are drawn at random together, {joint.sentence(page)} {below}."
 
 
-class Found:
+class CommittedRows:
     """Committed rows by id, case and pair."""
 
     def __init__(self, rows):
-        """Of `verdicts.Row`."""
+        """Sort `verdicts.PrintedRow` objects."""
         self.rows = {row[:3]: row for row in rows}
 
     def ours(self, name, case, pair=""):
@@ -162,7 +163,7 @@ class Found:
 
 
 def runs_of(page, rows):
-    """Lines with the simulations behind the rows: what each was made with, and which rows come from it."""
+    """Lines with the simulations behind the rows: the settings of each, and the rows that come from it."""
     by_run = {}
     for row in rows:
         if row.run:

@@ -1,4 +1,4 @@
-"""A part of the page `three`: `ritz3d` beside CalculiX, from the tables of `validation.shared.outsider` alone."""
+"""A part of the page `three`: `ritz3d` compared with CalculiX, from the tables of `validation.shared.outsider` alone."""
 
 from ..shared.outsider import ASKED, LOAD, PITS, PITTED, apart, cases, lines, stored, told
 
@@ -63,7 +63,7 @@ def finest(known):
 
 
 def pitted(known):
-    """What pits do to k, by case and mesh: in CalculiX by what is done with them (`PITS`), and in ``ritz3d``, as lost contact."""
+    """Effect of pits on k, by case and mesh: in CalculiX by their treatment (`PITS`), and in ``ritz3d``, as lost contact."""
     out = {}
     for name, case in cases().items():
         if not name.endswith(PITS["filled"]):
@@ -86,7 +86,7 @@ def pits_apart():
 
 
 def verdict(known):
-    """What is shown within what is asked for, and what is not, in the page's first lines."""
+    """Differences within and beyond the requested limit, for the first lines of the page."""
     away = {name: apart(row) for name, row in finest(known).items()}
     asked = f"{100 * ASKED:g} %"
     yield f"`ritz3d` against CalculiX, the finest mesh of each case; asked for: within {asked}."
@@ -112,7 +112,7 @@ def verdict(known):
 
 
 def _settled(meshes, values, ours):
-    """What pits do on one mesh after the other, whether that is what `ours` says, and whether the meshes decide it."""
+    """Effect of pits on successive meshes, its agreement with `ours`, and whether the meshes determine it."""
     listed = "; ".join(f"{100 * value:+.2f} % ({mesh})" for mesh, value in zip(meshes, values, strict=True))
     doubt = "; **not decided**: one mesh only"
     if len(values) > 1:

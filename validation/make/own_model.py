@@ -23,7 +23,7 @@ def table():
 
 
 def run(again=True):
-    """Write the example anew."""
+    """Write the example again."""
     with written(EXAMPLE) as name:
         Path(name).write_bytes(table().encode())
     print(f"{EXAMPLE.name} remade")

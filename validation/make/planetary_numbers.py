@@ -1,4 +1,4 @@
-"""What articles S0 and S1 print and no simulation is needed for: frequencies, geometry, contact lines."""
+"""Printed values of articles S0 and S1 that need no simulation: frequencies, geometry, contact lines."""
 
 import numpy as np
 
@@ -47,7 +47,7 @@ def carrier_speed():
 
 
 def mesh_frequency():
-    """Of all meshes."""
+    """Contact lines of all meshes."""
     return {"simulated": speeds()[2]}
 
 

@@ -66,22 +66,22 @@ def _measured(name, law):
 
 
 def rms(law=OWN):
-    """Of the acceleration of the ring, under impacts."""
+    """RMS of the ring acceleration under impacts."""
     return _measured("rms", law)
 
 
 def rms_without_pulses(law=OWN):
-    """Of the same without impacts."""
+    """RMS of the ring acceleration without impacts."""
     return {case: values_of(case, False, SENSOR, law)["rms"] for case in CASES}
 
 
 def kurtosis(law=OWN):
-    """Of the same."""
+    """Kurtosis of the ring acceleration under impacts."""
     return _measured("kurtosis", law)
 
 
 def shape_factor(law=OWN):
-    """Of the same."""
+    """Shape factor of the ring acceleration under impacts."""
     return _measured("shape factor", law)
 
 
@@ -99,9 +99,9 @@ def folded(law=OWN):
 
 @cache
 def carrier_lines(case, path="raised cosine"):
-    """Mean amplitude [N] on the housing one carrier turn beside multiples of the sun's turns relative to the carrier.
+    """Mean amplitude [N] on the housing one carrier frequency from multiples of the sun's turns relative to the carrier.
 
-    Multiples by 3 are left out: there a healthy stage with equal planets has lines of its own.
+    Multiples by 3 are left out: there a healthy stage with equal planets has lines without damage.
     """
     _, carrier, mesh, fault = speeds()
     turn, carrier = fault / scene(NAME).machine["n_planets"], carrier / 60
@@ -125,7 +125,7 @@ def housing_lines(path="raised cosine"):
 
 
 def passing(path):
-    """Amplitudes of the healthy mesh line and of what the passing planets put 3 f_c beside it [% of the larger]."""
+    """Amplitudes of the healthy mesh line and of the lines of passing planets 3 f_c from it [% of the larger]."""
     _, carrier, mesh, _ = speeds()
     places = {"f_m - 3 f_c": mesh - carrier / 20, "f_m": mesh, "f_m + 3 f_c": mesh + carrier / 20}
     found = {name: 100 * amplitude(_housing("healthy", path), f, 0.4) / main_line("healthy", path) for name, f in places.items()}
@@ -139,7 +139,7 @@ def seen(path):
 
 
 def statements(law=OWN):
-    """What the articles say of spectra and indicators; see the scene for the words."""
+    """Statements of the articles on spectra and indicators, as worded in the scene."""
     mesh, fault = speeds()[2:]
     out = about_spectra(law) | about_impacts(law)
     out["a healthy machine has no such sidebands, sampled as in S0"] = folded(law)[0] < 0.01
@@ -171,7 +171,7 @@ def sidebands(law=OWN):
 
 
 def runs():
-    """What the simulations were made with."""
+    """Settings of the simulations."""
     return {
         OWN: told(record_of("healthy", True)),
         OWN + STEADY: told(record_of("healthy", False)),
@@ -189,7 +189,7 @@ def write_more():
 
 
 def more():
-    """Lines of the page beside the verdicts."""
+    """Further sections of the page."""
     laws = tables("planetary_pitting", BOTH, OWN, ROWS, LINEAR)
     paths = ["## The path to a sensor on the ring", "", *tables("planetary_pitting_paths", BOTH_PATHS, *PATHS)]
     return ["## One line of pits, or rows of five", "", *laws, *section(), *paths, CENTROID, ""]
@@ -207,12 +207,12 @@ BOTH = (
 
 
 BOTH_PATHS = (
-    "What the path from mesh to sensor changes: the raised cosine by which the verdicts are judged, and `gf.ring_window` of the "
-    "ring between its root circle and rim, on a foundation as stiff as its bearing, 1e8 N/m; none of it is printed. A ring whose "
-    "centre line keeps its length gives nothing on average over a turn of the carrier: the mesh line of equal planets in "
-    "phase goes and what is 3 f_c beside it stays. The sun turns 84/21 = 4 times in a turn of the carrier relative to it, so "
-    "that lines one carrier turn beside the sun's harmonics lie where the passing planets put theirs: through a path with more "
-    "harmonics than one a healthy stage has them too. Impact law, without pulses"
+    "The table compares two transmission paths from mesh to sensor. The verdicts use the raised cosine. The other path is "
+    "`gf.ring_window` of the ring between its root circle and rim, on a foundation of 1e8 N/m. They are not printed. A ring "
+    "with a centre line of constant length has no mean response over a revolution of the carrier. The mesh line of equal planets "
+    "in phase then vanishes, and the lines 3 f_c from it remain. The sun makes 84/21 = 4 revolutions relative to the carrier in "
+    "one revolution of the carrier. Lines one carrier frequency from the sun's harmonics therefore coincide with those of the "
+    "passing planets. With several harmonics in the path, a healthy stage has them, too. Impact law, without pulses"
 )
 
 

@@ -1,4 +1,4 @@
-"""A part of the page `planetary_pitting`: statements, repeats under other impacts, and what a draw of inputs gives."""
+"""A part of the page `planetary_pitting`: statements, repeats under other impacts, and the result of a draw of inputs."""
 
 import numpy as np
 
@@ -21,19 +21,19 @@ from .planetary_runs import (
     values_of,
 )  # fmt: skip
 
-IMPACTS = (0.5, 1.0, 2.0)  # of the scene's pulses: the three repeats of each level
+IMPACTS = (0.5, 1.0, 2.0)  # factors of the scene's pulses: the three repeats of each level
 INDICATORS = {"SC by S0's formula [Hz]": "SC (S0)", "SC by S1's formula [mm/s^2]": "SC (S1)", "RMS [m/s^2]": "rms"}
 INDICATORS |= {"kurtosis": "kurtosis", "shape factor": "shape factor"}
 ACCELERATES = "impacts raise the carrier's angular acceleration"
 SIZES = {"peak to peak": np.ptp, "RMS": np.std}
 STANDS_OUT = 1.5  # as for article S3
-ROUNDING = 1e-9  # of the mesh force's sidebands [N]
+ROUNDING = 1e-9  # rounding limit of the mesh force's sidebands [N]
 MEASURED, RISES = ("rms", "kurtosis", "shape factor", "peak"), "{} rises with severity"
 JUDGED_ON = dict.fromkeys((RISES.format(word) for word in MEASURED), SENSOR)  # printed of the measured acceleration
 
 
 def about_spectra(law=OWN, channel=FORCE):
-    """What the articles say of the signal of a channel: statements that hold or not."""
+    """Statements of the articles on the signal of a channel, and whether they hold."""
     side = {case: sidebands_of(case, law, channel) for case in ("healthy", *CASES)}
     s0, s1 = ([values_of(case, True, channel, law)[name] for case in CASES] for name in ("SC (S0)", "SC (S1)"))
     calm = [values_of(case, False, channel, law)["SC (S1)"] for case in CASES]
@@ -112,7 +112,7 @@ def spread(law=OWN):
 
 
 def strewn(law=OWN):
-    """How far the damaged tooth's force stands out."""
+    """Deviation of the damaged tooth's force relative to the others."""
     return {case: standing_out(case, law) for case in CASES}
 
 
@@ -147,7 +147,7 @@ def drawn(draw):
     return {"holds": holds, "numbers": numbers}
 
 
-PRINTED = {  # numbers of the articles that draws are set beside: by name, the reference
+PRINTED = {  # numbers of the articles that draws are compared with: by name, the reference
     "rms": "rms",
     "kurtosis": "kurtosis",
     "shape factor": "shape_factor",

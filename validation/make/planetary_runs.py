@@ -12,7 +12,7 @@ from ..shared.simulated import amplitude, knocked, machine, record, scene, signa
 from .planetary_numbers import CASES, NAME, speeds
 
 SECONDS, SETTLE = 10.0, 0.25
-DRAWN, DRAWN_SETTLE = 1.0, 0.25  # of a draw of the unprinted inputs
+DRAWN, DRAWN_SETTLE = 1.0, 0.25  # settings of a draw of the unprinted inputs
 RATE = 10000.0  # S0: 100 000 steps in 10 s
 FINE = 256 * 280.0  # above twice the highest natural frequency, 16.5 kHz; a multiple of f_m
 OWN, ROWS, LINEAR = "impact law", "impact law, rows of five", "linear stiffness"
@@ -24,7 +24,7 @@ CARRIER, FORCE, SENSOR, HOUSING = (
     "ring's forces through its window",
 )
 BEARING = 1e8  # N/m, of the ring: the default of `gf.pitted_planetary`
-HIGHEST = 6  # of the fault frequency: sidebands that the bandwidth counts
+HIGHEST = 6  # multiples of the fault frequency that the bandwidth counts
 
 
 @cache
@@ -111,7 +111,7 @@ def sidebands_of(case, law=OWN, channel=FORCE):
 
 
 def bandwidth_of(case, law=OWN, channel=FORCE):
-    """How far from f_m its sidebands lie, without pulses [Hz]: root of the mean square, lines f_fault apart by their power."""
+    """Bandwidth of the sidebands about f_m, without pulses [Hz]: root of the mean square, lines f_fault apart by their power."""
     mesh, fault = speeds()[2:]
     found = spectrum_of(case, False, channel, law)
     order = np.array([k for k in range(-HIGHEST, HIGHEST + 1) if k])

@@ -1,14 +1,11 @@
 """The page `printed`: every number that the articles print, and whether it is judged, put in, or not used and why."""
 
-import inspect
 import tomllib
-from importlib import import_module, resources
 
-import gearfe as gf
 from gearfe.core.table import Column, Table
 
 from ..shared import page
-from ..shared.places import ROOT, SOURCES, TABLES
+from ..shared.places import SOURCES, TABLES
 from ..shared.table_rows import write_table
 
 KINDS = {"verdict": "judged", "used": "input: used", "unused": "input: not used"}
@@ -35,7 +32,7 @@ VERDICTS = """
 ## All printed numbers
 """  # noqa: E501
 CSV = TABLES / "printed.csv"
-PAGES = {  # where the rows of a scene's references stand
+PAGES = {  # pages with the rows of a scene's references
     "planetary_pitting": "planetary_pitting",
     "compound_planetary": "compound_planetary",
     "helical_pitting": "helical_pitting",
@@ -54,50 +51,6 @@ def kind(row):
     if len(found) != 1:
         raise ValueError(f"{row['article']}, {row['what']}: it has {found or 'none'} of {', '.join(KINDS)}; give one")
     return found[0]
-
-
-def judged(text):
-    """Printed values of a reference, given as ``scene: id``, or ``scene: id, per factor`` (they are divided by it)."""
-    scene, _, rest = text.partition(": ")
-    name, _, factor = rest.partition(", per ")
-    reference = next(one for one in gf.load_scene(scene).references if one.id == name)
-    return [row.value / float(factor or 1.0) for row in reference.rows]
-
-
-def put_in(text):
-    """Numbers at a place that ``used`` names, divided by its factor; see the ledger's head."""
-    place, _, factor = text.partition(", per ")
-    return [value / float(factor or 1.0) for value in _found(place)]
-
-
-def _found(place):
-    home, _, what = place.partition(": ")
-    if "/" in home:  # the text of a file
-        return [] if what in (ROOT / home).read_text(encoding="utf-8") else None
-    if home.startswith("gearfe."):  # a default of a function
-        function, name = what.split()
-        return [inspect.signature(getattr(import_module(home), function)).parameters[name].default]
-    word, _, key = what.partition(" of ")
-    if key:
-        case = key.partition(".")[2]
-        damage = [one for own in gf.load_scene(home).pair().damage[case].values() for one in own]
-        return (
-            [sum(isinstance(one, gf.Pit) for one in damage)]
-            if word == "count"
-            else [one.level for one in damage if isinstance(one, gf.Crack)]
-        )
-    value = tomllib.loads((resources.files("gearfe.scene.scenes") / f"{home}.toml").read_text(encoding="utf-8"))
-    for part in what.split("."):
-        if isinstance(value, list):
-            value = value[int(part)] if part.isdigit() else next(one for one in value if one["case"] == part)
-        elif part not in value and part in DEFAULTS:
-            value = DEFAULTS[part]
-        else:
-            value = value[part]
-    return value if isinstance(value, list) else [value]
-
-
-DEFAULTS = {"x": 0.0, "angle_deg": 45.0}  # of a scene's tables, where the file leaves them out
 
 
 def counts(rows, article):

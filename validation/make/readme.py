@@ -1,4 +1,4 @@
-"""Compute what the README shows: its picture, the comparison table, five rows of article S4 and the output of its program."""
+"""Compute the README: its picture, the comparison table, five rows of article S4 and the output of its program."""
 
 import contextlib
 import io
@@ -27,7 +27,7 @@ def five_rows():
 
 
 def outputs(text):
-    """What each of the README's programs prints, run in an empty folder."""
+    """Output of each program of the README, run in an empty folder."""
     return [_printed(program) for program in PROGRAM.findall(text)]
 
 
@@ -68,7 +68,7 @@ def draw():
 
 
 def run(again=True):
-    """Write the README anew."""
+    """Write the README again."""
     text = README.read_text(encoding="utf-8")
     gf.compare(gf.load_scene("planetary_pitting"))  # warm
     table = gf.compare(gf.load_scene("planetary_pitting")).table().markdown()

@@ -27,9 +27,13 @@ KINDS = {
     "ring": (97_000, (12, 13), (20, 21), (3.0, 8.0), 0.7, 2),
     "crack": (98_000, (12, 14), (12, 15), (3.0, 6.0), 0.7, 3),
 }  # none of these seeds was looked at while the methods were made
-MISSED = (("narrow", 95_008), ("crack", 98_000), ("crack", 98_008))  # of the first ten of each kind: once missed by an estimate
+MISSED = (
+    ("narrow", 95_008),
+    ("crack", 98_000),
+    ("crack", 98_008),
+)  # cases of the first ten of each kind that were once missed by an estimate
 PHASES = 5
-FINE = {"order": 4, "refine": 1.25}  # of `ritz3d`, the reference of both errors
+FINE = {"order": 4, "refine": 1.25}  # refinement of `ritz3d`, the reference of both errors
 FURTHER = 4  # axial degrees more in it
 ASKED = {
     "difference of the two": ("fe3d", "ritz3d"),
@@ -90,7 +94,7 @@ def drawn(kind, seed):
 
 
 def row(kind, seed):
-    """What is kept of a pair: k, estimates, the finer solution at each phase; why not, if a method refuses."""
+    """Stored values of a pair: k, estimates, the finer solution at each phase; why not, if a method refuses."""
     pair, load, damage, phases = drawn(kind, seed)
     case, run = (pair, load * pair.gear_1.b, gf.Material()), {"phases": phases, "damage": damage, "error": True, "cache": False}
     out = {"kind": kind, "pair": named(pair, damage), "load": load, "phase": phases.tolist()}
@@ -106,7 +110,7 @@ def row(kind, seed):
 
 
 def timed(work):
-    """What `work` gives and its seconds of the processor."""
+    """Result of `work` and its CPU seconds."""
     started = time.process_time()
     found = work()
     return found, time.process_time() - started
@@ -170,6 +174,13 @@ def covered(found):
     """Pairs that `ritz3d` and `fe3d` cover at every phase, and how many there are."""
     said = [judged(one) for one in found]
     return [sum(bool(one[name].all()) for one in said) for name in reversed(ASKED)][:2], len(said)
+
+
+def ratio(found, name):
+    """Median estimate of a method over its median error, both of the worst phase of each pair."""
+    solved = [one for one in found if "failed" not in one]
+    off = [np.abs(np.subtract(one[name], one["fine"]) / one["fine"]).max() for one in solved]
+    return float(np.median([np.divide(one[f"{name}_error"], one["fine"]).max() for one in solved]) / np.median(off))
 
 
 def section(found):

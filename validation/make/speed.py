@@ -11,7 +11,7 @@ import gearfe as gf
 
 from ..shared import machine, page, speed_page
 from ..shared.places import TABLES
-from . import dynamics, speed_three
+from . import speed_dynamics, speed_three
 
 TABLE = TABLES / "speed.json"
 REFINES = (0.5, 1.0, 2.0, 3.0)
@@ -37,8 +37,8 @@ def measure():
         found = {"machine": machine.describe(), "three": {"rows": speed_three.rows()}}  # a child's peak counts its parent's
         found |= {
             "sections": sections(),
-            "dynamics": {"rows": dynamics.integrators()},
-            "steps": dynamics.speeds(),
+            "dynamics": {"rows": speed_dynamics.integrators()},
+            "steps": speed_dynamics.speeds(),
         }
     page.replace(TABLE, json.dumps(found, indent=1) + "\n")
     speed_page.plot(found)
@@ -99,7 +99,7 @@ def text():
 
 
 def sections():
-    """What is measured of sections."""
+    """Measured values of sections."""
     scene = gf.load_scene("planetary_pitting").pair()
     case = {"force": scene.force, "material": scene.materials, "cache": False}
     for method in ("fe", "ritz"):

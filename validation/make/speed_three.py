@@ -54,7 +54,7 @@ def solve(method, *setting, last=27.0):
 
 
 def measure(*setting):
-    """Seconds of a pair, of another layout of its pits, peak memory [MB] and k, in a process of its own."""
+    """Seconds of a pair, of another layout of its pits, peak memory [MB] and k, in a separate process."""
     gf.mesh_stiffness(*case()[:1], FORCE, case()[1], method="textbook", phases=1, face="herringbone")  # imports
     started = time.process_time()
     k = solve(*setting)

@@ -1,4 +1,4 @@
-"""The page `three`: `ritz3d` beside CalculiX."""
+"""The page `three`: `ritz3d` compared with CalculiX."""
 
 from ..shared import outsider, page
 from ..shared.kept_rows import stored

@@ -1,4 +1,4 @@
-"""gearfe beside everything independent of it: published values, other codes, CalculiX on its own meshes and in contact."""
+"""gearfe compared with independent values: published values, other codes, CalculiX on its own meshes and in contact."""
 
 import math
 import tempfile
@@ -10,7 +10,7 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.core.units import in_newton_per_um
-from gearfe.flexibility.finite_elements.elasticity import Body
+from gearfe.flexibility.finite_elements.elasticity import HeldSection
 
 from ..shared import page, reference
 from ..shared.decks import calculix, installed
@@ -20,7 +20,7 @@ from ..shared.table_rows import rows_of, write_table
 CSV = TABLES / "truth.csv"
 CONTACT = TABLES / "calculix.csv"
 LINE_LOAD, PHASES, NEAR = 150.0, 12, 0.06  # N/mm; phases; cycles from the ends of double contact
-PENALTY = 500.0  # of `write_contact_inp`: pressure per overlap, in units of E per mm
+PENALTY = 500.0  # setting of `write_contact_inp`: pressure per overlap, in units of E per mm
 RING = "the source does not give its ring fillet; a sharper one (cutter of 40 teeth, tip radius 0.1) gives 17.17"
 REASONS = {  # rows outside their tolerance
     ("stage_17_37_91", "f_m"): "the source multiplies its rounded carrier frequency, 2.1 Hz, by 91; 800 rpm give 190.99 Hz",
@@ -29,7 +29,7 @@ REASONS = {  # rows outside their tolerance
 }
 
 
-class Row(NamedTuple):
+class SourceRow(NamedTuple):
     """A value of a source and ours; `tolerance` is relative, or absolute if `absolute`."""
 
     table: str
@@ -47,7 +47,7 @@ class Row(NamedTuple):
 
 
 def _row(name, case, theirs, ours, tolerance, absolute=False):
-    return Row(name, case, *(float(f"{float(x):.6g}") for x in (theirs, ours)), tolerance, absolute)
+    return SourceRow(name, case, *(float(f"{float(x):.6g}") for x in (theirs, ours)), tolerance, absolute)
 
 
 def quick_rows(tables):
@@ -149,7 +149,7 @@ def contact_row(phase):
 
 
 def springs(phases):
-    """What CalculiX's contact adds to the approach, relative: its pressure is `PENALTY` E times the overlap, not infinitely hard.
+    """Approach added by the contact of CalculiX, relative: its pressure is `PENALTY` E times the overlap, not infinitely hard.
 
     Under Hertz's pressure a pair overlaps by ``8 p0 / (3 pi)`` over that stiffness, weighted by the work of the pressure; the
     pairs count by the load they carry. None where a corner carries: its pressure has no peak.
@@ -179,14 +179,14 @@ def linear_rows():
             calculix(folder, "gear")
             rows = [line.split() for line in (folder / "gear.dat").read_text(encoding="utf-8").splitlines()]
         theirs = max(math.hypot(float(r[1]), float(r[2])) for r in rows if len(r) == 4 and r[0].isdigit())
-        ours = np.hypot(*Body(body.mesh, steel, order=2).solve(load)[:, 0].reshape(-1, 2).T).max()
+        ours = np.hypot(*HeldSection(body.mesh, steel, order=2).solve(load)[:, 0].reshape(-1, 2).T).max()
         yield _row("calculix_linear", case, 1e3 * theirs, 1e3 * ours, 1e-5)
 
 
 def read():
     """Committed rows."""
     return [
-        Row(r["table"], r["case"], float(r["theirs"]), float(r["ours"]), float(r["tolerance"]), r["absolute"] == "True")
+        SourceRow(r["table"], r["case"], float(r["theirs"]), float(r["ours"]), float(r["tolerance"]), r["absolute"] == "True")
         for r in rows_of(CSV)
     ]
 
@@ -307,7 +307,7 @@ def compute():
         write_table(CONTACT, ("phase", "k_ritz_N_per_m", "k_calculix_N_per_m"), found)
     else:
         rows += [row for row in read() if row.table == "calculix_linear"]
-    write_table(CSV, Row._fields, rows)
+    write_table(CSV, SourceRow._fields, rows)
 
 
 def run(again=True):

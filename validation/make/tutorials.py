@@ -1,4 +1,4 @@
-"""Keep what the scripts of the documentation print, beside their test."""
+"""Store the output of the documentation scripts next to their test."""
 
 import os
 import subprocess
@@ -12,7 +12,7 @@ RECORD = ROOT / "tests" / "docs" / "printed"
 
 
 def run(again=True):
-    """Run every script in an empty folder and write what it prints."""
+    """Run every script in an empty folder and write its output."""
     own = {"PYTHONPATH": str(ROOT), "MPLBACKEND": "Agg", "OMP_NUM_THREADS": "1"}
     for script in sorted(SITE.glob("tutorials/*.py")) + sorted(SITE.glob("gallery/*.py")):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""The page `two_minutes`: each article, what it claims, the verdict and what decides it, from the tables of the other pages."""
+"""The page `two_minutes`: each article with its claim, the verdict and the cause, from the tables of the other pages."""
 
 from gearfe.core.table import Table
 from gearfe.scene import verdicts
@@ -6,7 +6,7 @@ from gearfe.scene import verdicts
 from ..shared import herringbone_page, table_rows
 from ..shared.openings import OPENINGS
 from ..shared.page import MACHINES, write
-from .machines import ARTICLES, Found, decided
+from .machines import ARTICLES, CommittedRows, decided
 
 STIFFNESS = (
     "that its formulas for the mesh stiffness are within 3 % of finite elements",
@@ -19,7 +19,7 @@ def rows():
     out = []
     for page in MACHINES:
         found = table_rows.read(page)
-        claim, _, decides = OPENINGS[page](Found(found))
+        claim, _, decides = OPENINGS[page](CommittedRows(found))
         out.append([ARTICLES[page], claim, _told(decided(page, found)), decides, f"[{page}]({page}.md)"])
     claim, decides = STIFFNESS
     out.append(["article S4, stiffness", claim, _told(herringbone_page.judged()[1]), decides, "[herringbone](herringbone.md)"])

@@ -1,1 +1,1 @@
-"""What several pages use: machine, tables, references, simulations."""
+"""Parts that several pages share: machine, tables, references, simulations."""

@@ -23,14 +23,14 @@ METHODS = {  # name: method, and its variants
     "fe3d": ("fe3d", {}),
 }
 QUICK = tuple(name for name in METHODS if name != "fe3d")
-REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}  # of `fe3d`, as of the scene herringbone
+REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}  # options of `fe3d`, as in the scene herringbone
 CLAIM, POINTS = 3.0, 2.0  # S4's 'below 3 %'; reductions [percentage points]
-LESS = 0.8  # of the load: what k does with it
+LESS = 0.8  # relative change of the load, for its effect on k
 HEADER = ("method", "pair", "case", *(f"k at {one:+g} [N/um]" for one in OFFSETS), "power", "seconds")
 
 
 def path(method):
-    """Table of a method: finite elements have their own, which is not computed anew with the others."""
+    """Table of a method: finite elements have their own, which is not computed again with the others."""
     return TABLES / f"{SCENE}{'_fe3d' if method == 'fe3d' else ''}.csv"
 
 
@@ -101,7 +101,7 @@ def reductions(k):
 
 
 def verdicts(method):
-    """Lines: printed numbers of the scene beside those of a method."""
+    """Lines: printed numbers of the scene and those of a method."""
     k, references = ours(method)[0], [_by(one, method) for one in gf.load_scene(SCENE).references]
     lost = dict(zip([(case, pair) for pair, case in rows() if case != "healthy"], reductions(k), strict=True))
     values = {(case, pair): 1e6 * v for (pair, case), v in zip(rows(), k, strict=True)}

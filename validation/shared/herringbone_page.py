@@ -16,36 +16,41 @@ SUMS = ("herringbone_article", "textbook")
 TEXT = """
 ## The ten rows
 
-Sun-planet and planet-ring pair, healthy and with a root crack of 10, 30, 60, 30 % and 3, 7, 7, 14 pits on one tooth of the sun
-(case1 to case4) or of the planet (planet1 to planet4). k is secant, along the transverse line of action, over the mesh cycle in
-which the damaged tooth is in the middle of its engagement. What S4 does not print is an assumption of the scene
-(`gearfe scenes`).
+The pairs are sun and planet, and planet and ring. Both are healthy or have a crack and pits on one tooth of the sun (case1 to
+case4) or of the planet (planet1 to planet4). k is the secant stiffness along the transverse line of action, over the mesh cycle
+with the damaged tooth in the middle of its engagement. The scene lists the assumed values (`gearfe scenes`).
 
-FE: 20-node hexahedra of the whole gears (`fe3d`), pits as lost contact; the estimate is of its mesh (of the ring pair a coarser
-one cannot carry the patches and a finer one does not fit into 24 GB: none). Errors are against it; bold: beyond 3 %. `ritz3d`
-is the converged energy model, `herringbone_article` and `textbook` closed forms in exact slices (of the ring
-`herringbone_article` has the foundation that S4 prints, `textbook` none, since no usual formula is for a ring). Pits cut out:
-what k loses beyond the lost contact of the same pits when they are holes, in the mean over the cycle, by a linear estimate
-([holes.md](holes.md)).
+| case | 1 | 2 | 3 | 4 |
+|---|---|---|---|---|
+| root crack [%] | 10 | 30 | 60 | 30 |
+| pits | 3 | 7 | 7 | 14 |
+
+- FE: 20-node hexahedra of the whole gears (`fe3d`), with pits as lost contact. The estimate refers to this mesh. The ring pair
+  has none, because a coarser mesh cannot carry the patches and a finer one exceeds 24 GB.
+- Errors are relative to FE. Bold errors exceed 3 %.
+- `ritz3d` is the converged energy model. `herringbone_article` and `textbook` are closed forms in exact slices. For the ring,
+  `herringbone_article` has the foundation printed in S4, and `textbook` has none.
+- Pits cut out: additional loss of k if the pits are holes, on average over the cycle, by a linear estimate
+  ([holes.md](holes.md)).
 
 {errors}
 
-`ritz3d` is within {mean:.2f} % of the finite elements in all ten means, {largest:.2f} % in all ten maxima and {phase:.2f} %
-at every phase; no constant of it is fitted to any gear. Most of this is the section of these hexahedra, which is coarser than
-the default: what it lacks in plane strain against one of twice the default's resolution, put into the energy model's gears,
-makes k stiffer by: {section}. The rest are the layers along the width; of the ring pair they are the coarsest that carry the
-patches. Smaller pairs with a ring, on finer meshes, are within 0.25 % ([three.md](three.md)).
+`ritz3d` is within {mean:.2f} % of FE in all ten means, {largest:.2f} % in all ten maxima and {phase:.2f} % at every phase. No
+constant of `ritz3d` is fitted to a gear. Most of the difference is due to the section of the hexahedra, which is coarser than the
+default. In the energy model, a section of twice the default's resolution shows the excess stiffness of this mesh: {section}. The
+rest is due to the layers along the width. Smaller pairs with a ring, on finer meshes, are within 0.25 % ([three.md](three.md)).
 
-Shared by `fe3d` and `ritz3d`: the contact lines, the half-space under each and the patches that the flanks are loaded by. These
-hexahedra were solved when `fe3d` did not yet keep the faces of a crack apart, as `ritz3d` does.
+`fe3d` and `ritz3d` share the contact lines, the half-space under each line and the loaded patches of the flanks. These hexahedra
+were solved before `fe3d` kept the faces of a crack apart, as `ritz3d` does.
 
-## What damage takes
+## Loss of stiffness by damage
 
-In percent: largest over the cycle, of the mean over the cycle, and of the damaged tooth's own pair.
+In percent: largest loss over the cycle, loss of the mean over the cycle, and loss of the damaged tooth's own pair.
 
 {drops}
 
-What moves the healthy stiffness: [assumptions.md](assumptions.md), and [herringbone_readings.md](herringbone_readings.md).
+Effects of other values on the healthy stiffness: [assumptions.md](assumptions.md) and
+[herringbone_readings.md](herringbone_readings.md).
 """
 PRINTED = """
 ## As printed, and after the stated corrections
@@ -57,7 +62,7 @@ PRINTED = """
 def said(rows):
     """By how much the section of the hexahedra on file stiffens k, in a sentence; computed once, with them, in commit 7e0439a."""
     parts = (
-        f"{row['pair'].replace('_', '-')} {100 * float(row['mean']):+.2f} % in the mean ({100 * float(row['least']):+.2f} to "
+        f"{row['pair'].replace('_', '-')} {100 * float(row['mean']):+.2f} % on average ({100 * float(row['least']):+.2f} to "
         f"{100 * float(row['most']):+.2f} %)"
         for row in rows
     )

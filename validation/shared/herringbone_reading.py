@@ -1,5 +1,5 @@
 # ruff: noqa: E501 lines of Markdown
-"""The scene `herringbone_contact_line` beside article S4's finite element column, and the opening of the page, from tables alone."""
+"""The scene `herringbone_contact_line` compared with article S4's finite element column, and the opening of the page, from tables alone."""
 
 import numpy as np
 
@@ -11,19 +11,25 @@ from .herringbone_contact_line import printed, reductions
 PAGE = """
 ## The reading that gives its finite element column: scene `herringbone_contact_line`
 
-**What the table is.** Its list of 'maximum reduction rates' is `1 - k / k_healthy` of the *analytical* column, {rounding}; the finite element column has reductions of its own ({own}). So values stand at one phase,
-that of the largest reduction, and solids are judged by the second list. 'Constrain the driven gear, and apply rotation to the driving
-gear': at the same rotation a damaged gear carries less than its share; k / k_healthy is raised to a power of {power}.
-
-Bores {sun:.2f} and {planet:.2f} of the root radius, a rim of 93 mm, a crack of p % of level p / 2, pits of 1.26 mm diameter: the reading that
-a scan of five unprinted values and eight layouts of pits found, which is a frozen page of its own ([herringbone_layouts.md](herringbone_layouts.md)): a fit, no evidence, and what would falsify it. `ritz3d` at full order, finite elements by `fe3d`, at the rotation of the healthy pair and the phase at
-which case 4 takes most; errors against S4's finite element column, reductions against its own.
+- The list of 'maximum reduction rates' is `1 - k / k_healthy` of the *analytical* column, {rounding}.
+- The finite element column has other reductions ({own}). Its values are therefore at one phase, that of the largest reduction.
+- S4 constrains the driven gear and rotates the driving gear. At the same rotation, a damaged gear carries less than its share. This
+  raises k / k_healthy to a power of {power}.
+- The scene has bores of {sun:.2f} and {planet:.2f} of the root radius and a rim of 93 mm. A crack of p % has the level p / 2, and pits have a
+  diameter of 1.26 mm.
+- A scan of five unprinted values and eight layouts of pits found this reading ([herringbone_layouts.md](herringbone_layouts.md)). It is a fit and
+  no evidence. That page also states observations that would falsify it.
+- Rotation: that of the healthy pair. Phase: that of the largest loss in case 4. Errors and reductions are relative to S4's finite element column.
 
 | pair | case | S4 FE | `ritz3d` [N/um] | error | reduction, S4 FE | `ritz3d` | points | largest within 0.25 base pitches | `herringbone_article` | `herringbone_article`, k_h with summed widths | `fe3d`, error |
 |---|---|---|---|---|---|---|---|---|---|---|---|
 {ten}
 
-The loss of case 4 is a plateau, nine tenths of the largest over {plateau:.2f} base pitches: {spike}. That is what pits along the line do, and what rows along the axis cannot.
+The loss of case 4 has a plateau: it exceeds nine tenths of the maximum over {plateau:.2f} base pitches. Losses by offset from the pitch point:
+
+{spike}
+
+Pits along the line cause such a plateau, and rows along the axis do not.
 
 Finite elements of these ten rows: `python -m validation herringbone --reference`, {seconds:.0f} s of one processor.
 
@@ -56,7 +62,9 @@ def spike():
     """Case 4's loss by offset from the pitch point."""
     known = line.load()
     lost = 100 * (1 - known["ritz3d", "sun_planet", "case4"] / known["ritz3d", "sun_planet", "healthy"])
-    return ", ".join(f"{value:.1f} % at {at:+g}" for at, value in zip(line.OFFSETS, lost, strict=True))
+    rows = [["offset [base pitches]", *(f"{at:+g}" for at in line.OFFSETS)], ["loss [%]", *(f"{value:.1f}" for value in lost)]]
+    head, body = (f"| {' | '.join(row)} |" for row in rows)
+    return "\n".join([head, "|---" * len(rows[0]) + "|", body])
 
 
 def plateau():
@@ -69,7 +77,7 @@ def plateau():
 
 
 def rounding():
-    """How many reductions of S4's list those of its analytical column can be, both rounded as printed, in words."""
+    """Number of reductions in S4's list that those of its analytical column can be, both rounded as printed, in words."""
     k = np.array([row.target / 1e6 for row in _reference("stiffness_analytical").rows]).reshape(2, 5)
     half = 5.0  # N/um: S4 prints 0.01e9 N/m
     low, high = (100 * (1 - (k[:, 1:] + s * half) / (k[:, :1] - s * half)) for s in (1, -1))
@@ -84,7 +92,7 @@ def _reference(name):
 
 
 def worst(method):
-    """Worst error [%] and worst reduction beside the own ones and beside the list [points], of the scene by a method."""
+    """Worst error [%] and worst reduction against its own column and against the list [points], of the scene by a method."""
     k, own = line.ours(method)[0], reductions(line.ours(method)[0])
     listed = np.array([row.value for row in _reference("stiffness_reduction").rows])
     apart = 100 * (k / printed() - 1), own - reductions(printed()), own - listed
@@ -95,11 +103,12 @@ def answer(bears, beyond):
     """The three sentences that the page opens with; `bears`: of the claim between formulas and finite elements."""
     (error, own, listed), (solid, points, beside) = worst("ritz3d"), worst("fe3d")
     return (
-        "S4's finite element column comes out: with pits that touch each other along the contact line through the pitch point in both "
-        f"halves `fe3d` is within {solid:.1f} % in all ten rows and within {points:.1f} points of their reductions, `ritz3d` within {error:.1f} % and "
-        f"{own:.1f} points ({beside:.1f} and {listed:.1f} points of the list of the formulas), by five "
-        f"unprinted values and one of eight [layouts](herringbone_layouts.md) chosen for ten printed numbers: a fit, no evidence. {bears} In the scene as it is, with usual "
-        f"values, the article's formulas are beyond 3 % in {beyond} of ten rows."
+        "- S4's finite element column can be fitted with pits that touch each other along the contact line in both halves. "
+        f"`fe3d` is then within {solid:.1f} % in all ten rows and {points:.1f} points of their reductions. `ritz3d` is within {error:.1f} % and "
+        f"{own:.1f} points ({beside:.1f} and {listed:.1f} points for the list of the formulas).\n"
+        "- This reading is a fit and no evidence. Five unprinted values and one of eight [layouts](herringbone_layouts.md) were chosen for ten numbers.\n"
+        f"- {bears}\n"
+        f"- In the scene with usual values, the article's formulas are beyond 3 % in {beyond} of ten rows."
     )
 
 

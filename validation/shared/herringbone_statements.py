@@ -1,4 +1,4 @@
-"""What article S4 concludes from its stiffness, in both readings: reductions by `ritz3d` of each fault alone and of both."""
+"""Conclusions of article S4 from its stiffness, in both readings: reductions by `ritz3d` of each fault alone and of both."""
 
 import numpy as np
 
@@ -10,13 +10,14 @@ from .kept_rows import kept
 
 SCENES = ("herringbone", "herringbone_contact_line")
 FAULTS = ("both", "crack", "pits")
-CLOSE = 0.1  # of the crack alone
+CLOSE = 0.1  # relative to the crack alone
 NAME = "herringbone_statements"
 TITLE = """
 ## What S4 concludes from its stiffness
 
-Largest reduction by `ritz3d` under the same load, within a quarter of a base pitch of the pitch point [%]: of crack and pits
-together; of the crack alone; of the pits alone. 'Close': the pits add less than a tenth of what the crack takes.
+The first table lists the largest reduction [%] by `ritz3d` under the same load, within a quarter of a base pitch of the pitch
+point. Its three values are for crack and pits together, for the crack alone and for the pits alone. 'Close' means that the pits
+add less than a tenth of the reduction by the crack.
 """
 
 
@@ -62,7 +63,7 @@ def verdicts(found, scene):
         (
             "pits beyond the crack, case 4: their contact loss dominates",
             sun[3]["pits"] > sun[3]["crack"],
-            f"14 pits alone take {sun[3]['pits']:.1f} %, the crack alone {sun[3]['crack']:.1f} %",
+            f"14 pits alone cause {sun[3]['pits']:.1f} %, the crack alone {sun[3]['crack']:.1f} %",
         ),
         (
             "sun and planet are more sensitive than planet and ring",

@@ -32,7 +32,7 @@ MEANT = {
     "mode_over_f_m": "mode of the housing, of f_m",
     "mode_damping": "its damping ratio",
 }
-ABSOLUTE = ("noise", "mode_over_f_m", "mode_damping")  # the others are factors of what the scene, or its machine, assumes
+ABSOLUTE = ("noise", "mode_over_f_m", "mode_damping")  # the others are factors of assumed values
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ def draws(page):
 
 
 def changed(made, draw):
-    """The machine with the loads, springs, damping, errors and play of a draw; its stiffness curves stay as they are."""
+    """The machine with the loads, springs, damping, errors and backlash of a draw; its stiffness curves stay as they are."""
     springs = []
     for one in made.springs:
         word = one.name.rpartition(" ")[2]

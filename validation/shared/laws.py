@@ -1,4 +1,4 @@
-"""Two laws of contact beside each other: what a page computes under the article's own, and under another."""
+"""Two laws of contact compared: values of a page under the article's law and under another."""
 
 from .places import TABLES
 from .table_rows import rows_of, write_table
@@ -21,7 +21,7 @@ def _cell(value):
 
 
 def tables(name, about, *laws):
-    """Lines of Markdown of what `beside` wrote."""
+    """Lines of Markdown of the table that `beside` wrote."""
     rows = rows_of(TABLES / f"{name}_laws.csv")
     lines = [f"{about}.", "", f"| quantity | case | {' | '.join(laws)} |", "|---|---|" + "---|" * len(laws)]
     last = ""

@@ -1,4 +1,4 @@
-"""The three sentences that open the page of a machine: what the article claims, what gearfe finds, what decides it."""
+"""The three sentences that open the page of a machine: claim, result and cause."""
 
 from gearfe import load_scene
 from gearfe.core.units import NEWTON_PER_UM
@@ -17,15 +17,15 @@ def planetary_pitting(found):
     ends = [f"{min(values):.0f} to {max(values):.0f}" for values in map(found.printed, ("sc_simulated", "sc_measured"))]
     beyond = [f"{x:g}" for x in (*found.printed("sc_simulated"), *found.printed("sc_measured")) if x > high]
     return (
-        f"that the sideband centroid SC grows with the number of pits on a sun tooth, {ends[0]} Hz simulated and {ends[1]} Hz "
-        f"measured, and hardly depends on impacts, while RMS ({_list(found.printed('rms'))} m/s^2), kurtosis and shape factor "
-        "tell the levels less well",
-        f"under the articles' own contact law, their N pits on one line, {_sizes(found, 'rms', 'RMS')} and "
-        f"{_sizes(found, 'amplitudes', 'peaks')}, and an SC of {', '.join(f'{x:.1f}' for x in sc)} Hz{same}"
-        f"; three repeats tell the levels apart by {', '.join(_telling(found)) or 'none of its indicators'}",
-        f"the definition of SC: it averages frequencies from {low:g} to {high:g} Hz, so that "
-        f"{' and '.join(beyond)} Hz cannot come out whatever the machine, while levels hang on load, masses and the path to the "
-        "sensor, which are not printed",
+        f"the sideband centroid SC increases with the number of pits on a sun tooth, {ends[0]} Hz simulated and {ends[1]} Hz "
+        "measured. It hardly depends on impacts. The levels are separated less well by "
+        f"RMS ({_list(found.printed('rms'))} m/s^2), kurtosis and shape factor",
+        f"SC is {', '.join(f'{x:.1f}' for x in sc)} Hz under the articles' own contact law, with N pits on one line{same}. "
+        f"The other values are {_sizes(found, 'rms', 'RMS')}, and {_sizes(found, 'amplitudes', 'peaks')}. "
+        f"Three repeats tell the levels apart by {', '.join(_telling(found)) or 'none of its indicators'}",
+        f"SC averages frequencies from {low:g} to {high:g} Hz by definition, so that "
+        f"{' and '.join(beyond)} Hz are impossible. Levels depend on load, masses and the path to the sensor, which are not "
+        "printed",
     )
 
 
@@ -60,15 +60,12 @@ def helical_pitting(found):
     yes = sum(row.verdict == REPRODUCED for row in said)
     multi = found.ours("statements", "multi: 2 f_r is the largest low line")
     return (
-        "that pits raise lines at multiples of the pinion's turning frequency f_r and sidebands about the mesh frequency "
-        "which grow with "
-        "the pit, and that several pits are known by 2 f_r, one large one by f_r",
-        f"that under the article's own law {yes} of its {len(said)} statements hold, not counting what follows from the "
-        "places assumed for the pits; "
-        f"2 f_r is {'' if multi else 'not '}the largest low line of the three pits",
-        "where the pits lie, which S3 does not print: pits on one tooth repeat once a turn and give most at f_r in the "
-        "lost contact "
-        "line, pits on two teeth nearly opposite give 2 f_r",
+        "pits raise lines at multiples of the pinion's shaft frequency f_r, and sidebands about the mesh frequency. The "
+        "sidebands grow with the pit. Several pits are recognised by 2 f_r, and one large pit by f_r",
+        f"under the article's own law {yes} of its {len(said)} statements hold. Statements that follow from the assumed "
+        f"places of the pits are not counted. 2 f_r is {'' if multi else 'not '}the largest low line of the three pits",
+        "S3 does not print the places of the pits. Pits on one tooth repeat once per revolution and contribute most at f_r in "
+        "the lost contact line. Pits on two nearly opposite teeth contribute at 2 f_r",
     )
 
 
@@ -82,17 +79,16 @@ def herringbone_machine(found):
     heavy = [a / b for a, b in zip(found.printed("inertias"), found.all("inertias"), strict=True)]
     order = [row.verdict == REPRODUCED for row in found.rows.values() if row.id == "statements" and row.case.endswith(HIGHER)]
     return (
-        f"that a crack and pits in the sun of a herringbone stage widen the sun's motion from {min(wide):g} to {max(wide):g} um, "
-        f"bring lines {found.ours('fault_frequency', 'N f_m / z_s'):g} Hz about the mesh line, and raise the kurtosis (up to "
+        f"a crack and pits in the sun of a herringbone stage widen the sun's motion from {min(wide):g} to {max(wide):g} um. They "
+        f"cause lines {found.ours('fault_frequency', 'N f_m / z_s'):g} Hz about the mesh line. The kurtosis increases (up to "
         f"{most[0]:.0f} %) more than the crest factor (up to {most[1]:.0f} %)",
-        f"the lines, and {sum(order)} of {len(order)} statements on which are higher, but a range along x of {min(span):.3g} to "
-        f"{max(span):.3g} um that the errors make and damage hardly moves, and increments of at most {kurtosis:.2g} % (kurtosis) "
-        f"and {crest:.2g} % (crest factor) of the sun's angular acceleration with the errors assumed, {bare[0]:.2g} and "
-        f"{bare[1]:.2g} % without any in the states below "
-        "(the stiffness tables are on [their own page](herringbone.md))",
-        "sizes of errors, supports and damping, none of them printed: three planets in phase cancel in x, and printed "
-        f"inertias {min(heavy):.0f} to {max(heavy):.0f} "
-        "times too large for such gears hold the sun's rotation still",
+        f"the lines appear, and {sum(order)} of {len(order)} statements on their order hold. The range along x is "
+        f"{min(span):.3g} to {max(span):.3g} um, which the errors cause and damage hardly changes. For the sun's angular "
+        f"acceleration, the kurtosis increases by at most {kurtosis:.2g} % and the crest factor by {crest:.2g} %. Without "
+        f"errors, the increases are {bare[0]:.2g} and {bare[1]:.2g} %. The stiffness tables are on "
+        "[their own page](herringbone.md)",
+        "the sizes of errors, supports and damping are not printed. Three planets in phase cancel in x. The printed inertias "
+        f"are {min(heavy):.0f} to {max(heavy):.0f} times too large for such gears, so that the sun hardly rotates",
     )
 
 
@@ -117,14 +113,14 @@ def compound_planetary(found):
     low, high = (f(means) / NEWTON_PER_UM for f in (min, max))
     ratios = dict(zip(("b_c", "s1", "s2"), found.printed("stiffness_ratio"), strict=True))
     return (
-        f"mean stiffnesses of five meshes from {low:.0f} to {high:.0f} N/um, and sidebands {lines[0]:g} and {lines[1]:g} Hz "
-        "about two mesh lines for cracked sun teeth, found in measured signals by kurtosis and kurtogram",
-        f"the frequencies and sidebands, and with the article's beams {beams:.0f} N/um for sun and planet, but ring meshes "
-        f"{rings[0]:.2f} and {rings[1]:.2f} times as stiff instead of {ratios['s1']:.2f} and {ratios['s2']:.2f}, a converged "
-        f"stiffness of the same gears of {true:.0f} N/um, {beams / true:.1f} times less, and kurtoses of {min(heard):.3g} to "
+        f"five mean stiffnesses are {low:.0f} to {high:.0f} N/um. Cracked sun teeth cause sidebands {lines[0]:g} and "
+        f"{lines[1]:g} Hz about two mesh lines, found in measured signals by kurtosis and kurtogram",
+        f"the frequencies and sidebands agree. The article's beams give {beams:.0f} N/um for sun and planet. Ring meshes are "
+        f"{rings[0]:.2f} and {rings[1]:.2f} times as stiff instead of {ratios['s1']:.2f} and {ratios['s2']:.2f}. The converged "
+        f"stiffness of the same gears is {true:.0f} N/um, {beams / true:.1f} times less. The kurtosis is {min(heard):.3g} to "
         f"{max(heard):.3g} instead of {min(measured):.3g} to {max(measured):.3g}",
-        "the foundation under the teeth, which the article leaves out, its lost table of parameters, and whether a "
-        "broken tooth is absent, as here, or a deep crack",
+        "the article omits the foundation under the teeth, and its table of parameters is lost. A broken tooth may be absent, "
+        "as here, or a deep crack",
     )
 
 

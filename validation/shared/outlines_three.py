@@ -1,4 +1,4 @@
-"""Undercut helical pairs whose form corners touch, pressed by CalculiX with their whole flanks and fillets, beside `ritz3d`.
+"""Undercut helical pairs whose form corners touch, pressed by CalculiX with whole flanks and fillets, and `ritz3d`.
 
 `reference` computes `tables/outlines_three.jsonl` if `ccx` is there, a run at a time.
 """
@@ -62,7 +62,7 @@ def ours(name):
 
 
 def ours_row(name):
-    """What `ritz3d` finds, as a row."""
+    """Result of `ritz3d`, as a row."""
     return dict(zip(("k", "approach", "carried", "path only"), map(float, ours(name)), strict=True))
 
 
@@ -92,7 +92,7 @@ def stored():
 
 
 def reference():
-    """Compute the finest mesh of each case, coarser ones only if they are not on file; without CalculiX say so."""
+    """Compute the finest mesh of each case, coarser ones only if they are not on file; without CalculiX print a message."""
     if not installed():
         return
     for name, mesh, key in wanted():

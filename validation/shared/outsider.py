@@ -1,4 +1,4 @@
-"""CalculiX on whole gears, under line loads and in contact, beside `ritz3d`: the cases, and every run kept in a table.
+"""CalculiX on whole gears, under line loads and in contact, compared with `ritz3d`: the cases, and every run kept in a table.
 
 A run depends on its deck alone, whose digest is in its row: gears in contact are turned by the approach that `ritz3d` had when
 the run was made, which the row keeps, so that a change of `ritz3d` alone asks for no other deck.
@@ -27,9 +27,9 @@ TABLE, OURS = "outsider_three", "outsider_three_ritz3d"  # tables of rows: runs 
 STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 300.0  # N/mm
 PITTED = 600.0  # N/mm of pairs with pits: a contact 1.4 times as wide, so that fewer elements follow it around the pits
-PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by what the deck does with them
+PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by their treatment in the deck
 STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # finer along the contact lines only
-# of pairs with pits, whose rims follow; with contact springs ten times softer than by default, which cost k less than 0.1 %
+# pairs with pits, whose rims follow; with contact springs ten times softer than by default, which cost k less than 0.1 %
 RIMS = ({"per_width": 0.67, "penalty": 50}, {"per_width": 1.0, "refine": 1.4, "penalty": 50})
 ALL_FINER = {"per_width": 1.0, "refine": 1.3}  # everywhere
 SHOWN = "helical, healthy"  # whose load sharing is kept
@@ -38,10 +38,10 @@ RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
-    """A pair in contact: `damage` as of `mesh_stiffness`, the phase, load [N/mm], meshes as options of `write_contact_inp`.
+class OutsiderCase:
+    """A pair in contact: `damage` as in `mesh_stiffness`, the phase, load [N/mm], meshes as options of `write_contact_inp`.
 
-    `pits` as of `write_contact_inp`: a case with pits has two controls in the same mesh.
+    `pits` as in `write_contact_inp`: a case with pits has two controls in the same mesh.
     """
 
     pair: gf.GearPair
@@ -82,11 +82,11 @@ def cases():
     """Cases in contact, by name, in order of importance."""
     crack, part = gf.Crack(level=0.5), gf.Crack(level=0.5, width=(0.0, 3.0))
     return {
-        SHOWN: Case(pair_of(15.0), meshes=(*STRIP, ALL_FINER)),
-        "helical, crack 50 %": Case(pair_of(15.0), damage={"pinion": [crack]}),
-        "helical, crack 50 % over half the width": Case(pair_of(15.0), damage={"pinion": [part]}),
-        "spur, healthy": Case(pair_of(0.0)),
-        "ring, healthy": Case(ring_pair()),
+        SHOWN: OutsiderCase(pair_of(15.0), meshes=(*STRIP, ALL_FINER)),
+        "helical, crack 50 %": OutsiderCase(pair_of(15.0), damage={"pinion": [crack]}),
+        "helical, crack 50 % over half the width": OutsiderCase(pair_of(15.0), damage={"pinion": [part]}),
+        "spur, healthy": OutsiderCase(pair_of(0.0)),
+        "ring, healthy": OutsiderCase(ring_pair()),
         **_with_control("helical, two pits", pits(), RIMS),
     }
 
@@ -94,7 +94,7 @@ def cases():
 def _with_control(name, damage, meshes):
     """A case with pits cut out; in the same mesh with contact lost there but the material left; and with nothing of them."""
     options = {"damage": {"pinion": damage}, "meshes": meshes, "load": PITTED}
-    return {f"{name} {end}": Case(pair_of(15.0), pits=kind, **options) for kind, end in PITS.items()}
+    return {f"{name} {end}": OutsiderCase(pair_of(15.0), pits=kind, **options) for kind, end in PITS.items()}
 
 
 def lines():
@@ -165,7 +165,7 @@ def contact_row(name, mesh):
 
 
 def ritz3d_row(name):
-    """What `ritz3d` finds in a case: deflection [nm/N], or stiffness [N/um], approach [mm] and what tooth pairs carry."""
+    """Result of `ritz3d` in a case: deflection [nm/N], or stiffness [N/um], approach [mm] and what tooth pairs carry."""
     if name in lines():
         return {"value": line_deflection(name)}
     case = cases()[name]
@@ -222,7 +222,7 @@ def refresh(again=False):
 
 
 def reference():
-    """Compute the finest mesh of each case, coarser ones only if they are not on file; without CalculiX say so."""
+    """Compute the finest mesh of each case, coarser ones only if they are not on file; without CalculiX print a message."""
     if not installed():
         return
     for name, mesh in wanted():

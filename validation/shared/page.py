@@ -23,7 +23,6 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "three": "Is the stiffness in three dimensions right?",
     "assumptions": "What do values that articles leave out do to the stiffness?",
     "speed": "What does each method cost, and how wrong is it?",
-    "dynamics": "Are simulated vibrations integrated correctly?",
     "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
     "two_minutes": "The articles in two minutes: what do they claim, and what is found?",
     "printed": "What became of every number that the articles print?",
@@ -47,7 +46,7 @@ def text(name, answer, *sections):
 
 
 def filled(parts):
-    """Lines of `parts` with their paragraphs, which are neither tables, lists, headings nor pictures, broken anew."""
+    """Lines of `parts` with their paragraphs, which are neither tables, lists, headings nor pictures, wrapped again."""
     lines = (line for part in parts for line in (textwrap.dedent(part).rstrip().splitlines() if "\n" in part else [part]))
     for prose, group in groupby(lines, lambda line: re.match(r"(?!\d+\. |- )[^|#!\s]", line) is not None):
         own = list(group)

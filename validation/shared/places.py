@@ -1,4 +1,4 @@
-"""Where generated pages and tables, independent values and the README lie, and which sources compute them."""
+"""Paths of generated pages and tables, independent values and the README, and the sources that compute them."""
 
 import hashlib
 from functools import cache

@@ -188,7 +188,7 @@ def lin_parker(n=3, k_ru=1e9):
 
 
 def natural_frequencies():
-    """Of `lin_parker`: rotational modes, then translational ones [Hz], told apart by the motion of the central bodies."""
+    """Natural frequencies of `lin_parker` [Hz], rotational then translational modes, separated by the central bodies."""
     stage = lin_parker()
     values, modes = gf.natural_frequencies(stage)
     places = [stage.dofs.index(f"{body}.{axis}") for body in ("sun", "ring", "carrier") for axis in "xy"]

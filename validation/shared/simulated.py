@@ -46,7 +46,7 @@ def periodic(name, case=None, method="ritz3d"):
 
 
 def record(made, seconds, rate, settle, start=None):
-    """Response of `made` from `settle` on, `seconds` long, `rate` samples per second; `start` as of `gearfe.simulate`."""
+    """Response of `made` from `settle` on, `seconds` long, `rate` samples per second; `start` as in `gearfe.simulate`."""
     options = {}
     if (made.law["power"] == 1).all():  # not steep: nowhere halved
         options["step"] = 1 / rate / math.ceil(1 / rate / default_step(made) * (1 - 1e-9))
@@ -93,7 +93,7 @@ def knocked(made, load, options, seconds):
 
 
 def told(response):
-    """What a simulation was made with, read from its machine and its times: one sentence."""
+    """Settings of a simulation in one sentence, read from its machine and its times."""
     made, time = response.machine, response.time
     step, law = float(time[1] - time[0]), made.law
     impact = law["power"] != 1

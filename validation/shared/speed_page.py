@@ -1,4 +1,4 @@
-"""Sections and picture of the page of speed against error, of what one run measured."""
+"""Sections and picture of the page of speed against error, of the values measured in one run."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from gearfe.figures.look import MARKS, look
 from .places import PAGES
 
 PICTURE = PAGES / "speed.png"
-# of a row of a method: its family, name, seconds, mean and largest error, whether it is the default, anything else
+# columns of a row of a method: its family, name, seconds, mean and largest error, whether it is the default, anything else
 FAMILY, METHOD, SECONDS, MEAN, MOST, DEFAULT, MORE = range(7)
 PARTS = {
     "sections": ("sections, k over 64 phases", "largest error of k [%]", "seconds for 64 phases"),

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -60,40 +59,7 @@ def compound(damaged):
     return gf.build_machine(gf.load_scene("compound_planetary"), "crack50" if damaged else None, phases=64, method="ritz")
 
 
-def stiff(made):
-    """The machine with all its springs 100 times stiffer, at the same damping ratios."""
-    return replace(made, springs=tuple(replace(s, k=100 * s.k, c=10 * s.c) for s in made.springs))
-
-
-def shaken(made, amplitude=40e-6):
-    """The machine with play and errors that open every mesh."""
-    meshes = [
-        replace(m, backlash=1e-4, zeta=0.05, error=((amplitude, 5 * m.frequency, 1.3 * i),)) for i, m in enumerate(made.meshes)
-    ]
-    return replace(made, meshes=tuple(meshes))
-
-
 def article(case="severe_rows"):
     """The planetary stage of S0 under its impact law, with friction and pulses on the carrier."""
     scene = gf.load_scene("planetary_pitting")
     return gf.build_machine(replace(scene, machine=scene.machine | {"contact": "impact"}), case)
-
-
-def machines():
-    """(name, callable that makes the machine, duration [s] of about three mesh cycles) of all four scenes."""
-    kinds = (("planetary_pitting", spur, 0.008), ("compound_planetary", compound, 0.008))
-    kinds += (("helical_pitting", helical, 0.004), ("herringbone", stage, 0.005))
-    for name, made, duration in kinds:
-        for case in (False, True):
-            yield f"{name}, {'damaged' if case else 'healthy'}", partial(made, case), duration
-    for name, made, duration in kinds:
-        yield f"{name}, damaged, springs 100 times stiffer", lambda made=made: stiff(made(True)), duration / 2
-    for name, made, duration in (kinds[0], kinds[1], kinds[3]):
-        for case in (False, True):
-            yield (
-                f"{name}, {'damaged' if case else 'healthy'}, contact loss",
-                lambda made=made, case=case: shaken(made(case)),
-                duration / 2,
-            )
-    yield "planetary_pitting, impact law, healthy", lambda: article(None), 0.004
-    yield "planetary_pitting, impact law, friction, pulses", article, 0.004

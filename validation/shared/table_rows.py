@@ -3,7 +3,7 @@
 import csv
 
 from gearfe.core.files import written
-from gearfe.scene.verdicts import COLUMNS, Row
+from gearfe.scene.verdicts import COLUMNS, PrintedRow
 
 from .places import TABLES
 
@@ -40,14 +40,14 @@ def write(name, rows):
 def read(name):
     """Rows of a page with verdicts."""
     numbers = COLUMNS[3:7]
-    return [Row(**{c: float(r[c]) if c in numbers else r[c] for c in COLUMNS}) for r in rows_of(TABLES / f"{name}.csv")]
+    return [PrintedRow(**{c: float(r[c]) if c in numbers else r[c] for c in COLUMNS}) for r in rows_of(TABLES / f"{name}.csv")]
 
 
 def write_runs(name, runs):
-    """Write what the simulations behind a page were made with, by their names."""
+    """Write the settings of the simulations behind a page, by their names."""
     write_table(TABLES / f"{name}_runs.csv", ("run", "made with"), runs.items())
 
 
 def read_runs(name):
-    """What `write_runs` wrote."""
+    """Settings that `write_runs` wrote."""
     return {row["run"]: row["made with"] for row in rows_of(TABLES / f"{name}_runs.csv")}

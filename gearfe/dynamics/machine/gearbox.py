@@ -15,7 +15,7 @@ from .loads import Load
 from .member import gear_member
 from .planetary import stage_phases
 from .scene_curves import Meshed, scene_machine
-from .shaft_chain import Chain, bearing_springs, chain, lumps, shaft_springs, station
+from .shaft_chain import Chain, bearing_springs, chain, lumps, shaft_springs
 from .springs import Spring
 from .stages import Stage
 from .tables import Machine
@@ -97,6 +97,9 @@ def gearbox(scene, stiffness, damage):
         "torques [N m]": dict(train.torques),
         "mass of shafts": "lumped at the stations",
     }
+    if len(train.stages) == 1:  # counter-clockwise as the planets are numbered, for sensors on the ring
+        (name, stage), *_ = train.stages.items()
+        notes["carrier frequency [Hz]"] = _sense(scene, name)[1] * train.speeds[stage.carrier] / (2 * math.pi)
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, _stages(scene), rotors=rotors)
 
 
@@ -142,7 +145,7 @@ def _stations(scene, chains):
                 thick = 1e-3 * scene.gears[body].b
                 mass, polar = mass + gear.mass, polar + gear.inertia
                 across += gear.inertia / 2 + gear.mass * thick**2 / 12
-            out.append(station(body, (mass, polar + rigid.get(body, 0.0), across), DOFS[run["dofs"]]))
+            out.append(Body(body, mass, polar + rigid.get(body, 0.0), DOFS[run["dofs"]], across))
     return out
 
 
@@ -156,7 +159,7 @@ def _ends(train):
     for name, end in train.ends.items():
         if end["torsion_Nm_per_mrad"] is not None:
             if not end["inertia_kgm2"] > 0:
-                raise ValueError(f"[{name}] inertia_kgm2 = 0, but what stands behind an elastic coupling has a moment of inertia")
+                raise ValueError(f"[{name}] inertia_kgm2 = 0, but a member behind an elastic coupling needs a moment of inertia")
             out.append(Body(name, 0.0, end["inertia_kgm2"], "theta"))
     return out
 

@@ -13,12 +13,12 @@ from .of_scene import flat_machine
 from .tables import Machine
 
 DEEPEST = 10_000  # teeth at most by which a frequency is divided
-SAME = 1e-9  # of a frequency: two values of one line
+SAME = 1e-9  # relative difference of frequencies of one line
 BEARING = {"cage": "FTF, cage", "outer": "BPFO, outer race", "inner": "BPFI, inner race", "roller": "BSF, rotation of a roller"}
 
 
 class Line(NamedTuple):
-    """A frequency [Hz], what it is of, its name, and where it comes from."""
+    """Spectral line: frequency [Hz], machine part, name, and origin."""
 
     frequency: float
     part: str
@@ -102,7 +102,7 @@ def _shafts(scene):
 
 
 def _stages(machine: Machine, alone: bool) -> Iterator[Line]:
-    """Lines of the stages; `alone`: the gears of pairs have no shafts with lines of their own."""
+    """Return the lines of the stages; `alone`: the machine has no shafts, so that gears of pairs have shaft frequencies."""
     for stage in machine.stages:
         part, z = f"stage {stage.name}", round(stage.mesh / stage.turning)
         driver = stage.driver[0] if len(stage.driver) == 1 else stage.driver[0].rstrip("LR")

@@ -1,4 +1,4 @@
-"""Stiffness over the mesh phase as tables, and what damaged teeth change of it."""
+"""Stiffness over the mesh phase as tables, and its changes by damaged teeth."""
 
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
@@ -10,13 +10,13 @@ from ...core.checks import numbers
 from ...geometry.aliases import Floats
 from ...stiffness.curve import StiffnessCurve
 from .force_law import ForceLaw
-from .phase_table import SMOOTH, Table, smooth_table, table
+from .phase_table import SMOOTH, PhaseTable, smooth_table, table
 
 FINE = 1024  # samples per cycle that curves on uneven phases are brought to
 
 
 class Samples(NamedTuple):
-    """Stiffness `k` [N/m^power] at phases, of what is no `StiffnessCurve`: contact coefficients, or curves of other programs."""
+    """Stiffness `k` [N/m^power] at phases from other sources: contact coefficients, or curves of other programs."""
 
     phase: Floats
     k: Floats
@@ -25,12 +25,12 @@ class Samples(NamedTuple):
 Curve = StiffnessCurve | Samples  # stiffness over the phase
 
 
-Stiffness = float | Floats | Curve | ForceLaw | Table  # what `GearMesh` takes
-Change = tuple[float, float, Table]  # cycles until it returns, the first of them, and the change over the phase from there on
-ALIKE = 1e-6  # of a mesh cycle, of a cell: how far samples of two curves are apart that count as the same
+Stiffness = float | Floats | Curve | ForceLaw | PhaseTable  # types of stiffness that `GearMesh` accepts
+Change = tuple[float, float, PhaseTable]  # cycles until it returns, the first of them, the change over the phase from there
+ALIKE = 1e-6  # tolerance of equal samples of two curves [mesh cycles, cells]
 
 
-def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[Table, Any], Any] = Table.__call__) -> Any:
+def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[PhaseTable, Any], Any] = PhaseTable.__call__) -> Any:
     """Sum of all changes at running phases, or of another `value` of their tables."""
     running: Floats = np.asarray(phase, dtype=float)
     out = np.zeros(running.shape)
@@ -61,12 +61,12 @@ def cells_of(changes: Iterable[Change], start: float, width: float, count: int) 
     return out
 
 
-def cycle_table(stiffness: Stiffness) -> Table:
-    """`Table` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law.
+def cycle_table(stiffness: Stiffness) -> PhaseTable:
+    """`PhaseTable` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law.
 
     Through samples smooth cubics (`machine.phase_table.smooth_table`), through a `StiffnessCurve` those of `table`.
     """
-    if isinstance(stiffness, Table):
+    if isinstance(stiffness, PhaseTable):
         return stiffness
     if isinstance(stiffness, ForceLaw):
         stiffness = Samples(*stiffness.at(stiffness.force))

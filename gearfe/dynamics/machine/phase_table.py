@@ -7,11 +7,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...geometry.aliases import Floats
 
-SMOOTH = 5  # samples of a period at least that slopes of fourth order are made of
+SMOOTH = 5  # minimum number of samples of a period for slopes of fourth order
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class PhaseTable:
     """A function of the phase by monotone cubics over equal cells: a ramp stays a ramp, no overshoot, no staircase.
 
     Attributes
@@ -43,7 +43,7 @@ class Table:
         return (a + u * (b + u * (c + u * d))).T
 
     def slope(self, phase: ArrayLike) -> Floats:
-        """Derivative by the phase, at phases as of a call."""
+        """Return the derivative by the phase, at phases like those of a call."""
         (_, b, c, d), u = self._cubic(phase)
         return ((b + u * (2 * c + 3 * u * d)) / self.width).T
 
@@ -53,8 +53,8 @@ class Table:
         return float((self.cells @ (1, 1 / 2, 1 / 3, 1 / 4)).mean())
 
 
-def table(values: ArrayLike, start: float, width: float, *, periodic: bool) -> Table:
-    """`Table` through equally spaced `values`; `periodic` ones close with the first value (F. N. Fritsch, J. Butland, 1984)."""
+def table(values: ArrayLike, start: float, width: float, *, periodic: bool) -> PhaseTable:
+    """`PhaseTable` through equally spaced `values`; `periodic` ones close with the first (F. N. Fritsch, J. Butland, 1984)."""
     values = np.asarray(values, dtype=float)
     values = np.append(values, values[0]) if periodic else values
     rise = np.diff(values)
@@ -62,19 +62,19 @@ def table(values: ArrayLike, start: float, width: float, *, periodic: bool) -> T
     product = before * after
     slope = np.where(product > 0, 2 * product / np.where(product > 0, before + after, 1.0), 0.0)
     slope = np.append(slope, slope[0]) if periodic else np.concatenate([[0.0], slope, [0.0]])
-    return Table(start, width, _cubics(values, slope))
+    return PhaseTable(start, width, _cubics(values, slope))
 
 
 def _cubics(values, slope):
-    """Cells of `Table` of values and slopes (per cell) at both ends of each."""
+    """Cells of `PhaseTable` of values and slopes (per cell) at both ends of each."""
     rise, left, right = np.diff(values), slope[:-1], slope[1:]
     return np.stack([values[:-1], left, 3 * rise - 2 * left - right, left + right - 2 * rise], axis=1)
 
 
-def smooth_table(values: Floats) -> Table:
-    """`Table` of one cycle through equally spaced `values`, `SMOOTH` or more, with `smooth_slopes`."""
+def smooth_table(values: Floats) -> PhaseTable:
+    """`PhaseTable` of one cycle through equally spaced `values`, `SMOOTH` or more, with `smooth_slopes`."""
     slope = smooth_slopes(values)
-    return Table(0.0, 1 / values.size, _cubics(np.append(values, values[0]), np.append(slope, slope[0])))
+    return PhaseTable(0.0, 1 / values.size, _cubics(np.append(values, values[0]), np.append(slope, slope[0])))
 
 
 def smooth_slopes(values: Floats) -> Floats:
@@ -120,5 +120,5 @@ def smooth_slopes(values: Floats) -> Floats:
 
 
 def _smaller(one, two):
-    """The smaller of two numbers of one sign, 0 of two signs (minmod)."""
+    """Return the smaller of two numbers of one sign, 0 for different signs (minmod)."""
     return np.where(one * two > 0, np.sign(one) * np.minimum(np.abs(one), np.abs(two)), 0.0)

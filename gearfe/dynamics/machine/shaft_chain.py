@@ -1,14 +1,13 @@
 """Shafts of a gearbox as a chain of stations: lumped masses between exact massless pieces of Timoshenko's beam."""
 
 import math
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from ...core.supports.beam import Section, pieces_between
+from ...core.supports.beam import ShaftPiece, pieces_between
 from ...scene.train import TrainShaft
-from .layout import SPACE, Body, Layout
+from .layout import SPACE, Layout
 from .springs import Spring
 
 
@@ -18,7 +17,7 @@ class Chain(NamedTuple):
     shaft: TrainShaft
     places: list[float]
     names: list[str]
-    pieces: list[tuple[float, Section]]
+    pieces: list[tuple[float, ShaftPiece]]
 
     def at(self, place: float) -> str:
         """Name of the station at a position [mm]."""
@@ -56,10 +55,10 @@ def lumps(made: Chain, density: float) -> list[list[float]]:
 def shaft_springs(layout: Layout, made: Chain, name: str, damping: float) -> list[Spring]:
     """Springs of the pieces of a shaft, all called `name`, with dampers of `damping` [s] times their stiffness.
 
-    The strain energy of a uniform piece of Timoshenko's beam is a sum of squares (J. S. Przemieniecki, Theory of Matrix
+    Twice the strain energy of a uniform piece of Timoshenko's beam is a sum of squares (J. S. Przemieniecki, Theory of Matrix
     Structural Analysis, 1968, section 5.6), in each plane with displacement w and slope s::
 
-        E I / l (s2 - s1)**2 + 12 E I / (span**3 (1 + phi)) (w2 - w1 - l (s1 + s2) / 2)**2
+        E I / l (s2 - s1)**2 + 12 E I / (l**3 (1 + phi)) (w2 - w1 - l (s1 + s2) / 2)**2
     """
     out, material = [], made.shaft.material
     zero = np.zeros(len(layout.dofs))
@@ -93,8 +92,3 @@ def bearing_springs(layout: Layout, made: Chain, name: str, zeta: float = 0.02) 
             if k > 0:
                 out.append(Spring(f"{name}{i + 1} {dof}", layout.unit(body, dof), k, c))
     return out
-
-
-def station(name: str, lump: Sequence[float], dofs: str) -> Body:
-    """`Body` of a station."""
-    return Body(name, lump[0], lump[1], dofs, lump[2])

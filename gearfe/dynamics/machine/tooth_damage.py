@@ -1,4 +1,4 @@
-"""`ToothDamage`: a damaged tooth of a mesh, and the table of what it changes."""
+"""`ToothDamage`: a damaged tooth of a mesh, and the table of its stiffness change."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from ...core.checks import whole
 from ...stiffness.curve import StiffnessCurve
 from .force_law import ForceLaw
 from .mesh_curves import ALIKE, Change, Curve, Samples, cells_of, changed
-from .phase_table import Table, table
+from .phase_table import PhaseTable, table
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +43,8 @@ class ToothDamage:
         if self.every is not None:
             whole("damaged tooth: every", self.every, 1)
 
-    def change(self, usual: Sequence[Change], first: float, cycles: int, name: str = "k") -> Table:
-        """`Table` of the difference of `name` from the sum of what is `usual`, zero one cell beyond either end.
+    def change(self, usual: Sequence[Change], first: float, cycles: int, name: str = "k") -> PhaseTable:
+        """`PhaseTable` of the difference of `name` from the sum of what is `usual`, zero one cell beyond either end.
 
         `first` is the running phase at which the tooth enters, `cycles` those until it returns; a curve that lasts as long
         repeats. Of curves at the same samples the cubics are subtracted: their sum is that through the curve itself.
@@ -65,10 +65,10 @@ class ToothDamage:
             beyond = width * np.array([-2, -1])
             before, after = (changed(usual, first + end) for end in (grid[0] + beyond, grid[-1] - beyond[::-1]))
             own = table(np.concatenate([before, values, after]), grid[0] - 2 * width, width, periodic=False)
-            own = Table(grid[0] - width, width, own.cells[1:-1])
+            own = PhaseTable(grid[0] - width, width, own.cells[1:-1])
         cells = cells_of(usual, first + own.start, width, len(own.cells))
         if cells is not None and isinstance(self.curve, StiffnessCurve):
-            return Table(own.start, width, own.cells - cells)
+            return PhaseTable(own.start, width, own.cells - cells)
         values = values - changed(usual, first + grid)
         values = values if whole else np.concatenate([[0.0], values, [0.0]])
         return table(values, grid[0] if whole else grid[0] - width, width, periodic=whole)

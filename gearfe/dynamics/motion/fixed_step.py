@@ -29,7 +29,7 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
     start : float
         [s]
     adapt : bool
-        Under a law of contact that is not linear, halve steps also where `motion.propagator.Plan.allowed` asks for it.
+        Under a law of contact that is not linear, halve steps also where `motion.propagator.RunMatrices.allowed` asks for it.
     counts : tuple of int
         Of `gearfe.dynamics.motion.thinned.stages`, their product `every`; none: channels are not filtered.
     plan : Plan, optional
@@ -92,7 +92,7 @@ def _filtered(run, machine, flat, plan, z, steps, start, counts):
 
 
 def _channels(machine, flat, plan):
-    """Function that makes `Response.filtered` of filtered states and what acts (`gearfe.dynamics.motion.loop.run`).
+    """Return the function that makes `Response.filtered` from filtered states and excitations (`gearfe.dynamics.motion.loop`).
 
     All channels are a linear part of these, so that fewer numbers are filtered than there are channels, and only such as the
     loop computes in any case.

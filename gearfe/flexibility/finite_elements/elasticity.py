@@ -31,7 +31,7 @@ def _dx_dy(u, v, _):
     return v.grad[0] * u.grad[1]
 
 
-class Body:
+class HeldSection:
     """A section held at its boundary ``held``, factored once.
 
     Displacements are arrays ``(2 * nodes, n)`` [mm per N/mm of width], interleaved x, y by node of the P2 mesh; nodes

@@ -1,4 +1,4 @@
-"""What functions of one gear and one loaded tooth are given: checked before any work, placed, and as nodal forces."""
+"""Inputs of functions of one gear and one loaded tooth: checked before any work, placed, and as nodal forces."""
 
 import math
 
@@ -12,7 +12,7 @@ from ...geometry.mesh.outline import stations
 from ...geometry.mesh.section_mesh import section
 from ...geometry.tooth.gear import Gear
 from ...geometry.tooth.profile import arc_at
-from .elasticity import Body
+from .elasticity import HeldSection
 from .fe import flank_load
 
 MOST_LOAD = 0.05  # N/mm over E m_n: no mesh of teeth is stiffer than b E / 5, so that it would approach by m_n / 4
@@ -58,7 +58,7 @@ def check_load_along(line_load, gear, material):
         raise ValueError(f"line_load at {SAMPLES} heights z: {error}; give a function of an array of heights [mm]") from error
     if values.dtype.kind not in "iuf" or not np.isfinite(load).all() or load.min() < 0 or not load.max() > 0:
         raise ValueError(
-            f"line_load from z = 0 to {b:g} mm gives {load[0]!s} to {load[-1]!s}, but a tooth is pushed: give numbers >= 0 "
+            f"line_load from z = 0 to {b:g} mm gives {load[0]!s} to {load[-1]!s}, but loads are compressive: give numbers >= 0 "
             "[N/mm], somewhere > 0"
         )
     check_line_load(float(load.max()), gear, material)
@@ -86,14 +86,14 @@ def edge_lengths(gear, edges, refine):
 
 
 def narrow_section(gear, material, state, edge, load, tooth=0, cracks=()):
-    """Section of a gear meshed for a narrow load on a tooth, its `Body`, and the nodal forces of a unit load.
+    """Section of a gear meshed for a narrow load on a tooth, its `HeldSection`, and the nodal forces of a unit load.
 
     `edge` are its edge lengths [mm], `load` the arc [mm] of the load, its half width [mm] and the edge length there [mm].
     """
     arc, half_width, fine = load
     roll = stations(gear, edge["flank"], patches=[(arc - half_width, arc + half_width, fine)])
     mesh = section(gear, {tooth: roll}, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], cracks=cracks)
-    return mesh, Body(mesh.mesh, material, state=state), narrow_load(mesh, tooth, arc, half_width)
+    return mesh, HeldSection(mesh.mesh, material, state=state), narrow_load(mesh, tooth, arc, half_width)
 
 
 def narrow_load(mesh, tooth, arc, half_width):

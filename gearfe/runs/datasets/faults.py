@@ -1,4 +1,4 @@
-"""Kinds of fault a data set can hold: a row says which key of a scene its severity is."""
+"""Fault types of a data set: for each, the key of the scene that is its severity."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 from ...scene.schema import LISTS, scene_schema
 
 HEALTHY = "healthy"
-CASE = "fault"  # the case of damage that a fault is in its scene
+CASE = "fault"  # name of the case of damage in the scene of a fault
 
 
-class Fault(NamedTuple):
-    """A kind of fault: the key of a scene that its severity is, and the unit of that.
+class FaultKind(NamedTuple):
+    """Fault type: the key of a scene that is its severity, and its unit.
 
     A key without a name after the point has no severity. Its table has the keys of ``KIND_fault`` in ``gearfe/runs/keys.toml``.
     """
@@ -36,10 +36,10 @@ class Fault(NamedTuple):
 
 
 FAULTS = {
-    "crack": Fault("crack.level", "-"),
-    "pits": Fault("pits.axes_mm", "mm"),
-    "missing_tooth": Fault("missing_tooth.", "-"),
-    "chip": Fault("chip.depth_mm", "mm"),
-    "runout": Fault("machine.runout_um", "um"),
-    "misplaced": Fault("machine.misplaced_um", "um"),
+    "crack": FaultKind("crack.level", "-"),
+    "pits": FaultKind("pits.axes_mm", "mm"),
+    "missing_tooth": FaultKind("missing_tooth.", "-"),
+    "chip": FaultKind("chip.depth_mm", "mm"),
+    "runout": FaultKind("machine.runout_um", "um"),
+    "misplaced": FaultKind("machine.misplaced_um", "um"),
 }

@@ -16,8 +16,8 @@ LEAST = 1e-9  # part of a distribution that must lie within its limits: below, i
 METHODS = ("sobol", "random", "latin", "saltelli")
 
 
-class Shape(NamedTuple):
-    """A distribution: what its parameters are, how it is made of them, and what they must be, as a rule and in words."""
+class Distribution(NamedTuple):
+    """Distribution: names of its parameters, its constructor, and the rule for them as a function and in words."""
 
     size: int
     meaning: str
@@ -32,13 +32,13 @@ def _rises(values):
 
 RISING = (_rises, "the values must rise")
 SHAPES = {
-    "uniform": Shape(2, "low, high", lambda low, high: stats.uniform(low, high - low), *RISING),
-    "normal": Shape(2, "mean, standard deviation", stats.norm, lambda v: v[1] > 0, "a standard deviation is > 0"),
-    "lognormal": Shape(
+    "uniform": Distribution(2, "low, high", lambda low, high: stats.uniform(low, high - low), *RISING),
+    "normal": Distribution(2, "mean, standard deviation", stats.norm, lambda v: v[1] > 0, "a standard deviation is > 0"),
+    "lognormal": Distribution(
         2, "median, standard deviation of the logarithm", lambda median, spread: stats.lognorm(spread, scale=median),
         lambda v: v[0] > 0 and 0 < v[1] <= WIDEST, f"a median is > 0, a standard deviation of the logarithm from 0 to {WIDEST:g}",
     ),
-    "triangular": Shape(
+    "triangular": Distribution(
         3, "low, most likely, high",
         lambda low, middle, high: stats.triang((middle - low) / (high - low), low, high - low), *RISING,
     ),

@@ -11,18 +11,18 @@ import pytest
 import gearfe as gf
 from gearfe.runs.store import folder as place
 from gearfe.runs.store import shards
-from gearfe.runs.store.shards import Field
+from gearfe.runs.store.shards import ShardColumn
 
 pytestmark = pytest.mark.quick
 
 ABOUT = {"format": "test 1", "of": "x"}
 SHAPE = {"of": str}
 FIELDS = {
-    "case": Field("whole"),
-    "k": Field("list", "N/m"),
-    "mean": Field("number", "N/m"),
-    "text": Field("text"),
-    "any": Field("json"),
+    "case": ShardColumn("whole"),
+    "k": ShardColumn("list", "N/m"),
+    "mean": ShardColumn("number", "N/m"),
+    "text": ShardColumn("text"),
+    "any": ShardColumn("json"),
 }
 
 
@@ -118,7 +118,7 @@ def test_a_shard_with_other_columns_and_unknown_columns_are_refused(folder):
         shards.read(folder, ["q"])
     with pytest.raises(ValueError, match="rows have z"):
         shards.table([{"z": 1}], FIELDS)
-    shards.write_shard(folder, "t", shards.encoded(shards.table([{"case": 1}], {"case": Field("whole")})))
+    shards.write_shard(folder, "t", shards.encoded(shards.table([{"case": 1}], {"case": ShardColumn("whole")})))
     with pytest.raises(ValueError, match="other columns"):
         shards.check_shards(folder)
 
@@ -162,7 +162,7 @@ def test_shards_of_one_size_with_other_numbers_are_no_copies(folder):
         ("k", "a" * 500, r"k = 'aaa.*\.\.\., but the column holds lists of numbers"),
         ("text", 5, "text = 5, but the column holds texts"),
         ("text", "\ud800", "holds texts"),
-        ("any", object, "holds what JSON can say"),
+        ("any", object, "holds values of JSON"),
     ],
 )
 def test_a_value_that_its_column_cannot_hold_is_refused(name, value, told):
@@ -171,7 +171,7 @@ def test_a_value_that_its_column_cannot_hold_is_refused(name, value, told):
 
 
 def test_text_in_a_number_column_of_a_shard_is_refused_even_where_it_reads_as_a_number(folder):
-    fields = FIELDS | {"mean": Field("text")}
+    fields = FIELDS | {"mean": ShardColumn("text")}
     shards.write_shard(folder, "t", shards.encoded(shards.table([{"case": 7, "mean": "1.5"}], fields)))
     for look in (shards.opened, shards.read, shards.check_shards):
         with pytest.raises(ValueError, match=r"t\.parquet has other columns than the shards before it"):
@@ -181,8 +181,8 @@ def test_text_in_a_number_column_of_a_shard_is_refused_even_where_it_reads_as_a_
 @pytest.mark.parametrize(
     ("where", "told"),
     [
-        ({"mean": "abc"}, "a column is compared with values of its own kind"),
-        ({"case": ("a", "b")}, "a column is compared with values of its own kind"),
+        ({"mean": "abc"}, "compare a column with values of its type"),
+        ({"case": ("a", "b")}, "compare a column with values of its type"),
         ({"case": [1, "b"]}, "where: case = .* give a value, a range"),
         ({"case": (1, 2, 3)}, "where: case = .* a range as a tuple of two"),
         ({"case": object()}, "where: case = "),

@@ -8,7 +8,7 @@ import pytest
 
 import gearfe as gf
 from gearfe.runs.store import folder as place
-from gearfe.runs.store.shards import Field, encoded, table, write_shard
+from gearfe.runs.store.shards import ShardColumn, encoded, table, write_shard
 from gearfe.runs.sweeps.runs import FORMAT, SHAPE
 from gearfe.runs.sweeps.samples import cube
 
@@ -19,13 +19,13 @@ def stored(folder, points, outputs, sample, extra=None):
     study = {"kind": "stiffness", "pair": "p", "case": "c", "options": {}, "axes": [], "sample": sample, "seed": 0, "block": 1}
     about = {"format": FORMAT, "title": "known", "cases": len(points), "study": json.loads(json.dumps(study)), "made": {}}
     place.begin(folder, about, SHAPE)
-    fields = {"number": Field("whole"), "point": Field("whole"), "draw": Field("whole")}
-    fields |= {name: Field("number") for name in names} | {
-        "y": Field("number", "m"),
-        "phase": Field("list"),
-        "k": Field("list", "N/m"),
+    fields = {"number": ShardColumn("whole"), "point": ShardColumn("whole"), "draw": ShardColumn("whole")}
+    fields |= {name: ShardColumn("number") for name in names} | {
+        "y": ShardColumn("number", "m"),
+        "phase": ShardColumn("list"),
+        "k": ShardColumn("list", "N/m"),
     }
-    fields |= {"status": Field("text")}
+    fields |= {"status": ShardColumn("text")}
     rows = [
         {"number": i, "point": 0, "draw": i, **dict(zip(names, x, strict=True)), "y": y, "status": "done"}
         | {"phase": [0.0, 0.5], "k": [y, 2 * y]}

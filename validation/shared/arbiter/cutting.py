@@ -20,7 +20,7 @@ GRID, ZOOM, ZOOMS = 241, 17, 5  # places tried for each maximum, and around the 
 SAME = 1e-14  # angles [rad] that differ by less are the same
 
 
-class Space:
+class ToothSpace:
     """The tooth space of `gear` (a `gearfe.Gear`, read for its numbers): half angles [rad] by radius [mm], arrays of n."""
 
     def __init__(self, gear):
@@ -82,7 +82,7 @@ class Space:
 
 
 class Rack:
-    """A rack's tooth in the transverse section: `straight` and `rounded` are (reach, function) as of `Space._largest`."""
+    """A rack's tooth in the transverse section: `straight` and `rounded` are (reach, function) as of `ToothSpace._largest`."""
 
     def __init__(self, space):
         gear = space.gear

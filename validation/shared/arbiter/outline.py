@@ -14,7 +14,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from .cutting import Space
+from .cutting import ToothSpace
 
 FILLET, FLANK = 260, 90  # nodes of the splines through cut points
 KNOWN = re.compile(
@@ -214,7 +214,7 @@ def _normal(outline, radius, step=1e-5):
 @lru_cache(maxsize=64)
 def _cut(gear):
     """Tool, form radius, splines of the fillet over the root of the depth and of the flank over the roll length."""
-    space = Space(gear)
+    space = ToothSpace(gear)
     form, sign = space.form_radius(), gear.outward
     deep = math.sqrt(sign * (form - space.r_f))
     depth = deep * np.linspace(0, 1, FILLET)

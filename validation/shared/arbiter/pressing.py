@@ -16,10 +16,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .body import Body
+from .body import MeshedBody
 from .outline import Outline
 from .side import Side
-from .touching import Press, Touch, orders, stand, touching
+from .touching import FirstTouch, Press, orders, stand, touching
 from .zones import WIDER, Contact, found, hats, placed
 
 SPRING = 0.065  # stiffness of a tooth pair by width over Young's modulus, to find which pairs may touch
@@ -121,7 +121,7 @@ class _Phase:
         i = int(np.flatnonzero(self.order == order)[0])
         touch, at = self.touch, slice(i, i + 1)
         parts = (touch.approach, touch.own, touch.met)
-        return self.stands[at], Touch(*(part[:, at] for part in parts), touch.gear, touch.piece, touch.at[:, at])
+        return self.stands[at], FirstTouch(*(part[:, at] for part in parts), touch.gear, touch.piece, touch.at[:, at])
 
     def first(self, refine):
         """Zones from nothing but rigid gaps and a spring for each tooth pair."""
@@ -250,7 +250,7 @@ def _bodies(contact, zones, material, refine, cracks, missing):
             marks.setdefault(zone.order % side.outline.gear.z, []).append((s[good], size[good]))
         marks = {tooth: tuple(np.concatenate(part) for part in zip(*some, strict=True)) for tooth, some in marks.items()}
         sense = 1 if gear == 0 else -1
-        bodies.append(Body(side, sense, marks, *material, refine=refine, cracks=cracks[gear], missing=missing[gear]))
+        bodies.append(MeshedBody(side, sense, marks, *material, refine=refine, cracks=cracks[gear], missing=missing[gear]))
     return bodies
 
 

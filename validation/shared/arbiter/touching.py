@@ -29,7 +29,7 @@ class Stand:
 
 
 @dataclass
-class Touch:
+class FirstTouch:
     """Where points of one piece of an outline first touch the other outline, arrays ``(pieces, n)``.
 
     `approach` [mm], inf where they never do; `own`, `met`: radii about the point's own and the other centre [mm];
@@ -112,13 +112,13 @@ class Press:
 
 
 def touching(press, stand):
-    """First touches of all pieces of both outlines for tooth pairs in their poses, a `Touch`."""
+    """First touches of all pieces of both outlines for tooth pairs in their poses, a `FirstTouch`."""
     found = []
     for own in (0, 1):
         for number, (low, high, place) in enumerate(press.outlines[own].pieces):
             found.append((*_first(press, own, stand, low, high, place), own, number))
     values, radii, met, at, own, number = zip(*found, strict=True)
-    return Touch(np.array(values), np.array(radii), np.array(met), np.array(own), np.array(number), np.array(at))
+    return FirstTouch(np.array(values), np.array(radii), np.array(met), np.array(own), np.array(number), np.array(at))
 
 
 def _first(press, own, stand, low, high, place):

@@ -1,10 +1,10 @@
-"""A spring and a damper: the law of a mesh whose stiffness over the phase, or law of several loads, says all."""
+"""Spring and damper: the law of a mesh with a stiffness over the phase or a force law."""
 
 from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True, slots=True)
-class Spring:
+class SpringLaw:
     """``F = k depth + c rate``."""
 
     power: float = field(default=1.0, init=False)
