@@ -1,4 +1,4 @@
-"""From a scene to its planetary set: the case that the tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]`` state."""
+"""Planetary set of a scene: the case of the tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]``."""
 
 from dataclasses import replace
 from typing import Any
@@ -13,10 +13,10 @@ from .rim_supports import RimBed, RimSupports
 
 
 def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
-    """Planetary set of a scene for `gearfe.planetary_stiffness`, with the flanks of its gears and a case of damage.
+    """Return the planetary set of a scene for `gearfe.planetary_stiffness`, with its flanks and a case of damage.
 
-    Cracks of the planet's gear are in one planet (``damaged_planet``), on the flank that the sun loads; one that the scene has in
-    the pair of planet and ring only, on the other.
+    Cracks of the planet's gear are in one planet (``damaged_planet``), on the flank that the sun loads. A crack that the scene
+    states in the pair of planet and ring only is on the other flank.
 
     Parameters
     ----------
@@ -32,8 +32,8 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
     Raises
     ------
     ValueError
-        If the scene has no set, no such case in its gears, damage other than cracks, or pairs whose misalignment, shafts or
-        springs the set does not know; or if the set cannot be.
+        If the scene has no set, no such case in its gears, damage other than cracks, pairs whose misalignment, shafts or springs
+        are not modelled in a set, or if the set is impossible.
     """
     given = scene.set
     if given is None:
@@ -59,7 +59,7 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
 
 
 def _support(row: dict[str, Any]) -> "str | RimBed | RimSupports":
-    """What holds the ring, from a checked table ``[ring.support]``."""
+    """Return the support of the ring from a checked table ``[ring.support]``."""
     if row["kind"] == "held":
         return "held"
     given = arguments("ring_support", row | {"kind": None})

@@ -1,4 +1,4 @@
-"""`Crack`: a root crack of one tooth, where it starts, how it runs, and how far it is open along the width."""
+"""`Crack`: a root crack of one tooth: start, path, and open part along the width."""
 
 import math
 from dataclasses import dataclass
@@ -11,13 +11,23 @@ from ..aliases import Floats
 from ..checks import is_finite
 from ..kept import keeping
 from ..tooth.gear import Gear
-from ..tooth.profile import cartesian, fillet_arc, fillet_length, root_curve, tangent_point, tangent_range
+from ..tooth.profile import (
+    cartesian,
+    fillet_arc,
+    fillet_length,
+    lengths,
+    root_curve,
+    root_half_angle,
+    tangent_point,
+    tangent_range,
+)
 from .given import finite, tooth_and_side
 
 TANGENTS = {"30deg": math.pi / 6, "60deg": math.pi / 3}  # with the centre-line of the tooth
 STARTS = (*TANGENTS, "root", "middle")
 SLACK = 1e-9  # rounding of the open part of a crack
-SHORTEST = 1e-4  # length of a crack in modules; k falls by 1e-5 by it, and meshes cannot be that small
+SECTOR = 0.9  # part of a pitch within which a sector can be meshed with a polyline
+SHORTEST = 1e-4  # length of the shortest crack [m_n]: k falls by 1e-5, and meshes are not finer
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +45,15 @@ class Crack:
         Size of the crack, as a level (``0 < level < 1``) or as a length [mm]: give one of the two.
     angle : float
         Angle between the crack and the tooth centre-line [rad], default 45 degrees.
-    start : {"30deg", "60deg", "root", "middle"}
+    start : {"30deg", "60deg", "root", "middle"} or float
         Where it starts: where the fillet's tangent makes 30 or 60 degrees with the centre-line of the tooth, where the fillet
         meets the root circle, or in the middle of the fillet's arc. ISO 6336-3 has its critical section at 30 degrees on external
-        gears and at 60 degrees on rings. The default is 30 degrees on both.
+        gears and at 60 degrees on rings. The default is 30 degrees on both. A number is the arc [mm] from where the fillet meets
+        the root circle: up the fillet if it is positive, along the root circle if it is negative.
     turning : bool
+    path : sequence of (float, float), optional
+        Instead of a size: corners of a polyline after its start [mm], in the frame of its tooth. x points to the loaded flank, y
+        outwards along the centre-line, both from the axis of the gear.
     tooth : int
         Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0 (`gearfe.geometry.pair.contacts`).
     side : {"loaded", "unloaded"}
@@ -67,13 +81,14 @@ class Crack:
     level: float | None = None
     length: float | None = None
     angle: float = math.pi / 4
-    start: str = "30deg"
+    start: str | float = "30deg"
     turning: bool = False
     tooth: int = 0
     side: str = "loaded"
     width: tuple[float, float] | None = None
     ends: tuple[float, ...] = (1.0, 1.0)
     rounded: bool = False
+    path: tuple[tuple[float, float], ...] | None = None
 
     _nouns: ClassVar[tuple[str, str]] = ("crack", "cracks")
     _adjective: ClassVar[str] = "cracked"
@@ -86,6 +101,8 @@ class Crack:
             if value is not None:
                 finite("crack", name, value)
         object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
+        if self.path is not None:
+            object.__setattr__(self, "path", _corners(self.path))
         _check_path(self)
         if self.width is not None:
             object.__setattr__(self, "width", _numbers("width", self.width, (2,)))
@@ -99,12 +116,14 @@ class Crack:
 
     @property
     def even(self) -> bool:
-        """Whether it is as deep at every height between its ends."""
+        """True if it has the same depth at every height between its ends."""
         return len(set(self.ends)) == 1
 
     @property
     def bends(self) -> bool:
-        """Whether it has turned at the tooth's centre-line: its path is not straight."""
+        """True if its path has a kink at the tooth's centre-line or is a polyline."""
+        if self.path is not None:
+            return len(self.path) > 1
         return self.turning and self.level is not None and self.level > 0.5
 
     def outline(self, gear: Gear) -> Floats:
@@ -114,6 +133,8 @@ class Crack:
     def _description(self, gear: Gear) -> str:
         """Its size and angle in words."""
         angle = f"at {math.degrees(self.angle):.3g} degrees"
+        if self.path is not None:
+            return f"{path_length(gear, self):.3g} mm crack along a path of {len(self.path)} part{'s' * (len(self.path) > 1)}"
         if self.length is not None:
             return f"{self.length:.3g} mm crack {angle}"
         if self.bends:
@@ -121,14 +142,14 @@ class Crack:
         return f"{path_length(gear, self):.3g} mm crack {angle} (level {self.level:.3g})"
 
     def _warning(self, gear: Gear) -> str:
-        """What to warn of when it meets its gear: nothing."""
+        """Return no warning."""
         return ""
 
 
 def _check_path(crack):
     """ValueError unless size, angle and start of a crack go together."""
-    if (crack.level is None) == (crack.length is None):
-        raise ValueError(f"level = {crack.level}, length = {crack.length}: give one of them")
+    if [crack.level, crack.length, crack.path].count(None) != 2:
+        raise ValueError(f"level = {crack.level}, length = {crack.length}, path = {crack.path}: give one of them")
     if crack.level is not None and not 0 < crack.level < 1:
         raise ValueError(
             f"level = {crack.level}, but it must lie between 0 and 1 (0.5 reaches the centre-line, 1 is a broken tooth)"
@@ -137,12 +158,12 @@ def _check_path(crack):
         raise ValueError(f"length = {crack.length} mm, but a crack has a positive length")
     if crack.angle is None or not math.radians(5) <= crack.angle <= math.radians(90):
         raise ValueError(f"angle = {crack.angle} rad, but it must lie between 5 and 90 degrees; angles are radians in Python")
-    if crack.start not in STARTS:
-        raise ValueError(f"start = {crack.start!r}, but it must be one of {', '.join(STARTS)}")
+    if crack.start not in STARTS and not is_finite(crack.start):
+        raise ValueError(f"start = {crack.start!r}, but it must be one of {', '.join(STARTS)}, or an arc in mm")
     if not isinstance(crack.turning, bool):
         raise ValueError(f"turning = {crack.turning!r}, but give True or False")
-    if crack.turning and crack.length is not None:
-        raise ValueError("a turning crack is given by its level, not its length")
+    if crack.turning and crack.level is None:
+        raise ValueError("a turning crack is given by its level, not its length or its path")
 
 
 def _check_front(crack):
@@ -159,6 +180,16 @@ def _check_front(crack):
             f"ends = {crack.ends}: the parabola through them runs from {low:.3g} to {high:.3g}, but parts of the crack's "
             "length lie between 0 and 1; change the middle number, or give two"
         )
+
+
+def _corners(path):
+    try:
+        corners = tuple((float(x), float(y)) for x, y in path)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"path = {path!r}, but give corners (x, y) [mm] of the crack after its start") from error
+    if not corners or not all(math.isfinite(value) for corner in corners for value in corner):
+        raise ValueError(f"path = {path!r}, but give one or more corners of finite numbers [mm]")
+    return corners
 
 
 def _numbers(name, values, counts):
@@ -212,7 +243,15 @@ def front(crack, b, z):
 
 @lru_cache(maxsize=256)
 def start_arc(gear, crack):
-    """Where the crack starts, as arc of `gearfe.geometry.tooth.profile.root_curve` [mm]."""
+    """Return the start of the crack as an arc of `gearfe.geometry.tooth.profile.root_curve` [mm]."""
+    if not isinstance(crack.start, str):
+        least = root_half_angle(gear) * gear.r_f - math.pi / gear.z * gear.r_f
+        if not least <= crack.start <= fillet_length(gear):
+            raise ValueError(
+                f"start = {crack.start} mm, but the root of z = {gear.z} goes from {least:.4g} (middle of the space) to "
+                f"{fillet_length(gear):.4g} mm (end of the fillet)"
+            )
+        return float(crack.start)
     if crack.start == "root":
         return 0.0
     if crack.start == "middle":
@@ -236,8 +275,8 @@ def crack_path(gear, crack):
     """
     first = cartesian(*root_curve(gear, start_arc(gear, crack)))
     heading = np.array([-math.sin(crack.angle), -gear.outward * math.cos(crack.angle)])
-    corners = [first, first + heading * _straight(crack, first)]
-    if crack.bends:
+    corners = [first, *map(np.array, crack.path)] if crack.path else [first, first + heading * _straight(crack, first)]
+    if crack.turning and crack.bends:
         goal = first * [-1, 1]
         corners.append(corners[1] + (goal - corners[1]) * (2 * crack.level - 1))
     path = np.array(corners).T
@@ -253,6 +292,8 @@ def _straight(crack, first):
 
 def path_length(gear, crack):
     """Length of a straight crack where it is deepest [mm]."""
+    if crack.path is not None:
+        return float(lengths(crack_path(gear, crack))[-1])
     return float(deepest(crack) * _straight(crack, cartesian(*root_curve(gear, start_arc(gear, crack)))))
 
 
@@ -290,11 +331,11 @@ def check_apart(gear, cracks):
                 raise ValueError(f"two cracks on the {side} side of tooth {tooth}; one is enough")
             near = np.abs(_sampled(path)[:, :, None] - _sampled(other)[:, None, :])
             if np.hypot(*near).min() < 0.1 * gear.m_n:
-                raise ValueError(f"two cracks of tooth {tooth} meet: the tooth is off; make one of them shorter")
+                raise ValueError(f"two cracks of tooth {tooth} meet: the tooth breaks off; make one of them shorter")
 
 
 def check_single(gear, cracks):
-    """Raise ValueError if a body has two cracks on one side of a tooth, even beside each other along the width."""
+    """Raise ValueError if a body has two cracks on one side of a tooth, also at different heights."""
     if len({(crack.tooth % gear.z, crack.side) for crack in cracks}) < len(cracks):
         raise ValueError(f"two cracks on one side of a tooth of a body of b = {gear.b:g} mm; only one can be meshed")
 
@@ -315,7 +356,19 @@ def _sampled(path, count=200):
     return np.array([np.interp(place, np.arange(path.shape[1]), row) for row in path])
 
 
+def check_sector(gear: Gear, crack: "Crack") -> None:
+    """ValueError if a crack leaves the sector of its tooth, of which a method makes the gear."""
+    turn = np.abs(np.arctan2(*_sampled(crack_path(gear, crack)))).max()
+    if turn > SECTOR * math.pi / gear.z:
+        raise ValueError(
+            f"crack of {_size(crack)}: it leaves the middle {SECTOR:.0%} of the sector of its tooth (z = {gear.z}): "
+            "use method = 'fe'"
+        )
+
+
 def _size(crack):
+    if crack.path is not None:
+        return f"path = {crack.path}"
     return f"level = {crack.level}" if crack.level is not None else f"length = {crack.length} mm"
 
 
@@ -328,11 +381,11 @@ def _check_inside(gear, crack, path):
         raise ValueError(
             f"crack of {_size(crack)}: {where} reaches the held edge of z = {gear.z} (radius {gear.held:g} mm); make it shorter"
         )
-    if abs(angle) > math.pi / gear.z:
+    if crack.path is None and abs(angle) > math.pi / gear.z:
         raise ValueError(f"crack of {_size(crack)}: it leaves the sector of its tooth (z = {gear.z}); make it shorter or steeper")
     arcs = np.linspace(-gear.r_f * math.pi / gear.z / 4, fillet_length(gear), 400)
     fillet_points = cartesian(*root_curve(gear, arcs)) * [[-1], [1]]
     if np.hypot(*(fillet_points - tip[:, None])).min() < margin:
         raise ValueError(
-            f"crack of {_size(crack)}: its tip reaches the opposite fillet of z = {gear.z}, the tooth is off; make it shorter"
+            f"crack of {_size(crack)}: its tip reaches the opposite fillet of z = {gear.z}, the tooth breaks off; make it shorter"
         )

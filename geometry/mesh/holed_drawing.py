@@ -1,4 +1,4 @@
-"""The drawing of a sector of a gear to be meshed in tets: outline, crack, circles with smaller edges, tools that cut the pits.
+"""Drawing of a sector of a gear for meshing in tets: outline, crack, circles of smaller edges, cutting tools of pits.
 
 All of it lies in the frame that turns with the helix, in which a tooth is a prism.
 """
@@ -29,7 +29,7 @@ def section(gear, crack, teeth):
     pitch = 2 * math.pi / gear.z
     edge = (0.5 - own_teeth[0]) * pitch
     first = last = at(cartesian(gear.r_f, -edge))
-    rim, above, marks = [], [], {}  # where the crack's parting line meets the outline
+    rim, above, marks = [], [], {}  # intersection of the crack's parting line and the outline
     for tooth in own_teeth:
         for side in ("unloaded", "loaded"):
             mark = None if crack is None or tooth else start_arc(gear, crack)
@@ -105,9 +105,9 @@ def on_outline(gear, radius, angle):
 
 
 def fine(gear, crack, size, teeth):
-    """Circles of the section with smaller edges: the tooth, its loaded flank, its fillets, the crack's mouth and tip.
+    """Return circles of the section with smaller edges: the tooth, its loaded flank, its fillets, the crack's mouth and tip.
 
-    Of a whole gear (`teeth` None) the fillets beside the next teeth too, which may be loaded.
+    For a whole gear (`teeth` None) also the fillets next to adjacent teeth, which may be loaded.
     """
     middle = (gear.r_a + gear.r_f) / 2
     out = [(0.0, middle, abs(gear.r_a - gear.r_f) / 2, size["tooth"])]

@@ -1,4 +1,4 @@
-"""The transverse section of a whole gear as curved second-order triangles, with its cracks opened.
+"""Transverse section of a whole gear as curved second-order triangles, with opened cracks.
 
 gmsh only fills the inside. Every vertex of the outline is placed on the exact profile, and so is the middle of every
 boundary edge, by its own parameter (not by projection).
@@ -13,7 +13,7 @@ from skfem import MeshTri, MeshTri2
 from ..damage.crack import check_apart, check_through, meshed_path, mirrored, start_arc
 from ..damage.seam import open_seam
 from ..tooth.gear import Gear
-from ..tooth.profile import lengths, turned
+from ..tooth.profile import cartesian, fillet_length, lengths, root_curve, turned
 from .mesher import triangulate
 from .outline import along, held_circle, inside, outline
 
@@ -91,6 +91,9 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), 
             opposite = "unloaded" if crack.side == "loaded" else "loaded"
             marks.setdefault((crack.tooth % gear.z, opposite), (marks[place][0], min(fillet_size, left / 4)))
             tips[place] = min(tips[place], left / 8)
+        elif crack.path is not None:
+            left = _ligament(gear, corners, crack.tooth)
+            tips[place] = min(tips[place], left / 8)
     rim, flanks, fillets, starts = outline(
         gear, rolls, fillet_size=fillet_size, size=size, far_size=far_size, teeth=teeth, marks=marks, broken=broken
     )
@@ -103,6 +106,17 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), 
         raise ValueError(f"z = {gear.z}: two cracks start at the same place between two teeth: leave one out, or start it higher")
     mesh, faces = fill(rim, held_circle(gear), chains, ring=gear.internal)
     return Section(gear, mesh, flanks, rolls, fillets, tuple(Seam(f) for f in faces))
+
+
+def _ligament(gear, corners, tooth):
+    """Distance [mm] from the tip of a crack to the held circle and to the fillets around it."""
+    tip, arcs = corners[:, -1], np.linspace(0.0, fillet_length(gear), 40)
+    fillets = [cartesian(*root_curve(gear, arcs)) * [[sign], [1]] for sign in (-1, 1)]
+    turns = (2 * math.pi * (tooth + k) / gear.z for k in (-1, 0, 1))
+    points = np.hstack([turned(line, turn) for turn in turns for line in fillets])
+    apart = np.hypot(*(points - tip[:, None]))
+    behind = np.hypot(*(points - corners[:, :1])) < 0.5 * lengths(corners)[-1]
+    return min(abs(np.hypot(*tip) - gear.held), apart[~behind].min(initial=math.inf))
 
 
 def _check_within(gear, crack, rim, start, line):

@@ -161,7 +161,7 @@ def test_pitch_of_one_tooth_reaches_the_vibration():
 
 @pytest.mark.slow
 def test_several_loads_with_damage_of_both_gears():
-    """Laws of force: at the load of the curves they give the same force as curves do."""
+    """Force laws: at the load of the curves they give the same force as curves do."""
     both = scene(crack=[{"gear": "pinion", "tooth": 3}, {"gear": "wheel", "tooth": 3}])
     one, law = (gf.build_machine(both, "cracked", phases=32, loads=loads) for loads in ((1.0,), (0.8, 1.0, 1.25)))
     phase = np.arange(-4, 4, 1 / 32)
@@ -187,7 +187,7 @@ def test_models_that_cannot_have_an_input_say_why():
     """The impact law is of involutes, and of one pinion tooth."""
     with pytest.raises(ValueError, match="involutes without deviations"):
         gf.build_machine(replace(scene({"gear": "pinion", "eccentricity_um": 5.0}), machine=impact()))
-    with pytest.raises(ValueError, match="one tooth of the pinion"):
+    with pytest.raises(ValueError, match="one flank of the pinion"):
         gf.build_machine(replace(scene(crack=[{"gear": "wheel"}]), machine=impact()), "cracked")
 
 

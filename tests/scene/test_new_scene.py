@@ -68,7 +68,7 @@ def test_written_scene_runs_on_the_command_line(tmp_path, capsys):
     path = str(tmp_path / "my.toml")
     assert main(["new", path, "--teeth", "17", "23", "--width", "8"]) == 0
     assert main(["stiffness", path, "--phases", "4"]) == 0
-    assert main(["compare", path, "--case", "cracked", "--phases", "4"]) == 0
+    assert main(["compare", path, "--case", "cracked", "--phases", "4", "--refine", "0.4"]) == 0
     assert "z = 17" in (tmp_path / "my.toml").read_text()
     assert "| single " in capsys.readouterr().out
 

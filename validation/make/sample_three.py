@@ -176,6 +176,13 @@ def covered(found):
     return [sum(bool(one[name].all()) for one in said) for name in reversed(ASKED)][:2], len(said)
 
 
+def ratio(found, name):
+    """Median estimate of a method over its median error, both of the worst phase of each pair."""
+    solved = [one for one in found if "failed" not in one]
+    off = [np.abs(np.subtract(one[name], one["fine"]) / one["fine"]).max() for one in solved]
+    return float(np.median([np.divide(one[f"{name}_error"], one["fine"]).max() for one in solved]) / np.median(off))
+
+
 def section(found):
     """Lines of the page, from `rows`."""
     parts = [*TEXT.strip().splitlines(), "", *_counts(found), "", *_misses(found), "", *_spread(found), ""]

@@ -1,4 +1,4 @@
-"""Verbs that exchange gears with other programs."""
+"""Verbs that exchange gears with other programs, and that of crack growth."""
 
 from pathlib import Path
 
@@ -36,3 +36,34 @@ def export_file(arguments):
         for line in export(scene_file, out, **options):
             print(line)
     print(f"written: {out}")
+
+
+def grow(arguments):
+    """``gearfe crack``."""
+    from dataclasses import replace
+
+    from ...core.files import check_output
+    from ...figures.pair_plot import plot_pair
+    from ...geometry.damage.crack import Crack
+    from ...scene.load import load_scene
+    from ...strength.growth import ParisLaw, grow_crack
+
+    if arguments.plot:
+        check_output(arguments.plot, "picture")
+    case = load_scene(arguments.scene).pair(arguments.pair).case(arguments.case)
+    found = [(side, one) for side, damage in (case.damage or {}).items() for one in damage]
+    if len(found) != 1 or not isinstance(found[0][1], Crack):
+        raise ValueError(
+            f"--case {arguments.case}: {len(found)} kinds of damage, but the growth starts from one crack: give a case of one"
+        )
+    side, crack = found[0]
+    law = ParisLaw(*arguments.paris, threshold=arguments.threshold) if arguments.paris else None
+    with working("crack"):
+        growth = grow_crack(case, crack, side, step=arguments.step, steps=arguments.steps, law=law, refine=arguments.refine)
+    print(growth)
+    if arguments.plot:
+        grown = replace(growth.cracks[-1], tooth=crack.tooth)
+        plot_pair(
+            replace(case, damage={side: [grown]}), path=arguments.plot, title=f"{growth.outcome} after {growth.length[-1]:.2f} mm"
+        )
+        print(f"written: {arguments.plot}")

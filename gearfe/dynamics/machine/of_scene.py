@@ -1,4 +1,4 @@
-"""From a scene to its machine: the table of models that `build_machine` reads, and the errors a scene states.
+"""Machine of a scene: the table of models that `build_machine` uses, and the errors of a scene.
 
 A model is one file that states its bodies, stages and springs and a function ``(scene, case, **options) -> Machine`` of it, and
 one row here.
@@ -55,7 +55,7 @@ def build_machine(
     loads : sequence of float
         Loads that the contact of each pair is solved under, as multiples of the largest force of its meshes at rest, which the
         load that the scene states for the pair need not be. One of them makes stiffnesses over the phase that are true of this
-        load alone, by default of the meshes' own. Several make laws of force (`machine.force_law.ForceLaw`), for loads
+        load alone, by default of the meshes' own. Several make force laws (`machine.force_law.ForceLaw`), for loads
         that change and for resonances: ``(1 / 16, 1 / 4, 1 / 2, 1, 2)``. Their mesh forces bend where pairs come in, with
         harmonics far above the mesh frequency: `gearfe.simulate` filters them out above half of its rate. Not under the impact
         law, which has a coefficient.
@@ -91,7 +91,7 @@ def build_machine(
 
 
 def flat_machine(scene: Scene, case: str | None = None) -> Machine:
-    """The machine of a scene with a constant mesh stiffness, for its frequencies and faults; nothing is solved.
+    """Return the machine of a scene with constant mesh stiffness, for its frequencies and faults; nothing is solved.
 
     ValueError if `build_machine` refuses it.
     """
@@ -100,7 +100,7 @@ def flat_machine(scene: Scene, case: str | None = None) -> Machine:
 
 
 def _builder(scene, case):
-    """Function that builds the machine of a scene, and its contact."""
+    """Return the function that builds the machine of a scene, and its contact."""
     if not scene.machine:
         raise ValueError(f"scene {scene.name} has no [machine] table: add one with model, speed_rpm and torque_Nm")
     if case is not None and not any(case in pair.damage for pair in scene.pairs.values()):
@@ -112,7 +112,7 @@ def _builder(scene, case):
     if contact not in MACHINES[model]:
         raise ValueError(f"[machine] contact = 'impact': the model {model!r} has linear contact only")
     if scene.machine.get("bodies") and model not in STATED:
-        raise ValueError(f"[machine.bodies]: the model {model!r} takes masses and inertias from its gears; leave the table out")
+        raise ValueError(f"[machine.bodies]: the model {model!r} computes masses and inertias from its gears: omit the table")
     _check_contact(scene, case, contact)
     return MACHINES[model][contact], contact
 
@@ -129,7 +129,7 @@ def _check_contact(scene, case, contact):
                 )
             if name in hurt and any(hurt[name].broken):
                 raise ValueError(
-                    f"[pair.{name}] has a broken tooth in case {case!r}, but the impact law has whole teeth only: use "
+                    f"[pair.{name}] has a broken tooth in case {case!r}, but the impact law is limited to unbroken teeth: use "
                     "contact = 'linear'"
                 )
     elif any(one.missing and not pair_backlash(scene, name) for name, one in hurt.items()):
@@ -140,7 +140,7 @@ def _check_contact(scene, case, contact):
 
 
 def with_flanks(machine):
-    """The machine with the unloaded transmission error of modified flanks in the meshes whose curves or laws have one."""
+    """Return the machine with the unloaded transmission error of modified flanks in the meshes that have one."""
     errors = {
         mesh.name: _unloaded(mesh.stiffness)
         for mesh in machine.meshes
@@ -160,7 +160,7 @@ def _unloaded(curve):
 
 
 def with_scene_errors(scene, machine):
-    """The machine with the errors that its scene states: of the driven stage, the last one."""
+    """Return the machine with the errors that its scene states: those of the driven stage, the last one."""
     keys = ("profile_error_um", "runout_um", "misplaced_um", "misplaced_y_um")
     profile, runout, *shift = (1e-6 * scene.machine.get(key, 0.0) for key in keys)
     if not (profile or runout or any(shift)):
