@@ -6,11 +6,11 @@ COMPARED = f"""
 CalculiX is an independent finite-element code. gearfe writes its decks (`gearfe.write_contact_inp` with `face`, and
 `gearfe.write_line_inp`). They have both whole gears with all teeth and finite width, held at the bores (a ring outside).
 The elements are 20-node hexahedra with reduced integration (C3D20R). Pairs with pits have second-order tets (C3D10) with
-the pits cut out. Both codes share the shape and position of the gears. Stiffness, contact, load sharing, half-space and the effect of
+the pits cut out. Both codes share the shape and position of the gears. Stiffness, contact, load sharing, half-space and effect of
 pits are CalculiX's own. `ritz3d` has pits as lost contact.
 
 - In contact: 13/16 teeth (ring 13/36), m_n 2 mm, b 6 mm, 15 degrees unless spur. {LOAD:g} N/mm (pits {PITTED:g}), phase
-  0.45, damage in tooth 0 of the pinion. The gears are rotated by the approach that `ritz3d` had when CalculiX was run. All flanks have
+  0.45, damage in tooth 0 of the pinion. The gears are rotated by the approach that `ritz3d` had when CalculiX was run. Flanks have
   frictionless surface-to-surface contact with large displacements. k is force divided by approach.
 - Under a line load: the deflection of a strip of pressure under itself.
 
