@@ -24,8 +24,11 @@ loads = [1000.0, 2000.0, 3000.0, 4000.0]
 plain = gf.transmission_error(pair, loads, steel)
 print("peak-to-peak [um]:", np.round(1e6 * plain.peak_to_peak, 2))
 
-# %% Tip relief ---------- A ``Flank`` defines the removed material. Amounts are in mm along the line of action, and positive is
-# material removed. Here both tips lose 10 um, in proportion over the last 4.7 mm of roll length:
+# %%
+# Tip relief
+# ----------
+# A ``Flank`` defines the removed material. Amounts are in mm along the line of action, and positive is material removed.
+# Here both tips lose 10 um, in proportion over the last 4.7 mm of roll length:
 
 flanks = {
     name: gf.Flank(tip_relief=0.010, tip_start_roll=gear.roll_a - 4.7)
