@@ -33,9 +33,9 @@ GROUPS = {
 
 
 def row(name):
-    """Row of a page in the index: its title, and its first paragraph, which is the answer."""
+    """Row of a page in the index: its title, and its first paragraph or list, which is the answer."""
     title, answer = (PAGES / f"{name}.md").read_text(encoding="utf-8").split("\n\n")[:2]
-    return f"| {{doc}}`{title.removeprefix('# ')} <{name}>` | {' '.join(answer.split())} |"
+    return f"| {{doc}}`{title.removeprefix('# ')} <{name}>` | {' '.join(answer.removeprefix('- ').replace(chr(10) + '- ', ' ').split())} |"
 
 
 def index():
