@@ -1,4 +1,4 @@
-"""Gear mesh stiffness with its error: finite elements beside energy methods.
+"""Gear mesh stiffness with an error estimate, transmission error and gearbox dynamics.
 
 Everything public is a name of this package, loaded on first use. `__init__.pyi` states where each is defined. The packages, and
 which imports which, are listed in `docs/where.md`.

@@ -1,4 +1,4 @@
-"""Checks of what geometry is given: numbers, and things given by gear."""
+"""Checks of arguments of geometry: numbers, and dictionaries by gear."""
 
 import math
 import sys
@@ -25,7 +25,7 @@ def is_whole(value: object) -> TypeGuard[int]:
 
 
 def by_gear(what: str, values: Any, example: str) -> tuple[Any, Any]:
-    """What is given for pinion and wheel, None where nothing is; ValueError, with an `example`, if it is not given by gear."""
+    """Return the entries of pinion and wheel, None if missing; ValueError, with an `example`, if it is not given by gear."""
     values = {} if values is None else values
     if not isinstance(values, Mapping):
         raise ValueError(f"{what} = {values!r}, but give {what} by gear: {example}")

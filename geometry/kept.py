@@ -1,4 +1,4 @@
-"""Results kept by their arguments and handed to every caller: their arrays can be read, not written to."""
+"""Cached results by arguments, with read-only arrays."""
 
 from collections.abc import Callable
 from functools import lru_cache, wraps

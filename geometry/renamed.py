@@ -10,7 +10,7 @@ T = TypeVar("T")
 
 def warn_renamed(old: str, new: str, kind: type[Warning] = DeprecationWarning, stacklevel: int = 3) -> None:
     """Warn that a name was replaced."""
-    warnings.warn(f"{old} is now {new}: the old name leaves with the next version", kind, stacklevel=stacklevel)
+    warnings.warn(f"{old} is now {new}: the old name will be removed in the next version", kind, stacklevel=stacklevel)
 
 
 def renamed(**names: str) -> Callable[[T], T]:

@@ -30,7 +30,7 @@ def deck(path, gear=GEAR, radius=18.0, line_load=100.0, material=STEEL, **option
         ({"line_load": lambda z: z * math.nan}, "gives nan to nan"),
         ({"line_load": lambda z: -z}, "gives -0.0 to -8.0"),
         ({"line_load": lambda z: 0 * z}, "somewhere > 0"),
-        ({"line_load": lambda z: "much"}, "a tooth is pushed"),
+        ({"line_load": lambda z: "much"}, "loads are compressive"),
         ({"line_load": lambda z: np.ones(3)}, "function of an array of heights"),
         ({"line_load": lambda: 1.0}, "function of an array of heights"),
         ({"radius": "18"}, "radius = '18'"),

@@ -18,6 +18,7 @@ CURVE = gf.StiffnessCurve(
     pressure=[[1.0]] * 2,
     meta={"force_N": 100.0},
 )
+OSCILLATOR = gf.single_mesh(1.0, 1e8, 500.0)
 
 
 def mesh(**changed):
@@ -36,6 +37,11 @@ def mesh(**changed):
         ("alpha_w", "alpha_wt", lambda: PAIR.alpha_w, lambda: PAIR.alpha_wt),
         ("lte", "deflection", lambda: CURVE.lte, lambda: CURVE.deflection),
         ("beta", "damping_per_stiffness", lambda: mesh(beta=1e-6).damping_per_stiffness, lambda: 1e-6),
+        (
+            *("heard", "output"),
+            lambda: gf.frequency_response(OSCILLATOR, [0.0], heard="mesh", input="mesh"),
+            lambda: gf.frequency_response(OSCILLATOR, [0.0], output="mesh", input="mesh"),
+        ),
         ("told_apart", "roc_auc", lambda: gf.told_apart, lambda: gf.roc_auc),
         ("disc", "gear_member", lambda: gf.disc, lambda: gf.gear_member),
         ("published", "herringbone_article", lambda: gf.Solve("published"), lambda: gf.Solve("herringbone_article")),

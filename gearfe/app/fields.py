@@ -15,31 +15,31 @@ LONGEST = 200  # characters of a title
 
 @dataclass(frozen=True, slots=True)
 class PageField:
-    """One field of the page.
+    """Field of the page.
 
     Attributes
     ----------
     name : str
-        In the state and in a link; ``_1`` is the pinion's, ``_2`` the wheel's.
+        Name in the state and in a link; ``_1`` is the pinion's, ``_2`` the wheel's.
     group, label, unit : str
-        Heading it stands under, and what a reader calls it.
+        Its heading, its label and its unit.
     start : object
         Value of the working example.
     places : tuple of str
         Dotted keys of the scene that hold it.
     low, high, step : float
-        Bounds of what this page solves, and a step of the slider.
+        Bounds of the page's solver, and a step of the slider.
     whole : bool
     choices : tuple of str
-        Instead of bounds: what it may be.
+        Permitted values instead of bounds.
     when : str
-        ``name=value,value``: another field and the values with which this one is shown; empty: always.
+        ``name=value,value``: another field and the values with which this one is visible; empty: always.
     beside : str
-        Another field without which, if that is 0, this one does not count.
+        Another field: if it is 0, this one does not count.
     absent : object
         Value that stands for a key that is left out; None: there is none.
     by : dict
-        Dotted keys by choice: the choice that a given key makes.
+        Dotted keys by choice: the choice for a given key.
     """
 
     name: str
@@ -65,11 +65,11 @@ class PageField:
         return shown and not (self.beside and not state[self.beside]) and (self.absent is None or state[self.name] != self.absent)
 
     def typed(self, value: Any) -> Any:
-        """A value as the scene has it: of a truth true or false."""
+        """Return a value as in the scene: true or false for a truth value."""
         return value == self.choices[1] if key_at(self.places[0]).type == "boolean" else value
 
     def from_typed(self, value: Any) -> Any:
-        """The field's value of that of the scene, None if its key is left out."""
+        """Return the field's value for that of the scene, None if its key is absent."""
         if value is None:
             return self.start if self.absent is None else self.absent
         if isinstance(value, bool):
@@ -81,7 +81,7 @@ SIDES, SPELLED_SIDES = ("pinion", "wheel"), {"1": "pinion", "2": "wheel"}
 
 
 def key_at(place: str) -> Key:
-    """Key of the schema that a dotted key of a scene of one pair names."""
+    """Return the key of the schema for a dotted key of a scene of one pair."""
     kind, *rest = (part for part in place.split(".") if not part.isdigit())
     return scene_schema()[kind].keys[rest[-1]]
 
@@ -101,7 +101,7 @@ def _fields() -> Iterator[PageField]:
 
 
 def _field(name, group, *, start, at=(), label="", choices=(), absent=None, **more):
-    """Field of a row of ``fields.toml``."""
+    """Return the field of a row of ``fields.toml``."""
     places = (at,) if isinstance(at, str) else tuple(at)
     if not places:
         return PageField(name, group, label, "", start, choices=tuple(choices), **more)
@@ -120,17 +120,17 @@ def _field(name, group, *, start, at=(), label="", choices=(), absent=None, **mo
 FIELDS = tuple(_fields())
 BY_NAME = {one.name: one for one in FIELDS}
 TEXTS = {"title": "", "source": "own gear pair"}
-NOTE = {"what", "why", "depends", "holds"}  # of an assumption
+NOTE = {"what", "why", "depends", "holds"}  # keys of an assumption
 START = {one.name: one.start for one in FIELDS} | TEXTS | {"assumption": []}
 
 
 def form() -> str:
-    """The table of fields and the state of the working example as JSON, for the browser."""
+    """Return the table of fields and the state of the working example as JSON, for the browser."""
     return json.dumps({"fields": [asdict(field) for field in FIELDS], "start": START})
 
 
 def checked_state(given: Any) -> dict[str, Any]:
-    """A state of the page with what was left out filled in.
+    """Return a state of the page with defaults for missing fields.
 
     Values by name of a `PageField`, ``title``, ``source`` and ``assumption``, a list of such tables of a scene. ValueError if
     something is unknown, of another kind, or beyond the bounds of its field.

@@ -1,4 +1,4 @@
-"""Whom the server answers, and what a browser may do with its pages: for this machine alone, or for a course behind a proxy."""
+"""Access rules of the server and of its pages in the browser: this computer only, or a course behind a proxy."""
 
 import json
 import time
@@ -6,7 +6,7 @@ from collections import OrderedDict, deque
 from typing import Any
 
 LARGEST = 100_000  # bytes of a request: a state or a scene
-DRAINED = 10 * LARGEST  # of a request that is refused, read and forgotten
+DRAINED = 10 * LARGEST  # bytes of a rejected request that are read and discarded
 SAFE = {
     "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; "
     "img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -15,13 +15,13 @@ SAFE = {
     "cross-origin-opener-policy": "same-origin",
     "cross-origin-resource-policy": "same-origin",
 }  # plotly writes styles (no scripts) into the page
-MINUTE, AWAY = 60.0, 300.0  # seconds over which requests are counted, and after which somebody has left
+MINUTE, AWAY = 60.0, 300.0  # seconds over which requests are counted, and after which a client has left
 
 
 class Limits:
-    """What a server of many users allows: `users` addresses at a time, and `tasks` of one address in a minute.
+    """Limits of a public server: `users` addresses at the same time, and `tasks` per address and minute.
 
-    An address that was silent for `AWAY` seconds has left. A class behind one router has one address.
+    An address without requests for `AWAY` seconds has left. A class behind one router has one address.
     """
 
     def __init__(self, users: int, tasks: int):
@@ -29,24 +29,24 @@ class Limits:
         self.seen: OrderedDict[str, deque[float]] = OrderedDict()
 
     def refused(self, address: str, now: float | None = None) -> str:
-        """Why a task of an address is not taken, empty if it is."""
+        """Return why a task of an address is rejected, empty if it is accepted."""
         now = time.monotonic() if now is None else now
         while self.seen and now - next(iter(self.seen.values()))[-1] > AWAY:
             self.seen.popitem(last=False)
         if address not in self.seen and len(self.seen) >= self.users:
-            return f"{self.users} users are here, as many as this server takes: please try again in some minutes"
+            return f"{self.users} users are connected, the maximum of this server: please try again in some minutes"
         times = self.seen.setdefault(address, deque())
         self.seen.move_to_end(address)
         while times and now - times[0] > MINUTE:
             times.popleft()
         if len(times) >= self.tasks:
-            return f"{self.tasks} tasks a minute is what this server takes from one address: please wait a little"
+            return f"{self.tasks} tasks per minute is the maximum of this server for one address: please wait a little"
         times.append(now)
         return ""
 
 
 class Guard:
-    """ASGI: refuses what does not come from the page itself, and adds the headers of `SAFE`.
+    """ASGI middleware: rejects requests that do not come from the page itself, and adds the headers of `SAFE`.
 
     `hosts` are the values of ``Host`` that are answered: any other name that leads here is an attack by DNS.
     """
@@ -72,7 +72,7 @@ class Guard:
             await self.app(scope, receive, safe)
             return
         read, more = 0, scope["method"] == "POST"
-        while more and read <= DRAINED:  # whoever is still writing would not see the answer
+        while more and read <= DRAINED:  # a client that is still writing would not read the answer
             message = await receive()
             read, more = read + len(message.get("body", b"")), message.get("more_body", False)
         kind = [(b"content-type", b"application/json"), (b"connection", b"close")]

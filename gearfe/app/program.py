@@ -1,4 +1,4 @@
-"""The program in Python that prints the numbers of the page."""
+"""Program in Python that prints the numbers of the page."""
 
 from dataclasses import fields
 from typing import Any
@@ -57,7 +57,7 @@ def program(scene: Scene, phases: int = 64, solid: int = 16) -> str:
 
 
 def said(one: Any) -> str:
-    """A value as a program writes it; of gearfe's own classes only what is not their default.
+    """Return a value as source text; of gearfe's own classes only what is not their default.
 
     >>> from gearfe import Crack
     >>> said({"pinion": [Crack(length=2.0)]})

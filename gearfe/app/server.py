@@ -1,4 +1,4 @@
-"""The server of the page: its files, its tasks, and `serve`, which runs it on this machine."""
+"""Server of the page: its files, its tasks, and `serve`, which runs it on this computer."""
 
 import asyncio
 import contextlib
@@ -27,12 +27,12 @@ from .workers import LIMIT, SLOW, Pool
 
 KINDS = {*LIMIT, "quick", "fine", "load", "toml", "python", "csv"}
 FILES = {"/": ("page.html", "text/html"), "/page.css": ("page.css", "text/css"), "/page.js": ("page.js", "text/javascript")}
-LANE = 40  # characters of a page's own name
+LANE = 40  # characters of the name of a page
 PORT, LARGEST_SCENE = 8033, 90_000  # characters, so that a request with it is below the guard's limit
 
 
 class Answer(Response):
-    """Lines of JSON: how a task waits, and at last its answer; a page that is closed cancels its task."""
+    """Lines of JSON on a waiting task, and its answer; closing the page cancels the task."""
 
     def __init__(self, pool: Pool, lane: str, kind: str, given: dict[str, Any]):
         super().__init__(media_type="application/x-ndjson")
@@ -64,7 +64,7 @@ class Answer(Response):
 def application(
     hosts: tuple[str, ...], pool: Pool, *, start: dict[str, Any] | None = None, limits: Limits | None = None
 ) -> Guard:
-    """ASGI application of the page.
+    """Return the ASGI application of the page.
 
     It answers under the names `hosts` (with ports), by the solver processes of `pool`, which end with it. `start` is what
     ``load`` is given when the page opens: name and text of a scene, its pair and case; `limits` are for many users.
@@ -100,7 +100,7 @@ def application(
 
 
 def _refused(text, status=200):
-    """A refusal; of what the page itself may ask with 200, as browsers complain of others in their consoles."""
+    """Return a rejection; for requests of the page itself with status 200, since browsers print others as errors."""
     return Response(json.dumps({"refused": text}), status, media_type="application/json")
 
 
@@ -125,7 +125,7 @@ async def _plotly(_):
 
 
 def opened(scene: str, pair: str | None = None, case: str | None = None) -> dict[str, Any]:
-    """What the page loads when it opens: a scene by its built-in name or as a file, with the pair and case that are chosen.
+    """Return the initial state of the page: a scene by its built-in name or as a file, with pair and case.
 
     ValueError if there is no such scene, or it is too large for the page.
     """
@@ -156,15 +156,15 @@ def serve(
     Parameters
     ----------
     port : int
-        0: any free one.
+        TCP port; 0: any free one.
     start : dict, optional
-        As of `opened`.
+        Result of `opened`.
     public : str, optional
-        Name under which a reverse proxy on this machine shows the page to others.
+        Host name under which a reverse proxy on this computer shows the page to others.
     users, tasks : int
-        With `public`, as of `gearfe.app.guard.Limits`.
+        Limits with `public`, see `gearfe.app.guard.Limits`.
     workers : int, optional
-        Solver processes, default one per core; at least 2.
+        Number of solver processes, default one per core; at least 2.
     browser : bool
         Open it in the browser.
 
@@ -196,7 +196,7 @@ def serve(
 
 
 def running(app: Any, *, proxy: bool = False) -> uvicorn.Server:
-    """Server of an application, to be run on a socket; behind a `proxy` on this machine it believes whom that names as asking."""
+    """Return a server of an application for a socket; behind a `proxy` on this computer it trusts the client address of that."""
     config = uvicorn.Config(
         app, log_level="warning", ws="none", server_header=False, proxy_headers=proxy, forwarded_allow_ips="127.0.0.1",
         limit_concurrency=400, timeout_graceful_shutdown=2,

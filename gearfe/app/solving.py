@@ -1,4 +1,4 @@
-"""What a solver process computes of a state: curves beside health, the mesh to scale, stress, spectrum, files to carry away."""
+"""Tasks of a solver process: curves with and without damage, geometry, stress, spectrum, files for download."""
 
 import base64
 import json
@@ -31,12 +31,12 @@ from .state import CASE, SeveralError, read, tables_of, title_of
 
 QUICK, FINE, SOLID = 32, 64, 16  # phases per mesh cycle
 KEPT = 128 * 2**20  # memory of solved gears in one process [bytes]
-ALONG = {  # what changes along the width, as a section has it
+ALONG = {  # values of quantities along the width in a section
     "pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta_x": 0.0, "tilt_1": 0.0, "tilt_2": 0.0, "part": "all of it",
 }  # fmt: skip
 STRESS = (1000, 750)  # picture [px]
 SECONDS = 0.5  # of vibration
-SHOWN = 1500  # points of a spectrum that is drawn
+SHOWN = 1500  # points of a plotted spectrum
 UM = 1e6  # m to um
 
 
@@ -46,24 +46,24 @@ def scene_from(state: dict[str, Any]) -> Scene:
 
 
 def compared(scene: Scene, method: str, phases: int, *, error: bool) -> tuple[Comparison, tuple[str, ...]]:
-    """A scene's pair, in its case of damage beside health, by one method as `gearfe.compare` has it; and what that leaves out."""
+    """Return the comparison of a scene's pair with and without damage by one method, and the neglected parts."""
     chosen = scene.pair()
     case, _, left_out = fitted(method, chosen.case(CASE if chosen.damage else None))
     return beside_health(case, Solve(method, phases, error=error)), left_out
 
 
 def quick(state: dict[str, Any]) -> dict[str, Any]:
-    """The picture while a slider moves: the section, without estimates."""
+    """Return the result for a moving slider: the section, without estimates."""
     return _answer(state, "ritz", QUICK, error=False)
 
 
 def fine(state: dict[str, Any]) -> dict[str, Any]:
-    """The picture when the hand rests, with estimated errors."""
+    """Return the result for a resting slider, with estimated errors."""
     return _answer(state, "ritz", FINE, error=True)
 
 
 def solid(state: dict[str, Any]) -> dict[str, Any]:
-    """The same in three dimensions: helical teeth, pits, what changes along the width."""
+    """Return the result in three dimensions: helical teeth, pits, changes along the width."""
     return _answer(state, "ritz3d", SOLID, error=False)
 
 
@@ -98,13 +98,13 @@ def _answer(state, method, phases, *, error):
 
 
 def _wide(state):
-    """Whether something changes along the width, so that no section has it."""
+    """Return True if something changes along the width, so that a section is not sufficient."""
     cracked = state["crack"] != "none"
     return any(state[name] != plain for name, plain in ALONG.items() if name != "part" or cracked)
 
 
 def _numbers(values):
-    """Finite numbers as they are, others as null."""
+    """Return finite numbers unchanged, others as null."""
     return [value if math.isfinite(value) else None for value in np.asarray(values, dtype=float).tolist()]
 
 
@@ -116,7 +116,7 @@ def _curve(name, curve):
 
 
 def picture(scene: Scene) -> dict[str, Any]:
-    """What is drawn of the teeth in mesh, in mm and radians: outlines of one tooth, turns at phase 0 and by phase, damage."""
+    """Return the geometry of the teeth in mesh, in mm and rad: tooth outlines, rotations at phase 0 and per phase, damage."""
     chosen = scene.pair()
     pair, gears = chosen.pair, []
     starts, later = (pair.turn(pair.path[0] + at * pair.p_bt) for at in (0.0, 0.01))
@@ -193,17 +193,17 @@ def load(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def as_toml(state: dict[str, Any]) -> dict[str, Any]:
-    """The scene as a file."""
+    """Return the scene as a file."""
     return {"file": "scene.toml", "kind": "application/toml", "text": toml(tables_of(state))}
 
 
 def as_python(state: dict[str, Any]) -> dict[str, Any]:
-    """The program that prints the numbers of the page."""
+    """Return the program that prints the numbers of the page."""
     return {"file": "gear.py", "kind": "text/x-python", "text": program(scene_from(state))}
 
 
 def as_csv(state: dict[str, Any]) -> dict[str, Any]:
-    """The curve, healthy or damaged, as `StiffnessCurve.to_csv` writes it."""
+    """Return the curve, healthy or damaged, in the format of `StiffnessCurve.to_csv`."""
     scene = scene_from(state)
     method = "ritz3d" if _wide(state) or state["beta"] else "ritz"
     with own_warnings(), tempfile.TemporaryDirectory() as folder:
@@ -214,7 +214,7 @@ def as_csv(state: dict[str, Any]) -> dict[str, Any]:
 
 
 def report(state: dict[str, Any]) -> dict[str, Any]:
-    """The page of `gearfe report`."""
+    """Return the page of `gearfe report`."""
     from ..reports.page import report as made
 
     with own_warnings(), tempfile.TemporaryDirectory() as folder:
@@ -231,12 +231,12 @@ TASKS = {
 def begin() -> None:
     """Make a new solver process ready: little memory for solved gears, no disk; one pair loads what methods load late."""
     PROCESS.most = KEPT
-    os.environ["GEARFE_CACHE"] = ""  # a slider passes thousands of gears that nobody asks for again
+    os.environ["GEARFE_CACHE"] = ""  # a slider passes thousands of gears that are not needed again
     answer("quick", START)
 
 
 def answer(kind: str, given: dict[str, Any]) -> bytes:
-    """What a task gives, or a refusal in gearfe's words, as JSON."""
+    """Return the result of a task, or an error message, as JSON."""
     try:
         return json.dumps(TASKS[kind](given), allow_nan=False).encode()
     except (ValueError, RuntimeError) as error:

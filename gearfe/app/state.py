@@ -1,4 +1,4 @@
-"""The state of the page is a scene: written from the fields, read back from a scene that the page can show whole."""
+"""State of the page as a scene: written from the fields, read from a scene that the page can show completely."""
 
 import math
 import tomllib
@@ -27,12 +27,12 @@ class SeveralError(ValueError):
 
 
 def title_of(state: dict[str, Any]) -> str:
-    """What the scene is called if nobody has given it a name."""
+    """Return the title of a scene without a name."""
     return state["title"] or f"Pair {state['z_1']}/{state['z_2']}, module {state['m_n']:g} mm"
 
 
 def tables_of(state: dict[str, Any]) -> dict[str, Any]:
-    """Tables of the scene that a checked state stands for, as `gearfe.scene.load.scene_of` takes them."""
+    """Return the tables of the scene of a checked state, for `gearfe.scene.load.scene_of`."""
     gears = {side: {"material": side} for side in SIDES}
     pair = {"gear_1": "pinion", "gear_2": "wheel"}
     tables = {"title": title_of(state), "source": state["source"], "material": {}, "gear": gears, "pair": {PAIR: pair}}
@@ -54,11 +54,11 @@ def tables_of(state: dict[str, Any]) -> dict[str, Any]:
 
 
 def read(name: str, text: str, pair: str | None = None, case: str | None = None) -> tuple[dict[str, Any], list[str]]:
-    """State of the page for a scene's text (TOML), and in words what of the scene was left behind because a pair was chosen.
+    """Return the state of the page for a scene's text (TOML), and a list of the parts that the chosen pair leaves out.
 
-    `name` is that of the file, for messages; `pair` and `case` say which pair of the scene, in which case of damage (``""``:
-    healthy). Without, the scene must be one pair in one case. ValueError if it is no scene, or says something that the page
-    has no field for: nothing is dropped in silence.
+    `name` is that of the file, for messages. `pair` and `case` choose a pair and a case of damage (``""``: healthy). Without
+    them, the scene must be one pair in one case. ValueError if it is no scene, or contains anything without a field on the page:
+    nothing is dropped silently.
     """
     try:
         tables = tomllib.loads(text)
@@ -98,7 +98,7 @@ def read(name: str, text: str, pair: str | None = None, case: str | None = None)
 
 
 def _rest(scene: Scene, tables: dict[str, Any], pair: str | None, case: str | None) -> list[str]:
-    """What a scene says beside its pair (of several the chosen one) and case, in words."""
+    """Return in words the contents of a scene other than its (chosen) pair and case."""
     others = [other for other in scene.pairs if other != pair] if len(scene.pairs) > 1 else []
     names = dict.fromkeys(hurt for scene_pair in scene.pairs.values() for hurt in scene_pair.damage)
     cases = [name for name in names if name != case] if case is not None or len(names) > 1 else []
@@ -112,12 +112,12 @@ def _rest(scene: Scene, tables: dict[str, Any], pair: str | None, case: str | No
 
 
 def _runs(tables):
-    """Whether a scene has a machine that the page can show."""
+    """Return True if a scene has a machine that the page can show."""
     return tables.get("machine", {}).get("model") == "helical_pair" and set(tables["machine"]) <= RUN
 
 
 def _values(name: str, tables: dict[str, Any], pair: str, case: str | None) -> tuple[dict[str, Any], list[tuple[str, str]]]:
-    """Values of one pair in one case of a scene by the dotted keys that the page has, and (old, new) beginnings of keys."""
+    """Return values of one pair in one case of a scene by the dotted keys of the page, and (old, new) beginnings of keys."""
     given = trimmed(tables, pair, case) | ({"machine": tables["machine"]} if _runs(tables) else {})
     rows = Reading(name, scene_schema()).row("scene", "top level", given)
     sides = {rows["pair"][pair][key]: side for key, side in zip(("gear_1", "gear_2"), SIDES, strict=True)}
@@ -153,7 +153,7 @@ def _same(one, other):
 
 
 def _fields(tables, values, torque):
-    """Values of the fields from values by dotted key; what no field holds is left out, and found when `read` compares."""
+    """Return the fields from values by dotted key; other values are found when `read` compares."""
     out = START | {"source": tables["source"]}
     bore = {"gear.wheel.r_bore_mm": values["gear.wheel.r_bore_mm"] or values["gear.wheel.r_rim_mm"]}
     for field in FIELDS:

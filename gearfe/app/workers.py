@@ -1,4 +1,4 @@
-"""Solver processes, one task each; the tasks that wait for them, newest first wins; what is done when a process dies.
+"""Solver processes with one task each; waiting tasks, of which the newest counts; restart of dead processes.
 
 A task has a lane, that of a page or of one of its buttons. A newer task of the same lane takes the place of one that still
 waits. Tasks that take seconds never have all processes, so that a slider of somebody else still moves.
@@ -21,21 +21,21 @@ SLOW = {
     "spectrum": 6.0,
     "report": 40.0,
     "csv": 2.0,
-}  # kinds that take seconds: as long as these, at first
+}  # kinds that take seconds: initial estimates
 LIMIT = {"report": 300.0, "solid": 120.0, "stress": 120.0, "spectrum": 120.0}  # seconds after which a task is ended
-QUICK_LIMIT = 20.0  # of all others
-MEMORY = 4 * 2**30  # of one process [bytes]
+QUICK_LIMIT = 20.0  # limit of all other tasks [s]
+MEMORY = 4 * 2**30  # memory limit of one process [bytes]
 MOST = 64  # tasks that wait
 STALE = {"stale": True}
 START = 40.0  # seconds that a new process may take until it is ready
 
 
 def _work(pipe: Connection, memory: int) -> None:
-    """A solver process: it answers one task after another until its pipe is closed."""
+    """Run a solver process: answer one task after another until its pipe is closed."""
     import signal
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends it
-    with contextlib.suppress(ImportError, ValueError, OSError):  # not on Windows; not above what the system allows
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends this process
+    with contextlib.suppress(ImportError, ValueError, OSError):  # not on Windows; not above the limit of the system
         import resource
 
         resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
@@ -49,7 +49,7 @@ def _work(pipe: Connection, memory: int) -> None:
 
 
 class Worker:
-    """One solver process and the pipe to it; `ended` says why it is none any more, empty while it is."""
+    """Solver process with its pipe; `ended` is the reason of its end, empty while it runs."""
 
     def __init__(self, context: Any, memory: int):
         self.pipe, other = context.Pipe()
@@ -80,12 +80,12 @@ class Worker:
         return _json({"refused": self.ended})
 
     def kill(self) -> None:
-        """Kill the process, whatever it does."""
+        """Kill the process in any state."""
         self.starting.join()
         self.process.kill()
 
     def end(self) -> None:
-        """The same, and close the pipe to it."""
+        """Kill the process and close the pipe to it."""
         self.kill()
         self.process.join()
         self.pipe.close()
@@ -93,7 +93,7 @@ class Worker:
 
 @dataclass(eq=False, slots=True)
 class Task:
-    """A task that waits for a process, or has one."""
+    """Task that waits for a process, or has one."""
 
     lane: str
     kind: str
@@ -103,12 +103,12 @@ class Task:
 
     @property
     def slow(self) -> bool:
-        """Whether it takes seconds."""
+        """True if it takes seconds."""
         return self.kind in SLOW
 
 
 class Pool:
-    """Solver processes and who waits for them; all its methods are called in one event loop.
+    """Solver processes and waiting tasks; all its methods are called in one event loop.
 
     There are `count` processes, at least 2, as one is kept free of tasks that take seconds, each with `memory` [bytes]. Of
     tasks that wait there are `most`; others are refused in a sentence.
@@ -157,7 +157,7 @@ class Pool:
                 task.worker.kill()
 
     def _deal(self) -> None:
-        """Give free processes to those who wait longest; tasks that take seconds leave one free."""
+        """Give free processes to the longest waiting tasks; tasks that take seconds leave one free."""
         for task in list(self.waiting):
             if self.free and not (task.slow and self.slow >= self.count - 1):
                 self.waiting.remove(task)

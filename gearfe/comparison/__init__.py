@@ -1,4 +1,4 @@
-"""Questions asked of many curves: comparison by zone, case tables, models of the user's own.
+"""Evaluation of stiffness curves: comparison by zone, tables of cases, user-defined models.
 
 Each study is one file and returns a result that can print itself.
 """

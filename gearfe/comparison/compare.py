@@ -1,4 +1,4 @@
-"""`compare`: stiffness by every formulation and by the reference, of pairs in cases of damage; what each differs and costs."""
+"""`compare`: stiffness by every formulation and by the reference, for pairs and damage cases, with errors and cost."""
 
 import os
 import time
@@ -25,16 +25,17 @@ from ..stiffness.solve import Solve, solve
 from .comparison import Comparison, Key
 from .losses import damage_phases, engaged_phases, kind_of, loss_errors, told_damage, told_teeth, within
 from .own_model import OwnModel, own_curve, own_models
+from .returns import returns_of
 
-REFERENCE, REFERENCE_SOLID = "fe", "ritz3d"  # of sections, and where the third dimension is needed
+REFERENCE, REFERENCE_SOLID = "fe", "ritz3d"  # reference methods of sections, and of gears that need three dimensions
 REFERENCES = (REFERENCE, REFERENCE_SOLID, "fe3d")
-FORMULATIONS = tuple(row.name for row in ROWS if row.kind != "solid" and row.name != REFERENCE)  # of spur gears
+FORMULATIONS = tuple(row.name for row in ROWS if row.kind != "solid" and row.name != REFERENCE)  # formulations for spur gears
 STORED = 32  # phases of the cycle of curves on file
-COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # about, of a curve, in CPU seconds: for the time left
+COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU seconds per curve, for the time left
 
 
 class OwnPair(CaseOptions, total=False):
-    """Load and material of a pair of one's own, and the options of its `Case`."""
+    """Load and material of a user-defined pair, and the options of its `Case`."""
 
     force: float
     torque: float
@@ -52,7 +53,7 @@ def compare(
     reference: str | None = None,
     **given: Unpack[OwnPair],
 ) -> Comparison:
-    """Compare every formulation that models it with the reference, on one pair of a scene or of your own, healthy or damaged.
+    """Compare every suitable formulation with the reference, for one pair of a scene or a user-defined one.
 
     The reference is finite elements of the section; where pits or helical teeth need the third dimension, `ritz3d`. A damaged
     pair is compared with itself without damage, too, at the same phases.
@@ -60,15 +61,15 @@ def compare(
     Parameters
     ----------
     scene : Scene, str, path or Case, optional
-        A scene, the name of a built-in one, or its file; or a `Case`, or a pair of your own, see `pair`.
+        A scene, the name of a built-in one, or its file; or a `Case`; or a user-defined pair, see `pair`.
     pair : str or GearPair, optional
-        Name of the scene's pair; default the first. Or, without a scene, a pair of your own with `force` or `torque`, and
+        Name of the scene's pair; default the first. Or, without a scene, a user-defined pair with `force` or `torque`, and
         `material`.
     case : str, optional
         Name of a case of damage: the phases then are those of the mesh cycle in which its tooth is in the middle of its
         engagement.
     models : sequence or dict of str to model
-        Your own: functions ``f(phase) -> k`` [N/m] of the total mesh stiffness, ``PairModel(f)`` of one tooth pair,
+        User-defined models: functions ``f(phase) -> k`` [N/m] of the total mesh stiffness, ``PairModel(f)`` of one tooth pair,
         ``OwnFlexibility(f)`` of one gear, or files with stated units (see `gearfe.comparison.own_model` and `gearfe.read_model`).
     phases : int or array
         As in `mesh_stiffness`.
@@ -77,24 +78,25 @@ def compare(
     reference : str, optional
         ``"fe3d"``: finite elements of whole gears, minutes for each; or another of fe and ritz3d than the default.
     **given
-        Of a pair of your own, as of `Case`: ``force`` along the line of action [N] or ``torque`` on the pinion [N m],
+        Arguments of `Case` for a user-defined pair: ``force`` along the line of action [N] or ``torque`` on the pinion [N m],
         ``material``, ``damage``, ``face``, ``groove``, ``flanks`` and so on.
 
     Returns
     -------
     Comparison
-        Its ``headline`` is the answer in one sentence; ``left_out`` says why a formulation has no curve.
+        Its ``headline`` is the answer in one sentence; ``left_out`` has the reason for each formulation without a curve.
 
     Raises
     ------
     ValueError
-        If there is no such scene, pair or case, or a pair of your own comes without its load or material.
+        If there is no such scene, pair or case, or a user-defined pair has no load or material.
     """
     chosen, key = _chosen(scene, pair, case, given)
     methods, left_out = _methods(chosen, reference)
     named = own_models(models, taken=(REFERENCE, *FORMULATIONS))
-    plan, cycles = _beside(key, chosen, phases)
-    for method in methods:  # what they and gmsh load is no part of their seconds
+    returns = {} if isinstance(scene, (Case, GearPair, type(None))) else returns_of(_loaded(scene), *key)
+    plan, cycles = _beside(key, chosen, phases, returns)
+    for method in methods:  # loading of libraries does not count
         METHODS[method].load()
     with gmsh_session():
         pass
@@ -146,25 +148,26 @@ def compare_cases(
     return _compared(plan, asked, methods, Solve(), known=known)
 
 
-def beside_health(case: Case, how: Solve, pair: str = "pair") -> Comparison:
+def beside_health(case: Case, how: Solve, pair: str = "pair", *, returns: Mapping[int, str] | None = None) -> Comparison:
     """Compare a damaged pair with itself without damage by one method; of a healthy pair its curve alone.
 
-    Of a damaged pair a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth.
+    Of a damaged pair a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth. `returns` is as
+    of `told_teeth`.
     """
     key = (pair, kind_of(case.damage) if case.damaged else None)
-    (plan, cycles), (row, why) = _beside(key, case, how.phases), how.chosen(case)
+    (plan, cycles), (row, why) = _beside(key, case, how.phases, returns), how.chosen(case)
     found = _compared(plan, (key,), (row.name,), how, cycles)
     for curve in found.solved.values():
         curve.meta["why"] = why
     return replace(found, times={})
 
 
-def _beside(key, case, phases):
+def _beside(key, case, phases, returns=None):
     """Case and phases by key, those of the healthy pair too; and the phases that zones are over by damaged tooth in words."""
     cycles = {}
     if case.damaged and np.ndim(phases) == 0:
         count = check_count(phases)
-        cycles = {words: damage_phases(case, count, number) for number, words in told_teeth(case).items()}
+        cycles = {words: damage_phases(case, count, number) for number, words in told_teeth(case, returns).items()}
         phases = engaged_phases(case, count)
     return {key: (case, phases)} | ({(key[0], None): (case.healthy, phases)} if case.damaged else {}), cycles
 
@@ -235,18 +238,17 @@ def _on_file(case, phase, k, tooth, estimate, seconds):
 
 
 def _chosen(scene, pair, case, given):
-    """`Case` and its key: of a scene, or of one's own."""
+    """Return `Case` and key of a scene's pair or a user-defined one."""
     if isinstance(scene, (Case, GearPair)) and pair is None:
         scene, pair = None, scene
     if isinstance(pair, (Case, GearPair)):
         if scene is not None or case is not None:
-            raise ValueError("a pair of your own has no scene and no case: leave them out, and give its damage as damage=")
+            raise ValueError("a user-defined pair has no scene and no case: leave them out, and give its damage as damage=")
         return _own(pair, given)
     stated = [name for name, value in given.items() if value not in (None, 0.0)]
     if stated:
         raise ValueError(f"{stated[0]} is stated by the scene: leave it out, or give pair=GearPair(...) instead of a scene")
-    if isinstance(scene, (str, os.PathLike)):
-        scene = load_scene(scene)
+    scene = _loaded(scene)
     if not isinstance(scene, Scene):
         raise ValueError(
             f"scene = {scene!r}, but give a Scene, the name or file of one, or pair=GearPair(...) with force= and material="
@@ -254,11 +256,15 @@ def _chosen(scene, pair, case, given):
     return scene.case(pair, case), (pair or next(iter(scene.pairs)), case)
 
 
+def _loaded(scene):
+    return load_scene(scene) if isinstance(scene, (str, os.PathLike)) else scene
+
+
 def _own(pair, given):
     load = [given.get(name) for name in ("force", "torque")]
     if isinstance(pair, GearPair) and (given.get("material") is None or load == [None, None]):
         raise ValueError(
-            "a pair of your own needs its load and material: force= [N] or torque= [N m], and material=Material(...)"
+            "a user-defined pair needs its load and material: force= [N] or torque= [N m], and material=Material(...)"
         )
     case = case_of(pair, **given)
     if len(case.forces) > 1:
@@ -268,7 +274,7 @@ def _own(pair, given):
 
 
 def _methods(case, reference):
-    """Reference and formulations for a case that have it whole, a ring's body included; why others are left out."""
+    """Return the reference and the formulations that model a case completely, and reasons for the others."""
     if reference is not None:
         one_of("reference", reference, REFERENCES)
     solid, ring = case.why_wide, case.pair.gear_2.internal
@@ -285,16 +291,16 @@ def _methods(case, reference):
 
 
 def why_not(row: Method, case: Case, solid: str) -> str:
-    """Why a comparison has no column of a method; `solid` says why the case needs three dimensions, if it does."""
+    """Return why a comparison has no column of a method; `solid` is the reason for three dimensions, if there is one."""
     pair = case.pair
     if pair.gear_2.internal and row.rings != "yes" and row.rings not in RING_FOUNDATIONS:
         return "not for rings"
     if pair.gear_2.internal and row.rings != "yes":
         return f"not for rings: it {RING_FOUNDATIONS[row.rings]}"
     if row.name == "fe3d" and solid:
-        return "takes minutes for each gear; ask for it: --reference fe3d (reference='fe3d')"
+        return "takes minutes for each gear; use --reference fe3d (reference='fe3d')"
     if row.kind == "solid":
-        return "nothing changes along the width; of narrow teeth ask for it: --reference ritz3d (reference='ritz3d')"
+        return "a two-dimensional model is sufficient here; for narrow gears use --reference ritz3d (reference='ritz3d')"
     if solid and row.kind == "section":
         return f"a transverse section, but {solid}"
     return "for healthy gears only" if case.damaged and not row.cracks else "left out"

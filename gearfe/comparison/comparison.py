@@ -15,10 +15,10 @@ from ..stiffness.curve import StiffnessCurve
 from .losses import LARGEST, headline, kind_of, loss, rounded_up, told_cycle, within
 
 ZONES = ("single", "double", "triple", "mean", "max", LARGEST)
-BRIEF = ("mean", "max", LARGEST)  # of many cases
+BRIEF = ("mean", "max", LARGEST)  # zones in tables of many cases
 Key = tuple[str, str | None]  # pair and case of damage; None: healthy
 
-RENAMED: dict[str, tuple[str, Callable[[Any], Any]]] = {  # what replaces a name of before, and its value
+RENAMED: dict[str, tuple[str, Callable[[Any], Any]]] = {  # by former name: the new one and its value
     "pair_name": ("subject", lambda one: one.subject[0]),
     "damage": ("teeth", lambda one: one.first_tooth()[0]),
     "cycle": ("teeth", lambda one: one.first_tooth()[1]),
@@ -27,10 +27,10 @@ RENAMED: dict[str, tuple[str, Callable[[Any], Any]]] = {  # what replaces a name
 
 
 class Row(NamedTuple):
-    """One method in one zone: stiffness [N/m] and its cost [s]; nan where there is none.
+    """One method in one zone: stiffness [N/m] and its cost [s]; nan if missing.
 
-    `estimate` is the estimated relative discretisation error of k. `error` is that against the reference. `loss` is what the
-    damage takes of the healthy stiffness, and `doubt` the estimated error of the loss.
+    `estimate` is the estimated relative discretisation error of k. `error` is the difference from the reference. `loss` is the
+    relative loss of stiffness by the damage, and `doubt` the estimated error of the loss.
     """
 
     pair: str
@@ -52,17 +52,17 @@ class Comparison:
     Attributes
     ----------
     cases : dict of (str, str or None) to Case
-        By the names of pair and case of damage; None is healthy. What is damaged has its healthy pair beside it.
+        Cases by the names of pair and case of damage; None is healthy. The healthy pair of a damaged one is included.
     asked : tuple of (str, str or None)
-        Those that tables show.
+        Pairs and cases in the tables.
     solved : dict of (str, str or None, str) to StiffnessCurve
-        By pair, case and method. Of one damaged pair over the whole engagement of the damaged tooth.
+        Curves by pair, case and method. For one damaged pair, over the whole engagement of the damaged tooth.
     times : dict of (str, str or None, str) to float
-        Seconds by pair, case and method, without imports and estimates of errors; none where nothing was timed.
+        Seconds by pair, case and method, without imports and error estimates; none for untimed curves.
     teeth : dict of (str, str) to dict of str to (ndarray or None, dict)
-        Of damaged pairs, by damaged tooth in words: the phases that zones, mean and max are over, None for all, and by zone the
-        estimated error of the loss by the reference, as a part of the healthy stiffness. The phases are those of the mesh cycle
-        in which the damaged tooth is in the middle of its engagement, so that it is in contact all the time. Tables are of the
+        For damaged pairs, by damaged tooth in words: the phases over which zones, mean and max are taken (None for all). Also by
+        zone the estimated error of the loss by the reference, relative to the healthy stiffness. The phases are those of the mesh
+        cycle in which the damaged tooth is in the middle of its engagement and therefore always in contact. Tables are for the
         first tooth, see `by_tooth`.
     left_out : dict of str to str
         Methods without a curve, and why.
@@ -107,16 +107,16 @@ class Comparison:
         return {name: self.times[*self.subject, name] for name in self.curves if (*self.subject, name) in self.times}
 
     def __getattr__(self, name: str) -> Any:
-        """Names of before, of the `subject`; they leave with the next version."""
+        """Return the value of a former name, of the `subject`, with a DeprecationWarning."""
         if name not in RENAMED:
             raise AttributeError(f"a Comparison has no {name!r}")
         new, value = RENAMED[name]
-        warnings.warn(f"Comparison.{name} leaves with the next version: use {new}", DeprecationWarning, stacklevel=2)
+        warnings.warn(f"Comparison.{name} will be removed in the next version: use {new}", DeprecationWarning, stacklevel=2)
         return value(self)
 
     @property
     def kind(self) -> str:
-        """What the damaged teeth are called: "cracked", "pitted" or "damaged"; empty of healthy pairs."""
+        """Adjective of the damaged teeth: "cracked", "pitted" or "damaged"; empty for healthy pairs."""
         kinds = {kind_of(case.damage) for key in self.asked if (case := self.cases[key]).damaged}
         return "damaged" if len(kinds) > 1 else "".join(kinds)
 
@@ -128,7 +128,7 @@ class Comparison:
         return [replace(self, teeth={self.subject: {words: one}}) for words, one in teeth.items()]
 
     def first_tooth(self, key: Key | None = None) -> tuple[str, NDArray | None, dict[str, float]]:
-        """First damaged tooth of a pair in a case (default: the `subject`) in words, its phases and its doubts, see `teeth`."""
+        """Return the first damaged tooth of a pair (default: `subject`) in words, its phases and errors, see `teeth`."""
         words, (cycle, doubt) = next(iter(self.teeth.get(key or self.subject, {"": (None, {})}).items()))
         return words, cycle, doubt
 
@@ -141,7 +141,7 @@ class Comparison:
         return {name: within(curve, self.first_tooth(over or key)[1]) for name, curve in self.of(*key).items()}
 
     def losses(self, key: Key | None = None) -> dict[str, dict[str, float]]:
-        """What damage takes of the stiffness [-] by method and zone, and at the phase where it takes most; empty if healthy.
+        """Return the relative loss of stiffness by method and zone, and its maximum over the phase; empty for a healthy pair.
 
         `key` names pair and case, by default those of the `subject`.
         """
@@ -179,7 +179,7 @@ class Comparison:
 
     @property
     def headline(self) -> str:
-        """The answer in one sentence: what damage takes; of a healthy pair its mean stiffness and who is how far off it."""
+        """Answer in one sentence: the loss of mesh stiffness; for a healthy pair its mean stiffness and the errors of methods."""
         key = self.subject
         which = f"{key[0]}, {key[1] or 'healthy'}: " if len(self.asked) > 1 else ""
         if self.losses(key):
@@ -193,7 +193,7 @@ class Comparison:
 
     @property
     def definition(self) -> str:
-        """What the zones and the mean are over."""
+        """Phases over which the zones and the mean are taken, in words."""
         return told_cycle(None if len(self.asked) > 1 else self._cut(self.subject)[self.methods[0]].phase, self.kind)
 
     def reasons(self) -> dict[str, str]:
@@ -202,9 +202,9 @@ class Comparison:
         return {why: ", ".join(name for name, reason in self.left_out.items() if reason == why) for why in whys}
 
     def _pivot(self, zones, shown, kept):
-        """Columns and rows of a table, a row for each pair, case and zone; pair and case are told of several cases only.
+        """Return columns and rows of a table, a row for each pair, case and zone; pair and case only if there are several.
 
-        `shown` are columns by method, each with the number that it shows of a `Row`; `kept` says which rows count.
+        `shown` are columns by method, each with its number of a `Row`. `kept` selects the rows.
         """
         labels = ("pair", "case", "zone")[-3 if len(self.asked) > 1 else -1 :]
         zones = zones or (BRIEF if len(self.asked) > 1 else None)
@@ -243,7 +243,7 @@ class Comparison:
         return Table(columns, body, "errors of each method")
 
     def loss_table(self, zones: Collection[str] | None = None) -> Table | None:
-        """`Table` by zone of the reference [N/um] healthy and damaged, and what damage takes by each method.
+        """`Table` by zone of the reference [N/um] healthy and damaged, and the loss by each method.
 
         The last row is the phase at which it takes most. None without damage.
         """

@@ -1,4 +1,4 @@
-"""S. L. Harris's map of a scene's pair: transmission error under a row of loads, with its flanks and beside plain involutes."""
+"""Harris map of a pair (S. L. Harris): transmission error under several loads, with modified and with unmodified flanks."""
 
 from dataclasses import replace
 

@@ -1,7 +1,7 @@
-"""What damage takes: damaged gears beside healthy ones at the same phases, by the same method, and said in one sentence.
+"""Loss of mesh stiffness by damage: damaged and healthy gears at the same phases by the same method.
 
-All numbers of a damaged pair are over one mesh cycle, that in which its damaged tooth is in the middle of its engagement: the
-tooth is in contact all the time, and a healthy pair has the same mean over it as over any other cycle.
+All numbers of a damaged pair are over one mesh cycle, in which its damaged tooth is in the middle of its engagement. The tooth is
+then always in contact, and a healthy pair has the same mean over it as over any other cycle.
 """
 
 import math
@@ -62,8 +62,10 @@ def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
     return out
 
 
-def told_teeth(case: Case) -> dict[int, str]:
+def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int, str]:
     """Damage in words by number of the tooth pair; teeth are named unless the only one is tooth 0 of the pinion.
+
+    `returns` is how often they mesh, in words (`gearfe.comparison.returns.returns_of`).
 
     Examples
     --------
@@ -75,14 +77,15 @@ def told_teeth(case: Case) -> dict[int, str]:
     ['tooth 0 of the wheel: 2 mm crack at 60.2 degrees', 'tooth 5 of the wheel: 1.5 mm crack at 60.2 degrees']
     """
     found = damaged_pairs(case)
+    often = {pair: f" ({words})" for pair, words in (returns or {}).items()}
+    named = {pair: " and ".join(f"tooth {pair} of the {side}" for side in sides) + ": " for pair, sides in found.items()}
     if [list(sides) for sides in found.values()] == [["pinion"]] and 0 in found:
-        return {0: told_damage(case.pair, found[0])}
-    named = {pair: " and ".join(f"tooth {pair} of the {side}" for side in sides) for pair, sides in found.items()}
-    return {pair: f"{name}: {told_damage(case.pair, found[pair])}" for pair, name in named.items()}
+        named[0] = ""
+    return {pair: f"{name}{told_damage(case.pair, found[pair])}{often.get(pair, '')}" for pair, name in named.items()}
 
 
 def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
-    """The part of a curve at these of its phases; all of it if None."""
+    """Return the part of a curve at these of its phases; all of it if None."""
     if phases is None:
         return curve
     rows = np.flatnonzero(np.abs(curve.phase[:, None] - phases).min(axis=1) < 1e-9)
@@ -92,20 +95,20 @@ def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
 
 
 def told_cycle(phases: NDArray | None, kind: str = "") -> str:
-    """What zones and means are over, in words; `kind` as of `kind_of`, of a damaged pair; phases None: of several pairs."""
+    """Return in words the phases of zones and means; `kind_of` describes `kind`; phases None: of several pairs."""
     over = f"the mesh cycle that has the {kind} tooth in the middle of its engagement" if kind else "the mesh cycle"
     span = "" if phases is None else f", phases {phases.min():.3g} to {phases.max():.3g}"
     return f"zones, mean and max are over {over}{span}"
 
 
 def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:
-    """Part of the stiffness that damage takes, by zone, and the largest at one phase (`LARGEST`)."""
+    """Return the relative loss of stiffness by zone, and the largest at one phase (`LARGEST`)."""
     before, after = healthy.zones(), hurt.zones()
     return {zone: 1 - after[zone] / before[zone] for zone in before} | {LARGEST: float((1 - hurt.k / healthy.k).max())}
 
 
 def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: Solve) -> dict[str, float]:
-    """Estimated discretisation error of the losses by zone: how far a coarser solve of both gears moves them.
+    """Estimated discretisation error of the losses by zone: their change with a coarser solve of both gears.
 
     It is the coarser solve that an estimate of k looks at; empty if it would be too coarse. Of finite elements in three
     dimensions, which take minutes, and of broken teeth the relative errors of both stiffnesses are added: a much wider bound.
@@ -136,7 +139,7 @@ def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Damage]] | None) -
 
 
 def kind_of(damage: Mapping[str, Iterable[Damage]] | None) -> str:
-    """What a tooth with such damage is called: `gearfe.geometry.damage.kinds.called`."""
+    """Return the adjective of a tooth with such damage, see `gearfe.geometry.damage.kinds.called`."""
     return called(hurt for damages in (damage or {}).values() for hurt in damages)
 
 
@@ -157,14 +160,14 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
 
 
 def percent_with_doubt(value: float, doubt: float) -> str:
-    """A part in percent with its doubt, which is rounded up: ``15.8 ± 0.3 %``; without a doubt the number alone."""
+    """Return a ratio in percent with its error, which is rounded up: ``15.8 ± 0.3 %``; without an error the number alone."""
     if not math.isfinite(doubt):
         return f"{100 * value:.1f} %"
     return f"{100 * value:.1f} ± {rounded_up(100 * doubt):.1f} %"
 
 
 def rounded_up(percent: float) -> float:
-    """A doubt in percent with one decimal, rounded up."""
+    """Return an error in percent with one decimal, rounded up."""
     return max(math.ceil(10 * percent), 1) / 10
 
 

@@ -22,9 +22,9 @@ ANGLES, RADII = ("angle", "pinion angle", "roll angle"), ("radius", "pinion radi
 ABSCISSAE = "'phase' (mesh cycles), 'angle [deg]' or 'angle [rad]' (of the pinion) or 'radius [mm]' (one pair, on the pinion)"
 UNITS = "N/m, N/mm, N/um (also kN, MN, GN) or, per width, N/(mm um), N/(m um)"
 COARSEST = 1 / 20  # longest step between rows: of a mesh cycle, or of the active flank
-SNAP = 1e-4  # of a cycle: rounding of printed angles and phases
-EXACT = 1e-9  # the same for the phases asked for
-STEEP = 0.1  # of the mean k: a rise from one row to the next that means an entering pair
+SNAP = 1e-4  # tolerance for rounded angles and phases [mesh cycles]
+EXACT = 1e-9  # the same for requested phases
+STEEP = 0.1  # rise of k between rows, as a part of its mean, that means an entering pair
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,9 +55,9 @@ class ModelFile:
     meta: dict[str, Any] = field(default_factory=dict)
 
     def total(self, pair: GearPair, phase: ArrayLike) -> Floats:
-        """Mesh stiffness at mesh phases, as the file has it: [N/m], or [N/m per m] if `per_width`.
+        """Return the mesh stiffness of the file at mesh phases: [N/m], or [N/m per m] if `per_width`.
 
-        Linear between rows, never across the phases at which a pair enters or leaves: beside them the nearest row on the same
+        It is linear between rows, but not across the phases at which a pair enters or leaves. There the nearest row on the same
         side counts. ValueError if the rows do not cover one mesh cycle, cover more than one, or are more than `COARSEST` apart.
         """
         cycle = 2 * math.pi / pair.gear_1.z if self.abscissa == "angle" else 1.0
@@ -191,7 +191,7 @@ def _is_number(cell):
 
 
 def _header_comment(path, comments, first):
-    """The last comment that states a stiffness unit in its second column."""
+    """Return the last comment that states a stiffness unit in its second column."""
     for comment in reversed(comments):
         cells = _cells(comment)
         if len(cells) == 2 and _stiffness_unit(cells[1]):

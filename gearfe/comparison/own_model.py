@@ -1,4 +1,4 @@
-"""Stiffness models of the user's own, functions or files, as curves to compare."""
+"""User-defined stiffness models, functions or files, as curves to compare."""
 
 import importlib.util
 import math
@@ -21,7 +21,7 @@ from ..stiffness.solve import Solve, solve
 from .model_file import ModelFile, read_model
 
 SHARED_META = ("force_N", "width_mm", "gear_1", "gear_2", "a_mm", "eps_alpha", "materials", "versions")
-SAME = ("force_N", "gear_1", "gear_2", "a_mm")  # what a curve written by gearfe must share with the scene
+SAME = ("force_N", "gear_1", "gear_2", "a_mm")  # entries that a curve written by gearfe must share with the scene
 FAR = 10.0  # ratio to the reference that hints at a wrong unit
 
 
@@ -77,14 +77,14 @@ def own_models(models, taken=()):
 
 
 def _in_file(path, name):
-    """The model called `name` of a Python file."""
+    """Return the model called `name` of a Python file."""
     if not Path(path).is_file():
         raise ValueError(f"{path}: no such file")
     spec = importlib.util.spec_from_file_location(Path(path).stem, path)
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
-    except Exception as error:  # a file of the user's may raise whatever it likes
+    except Exception as error:  # a user's file may raise any error
         raise ValueError(f"{path} failed with {type(error).__name__}: {error}") from error
     kinds = (PairModel, OwnFlexibility)
     has = [
@@ -165,12 +165,12 @@ def _total(name, model, pair, phase, width):
 
 
 def _called(name, function, given, where):
-    """What a user's function returns, checked."""
+    """Return the checked result of a user's function."""
     n = given[0].size
     once = f"it is called once, with arrays of {n} values; numpy.vectorize(f) makes a function of single numbers fit"
     try:
         k = np.asarray(function(*given))
-    except Exception as error:  # a function of the user's may raise whatever it likes
+    except Exception as error:  # a user's function may raise any error
         raise ValueError(f"model {name!r} failed with {type(error).__name__}: {error} ({once})") from error
     if k.shape != (n,):
         raise ValueError(f"model {name!r} returned an array of shape {k.shape}, but give ({n},): one k for each value ({once})")

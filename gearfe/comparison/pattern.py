@@ -1,4 +1,4 @@
-"""The contact pattern of a scene's pair: where it presses hardest over a mesh cycle, and how evenly along the width."""
+"""Contact pattern of a pair: largest pressure over a mesh cycle and load distribution along the width."""
 
 import math
 from dataclasses import dataclass
@@ -17,11 +17,12 @@ PLACES = 400  # along the width
 
 @dataclass(frozen=True, slots=True)
 class Pattern:
-    """Contact over a mesh cycle; of a damaged pair that with its damaged tooth in the middle of its engagement.
+    """Contact over a mesh cycle; for a damaged pair with its damaged tooth in the middle of its engagement.
 
-    `contact` as of `gearfe.contact_pattern`; `pressure` the largest of Hertz's [MPa], at `phase`, at `radius` on the pinion and
-    height `z` [mm]; `factor` the largest over the mean load per width (`face_load_distribution`); `corners` the number of phases
-    at which a tip corner carries load: pressure there is unbounded, and the largest is that of the rest.
+    `contact` is the result of `gearfe.contact_pattern`. `pressure` is the largest Hertzian pressure [MPa], at `phase`, at
+    `radius` on the pinion and height `z` [mm]. `factor` is the largest over the mean load per width (`face_load_distribution`).
+    `corners` is the number of phases at which a tip corner carries load. Pressure is unbounded there, and the largest is that of
+    the other phases.
     """
 
     contact: Contact3D
@@ -33,7 +34,7 @@ class Pattern:
     corners: int
 
     def told(self) -> str:
-        """The pattern in words."""
+        """Return the pattern in words."""
         count = self.contact.phase.size
         lines = [
             f"largest pressure {self.pressure:.0f} MPa at phase {self.phase:.3g}, radius {self.radius:.5g} mm of the pinion, "
@@ -42,7 +43,7 @@ class Pattern:
         ]
         if self.corners:
             lines.append(
-                f"a tip corner carries at {self.corners} of {count} phases: pressure there is beyond Hertz's and not told"
+                f"a tip corner carries at {self.corners} of {count} phases: its pressure is beyond Hertz's theory and not printed"
             )
         return "\n".join(lines)
 

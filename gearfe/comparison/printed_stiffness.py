@@ -1,4 +1,4 @@
-"""Stiffnesses that the source of a scene prints for healthy and damaged gears, beside a `Comparison`."""
+"""Printed stiffnesses of a scene's source, for healthy and damaged gears, compared with a `Comparison`."""
 
 from ..scene.verdicts import judge, text
 from .losses import LARGEST
@@ -28,7 +28,7 @@ def printed_cases(scene):
 
 
 def printed_text(scene, found):
-    """The source's own table of stiffness beside a `Comparison`, as Markdown with verdicts; empty if it prints none."""
+    """Return the source's table of stiffness with the values of a `Comparison`, as Markdown with verdicts; or an empty text."""
     reference, rows = found.methods[0], list(found.rows())
 
     def by_case(method, zone, number, factor=1.0):

@@ -1,4 +1,4 @@
-"""How long a record must be so that the lines of a fault can be told from those beside them."""
+"""Record length that resolves the sidebands of a fault."""
 
 import math
 
@@ -6,18 +6,18 @@ from ..signal.indicators import LOBES
 
 
 def resolving_seconds(fault, turning=None, carrier=None):
-    """Seconds of a record that resolve the lines of a fault, with Hann's window; 0 without a fault.
+    """Return the seconds of a record that resolve the lines of a fault, with Hann's window; 0 without a fault.
 
     ::
 
     T = max(2 LOBES / s, LOBES / d)
 
-    A line fills `LOBES` bins of 1 / T. The lines of a fault stand s apart, the turns of its gear (without, the fault's own
-    frequency): from 2 LOBES / s on half of the bins between them show the noise, which tells what is a line. And from the
-    multiples of the turns of gear and carrier that are nearest to it the fault's line stands d away.
+    A line fills `LOBES` bins of 1 / T. The lines of a fault are s apart, the shaft frequency of its gear (without it, the fault
+    frequency). From 2 LOBES / s on, half of the bins between them contain noise, from which lines are distinguished. The line of
+    the fault is at a distance d from the nearest multiples of the shaft frequencies of gear and carrier.
 
-    Given is how often the faulty tooth meshes, the turns of its gear against the carrier, and those of the carrier [Hz]. A sun
-    tooth of 21/31/84 teeth, 40 Hz: its gear turns at 13.33 Hz, the carrier at 3.33 Hz.
+    The arguments are the fault frequency, the shaft frequency of the gear relative to the carrier, and that of the carrier [Hz].
+    A sun tooth of 21/31/84 teeth, 40 Hz: its gear rotates at 13.33 Hz, the carrier at 3.33 Hz.
 
     >>> round(resolving_seconds(40.0, 40 / 3, 10 / 3), 3)
     1.2
@@ -30,16 +30,16 @@ def resolving_seconds(fault, turning=None, carrier=None):
 
 
 def too_short(seconds, needed):
-    """What to do about a record of `seconds` where `needed` seconds resolve the lines; empty if it is long enough.
+    """Return the remedy for a record of `seconds` if `needed` seconds resolve the lines; empty if it is long enough.
 
     >>> too_short(0.3, 1.2001)
-    '0.3 s are too short to part the lines of the fault from those beside them: record 1.21 s or longer'
+    '0.3 s cannot resolve the fault sidebands: record at least 1.21 s'
     """
     if seconds >= needed * (1 - 1e-3):
         return ""
     digit = 10.0 ** (math.floor(math.log10(needed)) - 2)
     longer = math.ceil(needed / digit - 1e-6) * digit
-    return f"{seconds:.3g} s are too short to part the lines of the fault from those beside them: record {longer:.3g} s or longer"
+    return f"{seconds:.3g} s cannot resolve the fault sidebands: record at least {longer:.3g} s"
 
 
 def _beside(line, comb):

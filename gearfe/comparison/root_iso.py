@@ -1,4 +1,4 @@
-"""Root stress beside ISO 6336-3, method B: the nominal stress of external spur gears, by a standard that rounds up."""
+"""Nominal root stress of external spur gears by ISO 6336-3, method B, for comparison with finite elements."""
 
 import math
 from dataclasses import dataclass
@@ -91,7 +91,7 @@ def _beyond(pair):
 
 
 def told_root(case: Case) -> list[str]:
-    """Root stress of both healthy gears of a pair by finite elements, beside ISO 6336-3; none where it is not known."""
+    """Return the root stress of both healthy gears of a pair by finite elements and by ISO 6336-3, as text lines."""
     if _beyond(case.pair):
         return []
     width = min(case.pair.gear_1.b, case.pair.gear_2.b)

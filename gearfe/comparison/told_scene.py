@@ -26,7 +26,7 @@ OTHERS = {"table": "a measured profile", "topography": "a measured flank", "pitc
 
 
 def told(scene: Scene) -> list[str]:
-    """Lines that say what a scene holds: gears, pairs with flanks, axes, supports and damage, its machine, what is assumed."""
+    """Return lines that describe a scene: gears, pairs with flanks, axes, supports and damage, its machine, assumptions."""
     lines = [scene.title]
     for name, gear in scene.gears.items():
         lines += ["", f"gear {name}: {told_gear(gear)}"]
@@ -38,7 +38,7 @@ def told(scene: Scene) -> list[str]:
 
 
 def told_gear(gear: Gear) -> str:
-    """A gear in words.
+    """Return a description of a gear.
 
     >>> told_gear(Gear(z=21, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=7.4))
     '21 teeth, module 2 mm, 20 degrees, spur, 20 mm wide; tip diameter 46 mm, root 37 mm; held in its bore of 14.8 mm diameter'
@@ -95,7 +95,7 @@ def told_details(chosen: ScenePair) -> Iterator[str]:
 
 
 def told_flank(flank: Flank, gear: Gear) -> str:
-    """A gear's flank in words, its reliefs with the diameter where they start."""
+    """Return a description of a gear's flank, its reliefs with the diameter where they start."""
     parts = []
     for end, roll in (("tip", gear.roll_a), ("root", gear.roll_f)):
         relief = 1e3 * getattr(flank, f"{end}_relief")
@@ -162,13 +162,13 @@ def _train(scene: Scene) -> Iterator[str]:
 
 
 def _set(scene: Scene) -> Iterator[str]:
-    """The set of a scene."""
+    """Return a description of the set of a scene."""
     if scene.set is not None:
         yield f"set: {told_set(build_set(scene))}"
 
 
 def told_supports(curve: StiffnessCurve) -> str:
-    """How much of the deflection is that of shafts and springs, in words; empty if the hubs are held rigidly."""
+    """Return the share of shafts and springs in the deflection, in words; empty if the hubs are held rigidly."""
     if curve.support_deflection is None:
         return ""
     part, k_teeth = float(curve.support_deflection.mean() / curve.deflection.mean()), curve.without_supports().k.mean()

@@ -1,4 +1,4 @@
-"""What a planetary set does to the stiffness of its meshes, in words and as a table; and at which positions that is looked at."""
+"""Stiffness of the meshes in a planetary set, in words and as a table, and its positions."""
 
 import math
 
@@ -54,7 +54,7 @@ def set_numbers(curves: SetCurves) -> dict[str, float]:
 
 
 def set_headline(curves: SetCurves, healthy: SetCurves | None = None) -> str:
-    """The answer in one sentence; of a damaged set beside the `healthy` one, at the same positions."""
+    """State the answer in one sentence; for a damaged set relative to the `healthy` one, at the same positions."""
     found, said = set_numbers(curves), []
     for kind in MESHES:
         inside, alone = found[f"k_{kind.replace('-', '_')}"], found[f"k_{kind.replace('-', '_')}_alone"]
@@ -87,7 +87,7 @@ def told_span(positions: Floats) -> str:
 
 
 def told_set(case: PlanetaryCase) -> str:
-    """A planetary set in words: planets, load, and what holds it."""
+    """Return a description of a planetary set: planets, load, and supports."""
     places = ", ".join(f"{one:.4g}" for one in np.degrees(case.planet_angles).tolist())
     pin = "" if np.isinf(case.pin) else f", pins of {case.pin / 1e3:g} N/um"
     off = sum(1 for one in case.errors if any(one))
@@ -111,12 +111,12 @@ def _ring(support: "str | RimBed | RimSupports") -> str:
 
 
 def _taken(curves, healthy):
-    """What damage takes of the stiffness, at most and where."""
+    """Return the largest loss of stiffness by damage, and its place, in words."""
     with np.errstate(divide="ignore", invalid="ignore"):
         loss = np.where((curves.k > 0) & (healthy.k > 0), 1 - curves.k / healthy.k, -np.inf)
     k, at, planet = np.unravel_index(int(loss.argmax()), loss.shape)
     most, kind = 100 * loss[k, at, planet], MESHES[int(k)].replace("-", " and ")
-    return f"the damage takes up to {most:.1f} % of k of {kind}, planet {planet}"
+    return f"the damage reduces k by up to {most:.1f} % in the mesh of {kind}, planet {planet}"
 
 
 def _mean(k: Floats) -> float:

@@ -1,4 +1,4 @@
-"""A scene's machine, healthy and damaged, and what its vibration shows: spectrum lines and condition indicators."""
+"""Simulated or measured vibration of a machine, healthy and damaged: spectrum lines and condition indicators."""
 
 import math
 import re
@@ -24,26 +24,26 @@ from ..signal.spectra import spectrum
 from ..signal.spectral_lines import BINS, expected_lines, find_lines
 from .record_length import resolving_seconds, too_short
 
-FREE = 1e-3  # what is left of a free vibration when a record begins, of its size at the start
-UNDAMPED = 0.5  # of the duration, before it, left out where a free vibration does not die out
+FREE = 1e-3  # remaining part of the initial free vibration at the beginning of a record
+UNDAMPED = 0.5  # part of the duration that is discarded before it if a free vibration does not decay
 LONGEST = 20.0  # s left out at most
-NEAR = 50  # bins on either side that tell the noise floor of a line
+NEAR = 50  # bins on either side that give the noise floor of a line
 QUARTILE = math.sqrt(math.log(2) / math.log(4 / 3))  # median over lower quartile of the amplitudes of noise
 FLOOR = 5.0  # times its noise floor at least is a line; the largest of five bins of noise is so once in some millions
-RANGE = 1e-4  # of the rms of a record: smaller lines are lost in any recorder (80 dB; 16 bits are 96 dB below full scale)
+RANGE = 1e-4  # smaller lines, relative to the rms of a record, are lost in any recorder (80 dB; 16 bits have 96 dB)
 PULSES = 2  # harmonics of the fault at least in an envelope: pulses of a tooth have many, run-out and misplaced planets one
 RISE = 2.0  # times the healthy machine's at least is a line of a fault
 OF_GEARS = ("FM4", "NA4", "energy ratio")  # indicators by gear, of `gearfe.signal.gear_indicators`
-WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "turns of the gear", "f_carrier": "carrier frequency"}
+WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "shaft frequency", "f_carrier": "carrier frequency"}
 
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
     """Spectra and indicators of one channel of some responses, or of a measured signal, by case.
 
-    `signals` are what was analysed, `fault` the frequency of the fault looked for [Hz], `lines` the expected frequencies by name
-    [Hz], `spectra` by case, `amplitudes` by case and line, `indicators` as of `gearfe.indicator_table`, `resolving` the
-    seconds of a record that part the lines of the fault from those beside them (`resolving_seconds`).
+    `signals` are the analysed signals. `fault` is the fault frequency [Hz], `lines` are the expected frequencies by name [Hz],
+    `spectra` by case, `amplitudes` by case and line. `gearfe.indicator_table` describes `indicators`. `resolving` is the record
+    length in seconds that resolves the sidebands of the fault (`resolving_seconds`).
     """
 
     channel: str
@@ -57,19 +57,19 @@ class Analysis:
 
     @property
     def too_short(self):
-        """What to do if the record is too short to resolve the lines of the fault; empty if it is not."""
+        """Remedy if the record is too short to resolve the lines of the fault; empty if it is long enough."""
         return too_short(min(signal.duration for signal in self.signals.values()), self.resolving)
 
     @property
     def unit(self):
-        """Of the channel."""
+        """Unit of the channel."""
         return next(iter(self.signals.values())).unit
 
     def standing(self):
-        """Names of the lines that are more than noise: those of the mesh, and what stands out in a case that is not healthy.
+        """Names of the lines above the noise: those of the mesh, and significant ones of a case that is not healthy.
 
-        A line of a fault or of a carrier stands out where it has `FLOOR` times the noise of the bins around it, `RANGE` times the
-        rms of the record and, if there is a healthy machine beside it, `RISE` times the healthy machine's line.
+        A line of a fault or of a carrier is significant above three limits: `FLOOR` times the noise of the bins around it,
+        `RANGE` times the rms of the record and, if there is a healthy machine, `RISE` times the healthy machine's line.
         """
         return [name for name in self.lines if re.fullmatch(r"(\d+ )?f_m", name) or self._stands(name)]
 
@@ -96,7 +96,7 @@ class Analysis:
             return ""
         against = f" or {RISE:g} times the healthy one" if len(self.spectra) > 1 else ""
         least = f"{FLOOR:g} times the noise around it, {RANGE:g} of the record's rms{against}"
-        return "\n\n".join(filter(None, (f"no more than {least}: {', '.join(hidden)}", self.too_short)))
+        return "\n\n".join(filter(None, (f"lines not shown, below {least}: {', '.join(hidden)}", self.too_short)))
 
     def envelope(self):
         """`Demodulated` of the last case at the fault frequency, and in a sentence the lines that stand out of its envelope.
@@ -120,7 +120,7 @@ class Analysis:
         return [*lines, *(f"{name} of the envelope" for name in self._demodulated()[1])] if self.fault else []
 
     def _demodulated(self):
-        """`Demodulated` of the last case, the lines that stand out of it in words, and whether a healthy case is beside it."""
+        """`Demodulated` of the last case, its significant lines in words, and whether a healthy case is compared."""
         healthy, *others = self.signals.values()
         last = others[-1] if others else healthy
         demodulated = demodulate(last, self.fault)
@@ -160,7 +160,7 @@ def _floor(found, frequency):
 
 
 def _risen(found: Demodulated, name, before):
-    """A line of an envelope in words if it is above its floor and what it was before; empty if not."""
+    """Return a line of an envelope in words if it is above its floor and its former value; empty if not."""
     frequency, size = found.lines[name]
     if size <= FLOOR * found.background or (before and size <= RISE * before[1]):
         return ""
@@ -171,10 +171,10 @@ def _risen(found: Demodulated, name, before):
 
 
 def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, loads=(1.0,), progress=None):
-    """`Response` of a scene's machine by case: ``"healthy"`` and, if asked for, a case of damage.
+    """Return the `Response` of a scene's machine by case: ``"healthy"`` and, on request, a case of damage.
 
-    `duration` [s] is kept, from when the free vibrations have fallen to a thousandth (`recorded`); `phases` are those of the
-    stiffness curves, per mesh cycle; `loads` as of `gearfe.build_machine`, `method` and `progress` as of `gearfe.simulate`.
+    `duration` [s] begins when the free vibrations have decayed to a thousandth (`recorded`). `phases` are those of the stiffness
+    curves, per mesh cycle. `gearfe.build_machine` describes `loads`, `gearfe.simulate` `method` and `progress`.
     """
     check_run(duration, method)
     cases = {name for pair in scene.pairs.values() for name in pair.damage}
@@ -199,7 +199,7 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, loads
 
 
 def check_run(duration, method="fast"):
-    """Raise ValueError for a duration or a method of a run that cannot be: to be called before curves are computed for it."""
+    """Raise ValueError for an invalid duration or method of a run, before curves are computed for it."""
     if isinstance(duration, bool) or not isinstance(duration, Real) or not 0 < duration < math.inf:
         raise ValueError(f"duration = {duration!r} s, but it must be positive and finite")
     if method != "fast" and method not in SOLVERS:
@@ -234,7 +234,7 @@ def slowest_decay(machine):
     K, C, _, _ = machine.linear(machine.working())
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-K / machine.mass[:, None], -C / machine.mass[:, None]]])
     values = np.linalg.eigvals(A)
-    slow = 1e-6 * np.abs(values).max()  # turning as a whole, not vibrating
+    slow = 1e-6 * np.abs(values).max()  # rotation as a whole, not vibration
     decays = -values.real[values.imag > slow]
     return float(max(decays.min(), 0.0)) if decays.size and decays.min() > 1e-9 * np.abs(values).max() else 0.0
 

@@ -37,7 +37,7 @@ def seen_damage(gear, damage, seen, band):
 
 
 class Bodies(NamedTuple):
-    """How the bodies of gears give: by the energy model (`energy_bodies`), by finite elements, or by a user's own model.
+    """Solver of the elastic bodies of gears: the energy model (`energy_bodies`), finite elements, or a user's model.
 
     `flexible`: ``flexible(gear, material, damage, neighbours=n, **shaft)`` gives a `Flexibility3D`; `coarser`, optional: the same
     with a coarser discretisation, for an estimate of its error; `ahead`, optional: ``ahead(wanted, neighbours=n)`` gets what
@@ -68,9 +68,9 @@ def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility
 
 
 def bodies_of(case, bands, flexible, ahead=None):
-    """Flexibilities of both gears in each band, and where contact begins: ``[[(Flexibility3D, offset [mm]), ...], ...]``.
+    """Return ``[[(Flexibility3D, offset [mm]), ...], ...]`` of both gears in each band; contact begins at the offset.
 
-    `flexible` and `ahead` are as of `Bodies`, with the number of neighbours given; `bands` as of `geometry.pair.lines.bands_of`.
+    `Bodies` describes `flexible` and `ahead`, which gets the number of neighbours. `geometry.pair.lines.bands_of` makes `bands`.
     Gears that are one piece with their shaft get it as ``shaft``, seen from the end that touches first.
 
     Raises
@@ -139,7 +139,7 @@ class _Line(NamedTuple):
 
 
 def _add(out, body, rows, lines):
-    """Add what one body gives, from its basis `rows` at all cells: the products with its kernels for all phases at once."""
+    """Add the flexibility of one body, from its basis `rows` at all cells: products with its kernels for all phases at once."""
     pairs = {}
     for _, group in groupby(lines, lambda line: line.phase):
         for lower, upper in product(list(group), repeat=2):

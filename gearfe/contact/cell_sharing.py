@@ -14,10 +14,10 @@ from .pair_contact import OVERLAP
 from .sharing import share
 
 MOST = 60  # steps at most; the second half of them solve exact contact problems
-WIDTHS = 20  # steps in which the strips' widths follow the loads, half of their change in the second half
-SETTLED = 1e-7  # change of a cell's load in the last step, of the whole load
-SLOW = 0.2  # a step that changes more than this part of the step before makes a new factor
-SLOPE = 1e-4  # relative change of the line load by which the slope of the local law is found
+WIDTHS = 20  # iterations with updated contact widths; the relaxation factor is 0.5 in the second half
+SETTLED = 1e-7  # tolerance: change of a cell's load in the last iteration, relative to the whole load
+SLOW = 0.2  # a change of more than this part of the previous one makes a new factorisation necessary
+SLOPE = 1e-4  # relative step of the line load for the derivative of the local law
 
 
 class SharedLoad(NamedTuple):
@@ -56,8 +56,7 @@ class SharedLines:
         load : ndarray, shape (problems,)
             Sum of the cells' forces in each problem [N].
         local : callable, optional
-            From line loads ``(n,)`` [N/mm] of the cells of all problems to what each one's ``ln(2 / a) + 1/2`` is more than
-            Hertz's ``(n,)``.
+            Addition to Hertz's ``ln(2 / a) + 1/2`` for each cell ``(n,)`` of all problems, at line loads ``(n,)`` [N/mm].
 
         Returns
         -------
@@ -109,7 +108,7 @@ class SharedLines:
         return forces, [weight > 0 for weight in lines.weights]
 
     def _step(self, p, load, active, before, free):
-        """Forces and approach of a problem, and which of its cells and faces should push; `before`: the last step's forces."""
+        """Return forces and approach of a problem, and the active cells and faces; `before`: the forces of the last step."""
         lines = self.joined
         total, gap, weight, n = lines.totals[p], lines.gaps[p], lines.weights[p], lines.systems[p].gap.size
         if not free:
@@ -121,7 +120,7 @@ class SharedLines:
         return new, approach, np.where(active, new > 0, distances < -slack)
 
     def _free(self, p, load, active, before):
-        """Forces of the active cells of a problem and their common approach, whatever their signs.
+        """Return forces of the active cells of a problem and their common approach, whatever their signs.
 
         Those of the last step are corrected with a factor that is known, of the same cells with other strips: it differs little.
         Without them, or if other cells are active, a new factor is made.
@@ -164,7 +163,7 @@ class SharedLines:
         if local is not None:
             rate = rate - (local(along * (1 + SLOPE)) - local(along)) / np.log1p(SLOPE)
         free = (lines.wide(along, local) < lines.widest) & (along > FLOOR * load[lines.problem] / lines.width)
-        rate = np.where(free, rate * x / along, 0.0)  # of x over the mean line load
+        rate = np.where(free, rate * x / along, 0.0)  # derivative of x by the mean line load
         change = lines.change(forces, x) * rate
         slope = (change @ mean).tocoo()
         jacobian = lines.flat.copy()

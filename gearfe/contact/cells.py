@@ -15,11 +15,11 @@ from .pieces import cut
 
 BESIDE = 0.25  # modules from an end face: edge contact
 END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
-GROWTH = 0.6  # of a cell's length per length, away from the ends
-BEYOND = 12  # cells at least on the part of a line that is beyond the path of contact: gaps open there
-CARRYING = 20  # cells of a phase at least that carry load where the flanks' gaps change along the width
+GROWTH = 0.6  # growth of the cell length per length, away from the ends
+BEYOND = 12  # minimum number of cells beyond the path of contact, where gaps open
+CARRYING = 20  # minimum number of loaded cells in a phase if gaps change along the width
 SETTLED = 0.7  # the search for the carrying part of a line ends when a step leaves at least this much of its length
-TIMES = 12  # steps of that search at most
+TIMES = 12  # maximum number of steps of that search
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,14 +51,14 @@ class Cells:
     pressure: Floats = None  # type: ignore[assignment]
 
     def some(self, which: NDArray | slice) -> "Cells":
-        """Those of `which`, a mask, slice or numbers."""
+        """Return the cells that a mask, a slice or numbers select."""
         arrays = {name: getattr(self, name) for name in Cells.__slots__}
         return Cells(**{name: value[which] for name, value in arrays.items() if value is not None})
 
     def at_ends(self, pair: GearPair) -> list[tuple[float, float]]:
-        """Edge contact, where a line carries the most beside an end face: (z, roll length of the pinion) [mm].
+        """Return the highest line loads near end faces (edge contact) as (z, roll length of the pinion) [mm].
 
-        A free end gives way, so the load per width falls towards it in the last tenths of a module even there.
+        A free end face is softer, so the load per width falls towards it in the last tenths of a module.
         """
         out, width = [], min(pair.gear_1.b, pair.gear_2.b)
         for order, half in sorted(set(zip(self.order.tolist(), self.half.tolist(), strict=True))):

@@ -1,11 +1,11 @@
-"""What a corner at an end of the path adds to the local law of a contact line, taken from the plane section.
+"""Local law of a contact line at a corner at an end of the path, taken from the plane section.
 
-Close to its tip corner a tooth is a wedge, no half-space, and pressure ends at the corner; at the edge that undercut leaves the
-flank ends. The plane resolves that contact hat by hat (`gearfe.contact.rows`); how much more it closes there than Hertz's strip
-on a half-plane would, at the same line load and place, is a property of the section: a few tenths of a millimetre across,
-whatever the load does along the width. Contact in three dimensions adds it to the logarithm of its strips, so that in the plane
-limit both are the same contact. For helical teeth the transverse section is taken for the normal one: widths and loads there
-differ by cos(beta_b).
+Close to its tip corner a tooth is a wedge and not a half-space. Pressure ends at the corner. At the edge that undercut leaves the
+flank ends. The plane section resolves that contact by hat functions (`gearfe.contact.rows`). The additional approach, relative to
+Hertz's strip on a half-plane under the same line load, is a property of the section. It extends over a few tenths of a millimetre
+and does not depend on the load distribution along the width. Contact in three dimensions adds it to the logarithm of its strips,
+so that both models agree in the plane limit. For helical teeth the transverse section replaces the normal one: widths and loads
+there differ by cos(beta_b).
 """
 
 import math
@@ -39,7 +39,7 @@ BETWEEN = 200  # abscissae at which the touching corner is looked up
 
 
 class CornerLaw:
-    """How much softer corners are than half-planes, at both ends of the path.
+    """Additional compliance of corners relative to half-planes, at both ends of the path.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class CornerLaw:
         self.path = own.path
         self.inside = [_reached(own, end, line_load, modulus) for end in (0, 1)]
         unit = modulus * pair.gear_1.m_n
-        load = unit * 2.0 ** round(math.log2(line_load / unit))  # so that loads alike share a table
+        load = unit * 2.0 ** round(math.log2(line_load / unit))  # rounded, so that equal loads share a table
         near = [_reached(own, end, MARGIN * load, modulus) for end in (0, 1)]
         away = [pair.p_bt * 2.0 ** math.ceil(math.log2(max(a, n) / pair.p_bt)) for a, n in zip(further, near, strict=True)]
         kept, case = solved_gears(cache), (pair, chips, materials, load)
@@ -80,7 +80,7 @@ class CornerLaw:
             at_end = np.flatnonzero(ends == k)
             if at_end.size and self._tables[k] is not None:
                 spline, least, most, low, high = self._tables[k]
-                # a contact that the hats do not resolve sees a wedge, which looks the same at every scale
+                # a contact narrower than the hats is at a wedge, which looks the same at every scale
                 scale = np.sqrt(np.maximum(least / line_load[at_end], 1.0))
                 away = np.clip(sign * (nominal[at_end] - self.path[k]) * scale, low, high)
                 out[at_end] = spline.ev(np.log(np.clip(line_load[at_end], least, most)), away)
@@ -88,7 +88,7 @@ class CornerLaw:
 
 
 def _chipped(pair, chips):
-    """The pair with the tips of teeth with `chips`."""
+    """Return the pair with the tips of teeth with `chips`."""
     gears = zip((pair.gear_1, pair.gear_2), chips, strict=True)
     return with_tips(pair, [one and one.end_roll(gear, "loaded") for gear, one in gears])
 
@@ -105,7 +105,7 @@ def plain_radius(pair, roll_1, roll_2):
 
 
 def _reached(pair, end, line_load, modulus):
-    """How far before an end of the path [mm] contacts reach the corner there, by the rule of the plane (`CORNER`)."""
+    """Return how far before an end of the path [mm] contacts reach the corner there, by the rule of the plane (`CORNER`)."""
     number, sign, limit = end_corners(pair)[end], (-1, 1)[end], pair.path[end]
     nominal = limit - sign * np.linspace(0, 1, BETWEEN) * (pair.path[1] - pair.path[0])
     rolls = nominal, pair.mate_roll(nominal)
@@ -144,7 +144,7 @@ def _table(whole, chips, materials, line_load, end, span, cache):
     away = np.append(low + (high - low) * np.linspace(0, 1, PLACES) ** 1.5, 0.0)
     away = np.append(away, np.linspace(-inside, 0.0, IN_FILLET) if inside else [])  # in a fillet, where more changes
     between = low + (high - low) * np.linspace(0, 1, BETWEEN)
-    changes = np.flatnonzero(np.diff(touching(pair, limit + sign * between).corner))  # where another corner takes over
+    changes = np.flatnonzero(np.diff(touching(pair, limit + sign * between).corner))  # abscissae at which another corner touches
     away = np.unique(np.concatenate([away, between[changes], between[changes + 1]]))
     nominal = limit + sign * away
     mesh = PairContact(whole, materials, bodies, (nominal - whole.path[0]) / pair.p_bt, extended=True, state="plane strain")
@@ -155,11 +155,11 @@ def _table(whole, chips, materials, line_load, end, span, cache):
     meets = np.isfinite(mesh.found.gap[:, column]) & np.isfinite(mesh.found.corner_gap[touches - 1, np.arange(away.size), column])
     rolls = mesh.found.roll_1[:, column], mesh.found.roll_2[:, column]
     radius = plain_radius(pair, *rolls)
-    if inside:  # what presses into a hollow changes more with the load
+    if inside:  # contact in a hollow changes more with the load
         loads = np.exp2(np.linspace(*np.log2(loads[[0, -1]]), FINER * (loads.size - 1) + 1))
     width = half_width(MARGIN * line_load, radius, modulus)
     zone = np.maximum(TIP_ZONE * pair.gear_1.m_n, (1 + BEYOND) * width).tolist()
-    # on the path flanks touch beside a tip that is in a fillet: corners and hats are then those of the plane
+    # near a tip in a fillet the flanks also touch on the path: corners and hats are then those of the plane
     twofold = (mesh.found.corner[:, column] > 0) & (nominal > pair.path[0]) & (nominal < pair.path[1])
     reached = [values[:, column] for values in mesh.corners(line_load, np.isfinite(mesh.found.gap))]
     taking, beside = np.where(mesh.found.corner[:, column] > 0, reached[0], 0), np.where(twofold, reached[2], 0)
@@ -188,6 +188,6 @@ def pressed(rows, loads):
 
 
 def _read(gear, material, chip, roll, cache):
-    """The plane's S(s, s) ``(n,)`` [mm per N/mm] at roll lengths, as the polynomials of `ritz3d` carry it."""
+    """Return the plane's S(s, s) ``(n,)`` [mm per N/mm] at roll lengths, as the polynomials of `ritz3d` represent it."""
     rows = carry(end_of(gear, chip), roll)
     return np.einsum("ni,ij,nj->n", rows, plane_hats(gear, material, chip, cache=cache), rows)

@@ -15,11 +15,11 @@ from ..geometry.tooth.side import side
 
 
 class Direction(NamedTuple):
-    """Of contacts ``(n,)`` whose forces F along the line of action are what all contacts of a pair share (see `Contacts`).
+    """Directions of contact forces ``(n,)`` relative to the force F along the line of action (see `Contacts`).
 
-    `rate`: how fast a shared approach closes them, F over the force along their normal. `turns` ``(2, n)``: the torque on pinion
-    and wheel over that of the same F on the path. `parts` ``(2, 2, n)``: on pinion and wheel, what part of the force for a unit F
-    points along the involute's normal, and along the tangent away from the gear's centre.
+    `rate`: closing speed for a unit approach, F over the force along the contact normal. `turns` ``(2, n)``: torque on pinion and
+    wheel over that of the same F on the path. `parts` ``(2, 2, n)``: components of the force for a unit F on pinion and wheel,
+    along the involute's normal and along the tangent away from the gear's centre.
     """
 
     rate: Floats
@@ -28,9 +28,9 @@ class Direction(NamedTuple):
 
 
 def met(contact, at, roll, host):
-    """What places of a gear's side touch: gap, place on the other gear [mm], and `Direction` of the force.
+    """Return gap, place on the other gear [mm] and `Direction` of the force for places on a gear's side.
 
-    The force has the normal of the side that is met: give the places of the gear that has the edge, if one has.
+    The force has the normal of the side that is met. If one gear has an edge there, give the places of that gear.
 
     Parameters
     ----------
@@ -57,16 +57,16 @@ def met(contact, at, roll, host):
 
 
 def _parts(gear, roll, arm, out):
-    """Parts ``(2, n)`` of unit forces along the involute's normal and the tangent away from the centre, as of `Direction`."""
+    """Return parts ``(2, n)`` of unit forces along the involute's normal and the tangent away from the centre (`Direction`)."""
     radius = side(gear, roll)[0]
     across = np.minimum(gear.r_b / radius, 1.0)
-    inside = -gear.outward * np.sqrt(1 - across**2)  # of the normal: how far it points away from the centre
+    inside = -gear.outward * np.sqrt(1 - across**2)  # component of the normal away from the centre
     round_ = arm * gear.r_b / radius
     return np.array([round_ * across + out * inside, out * across - round_ * inside])
 
 
 def leaning(contact, matrices):
-    """What modified flanks change where single contacts stand: their forces lean away from the involutes' normals.
+    """Return the changes by modified flanks at single contacts: their forces lean away from the involutes' normals.
 
     `matrices` are the smooth flexibilities ``(phases, pairs, pairs)`` of pinion and wheel between contacts along the involutes'
     normals [mm per N/mm].
@@ -78,7 +78,7 @@ def leaning(contact, matrices):
     coefficient : ndarray, shape (phases, pairs)
         Of the half-planes' logarithm [mm per N/mm].
     turns : ndarray, shape (2, phases, pairs)
-        As of `Direction`.
+        See `Direction`.
     """
     points, out = contact.found, []
     where = np.isfinite(points.gap)

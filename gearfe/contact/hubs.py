@@ -1,10 +1,10 @@
-"""How far the cells of contact lines give way because the hubs of both gears do: small rigid motions, linear in the loads."""
+"""Approach of the cells of contact lines by the compliance of both hubs: small rigid motions, linear in the loads."""
 
 import numpy as np
 
 
 def given_way(cells, pair, hubs, bands, beta_b):
-    """Approach ``(n, n)`` of `Cells` per unit normal force on each, by the hubs alone [mm/N].
+    """Return the approach ``(n, n)`` of `Cells` per unit normal force on each, by the hubs alone [mm/N].
 
     `hubs` are the `core.supports.hub.Hub` of pinion and wheel, None where rigid. The force on a cell has its axial part towards
     the depth: contact lines run back there. `bands` are those of `gearfe.geometry.pair.lines.bands_of`.

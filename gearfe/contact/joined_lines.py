@@ -13,9 +13,9 @@ from ..flexibility.halfspace import pair_kernel, pair_slope, strip
 from ..flexibility.hertz import half_width
 from ..geometry.aliases import Floats
 
-SMOOTH = 8.0  # half widths over which the line load is averaged before the width of the strip follows it
-FLOOR = 1e-9  # least load of a cell, in parts of the whole load, where its logarithm is taken
-NEAR = 25.0  # strip distances within which the kernel follows the strips' widths; further away it no longer knows them
+SMOOTH = 8.0  # half widths over which the line load is averaged to obtain the width of the strip
+FLOOR = 1e-9  # least load of a cell in logarithms, as a part of the whole load
+NEAR = 25.0  # distance [strip distances] within which the kernel depends on the strips' widths
 
 
 class System(NamedTuple):
@@ -41,7 +41,7 @@ class System(NamedTuple):
     floor : ndarray, shape (n,), optional
         How deep the pits above the cells are [mm]; cells of one depth share their mean load.
     mirrors : list of (float, ndarray (n,), ndarray (n,))
-        End faces in which loads are mirrored, as of `bodies.mirrors_of`; as many in all systems solved together.
+        End faces with mirrored loads (see `bodies.mirrors_of`); all systems solved together have the same number.
     """
 
     matrix: Floats
@@ -105,7 +105,7 @@ class JoinedLines:
         return np.bincount(number, weights=self.width)[number]
 
     def _arrange(self):
-        """Of each problem its whole flexibility (a view of one array), gaps, weights and blocks, faces of cracks included."""
+        """Arrange the flexibility of each problem (views of one array), gaps, weights and blocks, faces of cracks included."""
         sizes = [system.gap.size + (0 if system.faces is None else system.faces[2].size) for system in self.systems]
         base = np.concatenate([[0], np.cumsum(np.square(sizes))])
         self.flat, self.base, self.sizes = np.zeros(base[-1]), base[:-1], np.array(sizes)
@@ -145,7 +145,7 @@ class JoinedLines:
         self.near = i[near], j[near], forth[near], back[near], bulk[near]
 
     def widen(self, x):
-        """The half-space and the images in end faces of strips with distances `x`."""
+        """Return the half-space flexibility and the images in end faces of strips with distances `x`."""
         i, j, forth, back, bulk = self.near
         influence = bulk + self.kernel * pair_kernel((self.start, self.stop), i, j, x)
         for weight, low, high, at, before in self.images:
@@ -167,7 +167,7 @@ class JoinedLines:
         return csr_array((over, (i, j)), shape=(reach.size,) * 2)
 
     def cells(self, forces):
-        """Forces of all cells, those of faces left out."""
+        """Return the forces of all cells, without those of faces."""
         return np.concatenate([force[: system.gap.size] for force, system in zip(forces, self.systems, strict=True)])
 
     def along(self, mean, forces, load):

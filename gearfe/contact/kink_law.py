@@ -1,8 +1,9 @@
-"""What a kink of a modified flank adds to the local law of a contact line, taken from the plane section.
+"""Local law of a contact line at a kink of a modified flank, taken from the plane section.
 
-Where a linear relief starts, the flank has a ridge, and pressure concentrates there. The plane resolves that contact by a row of
-hats (`gearfe.contact.kinks`); how much more or less it closes than Hertz's strip at the same line load and place is a property of
-the section, which contact in three dimensions adds to the logarithm of its strips, as for tip corners (`gearfe.contact.corner`).
+Where a linear relief starts, the flank has a ridge, and pressure concentrates there. The plane section resolves that contact by a
+row of hat functions (`gearfe.contact.kinks`). The additional approach, relative to Hertz's strip under the same line load, is a
+property of the section. Contact in three dimensions adds it to the logarithm of its strips, as for tip corners
+(`gearfe.contact.corner`).
 """
 
 import math
@@ -21,30 +22,30 @@ from .kinks import REACH, kink_rows
 from .pair_contact import PairContact
 
 LOADS = 2.0 ** np.arange(-5, 4)  # line loads of the table, as multiples of the even one (the load spread evenly over the width)
-PLACES = 9  # of the table on each side of a kink, within the half width of a contact
-ON = 9  # of the table from there to where contact leaves the kink
+PLACES = 9  # places of the table on each side of a kink, within the half width of a contact
+ON = 9  # places of the table from there to where contact leaves the kink
 BESIDE = 1e-6  # the first of these places
-LEAST = 0.05  # of the widest contact: where contact stays on the kink for less than this, no places are needed
-SAMPLES = 400  # of a base pitch, to find how far contact stays on the kink
+LEAST = 0.05  # no places if contact stays on the kink for less than this part of the widest contact
+SAMPLES = 400  # samples per base pitch, to find how far contact stays on the kink
 SOFT = 80  # line loads over pi E*: more than any pair of teeth approaches
 
 
 class KinkLaw:
-    """How much softer or stiffer contacts at kinks are than on smooth flanks.
+    """Additional compliance of contacts at kinks relative to smooth flanks.
 
     Parameters
     ----------
     line_load : float
         Even load [N/mm] of the width.
     flanks : (FlankForm, FlankForm)
-        What they have along the width is left out: it shifts the contact, but not its form.
+        Modifications along the width are neglected: they shift the contact and do not change its form.
     """
 
     def __init__(self, pair, materials, line_load, flanks, *, cache=True):
         forms = tuple(form.at(None) for form in flanks)
         modulus = contact_modulus(materials)
         step = modulus * pair.gear_1.m_n
-        load = step * 2.0 ** round(math.log2(line_load / step))  # so that loads alike share a table
+        load = step * 2.0 ** round(math.log2(line_load / step))  # rounded, so that equal loads share a table
         kept, modifications = solved_gears(cache), tuple(form.flank for form in forms)
         start, end = pair.path
         self.zones = []
@@ -67,17 +68,17 @@ class KinkLaw:
 
 
 def _place(away, wide, stays):
-    """Places in the table: -1 to 1 within what contacts are `wide`, on to 2 over what the contact `stays` on the kink beyond."""
+    """Return places in the table: -1 to 1 within the `wide` contacts, up to 2 over the length `stays` on the kink."""
     further = np.abs(away) - wide
     return np.where(further < 0, away / wide, np.sign(away) * (1 + further / np.where(away < 0, *stays)))
 
 
 def _table(pair, materials, line_load, flanks, gear, roll, nominal, cache):
-    """Unit of the abscissa [mm], how far contact stays on the kink (before it, after it), and the table of a kink.
+    """Return the unit of the abscissa [mm], the lengths of contact before and after a kink, and its table.
 
-    The kink is at `roll` of `gear` (0 or 1). Over the unit, contacts of 1 N/mm lie within `REACH` of it; how far contact stays on
-    it beyond what the heaviest ones are wide is in these units. The table is a spline over the logarithm of the line load and
-    the place (`_place`), with the limits of the load.
+    The kink is at `roll` of `gear` (0 or 1). Within one unit, contacts of 1 N/mm are within `REACH` of the kink. The lengths of
+    contact beyond the widest contacts are in these units. The table is a spline over the logarithm of the line load and the place
+    (`_place`), with the limits of the load.
     """
     gears, loads, modulus = (pair.gear_1, pair.gear_2), line_load * LOADS, contact_modulus(materials)
     bodies = [flexibility(g, m, neighbours=1, cache=cache) for g, m in zip(gears, materials, strict=True)]
@@ -110,7 +111,7 @@ def _table(pair, materials, line_load, flanks, gear, roll, nominal, cache):
 
 
 def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):
-    """How far from a kink [mm of abscissa], to one side, contact is on it or so near that it feels it, while gaps can close."""
+    """Return the distance from a kink [mm of abscissa] up to which contact is influenced by it, on one side."""
     reach = SOFT / (math.pi * modulus) * line_load
     away = np.arange(1, SAMPLES + 1) / SAMPLES * pair.p_bt
     points = flank_contacts(pair, (nominal + sign * away - pair.path[0]) / pair.p_bt, extended=True, flanks=flanks)
@@ -119,12 +120,12 @@ def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):
     beside = REACH * half_width(line_load, np.abs(pair.relative_radius(*rolls)), modulus)
     on = np.abs(arc_at(host, rolls[gear]) - arc_at(host, roll)) < beside
     stays = on & (points.gap[:, column] < reach) & (points.corner[:, column] == 0)
-    count = int(np.argmin(np.append(stays, False)))  # of the first places, until one is off it
+    count = int(np.argmin(np.append(stays, False)))  # number of consecutive places on the kink
     return float(away[count - 1]) if count else 0.0
 
 
 def _straight(mesh, phases, column):
-    """What both teeth yield to forces along their involutes' normals ``(phases,)`` [mm per N/mm], which the cells of a line have.
+    """Return the deflection of both teeth along their involutes' normals ``(phases,)`` [mm per N/mm], as cells of a line have it.
 
     The plane's own matrix turns them to the modified flank's normal, which jumps at a kink.
     """

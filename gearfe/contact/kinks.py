@@ -8,8 +8,8 @@ from .rows import hat_rows
 
 REACH = 1.3  # a contact with a kink within this many half widths of the whole load is resolved hat by hat
 ZONE = 1.8  # half length of the row, in half widths of the whole load
-FINEST, GROWTH = 5e-4, 0.5  # of hats: next to a kink [m_n], and how they grow by their distance from it
-WITHIN = 4.0  # hats over a half width
+FINEST, GROWTH = 5e-4, 0.5  # hat length next to a kink [m_n], and growth with the distance from it
+WITHIN = 4.0  # hats per half width
 STEEP = 20.0  # hats at least over what is pressed of a wedge with the angle of the kink
 SHALLOW = 1e-3  # slopes of kinks below which no hat need be shorter
 
@@ -54,7 +54,7 @@ def kink_rows(contact, where, line_load):
 
 
 def _nearest(contact, i, column):
-    """Of the kink next to each touch: its gear, arcs of touch and kink there [mm], and by how much the flank turns at it."""
+    """Return the nearest kink of each touch: gear, arcs of touch and kink [mm], and the change of the flank's direction."""
     out: list = []
     for host, form in enumerate(contact.flanks):
         gear, touch = form.gear, arc_at(form.gear, (contact.found.roll_1, contact.found.roll_2)[host][i, column])
@@ -67,9 +67,9 @@ def _nearest(contact, i, column):
 
 
 def _knots(kink, middle, touch, flat, least, tip, fine):
-    """Start, top and end ``(3, n)`` of the hats [mm], finest at the kink, fine about the middle of the contact.
+    """Return start, top and end ``(3, n)`` of the hats [mm], finest at the kink, fine about the middle of the contact.
 
-    `touch` and `flat` are the half widths of Hertz's contact where the flanks touch and beside it, `least` the finest hat; all
+    `touch` is the half width of Hertz's contact where the flanks touch, `flat` that next to it. `least` is the finest hat. All
     hats are `fine` times shorter.
     """
     ends, tops = (min(middle - ZONE * flat, kink), min(max(middle + ZONE * flat, kink), tip)), [kink]

@@ -1,4 +1,4 @@
-"""How much more a flank deflects because pits and spalls are recesses, not only places without contact.
+"""Estimated increase of the deflection of a flank by the material that pits and spalls remove.
 
 Contact lines end at the walls of a recess. A wall deflects as a free end face does, where every load acts once more from its
 mirror image (`gearfe.flexibility.end_faces`), but down to the depth h of the recess only. A load at a distance R from an image
@@ -21,13 +21,13 @@ from ..flexibility.end_faces import edge_factor
 from ..flexibility.halfspace import half_space
 from ..geometry.aliases import Floats
 
-APART = 1e-9  # of a cell's width: cells further apart have a recess between them
+APART = 1e-9  # gap over the width of a cell beyond which a recess lies between two cells
 
 
 def missing_material(case: Any, found: Any) -> Floats:
-    """By what k of a `Contact3D` is too high because its recesses take no material away ``(phases,)`` [N/m].
+    """Return the estimated excess of k of a `Contact3D` whose recesses remove no material ``(phases,)`` [N/m].
 
-    By virtual work under the loads found. They would choose anew, which makes it less.
+    By virtual work under the solved loads. Load redistribution would reduce it.
     """
     out = np.zeros(found.k.size)
     for pits, material, sense in zip(case.pits, case.materials, (1, -1), strict=True):
@@ -48,7 +48,7 @@ def missing_material(case: Any, found: Any) -> Floats:
 
 
 def _work(cells: Any, on: NDArray[np.bool_], depth: float) -> float:
-    """Sum of the products of loads on a line [N**2/mm] over their distances from each other's images in the walls of recesses."""
+    """Return the sum of load products over distances to the images in the walls of recesses [N**2/mm], for one line."""
     first, last, load = cells.depth - cells.width / 2, cells.depth + cells.width / 2, np.where(cells.floor > 0, 0.0, cells.load)
     at = np.flatnonzero(on)
     at = at[np.argsort(cells.depth[at])]

@@ -23,11 +23,11 @@ from .sharing import LineContacts, line_contact, line_contacts, stacked
 from .sliding import bounded, left_out, sliding
 from .thinned import thinned_teeth
 
-CORNER = 1.0  # a contact whose middle is closer to a corner than this many half widths of the whole load is resolved hat by hat
+CORNER = 1.0  # contacts within this many half widths of a corner are resolved by hat functions
 BEYOND = 1.5  # such a row reaches at least this many half widths on from its middle
 KINK = 16  # mark of a pair whose contact reaches a kink of a flank; smaller: the corners of a row, bit n - 1 for corner n
-SMOOTH = 0.5  # of a smooth contact's parabola: a corner with a smaller gap than that is a second place of contact
-UNKNOWN = ("roll_1", "roll_2", "gap", "coefficient", "radius", "tilt", "turn_1", "turn_2", "fillet")  # of a contact
+SMOOTH = 0.5  # a corner whose gap is below this part of a smooth contact's parabola is a second contact
+UNKNOWN = ("roll_1", "roll_2", "gap", "coefficient", "radius", "tilt", "turn_1", "turn_2", "fillet")  # properties of a contact
 OVERLAP = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
 
 
@@ -46,7 +46,7 @@ def _within(contacts, reach):
 
 
 def _aligned(rows):
-    """Unknowns of rows of hats of different lengths, as of `_single`, nan as gap after each."""
+    """Return unknowns of rows of hats of different lengths (see `_single`), filled with nan gaps."""
     out = {name: stacked([getattr(row, name) for row in rows]) for name in HatRow._fields}
     for k, row in enumerate(rows):
         size = row.gap.size
@@ -78,7 +78,7 @@ class PairContact:
         self.matrix[:, range(points.order.size), range(points.order.size)] += self.thinner
         self.alone = np.diagonal(self.matrix, axis1=1, axis2=2)  # cracks glued shut
         self.radius = self.flat_radius = points.radius
-        if any(form.edge for form in flanks or ()):  # on a rounded tip: of the flank beside it, which shares the contact
+        if any(form.edge for form in flanks or ()):  # a rounded tip shares the contact with the adjacent flank
             beside = pair.relative_radius(points.roll_1, points.roll_2)
             self.flat_radius = np.where(beside > 0, np.maximum(beside, points.radius), points.radius)
         self.opening = self.opening_at(points.roll_1, points.roll_2, points.order)
@@ -171,7 +171,7 @@ class PairContact:
         return line_contact(LineContacts(*values, self.modulus, contacts["tilt"]), line_load, *more)
 
     def _share_closing(self, contacts, line_load, carried):
-        """The same contacts with crack faces that can push each other apart but not pass through.
+        """Return the same contacts with crack faces that can push each other apart but not pass through.
 
         Those that overlap under the line loads `carried` with open cracks are first taken to touch.
         """
@@ -190,7 +190,7 @@ class PairContact:
         return force[:n], approach, tangent
 
     def opening_at(self, roll_1, roll_2, order):
-        """Opening ``(..., contacts, faces)`` of all cracks under unit loads, None without cracks."""
+        """Return the opening ``(..., contacts, faces)`` of all cracks under unit loads, None without cracks."""
         rows = []
         for flexible, roll, teeth in zip(self.flexibility, (roll_1, roll_2), (order, -order), strict=True):
             if flexible.seam is not None:
@@ -199,7 +199,7 @@ class PairContact:
         return np.concatenate(rows, axis=-1) if rows else None
 
     def _reach(self, line_load):
-        """Gap beyond the first touch [mm] that no contact can close, by phase: twice what the best pair gives alone."""
+        """Return the gap beyond the first touch [mm] that no contact can close: twice the approach of the best pair alone."""
         best = np.argmin(self.found.gap, axis=1)
         at = np.arange(best.size), best
         local = sum(self.coefficients) * (np.log(2 / half_width(line_load, self.radius[at], self.modulus)) + 0.5)

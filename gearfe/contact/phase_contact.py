@@ -1,4 +1,4 @@
-"""Contact of a pair of finite width at many phases: cells as far beyond the path as the approach reaches, and their loads."""
+"""Load distribution of a gear pair of finite width, for many mesh positions at once."""
 
 import math
 from dataclasses import replace
@@ -10,7 +10,7 @@ import numpy as np
 from ..core.steps import steps
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
 from ..geometry.pair.broken import broken_at, pair_at
-from ..geometry.pair.contacts import TIP
+from ..geometry.pair.contacts import TIP, neighbours_of
 from ..geometry.pair.lines import bands_of
 from .bodies import between, faces_of, mirrors_of
 from .cell_sharing import SharedLines
@@ -21,22 +21,23 @@ from .joined_lines import System
 from .kink_law import KinkLaw
 from .pair_contact import OVERLAP
 from .pieces import beyond, gaps, pieces_of
-from .sliding import MOST, off_path, slid
+from .sliding import MOST, cracks_beyond_lines, off_path, slid
 
-FINEST = 1.5  # shortest cell, in Hertz half widths: the load on a shorter one would not be a line any more
-ALIKE = 1e-9  # largest difference of the cells of two halves that are solved once, in base pitches
-DEEPEST = 0.01  # modules: how deep the floor of a pit that covers a whole line is looked for
-ROW = math.sqrt(2)  # ratio of neighbouring forces in the row for which cells are made
-REACH = 1.3  # ratio of each search radius for gaps to the one before, where the first is too small
+FINEST = 1.5  # length of the shortest cell [Hertz half widths]
+ALIKE = 1e-9  # tolerance for equal halves, of which one is solved [base pitches]
+DEEPEST = 0.01  # search depth for the floor of a pit that covers a whole contact line [m_n]
+ROW = math.sqrt(2)  # ratio of neighbouring forces for which cells are made
+REACH = 1.3  # growth of the search radius for gaps if it was too small
 TOGETHER = 16  # phases that are solved at once
 
 
 class Carried(NamedTuple):
-    """One phase under one force: `Cells` with loads, and in the transverse section approach [mm] and tangent stiffness [N/mm].
+    """Load distribution of one mesh position under one force: `Cells`, approach [mm] and tangent stiffness [N/mm].
 
-    `closed` says whether faces of a crack touched. What the supports of the hubs give way is in the approach: `given` the mean
-    over the loads, so that it adds up to the approach with the rest, `least` at the cell where it is least [mm]. `unsure` is the
-    part of the approach by which contacts at corners may slide, `off_path` that of `sliding.off_path`.
+    Approach and stiffness are in the transverse section. `closed` is true if crack faces are in contact. The approach contains
+    the deflection of the supports of the hubs: `given` is its mean weighted with the loads, `least` its smallest value of all
+    cells [mm]. `unsure` is the part of the approach by which contacts at corners may slide.
+    `sliding.off_path` describes `off_path`.
     """
 
     cells: Cells
@@ -50,11 +51,11 @@ class Carried(NamedTuple):
 
 
 class CellBatch(NamedTuple):
-    """Cells of some phases made ready for the force.
+    """Contact problems of some phases, prepared for one force.
 
-    `cells` of each phase; `solved` the part of them that is solved for (of halves that are alike one), `alike` whether that is a
-    half; `lines` their contact problems; `all` their cells joined; `yields` what hubs give way, `hubs.given_way`, or None;
-    `bodies` of `bodies.bodies_of`.
+    `cells` are the cells of each phase. `solved` are the cells that are solved for: one of two equal halves, if `alike`. `lines`
+    are their contact problems and `all` their joined cells. `yields` is the compliance of the hubs (`hubs.given_way`) or None.
+    `bodies` is described in `bodies.bodies_of`.
     """
 
     cells: list
@@ -107,21 +108,26 @@ class PhaseContact:
         load, self.bed = force / self.width, math.pi * self.modulus / 40
         self.reach = self.sized / self.width / self.bed
         further = self._further(self.least + 80 / (math.pi * self.modulus) * load)
-        if case.missing:  # the last of the teeth beside it are this far from their path
+        if case.missing:  # distance of the last adjacent teeth from their path
             further = [max(away, (2 - pair.eps_alpha) * pair.p_bt) for away in further]
         self._laws, self._make_law = {}, partial(CornerLaw, pair, materials, load, further, cache=cache)
+        self.least_neighbours = neighbours_of(pair) if any(case.cracks) or any(case.broken) else 1
         self._broken_at = partial(broken_at, pair, case.broken)
         kinked = flanks is not None and any(form.kinks for form in flanks)
         self.kinks = KinkLaw(pair, materials, load, flanks, cache=cache) if kinked else None
 
     @property
     def neighbours(self):
-        """Largest difference of the orders of pairs in contact at the same phase, by the first guess of the approach."""
+        """Largest difference of the orders of pairs in contact at the same phase, by the first guess of the approach.
+
+        With damage it is at least as large as in sections, so that cracks count as many teeth away.
+        """
         ratio = self.pair.eps_beta_of(self.width / len(self.bands)) if self.beta_b else 0.0
-        return max(1, math.floor(self.pair.eps_alpha + ratio + sum(self._further(self.least + self.reach)) / self.pair.p_bt))
+        further = sum(self._further(self.least + self.reach)) / self.pair.p_bt
+        return max(self.least_neighbours, math.floor(self.pair.eps_alpha + ratio + further))
 
     def _further(self, reach):
-        """How far beyond the path [mm] gaps are below `reach`; flanks with less material have larger ones by `least` or more."""
+        """Return the distance beyond the path [mm] up to which gaps are below `reach`, plus the least material removed."""
         return beyond(self.pair, reach - self.least) if self.extended else (0.0, 0.0)
 
     def solve(self, phases, bodies):
@@ -153,10 +159,11 @@ class PhaseContact:
             if filled:
                 carried = self._shared(self._batch([group for _, group in filled], bodies))
                 for i, loaded in zip((i for i, _ in filled), carried, strict=True):
-                    closes = loaded.approach - loaded.least  # what of it teeth can close gaps by
+                    closes = loaded.approach - loaded.least  # part of the approach that closes gaps between teeth
                     normal = closes * math.cos(self.beta_b)
                     if any(closings[i] < depth < normal for depth in self.floors):
-                        closings[i] = normal  # shallow pits: solved again with their floors, which can only make it stiffer
+                        # The floors of shallow pits carry load: solve again with them. This can only stiffen the pair.
+                        closings[i] = normal
                         again.append(i)
                     elif self.extended and closes > reaches[i] and reaches[i] - self.least <= self.furthest:
                         needed = (closes - self.least) / (reaches[i] - self.least)
@@ -268,14 +275,14 @@ class PhaseContact:
         return [(law, np.isin(cells.order, orders)) for law, orders in by_law.items()]
 
     def _ends(self, cells):
-        """End of the path whose corner each cell touches or nearly touches, as of `CornerLaw.ends`."""
+        """Return the end of the path whose corner each cell touches or nearly touches, see `CornerLaw.ends`."""
         out = np.full(cells.z.size, -1)
         for law, on in self._laws_at(cells):
             out[on] = law.ends(cells)[on]
         return out
 
     def _told(self, cells, solved, shared, alike, yields, bodies):
-        """`Carried` of one phase."""
+        """Return `Carried` of one phase."""
         n, cos = solved.z.size, math.cos(self.beta_b)
         load, closed = shared.force[:n], bool(shared.force[n:].sum() > OVERLAP * shared.force[:n].sum())
         radius = self._radius(solved)
@@ -286,6 +293,7 @@ class PhaseContact:
         way = np.zeros(n) if yields is None else yields @ load / cos
         given = float(load @ way / load.sum()), float(way.min())
         slide, unsure = self._slid(solved, bodies, load, shared.approach, closed)
+        unsure += cracks_beyond_lines(solved, bodies, load, shared.approach)
         tangent = 1 / (1 / shared.tangent - 2 * slide / load.sum())
         beyond_it = off_path(self, solved, load, radius, shared.approach)
         return Carried(loaded, (shared.approach - slide) / cos, times * tangent * cos**2, closed, *given, unsure, beyond_it)

@@ -14,15 +14,15 @@ from ..geometry.pair.broken import touching_each
 from ..geometry.pair.contacts import FORM, end_corners, near_pitches, touching
 from ..geometry.pair.lines import covered
 
-SAMPLES = 400  # of the gap beyond the path, over a base pitch
-PARTS = 4  # straight parts of a line beyond the path, where pits are looked for
+SAMPLES = 400  # samples of the gap beyond the path, per base pitch
+PARTS = 4  # straight segments of a line beyond the path, each searched for pits
 
 
 class Piece(NamedTuple):
-    """A part of a contact line between two depths [mm].
+    """Part of a contact line between two depths [mm].
 
-    `roll` is the abscissa of its line at depth 0 [mm], `corner` as of `Cells`; `ends` says which of its ends (first, last) end
-    contact, so that the pressure rises there; `floor` as of `Cells`.
+    `roll` is the abscissa of its line at depth 0 [mm]. `ends` states for its first and last end whether contact ends there, so
+    that the pressure rises. `Cells` describes `corner` and `floor`.
     """
 
     half: int
@@ -48,7 +48,7 @@ def gaps(pair):
         gap = touching(pair, at + sense * away)[2]
         met = np.flatnonzero(np.isfinite(gap))
         first = met[0] if met.size else gap.size
-        if 0 < first < gap.size - 2:  # it meets between two samples: what the gap is at the one before, at least
+        if 0 < first < gap.size - 2:  # touch between two samples: take at least the gap at the sample before
             first -= 1
             gap[first] = max(2 * gap[first + 1] - gap[first + 2], 0.0)
         span = slice(first, met[-1] + 1 if met.size else gap.size)
@@ -58,7 +58,7 @@ def gaps(pair):
 
 @keeping(64)
 def cut(pair):
-    """How far on the path itself, from its start and from its end [mm], a tip cuts into its mate's fillet; 0 where none does."""
+    """Return the length on the path, from its start and its end [mm], on which a tip cuts into its mate's fillet; 0 for none."""
     start, end = pair.path
     nominal = np.linspace(start, end, max(2, math.ceil(pair.eps_alpha * SAMPLES)))
     met, step = touching(pair, nominal), nominal[1] - nominal[0]
@@ -67,7 +67,7 @@ def cut(pair):
 
 
 def beyond(pair, reach):
-    """How far before the start and after the end of the path [mm] the gap is below `reach` [mm]."""
+    """Return the distance before the start and after the end of the path [mm] with a gap below `reach` [mm]."""
     return tuple(float(np.interp(reach, gap, away, left=0.0)) if reach > 0 and away.size else 0.0 for away, gap in gaps(pair))
 
 
@@ -117,7 +117,7 @@ def pieces_of(pair, phase, pits, bands, beta_b, reach=0.0, closing=0.0, pair_of=
 def _limits(pair, reach):
     """Abscissae [mm] of `_parts`, and numbers of pieces whose first or last end is at an edge that undercut leaves."""
     (start, end), further = pair.path, beyond(pair, reach)
-    before, after = (away[0] if away.size else 0.0 for away, _ in gaps(pair))  # where corners meet a flank first
+    before, after = (away[0] if away.size else 0.0 for away, _ in gaps(pair))  # first touch of a corner and a flank
     limits = (end + further[1], end + min(after, further[1]), end, start, start - min(before, further[0]), start - further[0])
     at_start, at_end = (number in FORM for number in end_corners(pair))
     return limits, (

@@ -1,8 +1,8 @@
-"""A pair's contact at corners of the outlines as a row of hat pressures, with the exact gap at each.
+"""Contact of a pair at corners of the outlines, as a row of hat pressures with the exact gap at each.
 
-Where contact reaches a tip corner or the edge that undercut leaves at a form point, no parabola of Hertz describes it. Hats stand
-along one gear's side, fillet included, finest at every corner that takes part; a corner of the mate counts where it touches that
-side. So one row also holds a tip in its mate's fillet together with the flank contact beside it. The side is that of the gear
+Where contact reaches a tip corner or the edge that undercut leaves at a form point, no parabola of Hertz describes it. Hats are
+placed along one gear's side, fillet included, finest at every corner in contact. A corner of the mate counts where it touches
+that side. One row therefore also contains a tip in its mate's fillet and the adjacent flank contact. The side is that of the gear
 with the first of the corners, so that neither gear is preferred.
 """
 
@@ -21,11 +21,11 @@ from ..geometry.tooth.profile import arc_at, roll_at_arc
 from ..geometry.tooth.side import on_fillet
 from .directions import met
 
-FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # of hats: next to a corner and at most [m_n], and how they grow per length
-RESOLVED = 4.0  # hats at a corner that a half width must span: a narrower contact falls between them
-SHARP = 100.0  # hats at a corner that the half width of a smooth contact spans: what an edge presses is as much narrower
+FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # hat lengths next to a corner and at most [m_n], and growth per length
+RESOLVED = 4.0  # hats per half width at a corner: a narrower contact is not resolved
+SHARP = 100.0  # hats at a corner per half width of a smooth contact: contact of an edge is that much narrower
 LEAST = 7.5e-6  # length of the shortest hats, while a half width spans `RESOLVED` of them [m_n]
-WITHIN = 4.0  # hats over a half width where Hertz's contact shares a row with a corner
+WITHIN = 4.0  # hat functions per Hertzian half-width where a Hertzian contact and a corner share a row
 
 
 class HatRow(NamedTuple):
@@ -172,7 +172,7 @@ def hat_rows(contact, at, knots, kernels, host, tips):
         flexible.within([part[k] for part in parts], (sign * order).tolist())
         for k, (flexible, sign) in enumerate(zip(contact.flexibility, (1, -1), strict=True))
     ]
-    local = sum(contact.coefficients), np.log(gear.m_n)  # what happens within about a module
+    local = sum(contact.coefficients), np.log(gear.m_n)  # the local field extends over about a module
     made, alike = [None] * len(parts), {}
     for k, tooth in enumerate(order.tolist()):
         alike.setdefault((tooth, parts[k].shape[1]), []).append(k)
@@ -219,7 +219,7 @@ def _alone_hats(m_n, fine, zone, finest, ends):
 
 
 def _scale(contact, host):
-    """The gear whose side a row stands on, and how much shorter its hats are."""
+    """Return the gear whose side a row stands on, and the factor by which its hats are shorter."""
     return (contact.pair.gear_1, contact.pair.gear_2)[host], min(flexible.fine for flexible in contact.flexibility)
 
 

@@ -1,4 +1,4 @@
-"""Who carries how much: contacts that push but do not pull, with the logarithmic softness of line contact."""
+"""Load sharing of unilateral contacts with the logarithmic compliance of line contact."""
 
 from typing import Any, NamedTuple
 
@@ -10,7 +10,7 @@ from scipy.optimize import nnls
 from ..flexibility.hertz import half_width
 
 STEPS = 20  # steps of the active set before non-negative least squares are tried
-ROUNDING = 1e-12  # of the largest distance: overlaps below it are rounding
+ROUNDING = 1e-12  # overlaps below this part of the largest distance are rounding errors
 
 
 def share(flexibility, gap, load, weight=None, start=None):
@@ -86,7 +86,7 @@ def share(flexibility, gap, load, weight=None, start=None):
 
 
 def _settled(flexibility, gap, load, weight, active):
-    """Forces and approach by an active set, None if it does not settle."""
+    """Return forces and approach of an active set, None if it does not settle."""
     for _ in range(STEPS):
         at = np.flatnonzero(active)
         if not weight[at].any():
@@ -210,7 +210,7 @@ def line_contacts(contacts, load, possible, start=None):
 
 
 def _newton(contacts, load, active, force):
-    """Forces, approach and d load / d approach of `line_contacts` with the `active` contacts, the logarithm taken at `force`."""
+    """Return forces, approach and d load / d approach of `line_contacts` with the `active` contacts, linearised at `force`."""
     flexibility, gap, coefficient, radius, modulus, tilt = contacts
     (sets, n), diagonal = gap.shape, np.arange(gap.shape[1])
     carried = np.maximum(force, 1e-9 * load)

@@ -1,4 +1,4 @@
-"""What contacts gain and lose by moving along the flanks under load: sliding to where they yield less, and gaps that shift."""
+"""Motion of contacts along the flanks under load: towards more compliant places, with shifted gaps."""
 
 import math
 
@@ -9,8 +9,8 @@ from ..flexibility.plane import cracks_beyond
 from ..geometry.tooth.profile import arc_at, roll_at_arc
 from .thinned import UNSURE
 
-MOST = 0.05  # largest approach by sliding, as a part of what the pair yields: more would not be small strains
-STEP = 0.01  # along the flank, over which the change of a flexibility is taken [m_n]
+MOST = 0.05  # largest approach by sliding, as a part of the deflection of the pair: beyond it strains are not small
+STEP = 0.01  # step along the flank for the derivative of a flexibility [m_n]
 
 
 def sliding(contact):
@@ -44,10 +44,10 @@ def _alone(contact, moved):
 
 
 def slid(cells, bodies, load, radius):
-    """How far cells of contact lines come closer by sliding, at right angles to the flanks ``(2, n)`` [mm].
+    """Return the approach of cells of contact lines by sliding, at right angles to the flanks ``(2, n)`` [mm].
 
-    As `sliding`, of each tooth pair by its own loads: with the tilt t of the flanks that is ``3/2 R t**2``. First with
-    open cracks, then without any.
+    Each tooth pair slides by its own loads. With the tilt t of the flanks the approach is ``3/2 R t**2``. The first row is for
+    open cracks, the second for none.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def slid(cells, bodies, load, radius):
 
 
 def bounded(contact, line_load):
-    """`sliding` of a contact under a load [N/mm], at most the part `MOST` of what a pair yields."""
+    """Return `sliding` of a contact under a load [N/mm], limited to the part `MOST` of the deflection of a pair."""
     width = half_width(line_load, contact.radius, contact.modulus)
     yields = np.diagonal(contact.matrix, axis1=1, axis2=2) + sum(contact.coefficients) * (np.log(2 / width) + 0.5)
     return np.minimum(contact.sliding, MOST * np.maximum(yields, 0.0) / line_load)
@@ -101,7 +101,7 @@ def left_out(contact, line, closing, beyond):
 
 
 def _changed(contact, radius, gap, closed, closing):
-    """By how much gaps off the path are unsure, see `left_out`: at most what they are `closed` by [mm]."""
+    """Return the uncertainty of gaps off the path, see `left_out`: at most their closed part `closed` [mm]."""
     u = math.tan(contact.pair.alpha_wt) * closing
     return np.minimum((np.sqrt(2 * radius * np.maximum(gap, 0.0)) * u + u**2 / 2) / radius, closed)
 
@@ -120,6 +120,16 @@ def off_path(contact, cells, load, radius, approach):
     closed = np.maximum(approach - gap, 1e-3 * approach)
     stiff, closing = load[on] / closed, approach - gap.min()
     return float(stiff @ _changed(contact, radius[on], gap, closed, closing) / stiff.sum() / closing)
+
+
+def cracks_beyond_lines(cells, bodies, load, approach):
+    """Part of the `approach` [mm] that cracks further away than their solved teeth may add; arguments as of `slid`."""
+    out = 0.0
+    for half in np.unique(cells.half).tolist():
+        on = cells.half == half
+        for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
+            out += body.cracks_beyond(sense * cells.order[on], roll[on], cells.depth[on] + offset, load[on])
+    return out / load.sum() / approach
 
 
 def _cracks_beyond(contact, line):
@@ -147,11 +157,11 @@ def _cracks_in_thin_teeth(contact, line):
 
 
 def _cut_away(contact, line):
-    """How much more contacts at the ridge of a chamfer may yield than half-planes do ``(phases, pairs)`` [mm].
+    """Return the additional deflection of contacts at the ridge of a chamfer ``(phases, pairs)`` [mm].
 
-    The flexibility is that of the tooth without it. What is left is a wedge, narrower than a half-plane by the angle at which the
-    flank turns; where it is stressed, from the contact's width to the chamfer's, it is softer by about that part of two right
-    angles.
+    The solved flexibility is that of the tooth without chamfer. The real tooth is a wedge there, narrower than a half-plane by
+    the angle at which the flank turns. Between the contact's width and the chamfer's width, it is more compliant by about that
+    part of two right angles.
     """
     points, out = contact.found, np.zeros(line.shape)
     for form, coefficient, roll in zip(contact.flanks or (), contact.coefficients, (points.roll_1, points.roll_2), strict=False):

@@ -1,4 +1,4 @@
-"""`Thinning`: how much more a tooth bends because its modified flanks have left it thinner.
+"""`Thinning`: additional bending of teeth that their modified flanks have left thinner.
 
 The flexibility of a gear is that of unmodified teeth. Material removed from one or both flanks takes w from the half thickness h
 of a section, so that a beam of varying section bends more, between loads at s and s' by::
@@ -29,7 +29,7 @@ from ..geometry.tooth.side import place
 
 FOOT = 16.67 / math.pi  # turn of a foot of unit thickness under a unit moment, by E'
 POINTS = 200  # sections between root and tip circle
-UNSURE = 1 / 4  # of the difference: a beam's against finite elements of thinned teeth (``tests/contact/test_thinned.py``)
+UNSURE = 1 / 4  # error of the difference, from finite elements of thinned teeth (``tests/contact/test_thinned_flexibility.py``)
 
 
 class Thinning:

@@ -32,16 +32,31 @@ LONGER = 2  # cells that become one in the coarser solution that the error estim
 class Contact3D:
     """Contact of a pair at some phases.
 
-    `phase` (phases,): of the end that touches first; `k` (phases,) ``force / (approach - unloaded)`` [N/m]; `approach` (phases,)
-    of the gears along the transverse line of action [mm]; `unloaded` (phases,) the approach at which they first touch without
-    load [mm], 0 of involutes on the path whose tips do not cut into their mate's fillets; `order` (pairs,) and `load` (phases,
-    pairs) the share of each tooth pair in the transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution
-    along the lines; `dofs` the unknowns of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept
-    from passing through each other; `fillet` those at which a tip presses into its mate's fillet; `error` (phases,) differences
-    of k from those of longer cells and of coarser bodies [N/m], or None; `k_tangent` (phases,) ``d force / d approach`` of what
-    pushes at this force [N/m]; `supports` (phases,) the part of the approach that the supports
-    of the hubs give way [mm], the mean over the loads. `error` contains what is unsure of `Carried`; `off_path` (phases,) is what
-    is unsure of k where no contact on the path carries [N/m], and is not in `error`.
+    Attributes
+    ----------
+    phase : ndarray, shape (phases,)
+        Phase of the end that touches first.
+    k, k_tangent : ndarray, shape (phases,)
+        ``force / (approach - unloaded)``, and ``d force / d approach`` of the loaded contacts [N/m].
+    approach, unloaded : ndarray, shape (phases,)
+        Approach along the transverse line of action under load, and at first touch without load [mm]. The latter is 0 for
+        involutes on the path whose tips do not cut into their mate's fillets.
+    order : ndarray, shape (pairs,)
+        Numbers of the tooth pairs.
+    load : ndarray, shape (phases, pairs)
+        Transverse force of each tooth pair [N].
+    cells : tuple of Cells
+        Load distribution along the contact lines, by phase.
+    dofs : (int, int)
+        Number of unknowns of pinion and wheel.
+    closed, fillet : sequence
+        Phases at which faces of cracks are in contact, and at which a tip is in its mate's fillet.
+    error : ndarray, shape (phases,), or None
+        Differences of k from those of longer cells and of coarser bodies [N/m], with the `unsure` part of `Carried`.
+    off_path : ndarray, shape (phases,)
+        Uncertainty of k if no contact on the path carries load [N/m]; it is not part of `error`.
+    supports : ndarray, shape (phases,), or None
+        Deflection of the supports of the hubs, its mean weighted with the loads [mm].
     """
 
     phase: Floats
@@ -61,34 +76,34 @@ class Contact3D:
 
 
 def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, error=False, cache=True):
-    """Contact of a `Case` of finite width.
+    """Return the contact of a `Case` of finite width.
 
-    ``k = F / delta``, F = the force in the transverse section along the line of action, delta the approach along it (of modified
-    flanks: under load less without load). The flanks press at right angles, ``F / cos(beta_b)`` in all, and approach by
-    ``delta cos(beta_b)``: k is ``cos(beta_b)**2`` times the normal force per normal approach.
+    The stiffness is ``k = F / delta``. F is the force along the line of action in the transverse section and delta the approach
+    along it. For modified flanks delta is the loaded minus the unloaded approach. The flanks press at right angles with ``F /
+    cos(beta_b)`` in all, and approach by ``delta cos(beta_b)``. Therefore k is ``cos(beta_b)**2`` times the normal force per
+    normal approach.
 
     Parameters
     ----------
     case : Case
-        The faces, if of different width, lie centred on each other. Pits on loaded flanks take contact away, no material.
-        Faces of cracks are kept from passing through each other if the bodies give their opening, as the energy model does. The
-        end z = 0 of a helical pair touches first if the pinion's beta is negative, z = b otherwise; the outer ends of
-        ``herringbone`` halves touch first; the halves are mirrored and do not know each other's bodies. Several forces share the
-        gears; each has its own cells, as in a call of its own.
+        Faces of different width lie centred on each other. Pits on loaded flanks remove contact and no material. Faces of cracks
+        cannot pass through each other if the bodies give their opening, as the energy model does. The end z = 0 of a helical pair
+        touches first if the pinion's beta is negative, z = b otherwise. The outer ends of ``herringbone`` halves touch first; the
+        halves are mirrored, and their bodies are not coupled. Several forces share the gears; each has separate cells.
     phases : int or ndarray
         Number of equidistant phases in 0...1, or the phases: of the end that touches first, pair 0 enters there at phase 0.
     bodies : Bodies, optional
-        How the gears give; default `gearfe.contact.bodies.energy_bodies`.
+        Solver of the bodies; default `gearfe.contact.bodies.energy_bodies`.
     step : float, optional
         Longest cell along the width [mm]; default 0.2 normal modules.
     extended : bool
-        Let tip corners touch where a section is before the start or after the end of the path of contact, with the gap it
-        has there and the plane's local law of a corner (`gearfe.contact.corner`).
+        If True, tip corners touch before the start and after the end of the path of contact, with their gap and the local law of
+        corners of the plane section (`gearfe.contact.corner`).
     error : bool
-        The difference of every k from that of cells `LONGER` times as long, and from that of coarser bodies, added: a measure of
-        the discretisation error at that phase alone. Of the energy model an error that falls with the power 2.4 of the degree,
-        and with the power 1 of the cells, or faster, is below it. The effect of the material that pits and spalls lack is added
-        (`gearfe.contact.missing_material`).
+        If True, estimate the discretisation error at each phase. It is the difference of k from that of cells `LONGER` times as
+        long, plus the difference from that of coarser bodies. An error of the energy model that falls with the power 2.4 of the
+        degree and the power 1 of the cells, or faster, is below the estimate. The effect
+        of the material that pits and spalls lack is added (`gearfe.contact.missing_material`).
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 

@@ -1,1 +1,1 @@
-"""What every package needs: `Case`, `Material`, supports, checks, files, progress and units."""
+"""Common parts of all packages: `Case`, `Material`, supports, checks, files, progress and units."""

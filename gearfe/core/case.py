@@ -1,4 +1,4 @@
-"""`Case`: what meshes. A gear pair under a load, and everything that changes how it gives, checked once where it is made."""
+"""`Case`: a gear pair under a load, with its materials, damage, flanks and supports, checked once."""
 
 import math
 import warnings
@@ -31,7 +31,7 @@ SIDES = (("pinion", 1), ("wheel", -1))  # the wheel's tooth of pair k is -k in i
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """What meshes: a gear pair under a load, with its materials, damage, flanks and supports.
+    """Gear pair under a load, with its materials, damage, flanks and supports.
 
     How it is solved, a `Solve` states. A case copies the lists, arrays and dicts that it is given. It does not change
     afterwards: `dataclasses.replace` returns a changed case. Cases that state the same are equal and have the same hash.
@@ -42,7 +42,7 @@ class Case:
     force : float or sequence of float
         Force along the line of action over the whole width [N]. Several loads share one flexibility.
     material : Material or (Material, Material)
-        Of both gears, or of pinion and wheel.
+        Material of both gears, or of pinion and wheel.
     torque : float or sequence of float, optional
         Instead of `force`: torque on the pinion [N m], ``force = torque / r_b`` with the pinion's base radius.
     damage : dict, optional
@@ -50,19 +50,19 @@ class Case:
     flanks : dict, optional
         Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``.
     misalignment : Misalignment, optional
-        Axes that are not parallel. (A centre distance that is not the nominal one: the pair's `a`.)
+        Axes that are not parallel. (Another centre distance than the nominal one is the pair's `a`.)
     supports : dict, optional
         Springs or shafts under the hubs: ``{"pinion": Shaft(...), "wheel": Support(...)}``; default: rigid bores.
     face : {"spur", "helical", "herringbone"}, optional
-        How the teeth run. Default: as their helix angle says in three dimensions, otherwise ``spur`` (of helical gears the
-        transverse section, as a spur gear of the same width).
+        Type of teeth. Default: by the helix angle in three dimensions, otherwise ``spur`` (for helical gears the transverse
+        section, as a spur gear of the same width).
     groove : float
         Width of a herringbone pair's relief groove [mm], part of b.
 
     Attributes
     ----------
     forces : tuple of float
-        Along the line of action [N], of a torque too.
+        Forces along the line of action [N], also for a given torque.
     materials : (Material, Material)
     cracks, pits : (tuple, tuple)
         Damage of pinion and wheel, teeth numbered in each gear's own frame.
@@ -71,17 +71,17 @@ class Case:
     forms : (FlankForm, FlankForm) or None
         `flanks` and `misalignment` on the gears; None for involutes.
     held : (Support or Shaft or None, Support or Shaft or None) or None
-        What holds the hubs; None for rigid ones.
+        Supports of the hubs; None for rigid ones.
 
     Raises
     ------
     ValueError
-        If an input is impossible; the message says which.
+        If an input is impossible; the message states which.
 
     Warns
     -----
     UserWarning
-        If a pit takes a whole flank, or teeth are called helical, but are straight.
+        If a pit removes a whole flank, or straight teeth are called helical.
 
     Examples
     --------
@@ -91,8 +91,8 @@ class Case:
     >>> case = gf.Case(pair, 2000.0, gf.Material(E=207e3, nu=0.25), damage={"pinion": [gf.Crack(level=0.3)]})
     >>> curve = gf.solve(case, gf.Solve(phases=8, span="tooth"))
     >>> healthy = gf.solve(case.healthy, gf.Solve(phases=8, span="tooth"))
-    >>> print(f"the crack takes up to {100 * (1 - curve.k / healthy.k).max():.1f} % of the stiffness")
-    the crack takes up to 17.8 % of the stiffness
+    >>> print(f"the crack reduces the mesh stiffness by up to {100 * (1 - curve.k / healthy.k).max():.1f} %")
+    the crack reduces the mesh stiffness by up to 17.8 %
     """
 
     pair: GearPair
@@ -179,19 +179,14 @@ class Case:
         """Whether a tooth is missing."""
         return any(isinstance(one, MissingTooth) for own in self.broken for one in own)
 
-    def without_broken(self, what: str) -> None:
-        """ValueError if a tooth is missing or chipped, because `what` does not model it."""
-        for one in sum(self.broken, ()):
-            raise ValueError(f"a {one._nouns[0]} in {what}, which has whole teeth only: use mesh_stiffness or compare")
-
     @property
     def runs(self) -> str:
-        """How the teeth run: `face`, or as their helix angle says."""
+        """Type of teeth: `face`, or by their helix angle."""
         return self.face or ("helical" if self.pair.gear_1.beta else "spur")
 
     @property
     def why_wide(self) -> str:
-        """Why the case needs three dimensions; empty if its transverse section is the whole truth."""
+        """Reason for a three-dimensional model; empty if the transverse section is sufficient."""
         if why := why_wide([one for defects in (*self.cracks, *self.pits) for one in defects]):
             return why
         if self.runs != "spur":
@@ -218,7 +213,7 @@ class Case:
         return next(iter(self.damaged_pairs), None)
 
     def overlap(self, face: str | None = None) -> float:
-        """Overlap ratio of teeth that run as `face` says (default `runs`), of one half if herringbone; 0 for spur."""
+        """Return the overlap ratio of teeth of type `face` (default `runs`), of one half if herringbone; 0 for spur."""
         return overlap(self.pair, face or self.runs, self.groove)
 
 
@@ -228,7 +223,7 @@ NAMES = tuple(own.name for own in GIVEN)
 
 
 class CaseOptions(TypedDict, total=False):
-    """Options of a `Case` beside pair, load and materials, for functions that take both; `Case` describes them."""
+    """Options of a `Case` other than pair, load and materials, for functions that accept both; `Case` describes them."""
 
     damage: Mapping[str, Sequence[Damage]] | None
     flanks: Mapping[str, Flank] | None
@@ -239,7 +234,7 @@ class CaseOptions(TypedDict, total=False):
 
 
 def _as_mapping(case):
-    """What `case` was given, by name, with the warning that a case will not be a mapping."""
+    """Return the arguments of `case` by name, with the warning that a case will not be a mapping."""
     text = "a Case will not be a mapping in the next version: use case.as_dict(), or dataclasses.replace(case, ...)"
     warnings.warn(text, DeprecationWarning, stacklevel=3)
     return case.as_dict()
@@ -251,7 +246,7 @@ def _stated(given):
 
 
 def case_of(pair: GearPair | Case, force: Any = None, material: Any = None, *, torque: Any = None, **given: Any) -> Case:
-    """The `Case` of arguments such as those of `gearfe.mesh_stiffness`, in which a case may stand for the pair."""
+    """Return the `Case` of arguments such as those of `gearfe.mesh_stiffness`, in which a case may replace the pair."""
     if not isinstance(pair, Case):
         return Case(pair, force, material, torque=torque, **given)
     if force is not None or torque is not None:
@@ -278,7 +273,7 @@ def overlap(pair: GearPair, face: str | None, groove: float) -> float:
 
 
 def forces_of(pair: GearPair, force: Any, torque: Any) -> list[float]:
-    """Forces along the line of action [N] as a list: given, or from torques on the pinion [N m], ``T / r_b``."""
+    """Return forces along the line of action [N] as a list: given, or from torques on the pinion [N m], ``T / r_b``."""
     if (force is None) == (torque is None):
         raise ValueError(
             f"force = {force!r}, torque = {torque!r}, but give one of them: the force along the line of action [N] or the torque "

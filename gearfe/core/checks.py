@@ -1,4 +1,4 @@
-"""Checks of what functions are given, before any work: numbers, truth values, lengths, resolution."""
+"""Checks of arguments, before any work: numbers, truth values, lengths, resolution."""
 
 import math
 from collections.abc import Collection
@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from ..geometry.checks import is_number, is_whole
 
 MOST = 2**63  # largest whole number that an array holds, plus 1
-COARSEST = 0.2  # at 0.4 sections are off by 0.2 %, at 0.2 by 0.5 %, below they follow no mesh any more (25 % at 1e-9)
+COARSEST = 0.2  # at 0.4 sections are off by 0.2 %, at 0.2 by 0.5 %; below, the error grows without order (25 % at 1e-9)
 FINEST = 64.0  # edges 64 times shorter: beyond, k changes by less than the errors of rounding and contact
 
 
 def number(name: str, value: Any) -> float:
-    """The number as a float; ValueError if it is no number, nan or a truth value. An array of one number and no axis is one."""
+    """Return the number as a float; ValueError for no number, nan or a truth value. Arrays without axes count."""
     value = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 and not np.ma.is_masked(value) else value
     if not is_number(value) or math.isnan(value):
         raise ValueError(f"{name} = {value!r}, but it needs a number")
@@ -24,7 +24,7 @@ def number(name: str, value: Any) -> float:
 
 
 def whole(name: str, value: Any, least: float = -math.inf, most: int = MOST) -> int:
-    """A whole number from `least` to `most`.
+    """Return a whole number from `least` to `most`.
 
     Raises
     ------
@@ -32,7 +32,7 @@ def whole(name: str, value: Any, least: float = -math.inf, most: int = MOST) -> 
         If it is another kind of number, ``24.0``, smaller or larger.
     """
     if is_whole(value) and value > most:
-        raise ValueError(f"{name} = {str(value)[:40]}, but at most {most} makes sense here")
+        raise ValueError(f"{name} = {str(value)[:40]}, but the maximum is {most}")
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         close = is_number(value) and math.isfinite(value) and value == int(value) and value >= least
         remedy = f": give {name} = {int(value)}" if close else "" if least == -math.inf else f" from {least} on"
@@ -41,20 +41,20 @@ def whole(name: str, value: Any, least: float = -math.inf, most: int = MOST) -> 
 
 
 def one_of(name: str, value: Any, known: Collection[str]) -> None:
-    """ValueError unless the value is one of those that are known."""
+    """Raise ValueError unless the value is one of the known ones."""
     if value not in known:
         raise ValueError(f"{name} = {value!r}, but it must be one of {', '.join(known)}")
 
 
 def truth(name: str, value: Any) -> bool:
-    """`value` if it is true or false; text and numbers are refused: ``bool("no")`` is true."""
+    """Return `value` if it is true or false; text and numbers are rejected, since ``bool("no")`` is true."""
     if not isinstance(value, (bool, np.bool_)):
         raise ValueError(f"{name} = {value!r}, but give True or False")
     return bool(value)
 
 
 def numbers(name: str, value: Any, unit: str) -> NDArray:
-    """One number or several as an array of floats; text, truth values and complex numbers are refused."""
+    """Return one number or several as an array of floats; text, truth values and complex numbers are rejected."""
     try:
         array = np.asarray(value)
     except ValueError as error:
@@ -77,7 +77,7 @@ def _kind(value):
 
 
 def checked_refine(refine: Any) -> float:
-    """The resolution, if meshes follow it: from `COARSEST` to `FINEST`.
+    """Return the resolution if it is valid for meshes: from `COARSEST` to `FINEST`.
 
     Raises
     ------

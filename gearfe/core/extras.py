@@ -1,4 +1,4 @@
-"""What the project's extras bring, read from its own metadata; what to say where an optional library is missing."""
+"""Packages of the project's extras, from its metadata, and messages on missing optional libraries."""
 
 import contextlib
 import functools
@@ -6,12 +6,12 @@ import importlib.metadata
 import re
 from collections.abc import Iterator
 
-COLLECTIONS = ("all", "docs", "test")  # extras that nobody installs for the sake of one library
+COLLECTIONS = ("all", "docs", "test")  # extras that are not installed for a single library
 
 
 @functools.cache
 def requirements() -> dict[str, tuple[str, ...]]:
-    """Packages by extra, "" being what every install has; nothing if the project is not installed but run from its source."""
+    """Return packages by extra, "" for every installation; nothing if the project runs from its source without installation."""
     out: dict[str, list[str]] = {}
     try:
         lines = importlib.metadata.requires("gearfe") or []
@@ -26,7 +26,7 @@ def requirements() -> dict[str, tuple[str, ...]]:
 
 
 def bringing(package: str) -> tuple[str, ...]:
-    """Extras that bring a package, without `COLLECTIONS`.
+    """Return the extras that contain a package, without `COLLECTIONS`.
 
     Examples
     --------
@@ -45,12 +45,12 @@ def _plain(name):
 
 
 def command(package: str) -> str:
-    """How to install an optional package: by itself, or by the extras that bring it."""
+    """Return the command that installs an optional package: alone, or by the extras that contain it."""
     return ", or ".join([f"pip install {package}", *(f"pip install 'gearfe[{extra}]'" for extra in bringing(package))])
 
 
 def missing(package: str, error: ImportError) -> RuntimeError:
-    """Return what to raise where an optional package cannot be imported: a RuntimeError with the command for it."""
+    """Return the RuntimeError for an optional package that cannot be imported, with the command that installs it."""
     return RuntimeError(f"this needs {package} ({error}): {command(package)}")
 
 

@@ -1,7 +1,7 @@
-"""Files: `FORMATS` says which there are and what each can hold; what is written is complete, or not there.
+"""Files: `FORMATS` lists the formats and their contents; a written file is complete, or absent.
 
-A curve or a response becomes a `Content`, which every format of numbers can hold; pictures and fields are drawn by their
-libraries into the path that `written` gives. Readers give lines of text or arrays by name.
+A curve or a response becomes a `Content`, which every format of numbers can hold. Pictures and fields are drawn by their
+libraries into the path from `written`. Readers return lines of text or arrays by name.
 """
 
 import codecs
@@ -27,13 +27,13 @@ from numpy.lib import format as npy
 
 from .matlab_file import MOST_PACKED, variables
 
-# what a file that is no archive of arrays can raise: no archive, of a kind not known, other arrays
+# errors of files that are no archive of arrays, or one of an unknown type
 NO_ARCHIVE: tuple[type[Exception], ...] = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, RuntimeError)
 NO_ARCHIVE += (MemoryError, KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError)
 _drawing = threading.Lock()
 PART = ".part-"  # beginning of the names of temporary files
 
-CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # what no table in text holds
+CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # control characters that no text table contains
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,15 +41,16 @@ class Content:
     """Numbers to be written."""
 
     title: str  # first line of a text table, "gearfe stiffness curve, version 1"
-    columns: dict  # of a text table, arrays ``(n,)`` by "name [unit]"
+    columns: dict  # columns of a text table, arrays ``(n,)`` by "name [unit]"
     arrays: dict  # the same for all other formats, by name
     meta: dict  # all that is needed to repeat it; JSON
-    units: dict = field(default_factory=dict)  # of the arrays: a table in JSON files, JSON text ``units_json`` in the others
+    # units of the arrays: a table in JSON files, JSON text ``units_json`` in the others
+    units: dict = field(default_factory=dict)
 
 
 @contextlib.contextmanager
 def written(path):
-    """Path of a temporary file beside `path` that replaces it when the block ends without an error.
+    """Give the path of a temporary file that replaces `path` when the block ends without an error.
 
     ValueError if the folder does not exist or cannot be written.
     """
@@ -88,7 +89,7 @@ def check_path(name, path):
 
 
 def check_output(path, kind):
-    """Raise ValueError if `path` cannot be written later: to be called before work begins.
+    """Raise ValueError if `path` is not writable; call it before work begins.
 
     A file is made in the folder and taken away again, so that nothing is left to chance; what stands at `path` is not touched.
     `kind` is what will be written, as `FORMATS` names it (``curve``, ``picture``...). ValueError if the name is empty, a folder,
@@ -103,10 +104,10 @@ def check_output(path, kind):
 
 
 def suffixes(kind, *, reading=False):
-    """Suffixes of the files that hold what `kind` says."""
+    """Return the suffixes of files that can hold `kind`."""
     known = [suffix for suffix, row in FORMATS.items() if kind in (row.reads if reading else row.writes)]
     if not known:
-        raise ValueError(f"kind = {kind!r}, but no file holds such a thing; see gearfe.core.files.FORMATS")
+        raise ValueError(f"kind = {kind!r}, which no file format supports; see gearfe.core.files.FORMATS")
     return known
 
 
@@ -156,9 +157,9 @@ def save_figure(figure, path, dpi):
 
 
 def read(path, kind):
-    """What stands in a file: its lines if it is text, else its arrays by name.
+    """Read the contents of a file: its lines if it is text, else its arrays by name.
 
-    ValueError if its suffix holds no such content, or it cannot be read or is no file of its format.
+    ValueError if its suffix does not hold such content, or it is not readable or has another format.
     """
     return FORMATS[suffix_of(path, kind, reading=True)].read(path)
 
@@ -193,7 +194,7 @@ def _told(content):
 
 
 def write_json(name, content):
-    """Write JSON: arrays as lists (nan as null), units beside them."""
+    """Write JSON: arrays as lists (nan as null), with units."""
     data = {key: json.loads(json.dumps(value.tolist()).replace("NaN", "null")) for key, value in content.arrays.items()}
     with open(name, "w", encoding="utf-8") as file:
         json.dump({"units": {key: content.units[key] for key in data}, **data, "meta": content.meta}, file)
@@ -214,10 +215,10 @@ def read_text(path):
 
 
 def _decoded(content):
-    """Text of bytes and its encoding; None if they are no text in one of those that tables are exported in."""
+    """Return text of bytes and its encoding; None if it has none of the usual encodings of tables."""
     marks = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16", codecs.BOM_UTF8: "utf-8-sig"}
     marked = next((name for mark, name in marks.items() if content.startswith(mark)), None)
-    wide = {"utf-16-le": content[1:400:2], "utf-16-be": content[:400:2]}  # of text in Latin letters one byte in two is zero
+    wide = {"utf-16-le": content[1:400:2], "utf-16-be": content[:400:2]}  # in text of Latin letters every second byte is zero
     guessed = [name for name, high in wide.items() if len(high) > 1 and high.count(0) > 0.9 * len(high)]
     for name in [marked] if marked else [*guessed, "utf-8", "cp1252"]:
         with contextlib.suppress(UnicodeDecodeError):
@@ -228,7 +229,7 @@ def _decoded(content):
 
 
 def read_npz(path):
-    """Arrays of a numpy archive, by name; nothing is unpickled, and no more memory is asked for than the file can fill."""
+    """Read the arrays of a numpy archive by name, without unpickling and without more memory than the file's bytes allow."""
     with _opened(path) as file:
         try:
             with zipfile.ZipFile(file) as archive:
@@ -242,7 +243,7 @@ def read_npz(path):
 
 
 def _check_member(archive, member):
-    """ValueError if a member of a numpy archive is larger, by what it says, than its bytes can make it."""
+    """Raise ValueError if a member of a numpy archive states a larger size than its bytes allow."""
     if member.file_size > MOST_PACKED * (member.compress_size + 1):
         raise ValueError(f"{member.filename} holds {member.compress_size} bytes that cannot become {member.file_size}")
     if not member.filename.endswith(".npy"):
@@ -251,7 +252,7 @@ def _check_member(archive, member):
         version = npy.read_magic(file)
         shape, _, dtype = (npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0)(file)
         if not dtype.hasobject and math.prod(shape) * dtype.itemsize > member.file_size - file.tell():
-            raise ValueError(f"{member.filename} says it is {dtype} {list(shape)}, more than its {member.file_size} bytes")
+            raise ValueError(f"{member.filename} states {dtype} {list(shape)}, more than its {member.file_size} bytes")
 
 
 def read_mat(path):
@@ -274,7 +275,7 @@ def _opened(path):
 
 
 class Format(NamedTuple):
-    """What files of a suffix hold, and what writes and reads them; None where the library that draws does."""
+    """Contents of files of a suffix, and their writers and readers; None if a drawing library writes it."""
 
     writes: tuple = ()
     reads: tuple = ()

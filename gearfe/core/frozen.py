@@ -1,4 +1,4 @@
-"""Read-only, hashable copies of what a `Case` or a `Solve` is given."""
+"""Read-only, hashable copies of the arguments of a `Case` or a `Solve`."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -38,7 +38,7 @@ class Frozen(Mapping[Any, Any]):
 
 
 def frozen(value: Any) -> Any:
-    """Return a copy that its giver cannot change: lists and arrays as tuples, dicts as `Frozen`."""
+    """Return a copy that does not change with its source: lists and arrays as tuples, dicts as `Frozen`."""
     if isinstance(value, Mapping):
         return Frozen({name: frozen(entry) for name, entry in value.items()})
     if isinstance(value, (list, tuple)):

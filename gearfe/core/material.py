@@ -1,4 +1,4 @@
-"""`Material`: linear isotropic elasticity, and what its constants become in a plane."""
+"""`Material`: linear isotropic elasticity, and its plane constants."""
 
 import math
 import warnings
@@ -32,7 +32,7 @@ class Material:
     nu: float = 0.3
 
     def __post_init__(self) -> None:
-        """Refuse constants no stable material has."""
+        """Reject constants of unstable materials."""
         for name in ("E", "nu"):
             value = getattr(self, name)
             if not is_number(value):

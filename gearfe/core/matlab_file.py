@@ -1,7 +1,7 @@
-"""MATLAB files of version 7 and older (MAT 5 and MAT 4), read so that a damaged one raises an error and does no other harm.
+"""MATLAB files of version 7 and older (MAT 5 and MAT 4), read so that a damaged file only raises an error.
 
-Compiled readers trust the lengths and indices that a file states, and some damage ends the process in them. Here every length is
-checked against the bytes there are before anything is made of it: no array is larger than what the file can hold.
+Compiled readers trust the lengths and indices in a file, and some damage ends the process in them. Here every length is compared
+with the available bytes first: no array is larger than the file can hold.
 
 References
 ----------
@@ -22,14 +22,14 @@ CELL, STRUCT, CHAR, SPARSE = 1, 2, 4, 5
 OPAQUE = 17  # an object of a newer class: its name comes first, and it has no shape
 CLASSES = dict(zip(range(6, 16), ("f8", "f4", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8"), strict=True))
 STORED = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
-TEXTS = {1: "latin-1", 2: "latin-1", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18: "utf-32"}  # of stored characters
-COMPLEX = 0x08  # in the flags of an array
-DEEPEST = 50  # structs and cells in each other
+TEXTS = {1: "latin-1", 2: "latin-1", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18: "utf-32"}  # encodings of stored characters
+COMPLEX = 0x08  # bit in the flags of an array
+DEEPEST = 50  # limit of nested structs and cells
 MOST_PACKED = 1032  # bytes that one byte of deflate can become, at most
 
 
 class Unread(NamedTuple):
-    """A variable whose numbers are not read; `why` names what it is and what to save instead."""
+    """Variable whose numbers are not read; `why` is its type and the remedy."""
 
     why: str
 
@@ -39,7 +39,7 @@ OBJECT_TOLD = Unread("a MATLAB object: save its numbers, for instance by table2a
 
 
 class _Bytes:
-    """Bytes of a file, read from their beginning; all that is asked for must be there."""
+    """Bytes of a file, read from their beginning, with checks of their number."""
 
     def __init__(self, data: Any, order: str) -> None:
         self.data, self.order, self.at = memoryview(data), order, 0
@@ -91,7 +91,7 @@ def variables(data: bytes) -> dict[str, Any]:
     file.take(2)
     if version >> 8 != 1:
         version_text = "7.3, but holds no HDF5" if version >> 8 == 2 else f"{version >> 8} of the format, but 1 is known"
-        raise ValueError(f"it says version {version_text}: it is damaged")
+        raise ValueError(f"its version is {version_text}: it is damaged")
     out = {}
     while file.left():
         kind, content = file.element()
@@ -105,7 +105,7 @@ def variables(data: bytes) -> dict[str, Any]:
 
 
 def _unpacked(packed):
-    """The element in a compressed one."""
+    """Return the element in a compressed one."""
     worker = zlib.decompressobj()
     try:
         head = worker.decompress(packed.data, 8)
@@ -116,7 +116,7 @@ def _unpacked(packed):
     except zlib.error as error:
         raise ValueError(f"a compressed variable is damaged: {error}") from error
     if len(held) != count or not worker.eof:
-        raise ValueError("a compressed variable has another length than it says")
+        raise ValueError("a compressed variable has another length than stated")
     return kind, _Bytes(held, packed.order)
 
 
@@ -125,7 +125,7 @@ def _matrix(file, depth):
     if not file.left():
         return "", np.empty((0, 0))
     if depth > DEEPEST:
-        raise ValueError(f"structs and cells stand in each other more than {DEEPEST} deep")
+        raise ValueError(f"structs and cells are nested more than {DEEPEST} deep")
     flags = _Bytes(file.element()[1].take(8), file.order).numbers(2)[0]
     kind = flags & 0xFF
     if kind not in (CELL, STRUCT, CHAR, *CLASSES):
@@ -158,7 +158,7 @@ def _matrix(file, depth):
 def _entry(file, depth):
     kind, content = file.element()
     if kind != MATRIX:
-        raise ValueError(f"an element of kind {kind} stands where an array should")
+        raise ValueError(f"an element of kind {kind} is in the place of an array")
     return _matrix(content, depth + 1)[1]
 
 
@@ -180,7 +180,7 @@ def _fields(file):
 
 
 def _numbers(kind, content, shape, dtype) -> NDArray[Any]:
-    """Array of MATLAB's class, whatever smaller type its numbers are stored in."""
+    """Return an array of MATLAB's class, from any smaller type in which its numbers are stored."""
     if kind not in STORED or content.left() % int(STORED[kind][1]):
         raise ValueError(f"{content.left()} bytes of kind {kind} are no numbers")
     values = np.frombuffer(content.data, dtype=content.order + STORED[kind])

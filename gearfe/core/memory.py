@@ -1,10 +1,10 @@
-"""Memory that a process may still take: of the machine, of its own limit, of its control group (a container)."""
+"""Memory available to a process: of the computer, of its limit, of its control group (a container)."""
 
 import math
 import os
 from pathlib import Path
 
-GROUP = "/sys/fs/cgroup"  # of this process; version 2, then version 1
+GROUP = "/sys/fs/cgroup"  # control group of this process; version 2, then version 1
 CONTROL_GROUP = (  # files with limit, use [bytes] and details, and the name of cached files in the last
     (f"{GROUP}/memory.max", f"{GROUP}/memory.current", f"{GROUP}/memory.stat", "inactive_file"),
     (f"{GROUP}/memory/memory.limit_in_bytes", f"{GROUP}/memory/memory.usage_in_bytes", f"{GROUP}/memory/memory.stat",
@@ -13,12 +13,12 @@ CONTROL_GROUP = (  # files with limit, use [bytes] and details, and the name of 
 
 
 def free_memory():
-    """Memory [bytes] that can be had without swapping: what the machine has free, less if this process may use less."""
+    """Return the memory [bytes] available without swapping: the free memory of the computer, or less by a limit."""
     return min(_machine_free(), _process_free(), _group_free())
 
 
 def _process_free():
-    """What is left of the limit of this process (``ulimit -v``, ``ulimit -d``)."""
+    """Return the unused part of the limit of this process (``ulimit -v``, ``ulimit -d``)."""
     try:
         import resource
     except ImportError:  # no such limits on this system
@@ -36,7 +36,7 @@ def _process_free():
 
 
 def _group_free():
-    """What is left to the control group of this process (a container); version 2 has two files, version 1 others."""
+    """Return the unused part of the control group of this process (a container); versions 1 and 2 have different files."""
     left = math.inf
     for limit, used, details, cached in CONTROL_GROUP:
         try:
@@ -44,7 +44,7 @@ def _group_free():
         except OSError:
             continue
         files = next((float(line.split()[1]) for line in lines.splitlines() if line.startswith(f"{cached} ")), 0.0)
-        if most.isdigit() and taken.isdigit():  # files that nobody reads now make room when asked
+        if most.isdigit() and taken.isdigit():  # cached files are released on demand
             left = min(left, max(float(most) - float(taken) + files, 0.0))
     return left
 

@@ -26,7 +26,7 @@ def ranged(
     finite: bool = True,
     remedy: str = "",
 ) -> float:
-    """The number as a float.
+    """Return the number as a float.
 
     Parameters
     ----------
@@ -61,14 +61,14 @@ def settle_numbers(record: Any, what: str, names: str, unit: str = "", **limits:
 
 
 def check_named(what: str, name: Any, known: Collection[Any]) -> None:
-    """ValueError, with the nearest name, if a name is not `known`."""
+    """Raise ValueError, with the nearest name, if a name is not `known`."""
     if name not in known:
         near = get_close_matches(str(name), list(map(str, known)), 1, 0.0)
         raise ValueError(f"{what} {name!r}, but there is {', '.join(map(str, known))}; nearest: {', '.join(map(repr, near))}")
 
 
 def check_text(what: str, name: Any) -> None:
-    """ValueError unless a name is text that is not empty."""
+    """Raise ValueError unless a name is text that is not empty."""
     if not isinstance(name, str) or not name:
         raise ValueError(f"{what}: name = {name!r}, but give a text that is not empty")
 

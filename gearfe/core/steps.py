@@ -1,4 +1,4 @@
-"""Progress of long work, told to whoever listens, for instance the bar of the command line; without a listener, silence.
+"""Progress of long work for listeners, for instance the progress bar of the command line.
 
 Work inside of a part of other work counts as a part of that part, so that one bar runs once from its start to its end.
 """
@@ -12,7 +12,7 @@ T = TypeVar("T")
 
 
 class _Range(NamedTuple):
-    """Who listens, and the part of the whole work, from `low` to `high`, that is being done."""
+    """Listener, and the present part of the whole work, from `low` to `high`."""
 
     listener: Callable[[str, float], object]
     low: float
@@ -34,7 +34,7 @@ def listening(listener: Callable[[str, float], object]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def part(text: str, low: float, high: float) -> Iterator[None]:
-    """The block is the work from `low` to `high`, both 0 to 1; an empty text keeps what was said last."""
+    """Declare the block as the work from `low` to `high`, both 0 to 1; an empty text keeps the former one."""
     whole = _range.get()
     if whole is None:
         yield
@@ -49,7 +49,7 @@ def part(text: str, low: float, high: float) -> Iterator[None]:
 
 
 def reached(text: str, share: float) -> None:
-    """Say that this share of the work, 0 to 1, is done: for work that is not done one item after the other."""
+    """Report that this share of the work, 0 to 1, is done: for work that is not a list of items."""
     whole = _range.get()
     if whole is not None:
         whole.listener(text, whole.low + (whole.high - whole.low) * share)

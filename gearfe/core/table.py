@@ -1,4 +1,4 @@
-"""`Table`: columns with units and rows of numbers, which become text only where they are shown or written."""
+"""`Table`: columns with units and rows of numbers, formatted only for display and files."""
 
 import csv
 import io
@@ -14,7 +14,7 @@ from .files import suffix_of, written
 from .units import significant
 
 Form = str | Callable[[float], str]
-FAR, WORDS = ' class="far"', ' class="words"'  # of the style sheet of pages
+FAR, WORDS = ' class="far"', ' class="words"'  # classes of the style sheet of pages
 LATEX = {letter: f"\\{letter}" for letter in "&%$#_{}"}
 LATEX |= {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "±": r"$\pm$", "<": "$<$", ">": "$>$"}
 
@@ -22,8 +22,8 @@ LATEX |= {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasci
 class Column(NamedTuple):
     """Name, unit and format of the numbers of a column.
 
-    `form` is a format such as ``"{:.3g}"``, or a function that returns the text of a number. The unit stands in the head,
-    ``%`` beside every number. Numbers of more than `mark` in size are emphasised.
+    `form` is a format such as ``"{:.3g}"``, or a function that returns the text of a number. The unit is in the head, ``%`` after
+    every number. Numbers larger than `mark` in size are emphasised.
     """
 
     name: str
@@ -132,7 +132,7 @@ class Table:
         return shown.get().strip()
 
     def html(self, *, words: bool = False) -> str:
-        """A ``<table>`` that scrolls in its own ``<div>``; `words` if its cells are sentences."""
+        """Return a ``<table>`` that scrolls in its ``<div>``; `words` if its cells are sentences."""
         head, *_ = self.cells()
         rows = self._texts(lambda text, marked: f"<td{FAR if marked else ''}>{escape(text)}</td>")
         label = escape(self.title or "table")
@@ -146,7 +146,7 @@ class Table:
     _repr_html_ = html
 
     def latex(self) -> str:
-        """A LaTeX ``tabular`` that needs no package."""
+        """Return a LaTeX ``tabular`` that needs no package."""
 
         def shown(text, marked=False):
             safe = "".join(LATEX.get(letter, letter) for letter in text)

@@ -1,7 +1,7 @@
-"""What belongs to the whole process, so that the threads of a caller do not matter: number of threads, warnings.
+"""Settings of the whole process, shared by all threads of the caller: number of threads, warnings.
 
-Linear algebra has one thread inside of gearfe, unless the user has chosen their number. Most matrices here are so small that
-several threads mostly wait for each other; on a busy machine that takes many times as long.
+Linear algebra has one thread inside gearfe, unless the user has chosen the number. Most matrices here are so small that several
+threads mostly wait for each other. On a busy computer that takes many times as long.
 """
 
 import contextlib
@@ -55,7 +55,7 @@ class Shared:
 
 @functools.cache
 def _libraries() -> Any:
-    """The linear algebra of numpy and scipy, looked for once: that takes some milliseconds."""
+    """Return the linear algebra libraries of numpy and scipy, found once in some milliseconds."""
     with loading:
         import scipy.linalg  # noqa: F401 - loads what is to be found
         from threadpoolctl import ThreadpoolController
@@ -68,7 +68,7 @@ _limited = Shared(lambda: _libraries().limit(limits=1))
 
 @contextlib.contextmanager
 def one_thread() -> Iterator[None]:
-    """In the block the linear algebra has one thread; if a variable of `CHOSEN` says another number, as many as that.
+    """Use one thread for linear algebra in the block, or as many as a variable of `CHOSEN` states.
 
     The limit is the process's: it holds until the last of the blocks that overlap in several threads has ended.
     """
@@ -80,7 +80,7 @@ def one_thread() -> Iterator[None]:
 
 
 def single(function: Callable[P, R]) -> Callable[P, R]:
-    """The function with `one_thread` around it."""
+    """Return the function with `one_thread` around it."""
 
     @functools.wraps(function)
     def limited(*args: P.args, **kwargs: P.kwargs) -> R:
@@ -91,7 +91,7 @@ def single(function: Callable[P, R]) -> Callable[P, R]:
 
 
 class _Lists(threading.local):
-    """Lists that take the warnings of this thread, the innermost block's last, each with the kind it takes."""
+    """Lists of warnings of this thread, the innermost block's last, each with the kind of its warnings."""
 
     def __init__(self) -> None:
         self.open: list[tuple[type[Warning], list[Any]]] = []

@@ -17,7 +17,7 @@ def in_newton_per_um(k: float, digits: int = 4) -> str:
 
 
 def significant(value: float, digits: int = 4) -> str:
-    """A number with so many significant digits, without an exponent where it can be read so."""
+    """Return a number with so many significant digits, without an exponent where it is readable so."""
     if not math.isfinite(value) or not 1e-3 <= abs(value) < 1e7:
         return f"{value:.{digits}g}"
     return f"{value:.{max(0, digits - 1 - math.floor(math.log10(abs(value))))}f}"

@@ -1,1 +1,1 @@
-"""Meshes and loads as files for other programs: CalculiX and Abaqus decks of one gear, of a pair in contact, mesh files."""
+"""Meshes and loads for other programs: CalculiX and Abaqus decks of one gear and of a pair in contact, mesh files."""

@@ -1,4 +1,4 @@
-"""A whole gear pair in nonlinear contact as a CalculiX deck: the second opinion on load sharing and corner contact."""
+"""Gear pair in nonlinear contact as a CalculiX deck in plane strain: an independent reference."""
 
 from dataclasses import dataclass
 
@@ -19,13 +19,13 @@ from .deck import held_nodes
 from .pressed import Sections, pressing, read_rows, write_lines
 from .pressing import Pressing
 
-TIP = 0.005  # longest edge at a tip corner that may touch [m_n]: pressure ends there steeply
+TIP = 0.005  # longest edge at a tip corner that may touch [m_n], where pressure ends steeply
 SECTION = 8.0  # edges per Hertz half width
 
 
 @dataclass(frozen=True, slots=True)
 class ContactDeck:
-    """What is needed to read the result, of both gears: held nodes (numbers), their places from the centre [mm], r_b [mm]."""
+    """Data to read the result for both gears: held nodes (numbers), their positions from the centre [mm], r_b [mm]."""
 
     held: tuple[NDArray[np.int64], NDArray[np.int64]]
     place: tuple[Floats, Floats]
@@ -44,7 +44,7 @@ class ContactDeck:
 
 
 def write_contact_section(path: StrPath, case: Case, phase: float, approach: float, how: Pressing) -> ContactDeck:
-    """The deck of `gearfe.decks.contact_inp.write_contact_inp` in plane strain; TIP edges at the tip corner that touches."""
+    """Write the deck of `gearfe.decks.contact_inp.write_contact_inp` in plane strain, with TIP edges at a touching tip corner."""
     pair, materials, forms = case.pair, case.materials, case.forms
     gears, line_load = (pair.gear_1, pair.gear_2), case.forces[0] / min(pair.gear_1.b, pair.gear_2.b)
     candidates = flank_contacts(pair, [phase], flanks=forms)

@@ -1,4 +1,4 @@
-"""`write_contact_inp`: a gear pair in nonlinear contact for CalculiX, its section or the whole width."""
+"""`write_contact_inp`: a gear pair in nonlinear contact for CalculiX, as a section or with its whole width."""
 
 import os
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ from .contact_deck import ContactDeck, write_contact_section
 from .contact_solid import write_contact_solid
 from .pressing import Pressing
 
-GIVEN = ("face", "damage", "flanks", "misalignment")  # of a case
+GIVEN = ("face", "damage", "flanks", "misalignment")  # options of a case
 
 
 class DeckOptions(TypedDict, total=False):
@@ -42,18 +42,17 @@ def write_contact_inp(
     materials: tuple[Material, Material] | None = None,
     **options: Unpack[DeckOptions],
 ) -> ContactDeck:
-    """Write a deck that turns the bores of a pair against each other by `approach` along the line of action.
+    """Write a deck that rotates the bores of a pair against each other by `approach` along the line of action.
 
-    Frictionless surface-to-surface contact of all flanks that may touch, with a linear pressure-overclosure of `penalty` times
-    E (50 is 0.8 % too soft, 500 is not distinguishable from more); large displacements, so that the flanks touch where the
-    turned gears have them. The gear whose corner touches, of a tip or at the foot of an undercut flank, is the slave side of its
-    pair, with the finer edges there: other choices are up to 2 % too stiff. ``ccx -i NAME`` prints the bores' reactions, from
-    which `ContactDeck.force` gives the load.
+    Contact is frictionless and surface-to-surface for all flanks that may touch, with a linear pressure-overclosure of `penalty`
+    times E (50 is 0.8 % too soft, 500 has no error). Displacements are large, so that the flanks touch in the rotated positions.
+    The gear whose corner touches (at a tip or at the foot of an undercut flank) is the slave side, with finer edges there: other
+    choices are up to 2 % too stiff. ``ccx -i NAME`` prints the bores' reactions, from which `ContactDeck.force` returns the load.
 
-    Without `face`: the transverse section in second-order triangles (CPE6), plane strain. With it: both whole gears of their
-    finite width, real teeth, in 20-node hexahedra (C3D20R), finer along the contact lines, fillets among the faces in contact
-    where the edge of an undercut flank or the mate's tip touches there; a gear with pits, and its mate if that
-    is undamaged, in second-order tets (C3D10) with the pits cut out as holes.
+    Without `face`: the transverse section in second-order triangles (CPE6), plane strain. With `face`: both whole gears of finite
+    width in 20-node hexahedra (C3D20R), finer along the contact lines. Fillets are among the faces in contact if the edge of an
+    undercut flank or the mate's tip touches there. A gear with pits, and its mate if undamaged, is meshed in second-order tets
+    (C3D10) with the pits cut out as holes.
 
     Parameters
     ----------
@@ -61,29 +60,29 @@ def write_contact_inp(
         Ends in ``.inp``.
     pair : GearPair or Case
     phase : float
-        Of the section; with `face`, as in three dimensions everywhere, of the end face that touches first.
+        Phase of the section; with `face`, of the end face that touches first, like everywhere in three dimensions.
     approach : float
-        Turn of the pinion forward and of the wheel backward, together, as a length on the line of action [mm].
+        Rotation of the pinion forward and of the wheel backward, together, as a length on the line of action [mm].
     line_load : float
-        Expected load per width [N/mm]; decides where the flanks are refined. Of a `Case` leave it and the materials out.
+        Expected load per width [N/mm], for the refinement of flanks. With a `Case`, omit it and the materials.
     materials : (Material, Material)
     **options
-        As below.
+        The following options.
     face : {"spur", "helical"}, optional
-        Three dimensions.
+        Type of teeth in three dimensions.
     damage : dict, optional
-        With `face`: ``{"pinion": [...], "wheel": [...]}`` as of `gearfe.mesh_stiffness`. Faces of cracks may pass through each
-        other. Pits of one tooth of a gear; a crack beside them runs through the whole width.
+        With `face`: ``{"pinion": [...], "wheel": [...]}``, see `gearfe.mesh_stiffness`. Faces of cracks may pass through each
+        other. Pits must be in one tooth of a gear; a crack in addition to them runs through the whole width.
     pits : {"cut", "lost", "filled"}
-        What becomes of them, always in the same mesh: cut out as holes; material there, but no contact, as in `ritz3d`; or as
-        if they were not there. The last is the control that tells what pits do from what the mesh does.
+        Treatment of pits, always in the same mesh: cut out as holes; only contact lost, like in `ritz3d`; or no pits. The last is
+        the control that separates the effect of pits from that of the mesh.
     pose : {"mean", "pinion", "wheel"}
-        Whether both gears turn by half the approach, or one of them against the held other.
+        Both gears rotate by half the approach, or one of them with the other fixed.
     flanks : dict, optional
-        Modifications, as of `mesh_stiffness`: the mesh carries them (`gearfe.geometry.mesh.relieved`, with `face`
-        `gearfe.geometry.mesh.relieved_solid`); `approach` is the transmission error under load, its unloaded part included.
+        Modifications, see `mesh_stiffness`: the mesh contains them (`gearfe.geometry.mesh.relieved`, with `face`
+        `gearfe.geometry.mesh.relieved_solid`); `approach` is then the loaded transmission error, its unloaded part included.
     misalignment : Misalignment, optional
-        With `face`: of the axes, as of `mesh_stiffness`; the flanks lie askew, the axes stay.
+        With `face`: misalignment of the axes, see `mesh_stiffness`; the flanks are inclined, the axes stay.
     per_width : float, optional
         Edges per Hertz half width in the contact zones; default 8, in three dimensions 1.5. Rims of pits follow.
     layers : int
@@ -100,7 +99,7 @@ def write_contact_inp(
     Raises
     ------
     ValueError
-        If an input is impossible, or asked for where it cannot be.
+        If an input is impossible, or is not available for this deck.
     RuntimeError
         If elements of the mesh fold, where CalculiX would stop.
     """
@@ -119,7 +118,7 @@ def write_contact_inp(
             raise ValueError("damage of a section's deck, which has none: give face = 'spur' or 'helical' for three dimensions")
         if any(form.wide for form in case.forms or ()):
             raise ValueError(
-                "flanks that change along the width, or misalignment, of a section, which knows no width: give face = 'spur' "
+                "flanks that change along the width, or misalignment, of a section, which is two-dimensional: give face = 'spur' "
                 "or 'helical' for three dimensions"
             )
         return write_contact_section(path, case, phase, approach, how)

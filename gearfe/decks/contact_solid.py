@@ -1,4 +1,4 @@
-"""A whole gear pair of finite width in nonlinear contact as a CalculiX deck: the second opinion in three dimensions."""
+"""Gear pair of finite width in nonlinear contact as a CalculiX deck: an independent reference in three dimensions."""
 
 import math
 from dataclasses import dataclass, replace
@@ -33,7 +33,7 @@ SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "
 TETS = {"far": 1.4, "tooth": 0.7, "flank": 0.6, "fillet": 0.25}  # see `gearfe.geometry.mesh.holes.SIZES`
 STRETCH = 2.0  # length of tets along the width over that in the section
 RIM = 0.6  # edges at pits' rims against those along the contact lines
-SECTIONS = 33  # transverse sections at which the contacts are looked for
+SECTIONS = 33  # transverse sections in which contacts are searched
 REACH = 1.5  # gap below which a contact may touch, in approaches
 STRIP = 2.5  # Hertz half widths to either side of the contact line that are refined
 SOLID = 1.5  # edges per Hertz half width
@@ -51,10 +51,10 @@ class SolidDeck(ContactDeck):
     slaves: dict[int, tuple[int, NDArray[np.int64]]]
 
     def carried(self, path: StrPath) -> dict[int, tuple[float, float]]:
-        """What each tooth pair carries, from the ``.dat`` file `path`: force [N] and the height z of its line of action [mm].
+        """Return the force [N] of each tooth pair and the height z of its line of action [mm], from the ``.dat`` file `path`.
 
-        CalculiX prints force F and moment M about the origin; the line is ``F x M / |F|**2 + t F``, and the height is that of its
-        point nearest to the middle of the contact area, which is printed too. Pairs that do not touch are left out.
+        CalculiX prints force F and moment M about the origin. The line is ``F x M / |F|**2 + t F``, and the height is that of its
+        point nearest to the middle of the contact area, which is printed too. Pairs without contact are omitted.
         """
         sums = contact_sums(path)
         out = {}
@@ -111,7 +111,7 @@ def nominal_at(pair: GearPair, phase: float, z: Floats | float) -> Floats:
 
 
 def touching(case: Case, phase: float, approach: float) -> Touching:
-    """Tooth pairs whose flanks meet within `REACH` approaches anywhere along the width, and where on the flanks."""
+    """Return the tooth pairs whose flanks meet within `REACH` approaches anywhere along the width, and their contact places."""
     pair, forms, common = case.pair, case.forms, min(case.pair.gear_1.b, case.pair.gear_2.b)
     heights, modulus = np.linspace(0.0, common, SECTIONS), contact_modulus(case.materials)
     candidates = contacts(pair, (nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
@@ -152,7 +152,7 @@ def _modified(pair, found, heights, forms):
 
 
 def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float, how: Pressing) -> SolidDeck:
-    """The deck of `contact_inp.write_contact_inp` for gears of finite width.
+    """Write the deck of `contact_inp.write_contact_inp` for gears of finite width.
 
     Nodes lie on modified flanks (`gearfe.geometry.mesh.relieved_solid`); axes askew are among them.
     """
@@ -213,17 +213,17 @@ def _patch(gear, found, number, k, per_width):
 
 
 def _strip(gear, found, number, k, tooth, low, per_width):
-    """A contact line in the frame that turns with the helix, how far around it the mesh is finer, the edge length there [mm]."""
+    """Return a contact line in the frame of the helix, the half width of its finer strip, and the edge length there [mm]."""
     radius, angle = flank(gear, found.rolls[number][k])
     line = np.array([*cartesian(radius, angle + 2 * math.pi * tooth / gear.z), found.heights[k] - low])
     return line, 1.5 * found.width[k], found.width[k] / per_width
 
 
 def _holed(gear: Gear, damage, strips, how) -> DeckBody:
-    """A whole gear in tets, its pits cut out or not, if it has some; its damaged tooth is tooth 0 while it is meshed."""
+    """Mesh a whole gear in tets, its pits cut out or not; its damaged tooth is tooth 0 during meshing."""
     cracks, holes = split(damage)
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
-        raise ValueError("beside holes cut out a gear has at most one crack, through the whole width: leave out the others")
+        raise ValueError("a gear with holes may have one crack only, through the whole width: leave out the others")
     tooth = damage[0].tooth % gear.z if damage else 0
     turn = 2 * math.pi * tooth / gear.z
     strips = [(turned(line, -turn), *rest) for line, *rest in strips]
@@ -240,7 +240,7 @@ def _holed(gear: Gear, damage, strips, how) -> DeckBody:
 
 
 def _uncovered(faces):
-    """Faces with the flanks without what lies above the pits."""
+    """Return faces with the flanks without the parts above the pits."""
     above = {tuple(face) for face in faces["pits"].T.tolist()}
     return {name: corners[:, [tuple(face) not in above for face in corners.T.tolist()]] for name, corners in faces.items()}
 

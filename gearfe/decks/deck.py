@@ -1,4 +1,4 @@
-"""The finite-element model of one loaded gear as a CalculiX / Abaqus input deck, for a second opinion."""
+"""Finite-element model of one loaded gear as a CalculiX / Abaqus input deck, as an independent reference."""
 
 import os
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""One gear of finite width under a line load as a CalculiX / Abaqus deck: hexahedra, for a second opinion on its flexibility."""
+"""One gear of finite width under a line load as a CalculiX / Abaqus deck of hexahedra, as an independent reference."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,14 +20,14 @@ from .solid_deck import DeckBody, element_lines, node_lines, part_of, set_lines
 
 @dataclass(frozen=True, slots=True)
 class LineDeck:
-    """What is needed to read the result: the meshed gear, the nodal forces ``(nodes, 3)`` and the sum of the pressure [N]."""
+    """Data to read the result: the meshed gear, the nodal forces ``(nodes, 3)`` and the sum of the pressure [N]."""
 
     part: DeckBody
     load: Floats
     force: float
 
     def deflection(self, path: StrPath) -> float:
-        """Displacement of the load along itself, weighted like the load [mm], from what CalculiX printed to the ``.dat`` file."""
+        """Return the displacement of the load along itself [mm], weighted like the load, from the ``.dat`` file of CalculiX."""
         moved = np.zeros(self.load.shape)
         for node, values in read_rows(path).items():
             moved[node - 1] = values
@@ -57,16 +57,16 @@ def write_line_inp(
     path : path
         Ends in ``.inp``.
     gear : Gear
-        Of any helix angle.
+        Gear of any helix angle.
     radius : float
         Radius of the loaded points of tooth 0 [mm].
     line_load : float
         Load normal to the flank per face width [N/mm].
     material : Material
     cracks : sequence of Crack
-        Their faces have nodes of their own and may pass through each other.
+        Cracks, whose faces have separate nodes and may pass through each other.
     half_width : float, optional
-        [mm]; default 0.4 m_n.
+        Half width of the hat [mm]; default 0.4 m_n.
     layer : float, optional
         Height of the element layers [mm]; default b / 12, at most a module.
     refine : float

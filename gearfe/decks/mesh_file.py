@@ -32,9 +32,9 @@ def export_mesh(
 ) -> DeckBody:
     """Write the mesh of a gear with its cracks opened and its pits cut out, without any load.
 
-    Hexahedra (20 nodes): the whole gear, cracks of the whole width or a part of it, missing teeth and chipped tips, no pits.
-    Tetrahedra (10 nodes): a sector or the whole gear, pits of one tooth as holes, at most one crack through the whole width, of
-    the same tooth. Second order; faces of a crack have nodes of their own at the same places.
+    Hexahedra (20 nodes): the whole gear, cracks of the whole width or a part of it, missing teeth, chips, no pits. Tetrahedra
+    (10 nodes): a sector or the whole gear, pits of one tooth as holes, at most one crack through the whole width, in the same
+    tooth. Elements are of second order. Faces of a crack have separate nodes at the same places.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def export_mesh(
         the set ``GEAR`` of type C3D20R or C3D10. In the other formats they are point data of 0 and 1.
     gear : Gear
     damage : sequence of damage
-        Of this gear, teeth numbered in its own frame.
+        Damage of this gear with its own tooth numbers.
     cells : {"hexahedra", "tetrahedra"}, optional
         Default: tetrahedra if there are pits, or `teeth` is given.
     teeth : int, optional
@@ -55,12 +55,12 @@ def export_mesh(
     Returns
     -------
     gearfe.decks.solid_deck.Part
-        What was written.
+        The written mesh.
 
     Raises
     ------
     ValueError
-        If the damage cannot be meshed as asked, or the suffix is unknown.
+        If the damage cannot be meshed with these options, or the suffix is unknown.
     """
     check_output(path, "mesh")
     check_gear(gear)

@@ -76,7 +76,7 @@ def read_rows(path, heading=None):
     try:
         lines = Path(path).read_text(encoding="ascii").splitlines()
     except FileNotFoundError as error:
-        raise RuntimeError(f"{path} is not there: run 'ccx -i NAME'; if it ran, its output says why it stopped") from error
+        raise RuntimeError(f"{path} is not there: run 'ccx -i NAME'; if it ran, its output has the reason") from error
     out, in_part = {}, heading is None
     for row in map(str.split, lines):
         if row and not row[0].isdigit():
@@ -85,5 +85,5 @@ def read_rows(path, heading=None):
             out[int(row[0])] = tuple(map(float, row[1:]))
     if not out:
         noun = heading or "values"
-        raise RuntimeError(f"{path} holds no {noun}: CalculiX found no equilibrium; its .sta and .cvg files say how far it came")
+        raise RuntimeError(f"{path} holds no {noun}: CalculiX found no equilibrium; see its .sta and .cvg files")
     return out

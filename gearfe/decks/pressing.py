@@ -1,4 +1,4 @@
-"""`Pressing`: how finely a pair in contact is meshed for CalculiX, and how its gears are pressed together."""
+"""`Pressing`: mesh size of a pair in contact for CalculiX, and the rotation of its gears."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ PITS = ("cut", "lost", "filled")
 
 @dataclass(frozen=True, slots=True)
 class Pressing:
-    """Options of `gearfe.decks.contact_inp.write_contact_inp`, which says what they are."""
+    """Options of `gearfe.decks.contact_inp.write_contact_inp`, where they are described."""
 
     pits: str = "cut"
     pose: str = "mean"
@@ -20,7 +20,7 @@ class Pressing:
     refine: float = 1.0
 
     def __post_init__(self) -> None:
-        """Raise ValueError for an unknown pose, or for pits to be treated in an unknown way."""
+        """Raise ValueError for an unknown pose or treatment of pits."""
         for name, known in (("pose", PINION), ("pits", PITS)):
             one_of(name, getattr(self, name), known)
 

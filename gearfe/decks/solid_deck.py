@@ -43,11 +43,11 @@ def part_of(mesh: Solid) -> DeckBody:
 
 
 def holed_part(mesh: Holed, strips=()) -> DeckBody:
-    """Second-order tets of a gear without what its pits take, in its own frame.
+    """Return the second-order tets of a gear with its pits cut out, in its own frame.
 
-    Nodes on flanks lie on the involute helicoid, those on the rest of the outline and on the bore on these, save those in the
-    middle of edges whose tets would fold: they are nearer to their chords (`folds.unfolded`). RuntimeError if one of these is
-    in one of the `strips` (as of `holed_sector`), where the gear touches.
+    Nodes on flanks lie on the involute helicoid, those on the rest of the outline and on the bore on these surfaces. Nodes in the
+    middle of edges whose tets would fold are nearer to their chords (`folds.unfolded`). RuntimeError if one of these is in one of
+    the `strips` (see `holed_sector`), where the gear touches.
     """
     nodes, cells, number = second_order(mesh.points, mesh.cells[:, mesh.plug < 0])
     gear = mesh.gear
@@ -91,7 +91,7 @@ def _check_strips(gear, off, strips):
 
 
 def placed(part: DeckBody, points: Floats, *, mirrored: bool = False) -> DeckBody:
-    """A body with its nodes at `points`; `mirrored` if they are a mirror image of its own."""
+    """Return a body with its nodes at `points`; `mirrored` if they are its mirror image."""
     cells = part.cells[MIRRORED[len(part.cells)]] if mirrored else part.cells
     return replace(part, points=points, cells=cells)
 

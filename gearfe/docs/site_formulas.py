@@ -5,13 +5,13 @@ from latex2mathml.converter import convert
 
 
 def inline(translator, node):
-    """A formula in a line of text."""
+    """Write a formula in a line of text."""
     translator.body.append(convert(node.astext()))
     raise SkipNode
 
 
 def block(translator, node):
-    """A formula of its own."""
+    """Write a displayed formula."""
     translator.body.append(f'<div class="formula">{convert(node.astext(), display="block")}</div>')
     raise SkipNode
 

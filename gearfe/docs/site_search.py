@@ -10,11 +10,11 @@ SCRIPT = """
 if (location.protocol === "file:")
   window.fetch = (page) =>
     Promise.resolve(new Response(TEXTS[page.replace(/^(\\.\\/)+/, "").replace(/\\.html$/, "")] || ""));
-"""  # what Sphinx's search asks for are pages
+"""  # Sphinx's search requests pages
 
 
 def text_page(doctree):
-    """The texts of a page's sections with their ids, as the search expects to find them."""
+    """Return the texts of a page's sections with their ids, in the form of the search."""
     parts = []
     for section in doctree.findall(nodes.section):
         own = [part.astext() for part in section.children if not isinstance(part, (nodes.section, nodes.raw, nodes.comment))]
@@ -23,7 +23,7 @@ def text_page(doctree):
 
 
 def ask(app, pagename, templatename, context, doctree):
-    """The search page alone loads the texts."""
+    """Load the texts on the search page only."""
     if pagename == "search":
         app.add_js_file("texts.js")
 

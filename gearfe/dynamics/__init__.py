@@ -1,1 +1,1 @@
-"""Vibration: machines (masses, springs, meshes), their simulation and their steady state."""
+"""Gearbox dynamics: models of masses, springs and meshes, their simulation and their steady state."""

@@ -17,7 +17,7 @@ from ..geometry.mesh.outline import outline, stations
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import turned
 
-FINE = 0.02  # of a module: largest distance of two points; a chord leaves the curve by less than 0.1 um per mm of module
+FINE = 0.02  # largest distance of two points [m_n]; the error of a chord is below 0.1 um per mm of module
 
 
 class OutlineLines(NamedTuple):
@@ -31,7 +31,7 @@ class OutlineLines(NamedTuple):
 def outline_lines(gear: Gear, damage: Sequence[Damage] = ()) -> OutlineLines:
     """Lines of a gear in its transverse section at z = 0; tooth 0 points along y.
 
-    Missing teeth and chips are not in the outline. Cracks, and pits and spalls over their height, are lines of their own.
+    Missing teeth and chips are not in the outline. Cracks, and pits and spalls over their height, are separate lines.
     """
     broken = [one for one in damage if isinstance(one, (MissingTooth, Chip))]
     size = FINE * gear.m_n

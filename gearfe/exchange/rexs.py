@@ -33,7 +33,7 @@ POSITION = {
 
 
 class Imported(NamedTuple):
-    """A gear unit as tables of a scene, the scene, and what gearfe does not model of the file."""
+    """Gear unit as tables of a scene, the scene, and contents of the file that gearfe does not model."""
 
     tables: dict[str, Any]
     scene: Scene
@@ -303,7 +303,7 @@ class _Unit:
         return total * 1e-6 if 0 < total < 1e15 else None
 
     def _machine(self, forces):
-        """A machine where one model fits: a single pair, or a single planetary stage."""
+        """Return a machine if one model fits: a single pair, or a single planetary stage."""
         name = next(iter(self.pairs))
         one = self.pairs[name][0]
         speed = self.power.speed_of(self.gears[one].id, self.meshes)

@@ -65,7 +65,7 @@ class Relation:
 
 @dataclass
 class Model:
-    """A gear unit: components by id, relations, load cases of the spectrum, and what a reader must know of the file."""
+    """Gear unit: components by id, relations, load cases of the spectrum, and metadata of the file."""
 
     version: str
     application: str
@@ -172,7 +172,7 @@ def _xml_value(element):
 
 
 def _plain(text):
-    """Number, truth or text of a value as it is written; None if it is empty."""
+    """Return number, truth or text of a written value; None if it is empty."""
     text = (text or "").strip()
     if NUMBER.fullmatch(text):
         return float(text) if set(text) & set(".eE") else int(text)

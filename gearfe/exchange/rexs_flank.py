@@ -7,7 +7,7 @@ from .rexs_file import Component
 from .rexs_gear import GearReader
 
 EXPONENTS = {"linear": 1.0, "parabolic": 2.0, "circular": 2.0, None: 1.0}
-UM = 1e3  # of a mm
+UM = 1e3  # um per mm
 
 
 def flank_row(reader: GearReader, gear: Component, row: dict[str, Any], name: str, loaded: str | None) -> dict[str, Any]:
@@ -94,7 +94,7 @@ def _profile_slope(reader, one, out, gear, row, name):
 
 
 def _ends(gear):
-    """Indices of the datum face and the other face among z = 0 and z = b."""
+    """Return the indices of the datum face and the other face among z = 0 and z = b."""
     return (1, 0) if gear.value("datum_face_orientation") == "positive" else (0, 1)
 
 

@@ -7,11 +7,11 @@ from .rexs_file import Component, Model
 
 GEARS = ("cylindrical_gear", "ring_gear")
 STEEL = {"E_MPa": 206_000.0, "nu": 0.3}
-NEAR = 0.02  # of a module: difference of radii from rounding
+NEAR = 0.02  # tolerance of radii for rounding [modules]
 
 
 class GearReader:
-    """Reads the gears of a model; what the model lacks becomes an assumption, `assumed` as ``(what, why)``."""
+    """Reader of the gears of a model; missing values become assumptions, `assumed` as ``(what, why)``."""
 
     def __init__(self, model: Model):
         self.model = model
@@ -104,7 +104,7 @@ class GearReader:
         return None
 
     def rack(self, gear: Component, row: dict[str, Any], name: str) -> None:
-        """Basic rack of a row with its shift: from tip and root diameters, else from the tool, else of ISO 53."""
+        """Set the basic rack of a row with its shift: from tip and root diameters, else from the tool, else of ISO 53."""
         m_n, outward = row["m_n_mm"], -1 if gear.type == "ring_gear" else 1
         r = row["z"] * m_n / math.cos(math.radians(row["beta_deg"])) / 2
         cut = row["x"] + outward * row["E_sn_um"] / (2e3 * m_n * math.tan(math.radians(row["alpha_n_deg"])))

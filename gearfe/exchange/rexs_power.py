@@ -1,4 +1,4 @@
-"""Torques and speeds of a REXS model: what the file states of its loads, spread over shafts, meshes and planetary stages."""
+"""Torques and speeds of a REXS model: stated loads, distributed over shafts, meshes and planetary stages."""
 
 import math
 from typing import NamedTuple

@@ -55,7 +55,7 @@ class Shifts:
         self._ring_signs(stated)
 
     def _ring_signs(self, stated):
-        """A ring's shift may have either sign in a file: take the one with which the centre distance closes."""
+        """Choose the sign of a ring's shift with which the centre distance closes, since files have either sign."""
         for name, (one, two, _stage) in self.pairs.items():
             x, sum_x = self.rows[two]["x"], self._sum(name)
             if self.gears[two].type != "ring_gear" or not stated.get(two) or sum_x is None:

@@ -1,4 +1,4 @@
-"""The contact of a pair on its flank (matplotlib): lines of one phase, or the pattern of a whole cycle."""
+"""Contact of a pair on its flank (matplotlib): lines of one phase, or the pattern of a whole cycle."""
 
 import os
 from collections.abc import Sequence
@@ -28,23 +28,23 @@ def plot_contact(
     pits: Sequence[Pit] = (),
     title: str = "",
 ) -> "Figure":
-    """Contact lines on the unrolled flank, coloured by Hertz's pressure, and the load along the width below.
+    """Draw the contact lines on the unrolled flank, coloured by Hertzian pressure, and the load along the width below.
 
-    Where a tip corner or an end face carries the most, it is marked: edge contact, whose pressure is beyond Hertz's.
+    A tip corner or an end face with the largest load is marked as edge contact, whose pressure is beyond Hertz's theory.
 
     Parameters
     ----------
     pair : GearPair
     contact : gearfe.contact.wide_contact.Contact3D
-        As `gearfe.contact_pattern` gives it.
+        Result of `gearfe.contact_pattern`.
     phase : int, optional
-        Which of its phases; None: all of them together, the contact pattern.
+        Number of the phase; None: all of them together, the contact pattern.
     path : path, optional
         Picture file; its suffix decides (png, svg, pdf).
     pits : sequence of Pit
-        Of the pinion, to be drawn; only the line of their own tooth pair is cut by them.
+        Pits of the pinion; they interrupt only the line of their tooth pair.
     title : str
-        What is shown: scene, pair, case.
+        Title: scene, pair, case.
     """
     figure, (top, bottom) = blank((9, 5.5), 2, 1, sharex=True, height_ratios=[3, 2])
     shown = range(len(contact.cells)) if phase is None else [phase]
@@ -77,7 +77,7 @@ def plot_contact(
 
 
 def _draw_lines(axes, pair, shown):
-    """Loaded pieces of contact lines by pressure from 0 on, unloaded ones grey, and the edges that carry most."""
+    """Draw loaded pieces of contact lines by pressure, unloaded ones grey, and the edges with the largest load."""
     from matplotlib.collections import LineCollection
 
     segments, pressures, edges = [], [], {"tip corner": [], "end face": []}

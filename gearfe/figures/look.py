@@ -1,4 +1,4 @@
-"""How lines differ in every picture: by colours that the colour-blind tell apart, and by dashes; an empty picture."""
+"""Line styles of all pictures: colours for colour-blind readers, and dashes; an empty picture."""
 
 from typing import Any
 
@@ -10,12 +10,12 @@ SQUASHED = 0.3  # lowest over largest value from which on an axis from zero woul
 
 
 def look(number):
-    """Colour and dashes of the line of this number, as matplotlib takes them."""
+    """Return colour and dashes of the line of this number for matplotlib."""
     return {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number % len(DASHES)]}
 
 
 def blank(size: tuple[float, float], *rows: int, **options: Any) -> tuple[Any, Any]:
-    """An empty figure of a size [inch], and its axes as matplotlib's ``Figure.subplots`` gives them."""
+    """Return an empty figure of a size [inch], and its axes from matplotlib's ``Figure.subplots``."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=size, layout="constrained")

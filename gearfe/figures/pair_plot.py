@@ -1,4 +1,4 @@
-"""A gear pair in mesh with its damage, drawn to scale in the transverse section (matplotlib): what is described, not a result."""
+"""Drawing of a gear pair in mesh with its damage, to scale in the transverse section (matplotlib)."""
 
 import math
 import os
@@ -28,20 +28,20 @@ def plot_pair(
     path: str | os.PathLike[str] | None = None,
     title: str = "",
 ) -> "Figure":
-    """Draw both gears, and beside them the teeth in mesh with cracks, pits and the path of contact, to scale.
+    """Draw both gears, and next to them the teeth in mesh with cracks, pits and the path of contact, to scale.
 
-    The damaged tooth, or tooth 0, touches its mate at the pitch point. Of helical gears it is the transverse section.
+    The damaged tooth, or tooth 0, touches its mate at the pitch point. For helical gears it is the transverse section.
 
     Parameters
     ----------
     pair : GearPair or Case
     damage : dict, optional
-        As of `gearfe.mesh_stiffness`; default that of the case. Cracks of part of the width are drawn with their full length,
-        pits over their height.
+        Damage by gear, see `gearfe.mesh_stiffness`; default that of the case. Cracks of part of the width are drawn with their
+        full length, pits over their height.
     path : path, optional
         Picture file; its suffix decides (png, svg, pdf).
     title : str
-        What is shown: scene, pair, case.
+        Title: scene, pair, case.
 
     Raises
     ------

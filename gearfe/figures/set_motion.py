@@ -1,4 +1,4 @@
-"""Moving picture (matplotlib) of a planetary set, bent under its load while it turns."""
+"""Animation (matplotlib) of a planetary set, deformed under its load while it rotates."""
 
 import math
 import os
@@ -13,11 +13,11 @@ from ..geometry.aliases import Floats, StrPath
 from .set_plot import BRIGHT, LARGEST, draw_set
 
 SUFFIX = ".gif"
-AROUND = 1.08  # times the set's radius: what the frames show
+AROUND = 1.08  # size of the frames relative to the set's radius
 
 
 def check_moving(path: Any) -> None:
-    """Raise ValueError if a moving picture cannot be written to `path` later: to be called before work begins."""
+    """Raise ValueError if a moving picture is not writable at `path`; call it before work begins."""
     if not isinstance(path, (str, os.PathLike)) or Path(path).suffix.lower() != SUFFIX:
         raise ValueError(f"{path!r} is no moving picture: give the name of a file that ends in {SUFFIX}")
     if os.path.isdir(path):
@@ -33,9 +33,9 @@ def draw_motion(
     rate: int,
     dpi: int,
 ) -> None:
-    """Moving picture of `gearfe.planetary_sets.animation.animate_planetary_set`: `positions` as of `loaded_shapes`.
+    """Draw the animation of `gearfe.planetary_sets.animation.animate_planetary_set`; `loaded_shapes` makes `positions`.
 
-    `rate` is in frames a second. Magnification, colours and what is seen are the same in all frames.
+    `rate` is in frames per second. Magnification, colours and the visible range are the same in all frames.
     """
     from matplotlib.animation import PillowWriter
 

@@ -1,4 +1,4 @@
-"""Pictures (matplotlib) of a planetary set: bent under its load, and loads and stiffness of its meshes over the positions."""
+"""Pictures (matplotlib) of a planetary set: deformed under its load, and loads and stiffness of its meshes."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,7 @@ from .look import COLOURS, DASHES, blank
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-LARGEST = 0.03  # of the set's radius: the largest displacement as drawn, unless it is asked otherwise
+LARGEST = 0.03  # default size of the largest drawn displacement, relative to the set's radius
 BRIGHT = 99.5  # per cent of the nodes that the colours tell apart: point loads have no largest stress
 
 
@@ -25,7 +25,7 @@ def draw_set(
     magnified: float | None,
     dpi: int,
 ) -> "Figure":
-    """Picture of `gearfe.planetary_sets.shape.plot_planetary_set`: `shapes` as of there, places `supports` ``(2, n)`` [mm]."""
+    """Draw `shapes` of `gearfe.planetary_sets.shape.plot_planetary_set`, with places `supports` ``(2, n)`` [mm]."""
     from matplotlib.tri import Triangulation
 
     radius = max(float(np.abs(shape.place).max()) for shape in shapes)
@@ -49,7 +49,7 @@ def draw_set(
 
 
 def draw_curves(curves: Any, path: StrPath | None, *, dpi: int) -> "Figure":
-    """Picture of `gearfe.planetary_sets.curves.SetCurves.plot`."""
+    """Draw the picture of `gearfe.planetary_sets.curves.SetCurves.plot`."""
     figure, (above, middle, below) = blank((9, 8), 3, sharex=True)
     for planet in range(curves.force.shape[2]):
         for inner, name in enumerate(("sun", "ring")):

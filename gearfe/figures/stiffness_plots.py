@@ -37,7 +37,7 @@ def plot_curves(curves, path=None, title=None):
 
 
 def told(curve, *, load=True):
-    """Teeth, damage, width and (if `load`) load of a curve in one line, as far as its `meta` has them."""
+    """Return teeth, damage, width and (if `load`) load of a curve in one line, from its `meta`."""
     meta = curve.meta
     parts = []
     if "gear_1" in meta and "gear_2" in meta:
@@ -79,7 +79,7 @@ def closed(curve):
 
 
 def _extended(phase, k, rows, place):
-    """Straight line through two samples at `place`; beside the ends of the curve the nearer sample."""
+    """Return the straight line through two samples at `place`; outside the curve the nearer sample."""
     a, b = rows
     if a < 0 or b >= phase.size or phase[a] == phase[b]:
         return k[min(max(a, 0), phase.size - 1)] if a >= 0 else k[b]

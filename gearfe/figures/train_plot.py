@@ -56,7 +56,7 @@ def plot_train(scene: "Scene", path: str | os.PathLike[str] | None = None, *, dp
 
 
 def _box(axes, left, height, length, thick, colour):
-    """A part of revolution, from the side."""
+    """Draw a part of revolution, seen from the side."""
     from matplotlib.patches import Rectangle
 
     axes.add_patch(Rectangle((left, height - thick / 2), length, thick, facecolor=colour, edgecolor="black", alpha=0.5))

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..signal.spectrum import Spectrum
     from ..signal.time_frequency import Spectrogram
 
-LETTER = 0.014  # height of a letter, which lines' names need beside each other, over the width of the axes
+LETTER = 0.014  # height of a letter relative to the width of the axes, for the distance of names
 
 
 def plot_spectra(
@@ -67,7 +67,7 @@ def plot_spectra(
 
 
 def _apart(places, least):
-    """Places of labels by name, each at least `least` from the one before it, as near to where they belong as that allows."""
+    """Return places of labels by name, each at least `least` from the one before it, as near to its place as possible."""
     names = sorted(places, key=places.get)
     wanted = np.array([places[name] for name in names], dtype=float)
     shifted = wanted.copy()

@@ -1,4 +1,4 @@
-"""Flexibilities to and from arrays and a description of what is in them, which is all of them that a file holds.
+"""Flexibilities as arrays with a description of their contents, and back; files hold nothing else.
 
 What is read back is the same to the last bit. The gear is not written: who reads names the gear it asks for.
 """
@@ -19,7 +19,7 @@ CUBIC = 3  # degree of all splines
 
 
 def described(value: Any, arrays: list[NDArray]) -> list[Any]:
-    """Append the arrays in a flexibility to `arrays`; return what it is made of, as JSON holds it, without them and its gear."""
+    """Append the arrays of a flexibility to `arrays`; return its description, without them and its gear, as JSON holds it."""
     if isinstance(value, np.ndarray):
         arrays.append(value)
         return ["array"]
@@ -40,7 +40,7 @@ def described(value: Any, arrays: list[NDArray]) -> list[Any]:
 
 
 def restored(description: list[Any], arrays: Iterator[NDArray], gear: Gear) -> Any:
-    """Return what `described` was given, from what it returned, the arrays in their order, and the gear."""
+    """Return the flexibility from its description by `described`, its arrays in their order, and the gear."""
     kind, *parts = description
     if kind == "array":
         return next(arrays)

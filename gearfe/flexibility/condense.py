@@ -1,14 +1,14 @@
-"""Bodies of many elements reduced to a few unknowns: elements by nested halves, what only one half touches is eliminated there.
+"""Static condensation of bodies of many elements to a few unknowns, by nested halves of the elements.
 
-With unknowns u that go and b that stay, and columns F of loads, the result is::
+With unknowns u to be eliminated, unknowns b that stay, and columns F of loads, the result is::
 
     [[K_bb, F_b], [F_b', 0]] - [[K_bu], [F_u']] K_uu^-1 [[K_ub, F_u]]
 
-so that the block of the loads is minus their displacements under each other with b held. All of it is Cholesky of small dense
-matrices, and forward only: no displacement is ever computed.
+so that the block of the loads is minus their displacements under each other with b held. The work is Cholesky factorisation of
+small dense matrices, forward only: no displacement is ever computed.
 
-A *front* is what a set of elements is to the rest: the unknowns that it shares, rising in the order in which all of them go,
-and a lower triangle. So what goes first stands first in it, and lower triangles add up to lower triangles.
+A *front* contains the unknowns that a set of elements shares with the rest, in the order of elimination, and a lower triangle.
+The unknowns eliminated first come first, so lower triangles add up to lower triangles.
 """
 
 import math
@@ -33,8 +33,7 @@ def condense(local, dofs, centre, load, stays, held=(), *, leaf):
         Forces on the n unknowns, by column.
     stays, held : ndarray of int
         Unknowns that stay, in the order wanted, and unknowns that are zero.
-    leaf : int
-        So many elements, and up to twice as many, are put together at once; at least 2.
+    Number of elements assembled at once, at least 2; up to twice as many are.
 
     Returns
     -------
@@ -44,7 +43,7 @@ def condense(local, dofs, centre, load, stays, held=(), *, leaf):
     Raises
     ------
     RuntimeError
-        If the body gives way without force: its elements fold.
+        If the body deforms without force, because its elements fold.
 
     References
     ----------
@@ -56,13 +55,13 @@ def condense(local, dofs, centre, load, stays, held=(), *, leaf):
     part = np.empty(dofs.shape[0], dtype=np.int64)
     part[np.concatenate(sets)] = np.repeat(np.arange(len(sets)), [elements.size for elements in sets])
     number, first, turns = _numbered(dofs, part, n, stays, held, height)
-    total = n + 1 + columns  # numbers in all: unknowns, loads, and n for those that are held
+    total = n + 1 + columns  # number of all indices: unknowns, loads, and n for those that are held
     of_part = first[load.coords[0]].astype(np.min_scalar_type(len(sets)))  # short numbers are sorted several times as fast
     by_part = np.argsort(of_part, kind="stable")
     at, column, force = number[load.coords[0][by_part]], n + 1 + load.coords[1][by_part], load.data[by_part]
     ends = np.append(0, np.cumsum(np.bincount(of_part, minlength=len(sets))))
     place = np.empty(total, dtype=np.int64)
-    stop = np.searchsorted(turns, np.arange((height + 1) << height), side="right").tolist()  # of the numbers of each turn
+    stop = np.searchsorted(turns, np.arange((height + 1) << height), side="right").tolist()  # end of the numbers of each turn
     fronts = []
     for k, elements in enumerate(sets):
         brought = slice(ends[k], ends[k + 1])
@@ -88,7 +87,7 @@ def _halved(centre, leaf):
 
 
 def _numbered(dofs, part, n, stays, held, height):
-    """New numbers of the unknowns, n if held; the first set that touches each; and the turns of the numbers, ascending.
+    """Return the new numbers of the unknowns, n if held; the first set that touches each; and the turns, ascending.
 
     An unknown goes with the smallest set of sets, 2**level of them, that holds all its elements: its turn is the level, then
     the place of that set on the level.
@@ -109,12 +108,12 @@ def _numbered(dofs, part, n, stays, held, height):
 
 
 def _put_together(local, numbers, loads, n, place):
-    """Front of a few elements and the loads ``(unknown, load, force)`` on them."""
+    """Return the front of a few elements and the loads ``(unknown, load, force)`` on them."""
     at, column, force = loads
     present = np.zeros(place.size, dtype=bool)
     present[numbers], present[column], present[n] = True, True, False
     ids = present.nonzero()[0]
-    size = ids.size + 1  # what is held is put into a last row and column, which are dropped
+    size = ids.size + 1  # held unknowns go into a last row and column, which are dropped
     place[ids], place[n] = np.arange(ids.size), ids.size
     rows = place[numbers]
     where = [(rows[:, :, None] * size + rows[:, None, :]).ravel(), place[at] * size + place[column]]
@@ -135,20 +134,20 @@ def _joined(one, two):
 
 
 def _widened(matrix, at, size):
-    """The transpose of a square matrix, its columns put `at` their places among `size`: whole rows move faster than entries."""
+    """Return the transpose of a square matrix, its columns put `at` their places among `size`, moving whole rows."""
     out = np.zeros((matrix.shape[0], size))
     out.T[at] = matrix
     return out
 
 
 def _eliminated(ids, matrix, stop):
-    """Front without the unknowns whose turn it is: those of numbers below `stop`."""
+    """Return the front without the unknowns to be eliminated now: those of numbers below `stop`."""
     gone = int(ids.searchsorted(stop))
     if not gone:
         return ids, matrix
     lower, failed = dpotrf(np.asfortranarray(matrix[:gone, :gone]), lower=1, clean=0, overwrite_a=1)
     if failed:
-        raise RuntimeError("the triangles of the section fold or nearly do, or nothing holds them: change refine a little")
+        raise RuntimeError("the triangles of the section fold or nearly do, or are unsupported: change refine slightly")
     rest = np.array(matrix[gone:, gone:], order="F")
     if rest.size:
         across = dtrsm(1.0, lower, np.array(matrix[gone:, :gone], order="F"), side=1, lower=1, trans_a=1, overwrite_b=1)
@@ -157,7 +156,7 @@ def _eliminated(ids, matrix, stop):
 
 
 def _filled(ids, matrix, wanted, place):
-    """The whole matrix of a front between the numbers `wanted`, zero for those that it does not have."""
+    """Return the whole matrix of a front between the numbers `wanted`, zero for missing ones."""
     out = np.zeros((wanted.size,) * 2)
     place[wanted] = np.arange(wanted.size)
     whole, at = np.where(np.tri(*matrix.shape, dtype=bool), matrix, matrix.T), place[ids]

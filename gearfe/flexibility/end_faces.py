@@ -1,10 +1,10 @@
-"""What free end faces add to the half-space under a loaded flank: every load once more, in the mirror of each end face.
+"""Correction of the half-space for free end faces: each load has a mirror image beyond each end face.
 
-A half-space goes on beyond the end faces of a gear and holds what is pressed near them. The mirror image of each load beyond a
-face takes that hold away but for what the stress along the width, nu times the others in plane strain, still carries there. How
-far is exact for a line load on the face itself, which is in plane stress: see `edge_factor`. (That mirrored loads free a face of
-shear is Hetenyi's way into the quarter-space, J. Appl. Mech. 37, 1970; a factor on them for the rest is Guilbault's, J. Tribol.
-133, 2011, whose own holds for single forces.)
+A half-space continues beyond the end faces of a gear and supports the loads near them. The mirror image of each load removes this
+support, except for that of the stress along the width, nu times the others in plane strain. The remaining part is exact for a
+line load on the face itself, which is in plane stress: see `edge_factor`. (Mirrored loads that free a face of shear are Hetenyi's
+method for the quarter-space, J. Appl. Mech. 37, 1970. Guilbault, J. Tribol. 133, 2011, uses a factor on them for the rest; his
+factor is for single forces.)
 """
 
 import numpy as np
@@ -26,12 +26,11 @@ def edge_factor(material):
 
 
 def mirrored_patches(knots, width, degree, stretch=1.0):
-    """Mean of ``1 / R`` between patches and the images of patches in both end faces.
+    """Return the mean of ``1 / R`` between patches and the images of patches in both end faces.
 
-    The image of a load on a contact line is on that line's continuation, ``stretch (z + z')`` away; across the lines the patches
-    are so wide against the slope of helical lines that it is left out.
-
-    The arguments are as of `halfspace.patch_kernel`, and so is what is returned.
+    The image of a load on a contact line is on that line's continuation, ``stretch (z + z')`` away. The slope of helical lines
+    across the patches is neglected, since the patches are wide. Parameters and return value are those of
+    `halfspace.patch_kernel`.
     """
     q, weight = between(np.append(graded(knots, width), [1.5 * width, 2 * width]), max(POINTS, degree + 4))  # q = z + z'
     gauss, inner = legendre.leggauss(degree + 1)
@@ -43,4 +42,4 @@ def mirrored_patches(knots, width, degree, stretch=1.0):
     distance = hat_distance(knots, np.zeros((n, n, q.size)), stretch * q).reshape(n * n, q.size)
     first = (distance @ overlap.reshape(q.size, -1)).reshape(n, n, degree + 1, degree + 1)
     sign = (-1.0) ** np.arange(degree + 1)
-    return (first * (1 + np.outer(sign, sign))).transpose(0, 2, 1, 3)  # the other face: the same with z turned round
+    return (first * (1 + np.outer(sign, sign))).transpose(0, 2, 1, 3)  # the other face: the same with reversed z

@@ -76,7 +76,7 @@ def between(ends, count):
 
 
 def graded(knots, width):
-    """Ends of intervals from 0 to `width` [mm], each longer than the one before: kernels rise like a logarithm towards 0."""
+    """Return ends of growing intervals from 0 to `width` [mm], since kernels rise like a logarithm towards 0."""
     fine = min((knots[2] - knots[0]).min(), width) * 1e-9
     return np.append(0.0, fine * (width / fine) ** np.linspace(0, 1, PIECES + 1))
 

@@ -1,4 +1,4 @@
-"""`Flexibility`: what a gear gives to its contacts, wherever it came from."""
+"""`Flexibility`: elastic flexibility of a gear between its contacts, for all section methods."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -13,8 +13,8 @@ from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import arc_at
 
 NEAREST = 0.001  # added to distances from a tip corner before their logarithm is taken [m_n]
-TILT = 0.2  # of the two loads, at each of four places, from which it is found how a tooth yields across its normal [rad]
-FURTHER = 1  # teeth beyond those that can share load with a damaged one that are solved with the damage, too
+TILT = 0.2  # tilt of two loads at each of four places, which give the deflection of a tooth across its normal [rad]
+FURTHER = 1  # number of further teeth solved with damage, beyond those that can share load with a damaged one
 BELOW = 0.1  # how far below the tip the third of these places is [m_n]
 
 
@@ -33,7 +33,7 @@ def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike
 
 
 def _logarithmic(arc, places, least):
-    """A variable of the arc in which `leaning` changes evenly between its places: towards the tip's wedge a logarithm."""
+    """Return a variable of the arc in which `leaning` changes evenly between its places: a logarithm towards the tip's wedge."""
     middle, tip = places[-2:]
     left = np.maximum(tip - np.maximum(arc, middle), 0.0) + least
     return np.minimum(arc - middle, 0.0) + np.log((tip - middle + least) / left)
@@ -68,7 +68,7 @@ class SeamFaces:
     stiffness: Floats
 
     def at(self, arc: ArrayLike, teeth: Sequence[int] | NDArray[np.int64]) -> Floats:
-        """Opening ``(..., contacts, n)`` under unit loads at `arc` ``(..., contacts)`` [mm] on `teeth`.
+        """Return the opening ``(..., contacts, n)`` under unit loads at `arc` ``(..., contacts)`` [mm] on `teeth`.
 
         It is zero for teeth that were not solved.
         """
@@ -195,8 +195,14 @@ class Flexibility:
         return out
 
 
+def outermost(solved: Iterable[int], z: int) -> list[int]:
+    """Those of the `solved` teeth of a gear with `z` teeth that have a neighbour which was not solved."""
+    teeth = set(solved)
+    return [tooth for tooth in teeth if not {(tooth + 1) % z, (tooth - 1) % z} <= teeth]
+
+
 def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.bool_], float]:
-    """Which `teeth` ``(n,)`` of a cracked gear its cracks were not solved for, and the most these can add there [mm per N/mm].
+    """Return which `teeth` ``(n,)`` of a cracked gear were solved without its cracks, and the error bound there [mm per N/mm].
 
     Cracks open less under loads further away. The bound is the flexibility that open cracks add to the outermost solved teeth.
     """
@@ -204,7 +210,7 @@ def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.b
     if flexible.seam is None:
         return none
     z, faces = flexible.gear.z, flexible.seam
-    ends = [tooth for tooth in faces.opening if not {(tooth + 1) % z, (tooth - 1) % z} <= faces.opening.keys()]
+    ends = outermost(faces.opening, z)
     if not ends:
         return none
     opening = np.concatenate([faces.opening[tooth](np.array(flexible.limits)) for tooth in ends])
@@ -213,9 +219,9 @@ def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.b
 
 
 def singly(flexible: Any, rolls: Sequence[Floats], teeth: Sequence[int]) -> list[Floats]:
-    """What `Flexibility.within` gives, of a gear that is known at single places: S between two places is the mean of both.
+    """Return `Flexibility.within` of a gear that is known at single places: S between two places is the mean of both.
 
-    That of the place half-way, as long as S is straight over a contact.
+    It is the value half-way if S is straight over a contact.
     """
     diagonals = (flexible.matrix(roll[:, None], [tooth])[:, 0, 0] for roll, tooth in zip(rolls, teeth, strict=True))
     return [(values[:, None] + values) / 2 for values in diagonals]

@@ -32,14 +32,14 @@ def stiffness(slope, weight, arms, lam, mu):
     factor *= np.abs(area)[:, None, None, None, None]  # whichever way round its corners are
     n, m = slope.shape[1], area.size
     reference = ((slope * weight).reshape(2 * n, -1) @ slope.reshape(2 * n, -1).T).reshape(2, n, 2, n).swapaxes(1, 2)
-    spread = np.zeros((2, 2, 2, 2, n, 2, n, 2))  # where they go: turning the axes of the sum takes ten times as long
+    spread = np.zeros((2, 2, 2, 2, n, 2, n, 2))  # final order of the axes: transposing the sum takes ten times as long
     for a, b in np.ndindex(2, 2):
         spread[a, b, :, :, :, a, :, b] = reference
     return (factor.reshape(m, 16) @ spread.reshape(16, -1)).reshape(m, 2 * n, 2 * n)
 
 
 def bent_stiffness(slope, weight, jacobian, lam, mu):
-    """The same of triangles whose maps have derivatives `jacobian` ``(m, 2, 2, q)`` at the points."""
+    """Return the stiffness of triangles whose maps have derivatives `jacobian` ``(m, 2, 2, q)`` at the points."""
     (xx, xy), (yx, yy) = jacobian.transpose(1, 2, 0, 3)
     area = xx * yy - xy * yx
     n, m = slope.shape[1], area.shape[0]

@@ -1,24 +1,26 @@
-"""`Solved`: what a section's contact gives at some phases, whether gears share the load or a plain sum of pairs does."""
+"""`Solved`: contact of a section at some phases, for gears that share the load and for plain sums of pairs."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-MARKS = ("crack_closed_phases", "tip_in_fillet_phases")  # what a curve's `meta` says of single phases
+MARKS = ("crack_closed_phases", "tip_in_fillet_phases")  # entries of a curve's `meta` about single phases
 
 
 @dataclass(frozen=True, slots=True)
 class Solved:
     """Contact at some phases, per unit width.
 
-    `order` (pairs,) as in `geometry.pair.contacts.Contacts`, `closing` (phases,) how far the load moves the gears beyond the
-    first touch [mm], `tangent` (phases,) [N/mm per mm], `line_load` (phases, pairs) [N/mm], `pressure` (phases, pairs) [MPa] (nan
-    in corner contact, where it is unbounded), `closed` the phases at which crack faces touch and were kept from passing through
-    each other, `fillet` those at which a tip presses into its mate's fillet, `unloaded` (phases,) the approach at which the first
-    pair touches [mm], None if it is zero everywhere, `supports` (phases,) what the supports of the hubs give way [mm], None of
-    rigid ones, `left_out` (phases,) the part of `closing` that the model of contact may be off by, besides its discretisation.
+    `geometry.pair.contacts.Contacts` describes `order` (pairs,). `closing` (phases,) is the approach by the load beyond the first
+    touch [mm], `tangent` (phases,) the tangent stiffness [N/mm per mm]. `line_load` (phases, pairs) is in N/mm, `pressure`
+    (phases, pairs) in MPa (nan in corner contact, where it is unbounded). `closed` are the phases at which crack faces touch and
+    are kept from passing through each other, `fillet` those at which a tip is in its mate's fillet. `unloaded` (phases,) is the
+    approach at which the first pair touches [mm], None if it is zero everywhere. `supports` (phases,) is the deflection of the
+    supports of the hubs [mm], None for rigid ones. `left_out` (phases,) is the model error of `closing`, without the
+    discretisation error.
 
-    Light loads close by a millionth of what modified flanks lie apart: `closing` is solved for, never a difference of approaches.
+    Light loads close a millionth of the distances between modified flanks. Therefore `closing` is solved for directly, and never
+    is a difference of approaches.
     """
 
     order: np.ndarray

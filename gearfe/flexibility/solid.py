@@ -1,7 +1,7 @@
-"""`Flexibility3D`: what a gear of finite width is to its contact lines, whoever solved for it.
+"""`Flexibility3D`: elastic flexibility of a gear of finite width between its contact lines, for all solvers.
 
-Loads are patches: hats of unit area across the flank times orthonormal polynomials along the width. What a patch does to itself
-like a half-space is taken out (`halfspace`), the rest is smooth and carried between the patches by polynomials.
+Loads are patches: hats of unit area across the flank times orthonormal polynomials along the width. The half-space's part of a
+patch's effect on itself is removed (`halfspace`). The rest is smooth and interpolated by polynomials.
 """
 
 import math
@@ -18,6 +18,7 @@ from ..geometry.tooth.gear import Gear, shortened
 from ..geometry.tooth.profile import arc_at, roll_at_arc
 from .end_faces import edge_factor, mirrored_patches
 from .halfspace import half_space, hat_points, modes, patch_kernel
+from .plane import outermost, reached_teeth
 from .solved import solved_gears
 
 PLACES = 8  # hats on each flank
@@ -43,7 +44,7 @@ class Flexibility3D:
     Attributes
     ----------
     gear : Gear
-        Its `beta` says how the section turns.
+        The gear; its `beta` is the helix angle of the sections.
     degree : int
         Highest axial mode kept.
     kernel : float
@@ -96,7 +97,7 @@ class Flexibility3D:
         return None
 
     def opening(self, tooth, roll, z):
-        """Opening ``(k, n)`` [mm/N] of the points of `seam` under loads at `roll`, `z` [mm] of teeth `tooth`."""
+        """Return the opening ``(k, n)`` [mm/N] of the points of `seam` under loads at `roll`, `z` [mm] of teeth `tooth`."""
         tooth, rows = np.asarray(tooth) % self.gear.z, self.basis(roll, z, tooth)
         out = np.zeros((self.seam.influence.shape[0], tooth.size))
         for number in np.unique(tooth).tolist():
@@ -104,6 +105,16 @@ class Flexibility3D:
                 on_tooth = tooth == number
                 out[:, on_tooth] = self.seam.opening[number] @ rows[on_tooth].T
         return out
+
+    def cracks_beyond(self, tooth, roll, z, load):
+        """Sum of load times deflection [N mm] that open cracks may add for `load` [N] on teeth they were not solved for.
+
+        It is zero if every loaded tooth was solved. The bound is that of the whole load on an outermost solved tooth.
+        """
+        if self.seam is None or not (load[~np.isin(tooth % self.gear.z, list(self.seam.opening))] > 0).any():
+            return 0.0
+        opens = [self.opening(np.full(load.size, end), roll, z) @ load for end in outermost(self.seam.opening, self.gear.z)]
+        return max((float(one @ np.linalg.lstsq(self.seam.influence, one)[0]) for one in opens), default=0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,11 +134,10 @@ class Faces:
 
 
 def solved_teeth(gear, damage, neighbours):
-    """Teeth to load: tooth 0 and `neighbours` following, or those around each damaged tooth, but missing ones."""
+    """Teeth to load: tooth 0 and `neighbours` following, or `reached_teeth` of the damage, but missing ones."""
     if not damage:
         return list(range(min(neighbours, gear.z - 1) + 1))
-    reach, gone = max(1, neighbours), missing_teeth(gear, damage)
-    return sorted({(one.tooth + k) % gear.z for one in damage for k in range(-reach, reach + 1)} - set(gone))
+    return sorted(set(reached_teeth(gear, damage, max(1, neighbours))) - set(missing_teeth(gear, damage)))
 
 
 def parted(gear, material, degree, influence, unknowns, healthy=None, *, damage=(), cache=True):
@@ -173,7 +183,7 @@ def own_mirrors(gear, degree, *, cache=True):
 
 
 def _scale(gear):
-    """Ends of the flank as arcs, and the offset in the logarithm of the distance to the tip corner [mm]."""
+    """Return the ends of the flank as arcs, and the offset in the logarithm of the distance to the tip corner [mm]."""
     return arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a), OFFSET * gear.m_n
 
 

@@ -1,8 +1,8 @@
-"""Gears solved before, kept in this process: the one place where results that took a solve are looked up.
+"""Cache of solved gears in this process.
 
-Every method keeps what it solved for (bodies, sectors, tables of corner contact) in a `SolvedGears`. With ``cache=True`` that is
-the one of this process, with ``cache=False`` an empty one that lasts as long as the call: nothing solved before is used, and
-nothing is stored or displaced.
+Every method stores its solutions (bodies, sectors, tables of corner contact) in a `SolvedGears`. With ``cache=True`` it is that
+of this process. With ``cache=False`` it is an empty one for one call: nothing solved before is used, and nothing is stored or
+displaced.
 """
 
 import os
@@ -28,7 +28,7 @@ class _Solve:
 
 
 class SolvedGears:
-    """Results by what was asked for, bounded in memory: those not asked for the longest go first.
+    """Results by their inputs, bounded in memory: those unused for the longest time are removed first.
 
     Threads may share it. Of those that ask for the same at the same time one solves, the others wait and get the same object; if
     it fails nothing is kept, its error is its own, and the next of them tries. A solve may ask for other results, but not for
@@ -45,15 +45,15 @@ class SolvedGears:
         self._kept: OrderedDict = OrderedDict()
         self._solving: dict[Hashable, _Solve] = {}
         self._lock = threading.Lock()
-        self.size = 0  # of what is kept [bytes]
+        self.size = 0  # memory of the kept results [bytes]
 
     def get(self, key: Hashable, solve: Callable[[], object]) -> Any:
-        """What is kept under `key`, or else what `solve` gives.
+        """Return the result under `key`, or the result of `solve`, which is then kept.
 
         Raises
         ------
         RuntimeError
-            If `solve` asks for `key` itself; and whatever it raises.
+            If `solve` requests `key` itself, and any error of `solve`.
         """
         while True:
             with self._lock:
@@ -92,7 +92,7 @@ class SolvedGears:
             return key in self._kept
 
     def __len__(self) -> int:
-        """Number of results kept."""
+        """Return the number of kept results."""
         return len(self._kept)
 
     def clear(self) -> None:
@@ -112,7 +112,7 @@ if hasattr(os, "register_at_fork"):
 
 
 def solved_gears(cache: "bool | SolvedGears") -> SolvedGears:
-    """Where to look and to keep: True the results of this process, False none so far; a `SolvedGears` is itself."""
+    """Return the cache to use: that of this process for True, an empty one for False, a `SolvedGears` unchanged."""
     if isinstance(cache, SolvedGears):
         return cache
     return PROCESS if cache else SolvedGears()

@@ -52,12 +52,12 @@ def animate_planetary_set(
     """
     check_moving(path)
     if not isinstance(curves, SetCurves):
-        raise ValueError(f"curves = {curves!r}, but give what planetary_stiffness gives")
+        raise ValueError(f"curves = {curves!r}, but give the result of planetary_stiffness")
     if magnified is not None:
         ranged("magnified", magnified, above=0.0)
     whole("rate", rate, 1)
     if curves.position.size > MOST:
-        raise ValueError(f"{curves.position.size} positions make too many frames: give curves of at most {MOST}")
+        raise ValueError(f"{curves.position.size} positions are too many frames: give curves of at most {MOST}")
     with part("gears", 0.0, 0.3):
         positions = loaded_shapes(curves, range(curves.position.size))
     with part("frames", 0.3, 1.0):

@@ -1,4 +1,4 @@
-"""The one contact problem of a whole set at a position: flexibility between all contacts, gaps, motions, and what it gives."""
+"""Contact problem of a whole planetary set at one position: flexibility between all contacts, gaps, motions, and results."""
 
 from typing import Any, NamedTuple
 
@@ -18,11 +18,11 @@ from .whole_gear import PLACES, carry
 
 
 class BodyTables(NamedTuple):
-    """How gears yield between meshes [mm per N/mm]: tables of `gearfe.planetary_sets.whole_gear`.
+    """Flexibilities of gears between meshes [mm per N/mm]: tables of `gearfe.planetary_sets.whole_gear`.
 
-    `sun` and `ring` ``(z, PLACES, z, PLACES)`` between right flanks, `planet` ``(z, PLACES, PLACES)`` of a right flank by loads
-    on a left one so many teeth before it, `rim` what the ring's support adds. All of them are those of gears without cracks;
-    `faces` are the cracks, by the gear's name as of `PlanetaryCase`.
+    `sun` and `ring` ``(z, PLACES, z, PLACES)`` are between right flanks. `planet` ``(z, PLACES, PLACES)`` is that of a right
+    flank under loads on a left one, by the number of teeth between them. `rim` is the addition by the ring's support. All of them
+    are of gears without cracks. `faces` are the cracks, by the gear names of `PlanetaryCase`.
     """
 
     sun: Floats
@@ -33,14 +33,14 @@ class BodyTables(NamedTuple):
 
 
 class Position(NamedTuple):
-    """A solved position: line loads [N/mm], lengths [mm] along the line of action.
+    """Solution at one position: line loads [N/mm], lengths [mm] along the line of action.
 
-    `loads`, `closing`, `rim` and `gap` ``(2, planets)`` of the meshes with the sun and with the ring: load, how far it closes the
-    mesh beyond the first touch, the part that the ring's support gives way, and how far from each other flanks and pins off
-    their places leave the mesh without load. `turn` of the sun, its motion `orbit` (x, y) [mm].
-    `pairs` are (inner, planet, number of the pair beyond the newest, pinion's tooth, line load). `on_ring` ``(z, PLACES)`` are
-    the loads on the ring, `lugs` those of its lugs, `whole` ``(3,)`` the motion of a ring on lugs, `opened` ``(e,)`` the openings
-    of its cracks. `shut`: whether faces of a crack touch.
+    `loads`, `closing`, `rim` and `gap` ``(2, planets)`` are those of the meshes with the sun and with the ring: load, approach
+    beyond the first touch, the part of it by the ring's support, and the unloaded gap by flanks and position errors of pins.
+    `turn` is the rotation of the sun, `orbit` (x, y) the motion of its axis [mm]. `pairs` are (inner, planet, number of the pair
+    beyond the newest, pinion's tooth, line load). `on_ring` ``(z, PLACES)`` are the loads on the ring, `lugs` those of its lugs,
+    `whole` ``(3,)`` the motion of a ring on lugs, `opened` ``(e,)`` the openings of its cracks. `shut` is true if faces of a
+    crack touch.
     """
 
     loads: Floats
@@ -58,7 +58,7 @@ class Position(NamedTuple):
 
 
 class _Block(NamedTuple):
-    """One mesh: its contacts in the problem, teeth of pinion and wheel by slot, and what carries loads there to the contacts."""
+    """Contacts of one mesh in the problem, teeth of pinion and wheel by slot, and interpolation of loads there."""
 
     met: PlacedContacts
     inner: int
@@ -69,7 +69,7 @@ class _Block(NamedTuple):
 
 
 class Set:
-    """A case with its flexibilities; solves any of its positions. `coupled` as of `planetary_stiffness`."""
+    """Flexibilities of a case, and solver of its positions; `planetary_stiffness` describes `coupled`."""
 
     def __init__(self, case: PlanetaryCase, bodies: BodyTables, stand: Standing, coupled: bool) -> None:
         self.case, self.bodies, self.stand, self.coupled = case, bodies, stand, coupled
@@ -84,7 +84,7 @@ class Set:
         self._spread: dict[int, Any] = {}
 
     def solved(self, i: int, met: list[list[PlacedContacts]]) -> Position:
-        """`Position` i from what its meshes are."""
+        """Return `Position` i from the contacts of its meshes."""
         blocks = self._blocks(met)
         problem = self._problem(blocks)
         cracks = crack_contacts(self.bodies.faces, blocks, problem.gap.size, self._lugs, apart=not self.coupled)
@@ -115,7 +115,7 @@ class Set:
         return out
 
     def _slots(self, contacts, inner):
-        """Orders of the pairs in touch, and what carries loads on their teeth to the contacts, of pinion and wheel."""
+        """Return the orders of the pairs in touch, and the interpolation of loads on their teeth, of pinion and wheel."""
         key = id(contacts)
         if key not in self._spread:
             pair = self.case.pairs[inner]
@@ -128,7 +128,7 @@ class Set:
             ):
                 rows = carry(gear, roll) * turn[:, None]
                 both.append((on[:, :, None] * rows[:, None]).reshape(roll.size, -1))
-            self._spread[key] = orders, tuple(both), contacts  # which is kept, so that no other one gets its number
+            self._spread[key] = orders, tuple(both), contacts  # contacts is kept, so that its number is not reused
         return self._spread[key]
 
     def _between(self, a, b):
@@ -200,7 +200,7 @@ class Set:
         return out
 
     def _with_lugs(self, problem, blocks):
-        """The problem with lugs of the ring as contacts, and the ring's motions."""
+        """Return the problem with lugs of the ring as contacts, and the ring's motions."""
         rim, lugs = self.bodies.rim, self._lugs
         n = problem.gap.size
         across, moves = np.zeros((lugs, n)), np.zeros((3, n))
@@ -247,7 +247,7 @@ class Set:
         return Position(loads, closing, rim, gap, float(motion[0]), orbit, pairs, on_ring, lugs, whole, np.array(opened), shut)
 
     def _by_lugs(self, one, force):
-        """What lugs move the ring at the contacts of a mesh."""
+        """Return the displacement of the ring by lugs, at the contacts of a mesh."""
         rim, lugs = self.bodies.rim, self._lugs
         teeth = one.teeth[1] % self.case.gears.ring.z
         return one.spread[1] @ (rim.across[:, teeth].reshape(lugs, -1).T @ force[-lugs:])

@@ -1,4 +1,4 @@
-"""Who carries how much in a set: contacts that push but do not pull, on bodies that turn and float.
+"""Load sharing in a set: unilateral contacts on bodies that rotate and float.
 
 With forces f of all contacts and motions q of the bodies::
 
@@ -18,16 +18,16 @@ from ..flexibility.hertz import half_width
 from ..geometry.aliases import Floats
 
 STEPS, SINGLE = 40, 400  # most steps of Newton and the active set, changed all at once; then one by one
-HOLD = 1e-11  # of the load, by mm: springs on all motions, so that a planet out of mesh stays somewhere
-ROUNDING = 1e-12  # of the largest distance: overlaps below it are rounding
+HOLD = 1e-11  # stiffness of springs on all motions, by the load per mm: a planet out of mesh stays in place
+ROUNDING = 1e-12  # overlaps below this part of the largest distance are rounding errors
 SETTLED = 1e-11  # largest last change of a force, as a part of the load
-STIFF = 1e6  # of the balance in the start by non-negative least squares
+STIFF = 1e6  # weight of the balance in the initial non-negative least squares
 
 
 class Problem(NamedTuple):
     """Contacts ``(n,)`` of a whole set: `flexibility` ``(n, n)``, `closing` G ``(n, motions)``, `load` ``(motions,)`` [N/mm].
 
-    `gap`, `coefficient`, `radius`, `modulus` and `tilt` ``(n,)`` as of `gearfe.contact.sharing.line_contact`.
+    `gearfe.contact.sharing.line_contact` describes `gap`, `coefficient`, `radius`, `modulus` and `tilt` ``(n,)``.
     """
 
     flexibility: Floats
@@ -40,7 +40,7 @@ class Problem(NamedTuple):
     load: Floats
 
     def with_more(self, flexibility: Floats, closing: Floats) -> "Problem":
-        """The same with m more contacts, without gaps and logarithms: `flexibility` ``(n + m, n + m)`` is all that they yield.
+        """Return the problem with m more contacts, without gaps and logarithms; `flexibility` ``(n + m, n + m)`` is that of all.
 
         `closing` ``(n + m, motions)``.
         """
@@ -51,7 +51,7 @@ class Problem(NamedTuple):
 
 
 def balance(problem: Problem) -> tuple[Floats, Floats]:
-    """Forces ``(n,)`` [N/mm] and motions of a `Problem`.
+    """Solve for the forces ``(n,)`` [N/mm] and motions of a `Problem`.
 
     Contacts that would pull are left out and those that would overlap are taken in, all at once; where that does not settle, one
     at a time. RuntimeError if no forces that only push are in balance, or none were found.
@@ -89,7 +89,7 @@ def _settled(problem, active, unit, most, at_once):
 
 
 def _newton(problem, active, force, floor):
-    """Forces and motions with the `active` contacts, the logarithms taken at `force`."""
+    """Return forces and motions with the `active` contacts, linearised at `force`."""
     at = np.flatnonzero(active)
     carried = np.maximum(force[at], floor)
     tilt, coefficient = problem.tilt[at], problem.coefficient[at]
@@ -129,5 +129,5 @@ def _likely(problem, unit):
     force, _ = nnls(system, right, maxiter=50 * n)
     rest = problem.closing.T @ force - problem.load
     if np.abs(rest).max() > 1e-3 * unit:
-        raise RuntimeError("no forces that only push hold this set in balance: a body has no mesh left that holds it")
+        raise RuntimeError("no compressive mesh forces balance this set: a body is unsupported")
     return force > 1e-9 * unit

@@ -1,4 +1,4 @@
-"""`PlanetaryCase`: a planetary set with what holds it, what is wrong with it, and its load, checked once."""
+"""`PlanetaryCase`: a planetary set with its supports, errors, damage and load, checked once."""
 
 import math
 from collections.abc import Mapping
@@ -27,29 +27,29 @@ LARGEST = 0.1  # modules: larger position errors are probably given in another u
 @renamed(angles="planet_angles")
 @dataclass(frozen=True, slots=True)
 class PlanetaryCase:
-    """A planetary set in plane strain with its load: the carrier is held, the sun drives clockwise, the ring takes the torque.
+    """Planetary set in plane strain with its load: the carrier is fixed, the sun drives clockwise, the ring takes the torque.
 
     Parameters
     ----------
     gears : PlanetarySet
-        Spur gears. Its number of planets does not count where `planet_angles` are given.
+        Spur gears. Its number of planets is ignored if `planet_angles` are given.
     force : float
         Mean over the planets of the force between sun and planet, along the line of action [N]: the sun's torque is `force` times
         the number of planets times the sun's r_b.
     material : Material or (Material, Material, Material)
         Of all gears, or of sun, planets and ring.
     planet_angles : sequence of float, optional
-        Where the planets stand, clockwise from +y [rad]; default: equally spaced from 0 on. Teeth fit only where planets are
-        whole multiples of ``2 pi / (z_s + z_r)`` apart.
+        Planet position angles, clockwise from +y [rad]; default: equally spaced from 0. They must be whole multiples of ``2 pi /
+        (z_s + z_r)`` apart.
     ring : "held", RimBed or RimSupports
-        What holds the ring's outer edge: ``"held"`` is rigidly all around.
+        Support of the ring's outer edge; ``"held"`` is rigid all around.
     floating : bool
-        Whether the sun's axis may move freely in the plane of the section; needs three planets. Otherwise it stays where it is.
+        If True, the sun's axis is free in the plane of the section, which needs three planets. Otherwise it is fixed.
     pin : float
         Radial stiffness of each planet's pin and bearing together, over the whole width [N/mm]; default rigid. Planets turn on
         their pins without friction; the carrier is rigid.
     errors : sequence of (float, float), optional
-        For each planet how far its pin stands off its place [mm]: outwards, and clockwise, the way the sun drives it.
+        Pin position error of each planet [mm]: outwards, and clockwise, the direction in which the sun drives it.
     flanks : dict, optional
         Modifications ``{"sun": Flank(...), "planet": Flank(...), ("planet", 1): Flank(...), "ring": Flank(...)}``; ``"planet"``
         is every planet for which ``("planet", number)`` is not given. Both flanks of a planet have them. A pitch deviation of a
@@ -63,7 +63,7 @@ class PlanetaryCase:
     Raises
     ------
     ValueError
-        If the set is impossible; the message says what to change.
+        If the set is impossible; the message states what to change.
     """
 
     gears: PlanetarySet
@@ -85,7 +85,7 @@ class PlanetaryCase:
         settle(self, pairs=(self.gears.sun_planet, self.gears.planet_ring))
         if self.gears.sun.beta:
             raise ValueError(
-                f"beta = {math.degrees(self.gears.sun.beta):.4g} degrees, but a section knows spur gears only: give beta = 0"
+                f"beta = {math.degrees(self.gears.sun.beta):.4g} degrees, but a section models spur gears only: give beta = 0"
             )
         n = self.gears.n_planets
         even = 2 * math.pi / n * np.arange(n)
@@ -162,7 +162,7 @@ class PlanetaryCase:
     def _check_faults(self):
         for name, flank in self.flanks.items():
             if flank.wide:
-                raise ValueError(f"flanks of {name!r} change along the width, but a section knows none: leave that out")
+                raise ValueError(f"flanks of {name!r} change along the width, but a section is two-dimensional: leave that out")
             if flank.eccentricity and name not in ("sun", "ring"):
                 raise ValueError(f"eccentricity of {name!r}: give that of a planet as pitch deviations")
             flank.on(self.gear_of(name))
@@ -175,14 +175,14 @@ class PlanetaryCase:
         return {"sun": self.gears.sun, "ring": self.ring_gear}.get(name, self.gears.planet)
 
     def with_(self, **changed: Any) -> "PlanetaryCase":
-        """The same with other values; flanks and damage are given anew as a whole.
+        """Return the case with other values; flanks and damage are replaced as a whole.
 
         Gears with another number of planets stand equally spaced unless `planet_angles` are given.
 
         Raises
         ------
         ValueError
-            If the number of planets changes, and errors, flanks or damage of planets are not given anew.
+            If the number of planets changes, but errors, flanks or damage of planets are not given again.
         """
         gears = changed.get("gears", self.gears)
         if getattr(gears, "n_planets", None) != self.gears.n_planets:
@@ -193,5 +193,5 @@ class PlanetaryCase:
         planets["errors"] = any(map(any, self.errors))
         for name, has in planets.items():
             if count != self.planets and has and name not in changed:
-                raise ValueError(f"{count} planets, but {name} are those of {self.planets}: give {name} anew")
+                raise ValueError(f"{count} planets, but {name} are those of {self.planets}: give {name} again")
         return replace(self, **({"errors": None} if count != self.planets else {}) | changed)

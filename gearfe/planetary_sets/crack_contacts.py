@@ -1,4 +1,4 @@
-"""Faces of a set's cracks under the loads of its meshes: how far they open, and what that adds to the flexibility."""
+"""Faces of a set's cracks under the loads of its meshes: their opening and their part in the flexibility."""
 
 from typing import Any, NamedTuple
 
@@ -15,9 +15,9 @@ from .whole_gear import PLACES
 class CrackContacts(NamedTuple):
     """All e openings of the cracks at a position under n contact loads.
 
-    `more` ``(n, n)`` is what free faces add to the flexibility of the contacts, `by_loads` ``(e, n)`` are the openings of free
-    faces under unit loads, and `ease` ``(e, e)`` those under unit forces on the faces. `touch` ``(e,)`` as of `CrackOpenings`;
-    `ring`: those of the ring.
+    `more` ``(n, n)`` is the addition of free faces to the flexibility of the contacts. `by_loads` ``(e, n)`` are the openings of
+    free faces under unit loads, `ease` ``(e, e)`` those under unit forces on the faces. See `CrackOpenings` for `touch` ``(e,)``.
+    `ring` are the openings of the ring's cracks.
     """
 
     more: Floats
@@ -27,7 +27,7 @@ class CrackContacts(NamedTuple):
     ring: slice
 
     def overlap(self, opened: Floats) -> bool:
-        """Whether faces that may touch overlap."""
+        """Return True if faces that may touch overlap."""
         return bool(opened[self.touch].min() < -OVERLAP * np.abs(opened).max())
 
 
@@ -63,7 +63,7 @@ def crack_contacts(
 
 
 def _loads_on(block, name):
-    """Which gear of a mesh (0 pinion, 1 wheel) a gear is, and the loads of its flank there; None if it has no part in it."""
+    """Return whether a gear is pinion (0) or wheel (1) of a mesh, and the loads of its flank there; None if it is neither."""
     if name == "sun":
         return None if block.inner else (0, slice(PLACES))
     if name == "ring":

@@ -1,13 +1,13 @@
-"""Cracks of a gear as openings of their faces: what they do to all its teeth, and how the faces push each other apart.
+"""Cracks of a gear as openings of their faces: their effect on all its teeth, and the contact of the faces.
 
 A gear with all faces held together is the healthy gear. Openings d of the faces act on it as forces on the sides of the cracked
-sectors. With v the unknowns of all sectors, K the healthy block-circulant stiffness, E those of the cracked sectors, loads f of
-the teeth, and forces r that push the faces apart::
+sectors. Let v be the unknowns of all sectors, K the healthy block-circulant stiffness, and E that of the cracked sectors. With
+loads f of the teeth and forces r that push the faces apart::
 
     K v = B f - E K_vd d,    r = S d - Q f,    S = K_dd - K_vd' E' K^-1 E K_vd,    u = C f + Q' d
 
-so that the healthy gear, solved once, and one solve for each opening give any cracked one exactly. C is the healthy flexibility.
-Open faces have r = 0; faces in touch push each other along their normal and slide without friction.
+The healthy gear, solved once, and one solve for each opening therefore give any cracked gear exactly. C is the healthy
+flexibility. Open faces have r = 0. Faces in contact press along their normal and slide without friction.
 """
 
 from typing import Any, NamedTuple
@@ -24,9 +24,9 @@ from .whole_gear import PLACES, WholeGear, in_chain, sector_stiffness
 class CrackedTooth(NamedTuple):
     """Openings (e of them) of the facing nodes in a tooth: along their normals, then along the faces.
 
-    `sides` ``(N, e)`` are the forces on the N unknowns of the sector and of the next one's side by unit openings, `faces`
-    ``(e, e)`` those on the faces; `loads` ``(e, 2 PLACES)`` the openings' part in the work of the tooth's loads. `touch` are the
-    openings that cannot be negative, `side` the places of a side among the unknowns of a sector.
+    `sides` ``(N, e)`` are the forces on the N unknowns of the sector and of the next one's side by unit openings, `faces` ``(e,
+    e)`` those on the faces. `loads` ``(e, 2 PLACES)`` is the openings' part in the work of the tooth's loads. `touch` are the
+    openings that must not be negative. `side` are the indices of a side among the unknowns of a sector.
     """
 
     tooth: int
@@ -38,11 +38,11 @@ class CrackedTooth(NamedTuple):
 
 
 class CrackOpenings(NamedTuple):
-    """All e openings of a gear's cracks, as what holds its edge lets them: S, Q of the module.
+    """All e openings of a gear's cracks with the support of its edge: S, Q of the module.
 
-    `stiffness` S ``(e, e)``; `by_teeth` Q ``(e, z, 2 PLACES)``; `touch` ``(e,)`` which of them cannot be negative; `edge`
-    ``(z, r, e)`` displacements of the held edge by unit openings. Of a ring on p pads `pads` ``(p, e)`` are theirs, and
-    `released` ``(e, z, PLACES)`` is what its support adds to Q.
+    `stiffness` is S ``(e, e)``, `by_teeth` Q ``(e, z, 2 PLACES)``. `touch` ``(e,)`` marks openings that must not be negative.
+    `edge` ``(z, r, e)`` are displacements of the held edge by unit openings. For a ring on p pads, `pads` ``(p, e)`` are their
+    displacements, and `released` ``(e, z, PLACES)`` is the addition of its support to Q.
     """
 
     stiffness: Floats
@@ -68,9 +68,9 @@ def cracked_teeth(whole: WholeGear, cracks: Any, refine: float) -> tuple[Cracked
 
 
 def _pairs(mesh, seams):
-    """Facing nodes ``(2, m)`` of all cracks without their tips, normals ``(2, m)``, and which openings ``(2 m,)`` may touch.
+    """Return facing nodes ``(2, m)`` of all cracks without tips, normals ``(2, m)``, and which openings ``(2 m,)`` may touch.
 
-    The pair beside a tip lies at a quarter of its edge and is left out, as in `gearfe.elements.fe`.
+    The pair next to a tip lies at a quarter of its edge and is omitted, see `gearfe.flexibility.finite_elements.fe`.
     """
     pairs = np.hstack([faces[:, :-1] for faces in seams])
     ahead = np.hstack([np.gradient(mesh.doflocs[:, faces[0]], axis=1)[:, :-1] for faces in seams])
@@ -79,7 +79,7 @@ def _pairs(mesh, seams):
 
 
 def _opened(matrix, load, normal, order):
-    """`sides`, `faces` and `loads` of `CrackedTooth` from what `sector_stiffness` gives with facing nodes.
+    """`sides`, `faces` and `loads` of `CrackedTooth` from the result of `sector_stiffness` with facing nodes.
 
     One face moves by u, the other by u less the openings; u is eliminated.
     """
@@ -98,7 +98,7 @@ def _opened(matrix, load, normal, order):
 
 
 def faces_of(whole: WholeGear, teeth: tuple[CrackedTooth, ...], inverse: NDArray[np.complex128]) -> CrackOpenings:
-    """`CrackOpenings` from the inverses ``(h, n, n)`` of the healthy gear's harmonics, as what holds its edge makes them."""
+    """Return `CrackOpenings` from the inverses ``(h, n, n)`` of the healthy gear's harmonics with the support of its edge."""
     z, n = whole.gear.z, whole.stiffness.shape[1]
     ends = np.cumsum([0, *(one.faces.shape[0] for one in teeth)])
     parts = [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]

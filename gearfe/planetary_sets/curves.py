@@ -1,4 +1,4 @@
-"""`SetCurves`: what a planetary set does over its positions, in SI units."""
+"""`SetCurves`: mesh stiffness, loads and motions of a planetary set over its positions, in SI units."""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -19,36 +19,37 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SetCurves:
-    """What `planetary_stiffness` gives: a planetary set over p positions.
+    """Result of `planetary_stiffness`: a planetary set over p positions.
 
     The first axis of length 2 is the kind of mesh: 0 sun and planet, 1 planet and ring.
 
     Attributes
     ----------
     position : ndarray, shape (p,)
-        By how many of its pitches the sun is turned.
+        Rotation of the sun in its pitches.
     force : ndarray, shape (2, p, planets)
         Load of each mesh along its line of action [N].
     k : ndarray, shape (2, p, planets)
-        Stiffness of each mesh in the set: its force over how far the turns and shifts of its two gears close it after the first
-        touch [N/m]; 0 where it carries nothing. That the ring bends and moves on its supports, `rim`, makes it softer.
+        Stiffness of each mesh in the set [N/m]: its force divided by the approach after the first touch, due to the rotations and
+        shifts of its two gears. It is 0 for an unloaded mesh. The deflection of the ring and its supports, `rim`, makes it
+        softer.
     k_alone : ndarray, shape (2, p, planets)
         Stiffness of the isolated pair under the mean force, both gears held at their bore or rim [N/m].
     rim : ndarray, shape (2, p, planets)
-        How far a ring that is not held all around gives way in each mesh, along the line of action [m]; 0 in meshes of the sun.
+        Deflection of the ring's supports in each mesh, along the line of action [m]; 0 for meshes of the sun and a held ring.
     gap : ndarray, shape (2, p, planets)
         How far apart each mesh is before it is loaded, by modified flanks and by pins off their places [m].
     te : ndarray, shape (p,)
-        Transmission error of the set under load: how far the sun turns ahead while carrier and ring are held, times its base
-        radius [m].
+        Loaded transmission error of the set [m]: the rotation of the sun ahead of a fixed carrier and ring, times its base
+        radius.
     orbit : ndarray, shape (p, 2)
         Displacement x, y of the sun's axis [m]; 0 of a sun that is held.
     pair_force : ndarray, shape (2, p, planets, pairs)
-        Load of each pair of teeth [N]; `order` says which pair.
+        Load of each pair of teeth [N]; `order` numbers the pairs.
     tooth : ndarray of int, shape (2, p, planets, pairs)
         Its tooth of the sun (meshes with the sun) or of the planet (meshes with the ring), counted clockwise; -1: none.
     order : ndarray of int, shape (pairs,)
-        By how many base pitches a pair of teeth is ahead of the pair that came into contact last.
+        Number of base pitches by which a pair of teeth is ahead of the pair that came into contact last.
     ring_angle : ndarray, shape (n,)
         Angles of nodes on the ring's outer edge, clockwise from its tooth 0 [rad]; empty unless the ring is on pads.
     ring_moved : ndarray, shape (p, n, 2)
@@ -92,7 +93,7 @@ class SetCurves:
 
     @property
     def k_without_rim(self) -> Floats:
-        """`k` without the share of `rim` [N/m]: for machines in which the ring is a body on springs of its own."""
+        """Return `k` without the share of `rim` [N/m], for machines in which the ring is a body on separate springs."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(self.k > 0, self.force / (self.force / self.k - self.rim), 0.0)
 

@@ -1,6 +1,7 @@
-"""A whole planetary set in contact as a CalculiX deck: the second opinion on `planetary_stiffness`.
+"""Whole planetary set in contact as a CalculiX deck, as an independent reference for `planetary_stiffness`.
 
-Sun and planets are turned by what was found here, the ring is held on its pads; what the bodies then push is CalculiX's own.
+Sun and planets are rotated by the solution of `planetary_stiffness`, and the ring is held on its pads. CalculiX then computes the
+contact forces.
 """
 
 import math
@@ -29,11 +30,11 @@ from .standing import directions
 
 @dataclass(frozen=True, slots=True)
 class SetDeck:
-    """What is needed to read the result of a deck of a whole set.
+    """Data to read the result of a deck of a whole set.
 
-    `held` and `place` are the numbers ``(n,)`` of the held nodes of sun, planets and ring, and their places ``(2, n)`` from the
-    gear's centre [mm]; `rim` and `around` those of the nodes of the ring's outer edge; `angle` that of the ring's tooth 0,
-    clockwise [rad].
+    `held` and `place` are the numbers ``(n,)`` of the held nodes of sun, planets and ring, and their positions ``(2, n)`` from
+    the gear's centre [mm]. `rim` and `around` are those of the nodes of the ring's outer edge. `angle` is that of the ring's
+    tooth 0, clockwise [rad].
     """
 
     case: PlanetaryCase
@@ -44,7 +45,7 @@ class SetDeck:
     angle: float
 
     def forces(self, path: StrPath) -> dict[str, Any]:
-        """What CalculiX printed to the ``.dat`` file `path`, per width [N/mm].
+        """Read the forces that CalculiX printed to the ``.dat`` file `path`, per width [N/mm].
 
         ``"sun"``, ``"ring"``: torque over the base radius. ``"outer"``, ``"inner"`` ``(planets,)``: forces of the meshes of each
         planet with sun and ring, from its pin's force and torque. RuntimeError if the file is not there, or holds no forces.
@@ -58,7 +59,7 @@ class SetDeck:
         gears, n = self.case.gears, self.case.planets
         outer, inner = directions(gears, np.array(self.case.planet_angles))
         meshes = []
-        for i in range(n):  # the pin holds against both meshes: force and clockwise torque
+        for i in range(n):  # the pin carries both meshes: force and clockwise torque
             rows = np.column_stack([np.append(outer[:, i], -1.0), np.append(inner[:, i], 1.0)])
             right = -np.append(sums[1 + i], moments[1 + i] / gears.planet.r_b)
             meshes.append(np.linalg.lstsq(rows, right, rcond=None)[0])
@@ -91,7 +92,7 @@ def write_set_inp(
 ) -> SetDeck:
     """Write a CalculiX deck of one position of a set: all gears with all teeth in second-order triangles, plane strain.
 
-    Sun and planets are turned, at the edges where they are held, by what `planetary_stiffness` found. Small displacements;
+    Sun and planets are rotated at their held edges by the solution of `planetary_stiffness`. The deck has small displacements and
     frictionless surface-to-surface contact of all flanks that may touch. ``ccx -i NAME`` writes ``NAME.dat``, which
     `SetDeck.forces` and `SetDeck.moved` read.
 
@@ -117,7 +118,7 @@ def write_set_inp(
     Raises
     ------
     ValueError
-        If the set cannot be meshed gear by gear, as of `planetary_sets.loaded_gears.drawable`, or an argument is out of range.
+        If the set cannot be meshed gear by gear (see `planetary_sets.loaded_gears.drawable`), or an argument is out of range.
     """
     check_output(path, "deck")
     case, stand = drawable(curves, at)

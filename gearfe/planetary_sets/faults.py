@@ -1,4 +1,4 @@
-"""Flanks and cracks of a set's gears, as the pair of each mesh counts its teeth (`gearfe.planetary_sets.standing`)."""
+"""Flanks and cracks of a set's gears, by the tooth numbers of the pair of each mesh (`gearfe.planetary_sets.standing`)."""
 
 from dataclasses import replace
 from typing import Any
@@ -29,7 +29,7 @@ def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, b
         pair_flanks[side] = replace(flank, pitch=moved, tooth_scale=scaled, eccentric_tooth=centre)
     forms = flank_forms(pair, pair_flanks)
     cracks_1, cracks_2 = (case.damage.get(name, ()) for name in names)
-    if inner:  # mirrored: what the sun loads is unloaded here
+    if inner:  # mirrored: flanks loaded by the sun are unloaded here
         cracks_1 = tuple(replace(c, tooth=-c.tooth, side="unloaded" if c.side == "loaded" else "loaded") for c in cracks_1)
     cracks_2 = tuple(replace(c, tooth=c.tooth - first) for c in cracks_2)
     differs = bool(cracks_1 or cracks_2) or any(form.differs for form in forms or ())

@@ -1,4 +1,4 @@
-"""The gears of a loaded set one by one, for decks and pictures: where each stands, which flanks touch where, and its mesh."""
+"""Gears of a loaded set one by one, for decks and pictures: position, touching flanks, and mesh."""
 
 import math
 from collections import Counter
@@ -30,20 +30,20 @@ def check_meshable(case: PlanetaryCase) -> None:
 
 
 def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
-    """Case and `Standing` of one position whose gears can be meshed one by one as the set has them.
+    """Return case and `Standing` of one position whose gears can be meshed one by one.
 
-    ValueError as of `check_meshable`, if there is no such position, or if a mesh carries nothing, so that how far its planet is
-    turned is not known.
+    ValueError for the reasons of `check_meshable`, if there is no such position, or if a mesh is unloaded, so that the rotation
+    of its planet is unknown.
     """
     if not isinstance(curves, SetCurves):
-        raise ValueError(f"curves = {curves!r}, but give what planetary_stiffness gives")
+        raise ValueError(f"curves = {curves!r}, but give the result of planetary_stiffness")
     if whole("at", at, 0) >= curves.position.size:
         raise ValueError(f"at = {at}, but there are {curves.position.size} positions: give 0 to {curves.position.size - 1}")
     case = curves.meta["case"]
     check_meshable(case)
     without = np.flatnonzero((curves.force[:, at] == 0).any(axis=0)).tolist()
     if without:
-        raise ValueError(f"planet {without[0]} carries nothing at position {at}, so that its place is not known: choose another")
+        raise ValueError(f"planet {without[0]} is unloaded at position {at}, so its place is undefined: choose another")
     return case, standing(case.gears, np.array(case.planet_angles), [curves.position[at]])
 
 
@@ -104,7 +104,8 @@ def placed(case, stand, curves, at):
         place = np.array([math.sin(angle), math.cos(angle)])
         along = np.array([math.cos(angle), -math.sin(angle)])
         error = case.errors[i][0] * place + case.errors[i][1] * along
-        closed = curves.force[1, at, i] / curves.k[1, at, i] * 1e3  # of the mesh with the ring, by the planet's turn and shift
+        # approach of the mesh with the ring, by the planet's rotation and shift
+        closed = curves.force[1, at, i] / curves.k[1, at, i] * 1e3
         turned = closed + inner[:, i] @ error
         out.append((gears.planet, case.material[1], gears.a * place, planets[i], (-turned / gears.planet.r_b, error)))
     out.append((case.ring_gear, case.material[2], np.zeros(2), ring, (0.0, np.zeros(2))))

@@ -1,6 +1,6 @@
-"""What the contact of a pair says of one mesh of a set at one phase: contacts, their gaps, how they yield among themselves.
+"""Contacts of one mesh of a set at one phase: gaps and local flexibility, from the contact of its pair.
 
-All of it is the pair's (`gearfe.contact.pair_contact.PairContact`): smooth contacts with Hertz's logarithm, rows of hats at
+All of it is computed by `gearfe.contact.pair_contact.PairContact`: smooth contacts with Hertz's logarithm, rows of hats at
 corners and kinks, exact gaps, cracks.
 """
 
@@ -21,7 +21,7 @@ from .faults import faults
 from .standing import DIGITS, Standing
 
 TOGETHER = 64  # positions whose pairs are solved at once, where teeth differ
-APART = 0.05  # of the load: mesh loads closer than that ask for the same rows of hats
+APART = 0.05  # mesh loads closer than this part of the load use the same rows of hats
 
 
 class MeshContacts(NamedTuple):
@@ -56,14 +56,14 @@ class SetMesh:
         self._alone: tuple[float, Solved] | None = None
 
     def at(self, i: int, line_load: float, reach: float) -> MeshContacts:
-        """Contacts at a phase by its number, as many as a load of about `line_load` [N/mm] may close, or an approach [mm]."""
+        """Return the contacts at phase number i that a load of about `line_load` [N/mm], or an approach [mm], may close."""
         key = i, line_load, reach
         if key not in self._found:
             self._found[key] = _contacts(self.contact, i, line_load, reach)
         return self._found[key]
 
     def alone(self, line_load: float) -> Solved:
-        """The pair under a load of its own."""
+        """Solve the pair alone under a load."""
         if self._alone is None or self._alone[0] != line_load:
             self._alone = line_load, self.contact.solve(line_load)
         return self._alone[1]
@@ -78,7 +78,7 @@ class PlacedContacts(NamedTuple):
 
 
 class Meshes:
-    """All meshes of a case at the positions of a `Standing`; equal planets share what they have in common."""
+    """All meshes of a case at the positions of a `Standing`; equal planets share their solutions."""
 
     def __init__(self, case: Any, stand: Standing, options: dict[str, Any]) -> None:
         self.case, self._options = case, options
@@ -101,7 +101,7 @@ class Meshes:
         return PlacedContacts(mesh.at(number[phase], load, reach), first, whole if self._kind[inner, planet][2] else 0)
 
     def alone(self, i: int, inner: int, planet: int, load: float) -> tuple[float, float]:
-        """How far a line load alone closes the pair of a mesh [mm], and which part of it the model of contact may be off by."""
+        """Return the approach of the pair of a mesh under a line load alone [mm], and the part of it that is the model error."""
         mesh, number, phase, _ = self._of(i, inner, planet)
         solved = mesh.alone(load)
         return float(solved.closing[number[phase]]), float(solved.left_out[number[phase]])
@@ -136,7 +136,7 @@ class Meshes:
 
 
 def near_load(line_load: float, unit: float) -> float:
-    """`unit` times a power of ``1 + APART``, the one next to `line_load`: loads alike share their rows of hats."""
+    """Return the power of ``1 + APART`` times `unit` nearest to `line_load`, so that equal loads share rows of hats."""
     step = np.log1p(APART)
     return float(unit * np.exp(step * round(np.log(max(line_load, 1e-3 * unit) / unit) / step)))
 
@@ -154,7 +154,7 @@ def _contacts(contact: Any, i: int, line_load: float, reach: float) -> MeshConta
 
 
 def _one(contact, i, built, rows, possible, least, reach):
-    """`MeshContacts` of one phase from what `PairContact.contacts_at` gives, with the places it leaves out."""
+    """`MeshContacts` of one phase from the result of `PairContact.contacts_at`, with the places it leaves out."""
     candidates, places = contact.found, []
     for k in np.flatnonzero(possible).tolist():
         row = rows.get((i, k))

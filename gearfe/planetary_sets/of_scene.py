@@ -1,4 +1,4 @@
-"""From a scene to its planetary set: the case that the tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]`` state."""
+"""Planetary set of a scene: the case of the tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]``."""
 
 from dataclasses import replace
 from typing import Any
@@ -13,10 +13,10 @@ from .rim_supports import RimBed, RimSupports
 
 
 def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
-    """Planetary set of a scene for `gearfe.planetary_stiffness`, with the flanks of its gears and a case of damage.
+    """Return the planetary set of a scene for `gearfe.planetary_stiffness`, with its flanks and a case of damage.
 
-    Cracks of the planet's gear are in one planet (``damaged_planet``), on the flank that the sun loads; one that the scene has in
-    the pair of planet and ring only, on the other.
+    Cracks of the planet's gear are in one planet (``damaged_planet``), on the flank that the sun loads. A crack that the scene
+    states in the pair of planet and ring only is on the other flank.
 
     Parameters
     ----------
@@ -32,8 +32,8 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
     Raises
     ------
     ValueError
-        If the scene has no set, no such case in its gears, damage other than cracks, or pairs whose misalignment, shafts or
-        springs the set does not know; or if the set cannot be.
+        If the scene has no set, no such case in its gears, damage other than cracks, pairs whose misalignment, shafts or springs
+        are not modelled in a set, or if the set is impossible.
     """
     given = scene.set
     if given is None:
@@ -59,7 +59,7 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
 
 
 def _support(row: dict[str, Any]) -> "str | RimBed | RimSupports":
-    """What holds the ring, from a checked table ``[ring.support]``."""
+    """Return the support of the ring from a checked table ``[ring.support]``."""
     if row["kind"] == "held":
         return "held"
     given = arguments("ring_support", row | {"kind": None})
@@ -88,18 +88,35 @@ def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, i
     known = dict.fromkeys((*outer.damage, *inner.damage))
     if case not in known:
         raise ValueError(f"no case {case!r} in the set of scene {scene.name}; it has {', '.join(known) or 'none'}")
-    one, two = outer.damage.get(case, {}), inner.damage.get(case, {})
-    hurt = [own for found in (*one.values(), *two.values()) for own in found]
+    one, two = outer.owned.get(case, {}), inner.owned.get(case, {})
+    hurt = [own for found in (*one.values(), *two.values()) for damage in found.values() for own in damage]
     other = sorted({own._nouns[0] for own in hurt if not isinstance(own, Crack)})
     if other:
         raise ValueError(
             f"case {case!r} has a {' and a '.join(other)}, but the section of a set has cracks only: choose a case of cracks"
         )
-    both = one.get("wheel", [])
-    ring_side = [replace(crack, side=_opposite(crack.side)) for crack in two.get("pinion", [])]
-    ring_side = [crack for crack in ring_side if crack not in both]
-    found = {"sun": one.get("pinion", []), ("planet", given.damaged_planet): both + ring_side, "ring": two.get("wheel", [])}
-    return {name: cracks for name, cracks in found.items() if cracks}
+    out: dict[Any, Any] = {}
+    for found, side, gear, turned in (
+        (one, "pinion", "sun", 0),
+        (one, "wheel", "planet", 0),
+        (two, "pinion", "planet", 1),
+        (two, "wheel", "ring", 0),
+    ):
+        for owner, cracks in found.get(side, {}).items():
+            own = out.setdefault(_gear_name(owner.body, gear, case, given), [])
+            seen = [replace(crack, side=_opposite(crack.side)) if turned else crack for crack in cracks]
+            own += [crack for crack in seen if crack not in own]
+    return out
+
+
+def _gear_name(body, gear, case, given):
+    """Name of a gear of the set: of planets with their number, which bodies count from 1 and sets from 0."""
+    known = [f"planet{i + 1}" for i in range(len(given.errors))] if gear == "planet" else [gear]
+    if body is not None and body not in known:
+        raise ValueError(f"case {case!r} damages body {body!r}, but the {gear} of the set is {', '.join(known)}")
+    if gear != "planet":
+        return gear
+    return gear, given.damaged_planet if body is None else known.index(body)
 
 
 def _opposite(side):

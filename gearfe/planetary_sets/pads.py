@@ -1,4 +1,4 @@
-"""Pads under the rim of a ring: their tractions as forces on its mesh, and how they and the teeth move each other."""
+"""Pads under the rim of a ring: their tractions as forces on its mesh, and flexibility between pads and teeth."""
 
 import math
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from .rim_supports import RimSupports
 from .whole_gear import PLACES, WholeGear
 
 TERMS = 10  # polynomials on a pad, radial and tangential
-POINTS = 64  # of their quadrature
+POINTS = 64  # quadrature points of the polynomials
 FINE = 400  # the same, where a polynomial meets a jump
 SPREAD = 3  # edges of the rim to either side over which the mesh is given a traction as a hat
 
@@ -23,10 +23,10 @@ SPREAD = 3  # edges of the rim to either side over which the mesh is given a tra
 class Pads:
     """Tractions of pads on the rim, p of them by pad, direction and polynomial.
 
-    `load` ``(z, r, p)`` are their nodal forces, spread over some edges, `close` the same on the edges under the pad only, `turns`
-    ``(3, p)`` their forces along x and y and clockwise torque [mm].
-    `compliance` ``(p, p)`` is added to how the rim's mesh moves under them [mm per N/mm]: of springs, and close to each pad.
-    `moved` are the edge's displacements by harmonic, as of `WholeGear.loose`.
+    `load` ``(z, r, p)`` are their nodal forces, spread over some edges; `close` is the same on the edges under the pad only.
+    `turns` ``(3, p)`` are their forces along x and y and their clockwise torque [mm]. `compliance` ``(p, p)`` is added to the
+    flexibility of the rim's mesh under them [mm per N/mm], for springs and near each pad. `WholeGear.loose_inverse` describes
+    `moved`, the edge's displacements by harmonic.
     """
 
     load: Floats
@@ -37,9 +37,9 @@ class Pads:
 
 
 def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray[np.complex128]) -> Pads:
-    """`Pads` of a ring, stiffnesses shared by the face `width` [mm]; `moved` as of `WholeGear.loose`."""
+    """Return the `Pads` of a ring; the face `width` [mm] shares their stiffness. `Pads` describes `moved`."""
     gear, z, nodes = whole.gear, whole.gear.z, whole.angle.size
-    step = 4 * math.pi / (z * nodes)  # of an edge of the rim
+    step = 4 * math.pi / (z * nodes)  # angle of an edge of the rim
     terms = 1 if support.pushes else TERMS
     place = np.cos((np.arange(POINTS) + 0.5) * math.pi / POINTS)
     shapes = chebyshev.chebvander(place, terms - 1) / POINTS
@@ -55,7 +55,7 @@ def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray
         out, inx = np.sin(angle), np.cos(angle)
         force = np.array([out, inx, 0 * angle]), np.array([inx, -out, np.full(angle.size, gear.held)])
         for which in held:
-            hat = zip(number.tolist(), weight, strict=True)  # of each vertex under the pad: every second node, two unknowns each
+            hat = zip(number.tolist(), weight, strict=True)  # for each vertex under the pad: every second node, two unknowns each
             columns.append(sum(np.roll(hats[which], 4 * n)[:, None] * row for n, row in hat))
             close.append(_nodal((angle + math.pi / z) % (2 * math.pi), which, step / 2, z * nodes) @ shapes)
             turns.append(force[which] @ shapes)
@@ -71,7 +71,7 @@ def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray
 
 
 def _hat(which, step, count):
-    """Forces ``(2 count,)`` on rim nodes of a unit hat of traction, radial (0) or tangential (1), its top on the first node."""
+    """Return forces ``(2 count,)`` on rim nodes of a unit hat of traction, radial (0) or tangential (1), on the first node."""
     points, weights = GAUSS_3
     edges = np.arange(-SPREAD, SPREAD)
     angle = step * (edges[:, None] + (points + 1) / 2)
@@ -80,7 +80,7 @@ def _hat(which, step, count):
 
 
 def _nodal(angle, which, step, count):
-    """Forces ``(2 count, n)`` on rim nodes, radial and tangential, of unit forces at `angle` from the first node."""
+    """Return forces ``(2 count, n)`` on rim nodes, radial and tangential, of unit forces at `angle` from the first node."""
     edge = np.floor(angle / (2 * step)).astype(int)
     t = angle / step - 2 * edge - 1
     shapes = np.array([t * (t - 1) / 2, 1 - t**2, t * (t + 1) / 2])
@@ -94,7 +94,7 @@ def _nodal(angle, which, step, count):
 
 
 def _sharper(whole, width, tops, edge, weight):
-    """How much more a pad's own tractions move it than the hats that stand for them ``(2, 2, terms, terms)`` [mm per N/mm].
+    """Return the motion of a pad by its tractions minus that by hats ``(2, 2, terms, terms)`` [mm per N/mm].
 
     Both differ only near by, where the rim is a half-plane. On it tractions ``T_n(s) / (pi sqrt(1 - s**2))`` move the surface
     along themselves by c ``ln(4 / width)`` (n = 0) or ``c T_n(s) / n``, and across by the jump of Flamant's field.
@@ -115,7 +115,7 @@ def _sharper(whole, width, tops, edge, weight):
 
 
 def _series(load):
-    """Harmonics ``(h, r, p)`` of nodal forces ``(z, r, p)``."""
+    """Return the harmonics ``(h, r, p)`` of nodal forces ``(z, r, p)``."""
     return np.fft.rfft(load, axis=0)
 
 

@@ -1,13 +1,13 @@
-"""How the teeth of a ring yield by what holds its rim: everywhere, an elastic bed, or pads of some width.
+"""Flexibility of a ring's teeth with its support: held everywhere, an elastic bed, or pads of some width.
 
-A ring on pads is a ring that nothing holds, under the tractions p of its pads and moved as a whole by q::
+A ring on pads is a free ring under the tractions p of its pads, with a motion q as a whole::
 
     u_teeth = C f + B' p + R q,    u_pads = B f + A p + R_p q = -p / k,    R' f + R_p' p = 0
 
-so that what pads add to the flexibility of the free ring is a small matrix, and one solve of the ring serves all layouts. On a
-pad the rim moves along with it: tractions are Chebyshev polynomials over ``sqrt(1 - s**2)``, which rise at both ends of a pad as
-they do under a stiff one. The mesh of the rim only gets them spread over some edges; what they do more close by is what they do
-to a half-plane, known exactly.
+The addition by pads to the flexibility of the free ring is a small matrix, and one solve of the ring serves all layouts. On a pad
+the rim moves with the pad: tractions are Chebyshev polynomials over ``sqrt(1 - s**2)``, which rise at both ends of a pad as they
+do under a rigid one. The mesh of the rim gets them spread over some edges. Their additional local effect is that on a half-plane,
+which is known exactly.
 
 References
 ----------
@@ -27,20 +27,20 @@ from .pads import Pads, among, by_teeth, pads_on
 from .rim_supports import RimBed, RimSupports, check_support
 from .whole_gear import PLACES, WholeGear, between_teeth, motion
 
-SURE = 1e-9  # of the largest singular value of the pads' balance: less, and the ring can move without force
+SURE = 1e-9  # below this part of the largest singular value of the pads' balance, the ring can move without force
 
 
-NONE_2, NONE_3 = np.zeros((0, 0)), np.zeros((0, 0, 0))  # of what a ring without pads has not
+NONE_2, NONE_3 = np.zeros((0, 0)), np.zeros((0, 0, 0))  # empty arrays of a ring without pads
 
 
 class Rim(NamedTuple):
-    """A ring's teeth as what holds its rim lets them move, per mm of width (z teeth, `PLACES` loads on each right flank).
+    """Flexibility of a ring's teeth with its support, per mm of width (z teeth, `PLACES` loads on each right flank).
 
-    `more` ``(z, PLACES, z, PLACES)`` is added to the flexibility with the rim held. With p pads' tractions per load `reaction`
-    ``(p, z, PLACES)``, and motions of the whole ring `moves` ``(3, z, PLACES)``: along x, along y [mm], clockwise turn [rad].
-    Lugs that only push (l of them) are contacts of their own: `lug` ``(l, l)`` and `across` ``(l, z, PLACES)`` their flexibility,
-    `turns` ``(3, l)`` and `gives` ``(3, z, PLACES)`` what motions of the whole ring do to them and to the loads. `grip` ``(p + 3,
-    p)`` are tractions of pads and motions of the ring by unit displacements of the pads.
+    `more` ``(z, PLACES, z, PLACES)`` is added to the flexibility with the rim held. With p tractions of pads, `reaction` ``(p, z,
+    PLACES)`` are these per load. `moves` ``(3, z, PLACES)`` are motions of the whole ring per load: along x, along y [mm],
+    clockwise rotation [rad]. Unilateral lugs (l of them) are separate contacts: `lug` ``(l, l)`` and `across` ``(l, z, PLACES)``
+    are their flexibility, `turns` ``(3, l)`` and `gives` ``(3, z, PLACES)`` the effect of motions of the whole ring on them and
+    on the loads. `grip` ``(p + 3, p)`` are tractions of pads and motions of the ring by unit displacements of the pads.
     """
 
     whole: WholeGear
@@ -56,9 +56,9 @@ class Rim(NamedTuple):
 
 
 def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: float) -> Rim:
-    """`Rim` of a ring by what holds it; pads' stiffnesses are shared by the face `width` [mm].
+    """Return the `Rim` of a ring by its support; the face `width` [mm] shares the stiffness of pads.
 
-    ValueError as of `check_support`, or if the ring could move without force.
+    ValueError for the reasons of `check_support`, or if the ring could move without force.
     """
     gear = whole.gear
     check_support(support, gear)
@@ -75,10 +75,10 @@ def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: floa
         return Rim(whole, teeth, pads, lug=between, across=across, turns=pads.turns, gives=gives)
     p, n = pads.compliance.shape[0], gear.z * PLACES
     scale = np.diag(between).mean()
-    unit = scale * np.array([1.0, 1.0, 1 / gear.held])[:, None]  # so that all of the system is of one size
+    unit = scale * np.array([1.0, 1.0, 1 / gear.held])[:, None]  # scaled, so that all entries of the system have one magnitude
     system = np.block([[between, (unit * pads.turns).T], [unit * pads.turns, np.zeros((3, 3))]])
     if np.linalg.svd(unit * pads.turns, compute_uv=False)[-1] < SURE * scale:
-        raise ValueError("ring: these pads let it move without force: give more of them, or hold both directions")
+        raise ValueError("ring: it moves freely on these pads: give more pads, or support both directions")
     right = np.concatenate([across.reshape(p, n), unit * gives.reshape(3, n)])
     solved = -np.linalg.solve(system, np.hstack([right, np.eye(p + 3, p)]))
     more = teeth.reshape(n, n) + right.T @ solved[:, :n]
@@ -116,7 +116,7 @@ def ring_faces(rim: Rim, support: "str | RimBed | RimSupports", teeth: tuple[Cra
 
 
 def _moves(gear):
-    """How loads ``(3, z, PLACES)`` move with the whole ring: along x, along y, by a clockwise turn."""
+    """Return the displacement of loads ``(3, z, PLACES)`` with the whole ring: along x, along y, by a clockwise rotation."""
     x, y, turn = motion(gear)[:, :PLACES]
     angle = 2 * math.pi / gear.z * np.arange(gear.z)[:, None]
     return turned((x, y, np.broadcast_to(turn, (gear.z, PLACES))), angle)

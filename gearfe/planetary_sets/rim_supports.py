@@ -1,4 +1,4 @@
-"""What may hold the rim of a ring: an elastic bed, or pads of some width."""
+"""Supports of the rim of a ring: an elastic foundation, or pads of some width."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ MANY, FURTHEST = 200, 1e4  # pads; angle of the first [rad]
 
 @dataclass(frozen=True, slots=True)
 class RimBed:
-    """An elastic bed around the whole outer edge of a ring, for example a press fit or a soft sleeve.
+    """Elastic foundation around the whole outer edge of a ring, for example a press fit or a soft sleeve.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class RimBed:
     tangential: float
 
     def __post_init__(self) -> None:
-        """Refuse a bed on which a ring turns freely."""
+        """Reject a foundation on which a ring rotates freely."""
         remedy = "; for a rim that is held give ring = 'held'"
         settle_numbers(self, "rim bed", "radial tangential", " N/mm^3", above=0.0, remedy=remedy)
 
@@ -74,10 +74,10 @@ class RimSupports:
     pushes: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse pads of impossible sizes, and pads that do not hold the ring."""
+        """Reject pads of impossible sizes, and pads that do not hold the ring."""
         if not 1 <= whole("rim supports: count", self.count) <= MANY:
             raise ValueError(
-                f"rim supports: count = {self.count}, but give 1 to {MANY}: a ring that nothing holds moves away, and more pads "
+                f"rim supports: count = {self.count}, but give 1 to {MANY}: a ring needs a support, and more pads "
                 "are an elastic bed"
             )
         settle_numbers(self, "rim supports", "width", " mm", above=0.0, remedy=": give the arc of the rim that a pad holds")
@@ -86,12 +86,12 @@ class RimSupports:
         if abs(self.first) > FURTHEST:
             raise ValueError(f"rim supports: first = {self.first:g} rad, but give an angle within {FURTHEST:g} rad")
         if not self.tangential > 0:
-            raise ValueError("rim supports: tangential = 0 N/mm, but then nothing takes the ring's torque: give more than 0")
+            raise ValueError("rim supports: tangential = 0 N/mm, but then nothing supports the ring's torque: give more than 0")
         settle(self, pushes=truth("rim supports: pushes", self.pushes))
         if self.pushes and self.radial:
             raise ValueError("rim supports: pads that only push have no radial force: give radial = 0")
         if self.count < (1 if self.radial and math.isinf(self.radial) else 2 if self.radial else 3):
-            raise ValueError(f"rim supports: count = {self.count}, but so few of these do not hold the ring: give 3 or more")
+            raise ValueError(f"rim supports: count = {self.count}, but these do not support the ring: give 3 or more")
 
     @property
     def middles(self) -> Floats:
@@ -104,7 +104,7 @@ class RimSupports:
         return np.concatenate([self.middles - reach, self.middles + reach])
 
     def covers(self, gear: Gear, places: Floats) -> NDArray[np.bool_]:
-        """Whether `places` ``(2, n)`` on the rim lie on a pad, its ends included."""
+        """Return which `places` ``(2, n)`` on the rim lie on a pad, its ends included."""
         away = np.arctan2(*places)[:, None] - self.middles + math.pi
         return np.abs(away % (2 * math.pi) - math.pi).min(axis=1) < self.width / (2 * gear.held) + 1e-9
 
@@ -112,9 +112,7 @@ class RimSupports:
 def check_support(support: Any, gear: Gear) -> None:
     """ValueError unless it is ``"held"``, `RimBed` or `RimSupports` whose pads find room on the rim of `gear`."""
     if not (isinstance(support, (RimBed, RimSupports)) or (isinstance(support, str) and support == "held")):
-        raise ValueError(
-            f"ring = {support!r}, but give 'held', RimBed(...) or RimSupports(...): a ring that nothing holds moves away"
-        )
+        raise ValueError(f"ring = {support!r}, but give 'held', RimBed(...) or RimSupports(...): a ring needs a support")
     rim = 2 * math.pi * gear.held
     if isinstance(support, RimSupports) and support.count * support.width > rim * (1 - 1e-9):
         raise ValueError(

@@ -6,14 +6,14 @@ import numpy as np
 
 from ..stiffness.section_curves import MODEL
 
-CARRIES = 0.2  # of the mean load of its kind: k of a mesh that carries less says little of its own teeth
+CARRIES = 0.2  # minimum load, as a part of the mean load of its kind: below it k of a mesh depends little on its teeth
 
 
 def set_error(found: Any, coarse: Any, some: Any) -> dict[str, Any]:
-    """Estimated relative errors of `SetCurves`, from a coarser solve of the positions `some` by their numbers.
+    """Return the estimated relative errors of `SetCurves`, from a coarser solve of the positions with numbers `some`.
 
-    Each is the largest difference of the two solves plus the mean one, as of `gearfe.stiffness.estimate`, plus what the model of
-    contact may be off by. The coarser solve has longer edges, also along the faces of cracks, and one polynomial order less.
+    Each is the largest difference of the two solves plus the mean one (see `gearfe.stiffness.estimate`) plus the error of the
+    contact model. The coarser solve has longer edges, also along the faces of cracks, and a polynomial order lower by one.
 
     Returns
     -------

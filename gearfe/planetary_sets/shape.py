@@ -1,4 +1,4 @@
-"""The loaded set as finite elements see it gear by gear, under the loads that the set's one contact gave: for pictures."""
+"""Pictures of the loaded set: finite elements gear by gear under the loads of the set's contact problem."""
 
 import math
 import os
@@ -42,10 +42,10 @@ class Shape(NamedTuple):
 def plot_planetary_set(
     curves: SetCurves, at: int = 0, path: str | os.PathLike[str] | None = None, *, magnified: float | None = None, dpi: int = 150
 ) -> "Figure":
-    """Draw one position of a loaded set, all gears bent and coloured by von Mises stress; save to `path` if given.
+    """Draw one position of a loaded set, all gears deformed and coloured by von Mises stress; save to `path` if given.
 
-    Each gear is solved by finite elements of its own under the loads of the set's meshes. That sun and planets turn and shift as
-    whole gears is left out. Each load stands on three nodes: close to it stress means nothing.
+    Each gear is solved separately by finite elements under the loads of the set's meshes. Rigid rotations and shifts of sun and
+    planets are not drawn. Each load acts on three nodes: near it the stress is not meaningful.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def plot_planetary_set(
         Number of the position, from 0.
     path : path, optional
     magnified : float, optional
-        How many times as large displacements are drawn; default: so that the largest is seen.
+        Magnification of displacements; default: the largest is visible.
     dpi : int
         Dots per inch.
 
@@ -66,7 +66,7 @@ def plot_planetary_set(
     Raises
     ------
     ValueError
-        If the set cannot be meshed gear by gear, as of `planetary_sets.loaded_gears.drawable`, or an argument is out of range.
+        If the set cannot be meshed gear by gear (see `planetary_sets.loaded_gears.drawable`), or an argument is out of range.
     """
     if path is not None:
         check_output(path, "picture")
@@ -77,10 +77,10 @@ def plot_planetary_set(
 
 
 def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[list[Shape], Floats | None]]:
-    """At each of these positions, by their numbers: `Shape` of every gear, and where the ring is held ``(2, n)`` [mm].
+    """Return the `Shape` of every gear, and the held places of the ring ``(2, n)`` [mm], at these position numbers.
 
-    The latter is None if it is held all around; pads turn with the ring, since the carrier stands still. Each gear is meshed and
-    factored once. ValueError as of `gearfe.planetary_sets.loaded_gears.drawable`.
+    The latter is None if it is held all around. Pads rotate with the ring, since the carrier is fixed. Each gear is meshed and
+    factored once. ValueError for the reasons of `gearfe.planetary_sets.loaded_gears.drawable`.
     """
     sides, bodies = [], []
     for at in positions:

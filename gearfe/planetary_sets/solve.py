@@ -22,9 +22,9 @@ from .set_error import set_error
 from .standing import standing
 from .whole_gear import PLACES, between_teeth, whole_gear
 
-CHECKED = 8  # positions of the estimate
+CHECKED = 8  # number of positions at which the error is estimated
 COARSER, ORDER = 0.7, 3  # its resolution relative to that of the curves, and the order of its polynomials
-PASSES = 5  # at most, until corners, kinks and pairs in reach are those of the loads that the meshes have
+PASSES = 5  # maximum number of repetitions until corners, kinks and pairs in reach agree with the loads of the meshes
 
 
 def planetary_stiffness(
@@ -37,7 +37,7 @@ def planetary_stiffness(
     error: bool = True,
     cache: Any = True,
 ) -> SetCurves:
-    """Load and stiffness of every mesh of a planetary set, loads of its teeth, transmission error, and how the ring bends.
+    """Solve a planetary set: load and stiffness of every mesh, tooth loads, transmission error, ring deformation.
 
     One contact problem at each position: each gear's flexibility over all its teeth, planets on both flanks, the ring on what
     holds it, and in every mesh the contact that `mesh_stiffness` has for its pair alone, tip corners included.
@@ -118,7 +118,7 @@ def _curves(case, at, coupled, options):
 
 
 def _positions(positions, cycles):
-    """Turns of the sun [pitches] ``(p,)`` as `planetary_stiffness` is given them."""
+    """Return the rotations of the sun [pitches] ``(p,)`` from the arguments of `planetary_stiffness`."""
     at = numbers("positions", positions, " [pitches of the sun]")
     if not at.ndim:
         count = whole("positions", positions, 1)
@@ -129,9 +129,9 @@ def _positions(positions, cycles):
 
 
 def _position(of: Set, meshes: Meshes, i: int) -> Position:
-    """One position: pressures at corners and kinks are resolved for the nominal load, then for the one that each mesh has.
+    """Solve one position: pressures at corners and kinks for the nominal load first, then for the load of each mesh.
 
-    Where teeth give way so much that further pairs may touch, these are taken in. RuntimeError if there is no end of them.
+    Further pairs that may touch under the deflection of the teeth are added. RuntimeError if this does not settle.
     """
     nominal, reach = of.case.force / of.case.width, np.zeros((2, of.case.planets))
     loads = np.full(reach.shape, nominal)
@@ -145,7 +145,7 @@ def _position(of: Set, meshes: Meshes, i: int) -> Position:
             return position
         loads, reach = new, np.where(short, 2 * approach, reach)
     if short.any():
-        raise RuntimeError("the teeth of a mesh give way so much that the contact has no end: give shorter cracks or less load")
+        raise RuntimeError("the teeth of a mesh deflect so much that ever more pairs touch: give shorter cracks or less load")
     return position
 
 

@@ -1,4 +1,4 @@
-"""How the teeth of a set stand at one position: mesh phases, tooth numbers and directions of the forces.
+"""Teeth of a set at one position: mesh phases, tooth numbers and directions of the forces.
 
 The carrier stands still. Angles count clockwise from +y, the sun turns clockwise and drives; planets turn counter-clockwise, as
 does the torque on the ring. The mesh of sun and planet i is that of `GearPair.turn`, turned by the planet's angle; in the frame
@@ -23,8 +23,8 @@ from ..geometry.tooth.profile import turned
 if TYPE_CHECKING:
     from ..geometry.pair.planetary import PlanetarySet
 
-DIGITS = 9  # of phases: equal planets have equal ones
-FITS = 1e-6  # of a pitch by which a planet may stand off a place where it can be assembled
+DIGITS = 9  # digits of phases that must agree for equal planets
+FITS = 1e-6  # largest position error of a planet [pitches] at which the set can be assembled
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,8 @@ def standing(set_: "PlanetarySet", angles: Floats, position: ArrayLike) -> Stand
     behind = set_.sun.z * (angles - angles[0]) / (2 * math.pi)
     outer = np.atleast_1d(position)[:, None] - behind
     planet = -np.floor(np.round(-behind, DIGITS)).astype(int)
-    turn = _turn_2(sun_planet, sun_planet.path[0] + (planet - behind) * sun_planet.p_bt)  # of the planet's tooth 0, at position 0
+    # rotation of the planet's tooth 0, at position 0
+    turn = _turn_2(sun_planet, sun_planet.path[0] + (planet - behind) * sun_planet.p_bt)
     start = planet_ring.gear_1.r_b * (-turn - _turn_1(planet_ring, 0.0))
     inner = (start - planet_ring.path[0]) / planet_ring.p_bt
     at_ring = angles - _turn_2(planet_ring, start)
@@ -111,6 +112,6 @@ def tooth_angles(set_: "PlanetarySet", angles: Floats, stand: Standing) -> tuple
 
 
 def directions(set_: "PlanetarySet", angles: Floats) -> tuple[Floats, Floats]:
-    """Unit forces ``(2, planets)`` on the planets, along x and y: of the sun, and of the ring."""
+    """Return unit forces ``(2, planets)`` on the planets, along x and y: of the sun, and of the ring."""
     outer, inner = set_.sun_planet.alpha_wt, -set_.planet_ring.alpha_wt
     return turned((math.cos(outer), math.sin(outer)), angles), turned((math.cos(inner), math.sin(inner)), angles)

@@ -1,4 +1,4 @@
-"""A gear as z equal sectors: how loads on any tooth and on the held edge move any other, exactly z-periodic.
+"""Gear as z equal sectors: flexibility between loads on any tooth and on the held edge, exactly z-periodic.
 
 A sector keeps as unknowns its left side and its held edge, in polar components, so that all sectors of a gear look alike; its
 right side is the next one's left. With v_j these unknowns of sector j the whole gear is a block-circulant system, which
@@ -32,21 +32,21 @@ from ..geometry.mesh.periodic_sector import periodic_sector
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import arc_at, flank, flank_normal, roll_at_arc
 
-PLACES = 8  # loads on each flank: what other teeth see of a load changes little along it
-NULL = 1e-9  # of the largest eigenvalue: a smaller one is a motion of the whole gear, which strains nothing
+PLACES = 8  # loads on each flank: their effect on other teeth changes little along it
+NULL = 1e-9  # eigenvalues below this part of the largest are motions of the whole gear, without strain
 
 
 @dataclass(frozen=True, slots=True)
 class WholeGear:
-    """The block-circulant system of a gear, by harmonic k = 0 ... z // 2 (h of them), per mm of width.
+    """Block-circulant system of a gear, by harmonic k = 0 ... z // 2 (h of them), per mm of width.
 
-    Loads are unit line loads into the right flank of a tooth (the loaded one of its own frame, `PLACES` of them from root to
-    tip), then into the left one. The held edge has r unknowns a sector, radial and tangential (clockwise) by node: those of its
-    left corner first, clockwise, the right corner left out.
+    Loads are unit line loads into the right flank of a tooth (the loaded one in the gear's frame, `PLACES` of them from root to
+    tip), then into the left one. The held edge has r unknowns per sector, radial and tangential (clockwise) by node: those of its
+    left corner first, clockwise, without the right corner.
 
-    `stiffness` ``(h, n, n)`` is complex, the unknowns of the held edge come first; `push` ``(h, n, 2 PLACES)`` are the loads on
-    the tooth of sector 0; `bed` ``(h, r, r)`` is the mass matrix of the held edge [mm]: forces of unit tractions spread as
-    displacements are; `angle` ``(r / 2,)`` that of the held nodes of sector 0, clockwise from its tooth's centre-line [rad].
+    `stiffness` ``(h, n, n)`` is complex, with the unknowns of the held edge first. `push` ``(h, n, 2 PLACES)`` are the loads on
+    the tooth of sector 0. `bed` ``(h, r, r)`` is the mass matrix of the held edge [mm]: forces of unit tractions spread as
+    displacements are. `angle` ``(r / 2,)`` is that of the held nodes of sector 0, clockwise from its tooth's centre-line [rad].
     """
 
     gear: Gear
@@ -91,7 +91,7 @@ class WholeGear:
         return np.linalg.inv(springs)
 
     def loose_inverse(self) -> NDArray:
-        """Inverses if nothing holds the edge, without the motions of the whole gear.
+        """Inverses with a free edge, without the motions of the whole gear.
 
         Forces on the edge are to be in balance with those on the teeth.
         """
@@ -162,10 +162,10 @@ def sector_edge(sector):
 
 
 def in_chain(sector):
-    """Where the unknowns of a chain of sectors stand among those of `sector_stiffness`.
+    """Return the indices of the unknowns of a chain of sectors among those of `sector_stiffness`.
 
-    A sector's own (corner, held edge, the rest of the left side); the next one's corner and side; and where these stand among the
-    next one's own.
+    They are the sector's (corner, held edge, the rest of the left side), those of the next sector's corner and side, and the
+    indices of these among the next sector's unknowns.
     """
     m, e = 2 * (2 * sector.left.size - 1), sector_edge(sector)
     own = np.concatenate([np.arange(2), np.arange(m, m + e), np.arange(2, m)])
@@ -234,7 +234,7 @@ def carry(gear, roll):
 
 
 def motion(gear):
-    """How the loads of tooth 0 move with the whole gear ``(3, 2 PLACES)``: along x, along y, and by a clockwise turn [mm]."""
+    """Return the displacement of loads of tooth 0 with the whole gear ``(3, 2 PLACES)``: along x, y, clockwise rotation [mm]."""
     roll = _rolls(gear)
     radius, angle = flank(gear, roll)
     into = -flank_normal(gear, roll)
@@ -246,7 +246,7 @@ def motion(gear):
 
 
 def between_teeth(table):
-    """``(z, PLACES, z, PLACES)`` between right flanks, of a table by the distance of teeth."""
+    """Return ``(z, PLACES, z, PLACES)`` between right flanks, from a table by the distance of teeth."""
     z = table.shape[0]
     apart = (np.arange(z)[:, None] - np.arange(z)) % z
     return table[apart, :PLACES, :PLACES].transpose(0, 2, 1, 3).copy()

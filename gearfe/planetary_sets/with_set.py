@@ -1,4 +1,4 @@
-"""A machine whose meshes are those of a planetary set: nothing that gives way counts twice."""
+"""Dynamic model with the mesh stiffnesses of a planetary set; every deflection counts once."""
 
 import math
 from dataclasses import replace
@@ -10,23 +10,24 @@ from ..dynamics.machine.mesh_excitation import harmonics
 from ..dynamics.machine.springs import Spring
 from ..dynamics.machine.tables import Machine
 from ..geometry.aliases import Floats
+from ..geometry.renamed import warn_renamed
 from .curves import SetCurves
 from .rim_supports import RimBed, RimSupports
 
 NAMES = ("sun_planet{}", "planet_ring{}")
-RINGS = ("in k", "body")
+RINGS = ("lumped", "body")
 BODY, AXES = "ring", ("x", "y", "theta")
-EVEN = 1e-6  # of a mesh cycle
-SAME = 1e-6  # of a radius, of a direction
+EVEN = 1e-6  # tolerance for equally spaced positions [mesh cycles]
+SAME = 1e-6  # relative tolerance of radii and directions
 PERFECT = 1e-12  # m: gaps below it are rounding
 
 
 def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str, str] = NAMES) -> Machine:
-    """The machine with every mesh as stiff as it is in a planetary set, each mesh of each planet with a curve of its own.
+    """Return the machine with every mesh as stiff as in a planetary set, one curve for each mesh of each planet.
 
-    `SetCurves.k` is what a mesh gives way beyond the turns and shifts of sun and planet, so that pins, a floating sun and the
-    turns are the machine's alone: its bearings of planets and sun should be those that the set was solved with. What the ring
-    does may stand in k or in the machine; with either, its sun turns as far under the set's torque as that of the set.
+    `SetCurves.k` contains the deflection of a mesh without the rotations and shifts of sun and planet. Rotations, pins and a
+    floating sun are therefore those of the machine, and its bearings of planets and sun should be those of the set. The motion of
+    the ring is part of k or of the machine. In both cases, its sun rotates as far under the set's torque as that of the set.
 
     Parameters
     ----------
@@ -35,42 +36,45 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
         make them; without damage.
     curves : SetCurves
         Over whole mesh cycles at equally spaced positions, as many as the set takes to repeat.
-    ring : {"in k", "body"}
-        ``"in k"``: k has all that the ring gives way, its motion on its supports included. The machine's ring is taken out; its
-        inertia is left out. ``"body"``: the ring is a body of the machine. On an elastic bed or elastic pads its springs are
-        those that a rigid ring has there, and how far these give way under the set's loads is taken out of k: what is left in k
-        is that teeth and ring bend, between the pads, too. A ring that is held, or on rigid pads, has no such motion: all of it
-        stays in k, and the springs of the machine's ring are its housing's, in series with it.
+    ring : {"lumped", "body"}
+        ``"lumped"``: k contains all deflections of the ring gear and its supports. The ring and its inertia are removed from the
+        machine. ``"body"``: the ring is a body of the machine. On an elastic bed or elastic pads its springs are those of a rigid
+        ring, and their deflection under the set's loads is removed from k. The rest in k is the bending of teeth and ring, also
+        between the pads. A ring that is held, or on rigid pads, has no such motion: all of it stays in k, and the springs of the
+        machine's ring are those of its housing, in series with it.
     names : (str, str)
         Names of the meshes with the sun and with the ring, ``{}`` for the planet's number from 1 on.
 
     Returns
     -------
     Machine
-        Errors of modified flanks and pins off their places are in its meshes. Meshes whose curves last several mesh cycles have
-        the `frequency` of one period of theirs; unloaded ones (k = 0) do nothing.
+        Its meshes contain the errors of modified flanks and pin positions. Meshes whose curves last several mesh cycles have the
+        `frequency` of one period of their curve. Unloaded meshes (k = 0) carry no force.
 
     Raises
     ------
     ValueError
-        If machine and set do not fit each other; the message says what to change.
+        If machine and set do not fit each other; the message states what to change.
 
     Notes
     -----
-    k is true of the loads that the set was solved for. That planets twist one sun together, and bend one ring, is in the k of
-    each mesh as those loads do it; a machine has no other coupling between its meshes than its bodies, so that loads which
-    planets do not share in that way, as in vibration, feel k as if they did. Teeth that touch at a tip corner, off the line of
-    action, turn the ring with some per cent less than the row of a mesh says; on very soft springs more than all that the set
-    gives way would then be taken out, which is refused.
+    k is valid for the loads of the set's solution. The coupling of planets by the torsion of the sun and the bending of the ring
+    is in the k of each mesh under those loads. A machine couples its meshes by its bodies only. Loads that planets share in
+    another way, as in vibration, therefore act on a k that is not exact. Teeth in contact at a tip corner, off the line of
+    action, rotate the ring by some per cent less than the row of a mesh gives. On very soft springs more than all deflections of
+    the set would then be removed, which is an error.
     """
     if not isinstance(machine, Machine) or not isinstance(curves, SetCurves):
         raise ValueError(f"with_set({machine!r}, {curves!r}), but give a Machine and what planetary_stiffness gives")
+    if ring == "in k":
+        warn_renamed('ring = "in k"', '"lumped"')
+        ring = "lumped"
     if ring not in RINGS:
-        raise ValueError(f"ring = {ring!r}, but give 'in k' or 'body': whether the ring's motion stands in k or in the machine")
+        raise ValueError(f"ring = {ring!r}, but give 'lumped' (its motion is part of k) or 'body' (of the machine)")
     cycles, case = _cycles(curves), curves.meta["case"]
     at = _places(machine, case, names)
-    machine = _still(machine) if ring == "in k" else _on_springs(machine, case)
-    k = curves.k if ring == "in k" else _without_body(machine, curves, at[1])
+    machine = _still(machine) if ring == "lumped" else _on_springs(machine, case)
+    k = curves.k if ring == "lumped" else _without_body(machine, curves, at[1])
     first, meshes = machine.meshes[at[0][0]], list(machine.meshes)
     phase = (first.phase - float(curves.position[0])) / cycles
     for inner, row in enumerate(at):
@@ -145,13 +149,13 @@ def _check(machine, mesh, pair, direction):
 
 
 def _still(machine):
-    """The machine without the degrees of freedom of its ring."""
+    """Return the machine without the degrees of freedom of its ring."""
     turn = f"{BODY}.theta"
     if turn not in machine.dofs:
         raise ValueError(f"the machine has no body {BODY!r}: give ring = 'body'")
     place = machine.dofs.index(turn)
     if not machine.K[place, place] > 0:
-        raise ValueError("the ring of this machine turns freely: a ring in k stands still; give ring = 'body'")
+        raise ValueError("the ring of this machine rotates freely, but a lumped ring is fixed: give ring = 'body'")
     stays = np.array([not dof.startswith(f"{BODY}.") for dof in machine.dofs])
 
     def cut(rows):
@@ -180,7 +184,7 @@ def ring_springs(case: Any) -> Floats:
     elif isinstance(ring, RimSupports):
         n = float(ring.count)
         if ring.pushes or ring.count < 3:
-            raise ValueError("lugs that only push, or fewer than 3 pads, are no springs of a body: give ring = 'in k'")
+            raise ValueError("lugs that only push, or fewer than 3 pads, are no springs of a body: give ring = 'lumped'")
     else:
         return np.full(3, math.inf)
     across = 1e3 * n * (ring.radial + ring.tangential) / 2
@@ -188,7 +192,7 @@ def ring_springs(case: Any) -> Floats:
 
 
 def _on_springs(machine, case):
-    """The machine with its ring on the springs that the set has, its damping ratios kept; rigid ones leave the machine's own."""
+    """Return the machine with its ring on the springs of the set, its damping ratios kept; rigid supports keep its springs."""
     springs = list(machine.springs)
     for axis, k in zip(AXES, ring_springs(case), strict=True):
         dof = f"{BODY}.{axis}"
@@ -204,7 +208,7 @@ def _on_springs(machine, case):
 
 
 def _without_body(machine, curves, inner):
-    """`SetCurves.k` without what the ring's springs give way under the loads of its meshes, of numbers `inner`."""
+    """Return `SetCurves.k` without the deflection of the ring's springs under the loads of its meshes, numbers `inner`."""
     place = [machine.dofs.index(f"{BODY}.{axis}") for axis in AXES if f"{BODY}.{axis}" in machine.dofs]
     gives = 1 / ring_springs(curves.meta["case"])[[AXES.index(machine.dofs[i].split(".")[1]) for i in place]]
     rows = np.array([machine.meshes[number].row[place] for number in inner])
@@ -212,5 +216,5 @@ def _without_body(machine, curves, inner):
     with np.errstate(divide="ignore", invalid="ignore"):
         left = np.where(curves.k[1] > 0, curves.force[1] / curves.k[1] - moved, 1.0)
         if (left <= 0).any():
-            raise ValueError("the springs of the ring move a mesh by more than it gives way in the set: give ring = 'in k'")
+            raise ValueError("the springs of the ring deflect a mesh more than the whole set does: give ring = 'lumped'")
         return np.array([curves.k[0], np.where(curves.k[1] > 0, curves.force[1] / left, 0.0)])

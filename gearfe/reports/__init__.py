@@ -1,4 +1,4 @@
-"""One self-contained page of a scene: what was assumed, how wrong the numbers are, what they look like, how they were made.
+"""Self-contained report of a scene: assumptions, errors, pictures, and how the numbers were computed.
 
-`page` puts it together, `findings` computes, `figures` and `tooth` draw with plotly; ``page.html`` is the template.
+`page` assembles it, `findings` computes, `figures` and `tooth` draw with plotly; ``page.html`` is the template.
 """

@@ -25,7 +25,7 @@ BAND = {"fill": "toself", "fillcolor": "rgba(0,114,178,0.25)", "line": {"width":
 
 
 def blank(x=None, y=None, **layout):
-    """An empty figure whose axes have these titles."""
+    """Return an empty figure whose axes have these titles."""
     from plotly.graph_objects import Figure
 
     titles = {name: {"title": title} for name, title in (("xaxis", x), ("yaxis", y)) if title}
@@ -33,7 +33,7 @@ def blank(x=None, y=None, **layout):
 
 
 def part_of_page(figure, name):
-    """A figure as an element of a page, of this name; the page has plotly itself."""
+    """Return a figure as an element of a page, with this name; the page itself contains plotly."""
     return figure.to_html(include_plotlyjs=False, full_html=False, config=CONFIG, div_id=name)
 
 
@@ -101,7 +101,7 @@ def spectra_figure(found):
 
 
 def tooth_figure(pressed, field, scale, largest):
-    """The loaded tooth in three dimensions, coloured by von Mises stress up to `largest` [MPa]."""
+    """Draw the loaded tooth in three dimensions, coloured by von Mises stress up to `largest` [MPa]."""
     points, faces, mises = shown_tooth(pressed, field, scale)
     figure = blank(height=560, margin={"l": 0, "r": 0, "t": 0, "b": 0}, hovermode="closest", dragmode="orbit")
     x, y, z = points.astype(np.float32)

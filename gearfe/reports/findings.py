@@ -1,4 +1,4 @@
-"""What a report shows, computed: comparisons of all pairs, the loaded tooth, the machine's vibration; with what each cost."""
+"""Results of a report: comparisons of all pairs, the loaded tooth, the machine's vibration; with computing times."""
 
 import contextlib
 import time
@@ -18,13 +18,13 @@ class Findings:
     """All results of one scene."""
 
     scene: Scene
-    case: str | None  # of damage, shown beside healthy
+    case: str | None  # case of damage, compared with healthy
     comparisons: dict = field(default_factory=dict)  # `gearfe.comparison.comparison.Comparison` by (pair, case or None)
     tooth: tuple | None = None  # (name of the pair, `Pressed`, `Field`): the tooth in three dimensions
     vibration: Analysis | None = None
     responses: dict = field(default_factory=dict)  # `Response` by case
     sets: dict = field(default_factory=dict)  # `SetCurves` of the scene's planetary set by case
-    notes: list = field(default_factory=list)  # warnings, and what could not be shown and why
+    notes: list = field(default_factory=list)  # warnings, and reasons for missing parts
     seconds: dict = field(default_factory=dict)  # wall time by part
 
     @property
@@ -53,7 +53,7 @@ def find(scene, case=None, *, duration=0.2, phases=64):
     compared = [(name, None) for name in scene.pairs]
     compared += [(name, findings.case) for name, pair in scene.pairs.items() if findings.case in pair.damage]
     moves = bool(scene.machine and duration)
-    done = 0.8 if moves else 1.0  # vibration takes the rest
+    done = 0.8 if moves else 1.0  # vibration is the rest of the work
     with part("", 0.0, 0.7 * done):
         for name, which in steps(compared, lambda key: f"{key[0]}, {key[1] or 'healthy'}"):
             with _counted(findings, f"stiffness of {name}, {which or 'healthy'}"):
@@ -69,7 +69,7 @@ def find(scene, case=None, *, duration=0.2, phases=64):
             motions = responses(scene, findings.case, duration=duration)
             try:
                 findings.vibration, findings.responses = analysis(motions), motions
-            except ValueError as error:  # too short to tell its lines apart; all else of the page stands
+            except ValueError as error:  # too short to resolve its lines; the rest of the page is complete
                 findings.notes.append(f"no vibration of {duration:g} s is shown: {error}")
     findings.notes = list(dict.fromkeys(findings.notes))
     return findings
@@ -77,7 +77,7 @@ def find(scene, case=None, *, duration=0.2, phases=64):
 
 @contextlib.contextmanager
 def _counted(found, name):
-    """Seconds of a part, and its warnings, into the findings."""
+    """Add the seconds of a part and its warnings to the findings."""
     started = time.perf_counter()
     with own_warnings() as caught:
         yield
@@ -86,7 +86,7 @@ def _counted(found, name):
 
 
 def _tooth(found):
-    """The damaged tooth with its load in three dimensions; None, with a note, for damage that cannot be drawn so."""
+    """Return the damaged tooth with its load in three dimensions; None, with a note, for other damage."""
     chosen = found.scene.pair(found.hurt_pair)
     case = found.case if found.case in chosen.damage else None
     try:

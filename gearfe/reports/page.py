@@ -1,4 +1,4 @@
-"""`report`: a page of a scene in one file that needs no network."""
+"""`report`: a self-contained page of a scene."""
 
 import base64
 import itertools
@@ -22,7 +22,7 @@ from .template import page_maker
 from .whole_set import set_section
 
 MARK = 10.0  # errors beyond it are emphasised [%]
-PICTURE, REFINE = (1120, 840), 0.7  # of stress [px], and of its mesh
+PICTURE, REFINE = (1120, 840), 0.7  # size of a picture of stress [px], and refinement of its mesh
 
 
 def report(
@@ -33,20 +33,20 @@ def report(
     duration: float = 0.2,
     phases: int = 64,
 ) -> Path:
-    """Write one self-contained page of a scene: assumptions, errors, curves, shares, stress, vibration, and how all was made.
+    """Write a self-contained HTML report: assumptions, errors, curves, load sharing, stress, vibration, methods.
 
     Parameters
     ----------
     scene : Scene, str or path
-        As of `gearfe.load_scene`, or a name or file of one.
+        Result of `gearfe.load_scene`, or a name or file of a scene.
     path : path
         A ``.html`` file.
     case : str, optional
-        Case of damage shown beside healthy; default the first of the scene.
+        Case of damage, compared with healthy; default the first of the scene.
     duration : float
-        Of the vibration of the scene's machine that is kept [s]; 0 leaves the machine out.
+        Record length of the vibration of the scene's machine [s]; 0 omits the machine.
     phases : int
-        Of the stiffness curves, per mesh cycle.
+        Number of phases per mesh cycle of the stiffness curves.
 
     Raises
     ------
@@ -76,13 +76,13 @@ def report(
 
 
 def _numbered():
-    """Function that makes a figure an element of a page; the elements are numbered."""
+    """Return a function that makes a figure an element of a page; the elements are numbered."""
     numbers = itertools.count(1)
     return lambda figure: part_of_page(figure, f"figure-{next(numbers)}")
 
 
 def _pictures(found):
-    """Pictures of stress, healthy and damaged, as data of the page; without a renderer what is missing."""
+    """Return pictures of stress, healthy and damaged, as data of the page; without a renderer the missing package."""
     name = found.hurt_pair
     chosen, out = found.scene.pair(name), []
     for case in dict.fromkeys([None, found.case if found.case in chosen.damage else None]):
@@ -100,7 +100,7 @@ def _pictures(found):
 
 
 def _tooth(found):
-    """The loaded tooth in three dimensions, its stress, and how far its displacements are enlarged; None without one."""
+    """Return the loaded tooth in three dimensions, its stress, and the magnification of its displacements; None without one."""
     if found.tooth is None:
         return None
     name, pressed, field = found.tooth
@@ -110,9 +110,9 @@ def _tooth(found):
 
 
 def _methods(found):
-    """`Table` of the methods that were used, what each is, and its error."""
+    """Return the `Table` of the used methods with their descriptions and errors."""
     used = dict.fromkeys(name for comparison in found.comparisons.values() for name in comparison.curves)
-    closed = "a closed form: no estimate of its own, its error is that of the table"
+    closed = "a closed form without estimate; the table has its error"
     error = {False: closed, True: "can be refined to the limit"}
     rows = [(row.name, row.about, error[row.converged] + "; estimated from coarser solves" * (row.converged and bool(row.error)))
             for name in used if (row := METHODS.get(name))]  # fmt: skip
@@ -120,12 +120,12 @@ def _methods(found):
 
 
 def _assumed(scene):
-    """`Table` of what a scene assumes."""
+    """Return the `Table` of a scene's assumptions."""
     rows = [(one["what"], one["why"], one["depends"] or "not stated") for one in scene.assumptions]
     return Table(("assumed", "why", "what depends on it"), rows, "assumptions")
 
 
 def _command(found):
-    """What was typed for the page, the file of a scene of one's own without its folder."""
+    """Return the command that makes the page, with the file of a user's scene without its folder."""
     name = found.scene.name if found.scene.name in scene_names() else f"{found.scene.name}.toml"
     return f"gearfe report {name}{f' --case {found.case}' if found.case else ''} -o page.html"

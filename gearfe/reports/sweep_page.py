@@ -1,4 +1,4 @@
-"""`sweep_report`: a page of the results of a sweep, in one file that needs no network."""
+"""`sweep_report`: a self-contained page of the results of a sweep."""
 
 import json
 from pathlib import Path
@@ -13,7 +13,7 @@ from .figures import BAND, blank, part_of_page, style
 from .template import page_maker
 
 SIZE = {"height": 420, "hovermode": "closest"}
-SHOWN = {  # by kind of study: the output whose effects are drawn, and the curve whose bands are
+SHOWN = {  # by type of study: the output for main effects, and the curve for bands
     "stiffness": ("k_mean", "k"),
     "transmission error": ("te_peak_to_peak", "te"),
     "set": ("k_planet_ring", None),
@@ -81,7 +81,7 @@ def _failed(table):
 
 
 def _effects(runs, output):
-    """Main effects, each input over its own range."""
+    """Return main effects, each input over its own range."""
     figure = blank("place of the value in its range", f"mean {output} [{runs.units[output]}]", **SIZE)
     for i, (name, effects) in enumerate(main_effects(runs, output).groupby("input", sort=False)):
         texts = [str(value) if isinstance(value, str) else f"{value:.5g}" for value in effects["value"]]
@@ -94,7 +94,7 @@ def _effects(runs, output):
 
 
 def _bands(runs, curve):
-    """Middle and 5 to 95 % of the curves; empty where they have no common places."""
+    """Return the median and the 5 to 95 % band of the curves; empty if they have no common places."""
     if curve is None:
         return ""
     try:

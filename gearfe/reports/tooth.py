@@ -36,7 +36,7 @@ def shown_tooth(pressed, field, scale):
 
 
 def towards_flank(gear):
-    """Unit vector from which the loaded flank of tooth 0 is seen, the way out of the tooth being up."""
+    """Return the unit vector from which the loaded flank of tooth 0 is seen, the way out of the tooth being up."""
     turn = gear.twist_rate * gear.b / 2
     out = np.array([math.cos(turn), -math.sin(turn), 0.0])
     up = gear.outward * np.array([math.sin(turn), math.cos(turn), 0.0])

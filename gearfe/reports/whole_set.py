@@ -35,7 +35,7 @@ def find_set(scene: Scene, case: str | None) -> tuple[dict[str, SetCurves], list
 
 
 def set_section(found: dict[str, SetCurves]) -> list[dict[str, Any]]:
-    """What the page shows of each of these sets: a sentence, what it is, a `Table`, pictures as data of the page."""
+    """Return data of these sets for the page: a sentence, a description, a `Table`, pictures."""
     out = []
     for name, curves in found.items():
         healthy = found.get("healthy") if name != "healthy" else None
@@ -48,7 +48,7 @@ def set_section(found: dict[str, SetCurves]) -> list[dict[str, Any]]:
 
 
 def _picture(name: str, draw: Callable[..., Any]) -> dict[str, str]:
-    """A picture as data of the page, or why there is none."""
+    """Return a picture as data of the page, or the reason why there is none."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "set.png"
         try:

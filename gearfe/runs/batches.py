@@ -1,4 +1,4 @@
-"""Many cases at once, over processes, each timed; a case that cannot be gives its error in place of its result."""
+"""Many cases over several processes, each timed; a case that fails has its error in place of its result."""
 
 import multiprocessing
 import pickle
@@ -18,8 +18,8 @@ from .runner import Tally, check_workers, count_of, results
 class Batch:
     """Results of `batch`, in the order of its cases.
 
-    `results` holds what the work returned, or the ValueError or RuntimeError it raised; `seconds` the time of each case;
-    `elapsed` that of all, by `workers` processes.
+    `results` holds the results of the function, or the ValueError or RuntimeError that it raised. `seconds` are the times of the
+    cases, `elapsed` is the total time with `workers` processes.
     """
 
     results: list[Any]
@@ -35,7 +35,7 @@ def batch(
     workers: int | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> Batch:
-    """Work through many cases.
+    """Run a function for many cases in parallel processes.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def batch(
     if not cases or not all(isinstance(case, (Case, Mapping)) for case in cases):
         raise ValueError("cases: give a list of one Case or dict at least")
     if getattr(multiprocessing.current_process(), "_inheriting", False):
-        sys.exit(1)  # a worker that imports an unguarded script: the process that started it says what to do
+        sys.exit(1)  # a worker that imports an unguarded script; the parent process prints the remedy
     workers = count_of(workers, cases)
     of_script = workers > 1 and _of_script(work, cases)
     started, tally = time.perf_counter(), Tally("cases", len(cases), progress)
@@ -92,7 +92,7 @@ def batch(
 
 
 def _of_script(work, cases):
-    """Whether other processes need what the caller's script defines; ValueError if they cannot be handed the work."""
+    """Return True if workers need definitions of the caller's script; ValueError if the work cannot be sent to them."""
     try:
         return any(b"__main__" in pickle.dumps((work, case)) for case in cases)
     except (AttributeError, TypeError, pickle.PicklingError) as error:
@@ -100,7 +100,7 @@ def _of_script(work, cases):
 
 
 def _timed(work, job):
-    """Result, or error, and seconds of each case of a job."""
+    """Return result, or error, and seconds of each case of a job."""
     out = []
     for case in job[1]:
         started = time.perf_counter()

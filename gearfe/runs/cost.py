@@ -1,4 +1,4 @@
-"""What a sweep or a data set will take, from cases of it that are computed for that."""
+"""Expected cost of a sweep or a data set, from computed sample cases."""
 
 import os
 import resource
@@ -12,19 +12,19 @@ from pathlib import Path
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """What a sweep or a data set will take."""
+    """Expected cost of a sweep or a data set."""
 
     text_of_cases: str
     cases: int  # in all
     blocks: int  # files they make
-    seconds: float  # of processor, all cases together
+    seconds: float  # CPU time of all cases
     workers: int  # processes that share it
-    memory: float  # of each process [bytes]: the largest of this one so far
+    memory: float  # memory of each process [bytes]: the peak of this one so far
     disk: float  # the whole folder [bytes]
     free: float  # there [bytes]
-    tried: int  # cases that were computed for this
+    tried: int  # number of sample cases
     failed: int  # of these
-    error: str  # of the first that cannot be; empty if there is none
+    error: str  # first error of the sample cases; empty if there is none
 
     def text(self) -> str:
         """Lines for people."""
@@ -41,7 +41,7 @@ class Cost:
 def estimated(
     text: str, cases: int, blocks: int, trial: Callable[[], tuple[bytes, int, list[str]]], folder: object, workers: int | None
 ) -> Cost:
-    """`Cost` of so many `cases`; `trial` computes some and returns their file, their number and the errors of those that failed.
+    """Estimate the `Cost` of `cases`; `trial` computes some and returns their file, number and errors.
 
     `folder` is where they would be written.
     """

@@ -1,4 +1,4 @@
-"""`error_map`: how far closed forms are from the converged energy model, over thousands of gear pairs."""
+"""`error_map`: errors of closed forms relative to the converged energy model, for thousands of gear pairs."""
 
 import contextlib
 import math
@@ -80,24 +80,24 @@ def error_map(
     workers: int | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> ErrorMap:
-    """Errors of the closed forms against `ritz` over a sample of gear pairs.
+    """Compute the errors of the closed forms relative to `ritz` for a sample of gear pairs.
 
-    A scrambled Sobol sequence over `RANGES`; samples that cannot be built or mesh, or whose crack leaves
-    the body, are passed over. Every pair is taken healthy, and every second one also with a pinion crack from the 30-degree point
-    at 45 degrees. Steel (206 GPa, 0.3), plane strain, no contact beyond the path of contact, which closed forms do not know.
+    The sample is a scrambled Sobol sequence over `RANGES`. Samples that cannot be built or cannot mesh, or whose crack leaves the
+    body, are skipped. Every pair is computed healthy, and every second one also with a pinion crack from the 30-degree point at
+    45 degrees. Steel (206 GPa, 0.3) in plane strain, without the contact beyond the path of contact that closed forms neglect.
 
     Parameters
     ----------
     pairs : int
         Number of pairs (two gears each).
     seed : int
-        Of the sample.
+        Seed of the sample.
     loads : sequence of float
         F / (b m_n) [MPa]: geometry and load scale with the module.
     phases : int
-        Per mesh cycle.
+        Number of phases per mesh cycle.
     workers, progress
-        As of `gearfe.batch`.
+        See `gearfe.batch`.
 
     Returns
     -------
@@ -107,8 +107,8 @@ def error_map(
     Raises
     ------
     ValueError
-        If `pairs` is no whole number from 1 on, `phases` is below 1, `loads` are empty or one is not positive and finite, or so
-        large that teeth would break, or `workers` is no whole number from 1 on.
+        If `pairs` is no whole number from 1, `phases` is below 1, `loads` are empty, not positive, not finite or beyond the
+        strength of teeth, or `workers` is no whole number from 1.
     """
     at = {"loads": numbers("loads", loads, " [MPa]").reshape(-1).tolist(), "phases": whole("phases", phases, 1)}
     cases = [{"sample": one, **at} for one in _samples(whole("pairs", pairs, 1, 10**6), seed)]
@@ -163,7 +163,7 @@ def _one(sample, loads, phases):
         how = replace(how, phases=(inside[1:] + inside[:-1]) / 2)
         truth, curves = solve(case, how), {}
         for name, (method, variants) in CRACKED.items():
-            with contextlib.suppress(ValueError):  # nothing is left of the beam: the model has no value here
+            with contextlib.suppress(ValueError):  # no beam is left: the model has no value here
                 curves[name] = solve(case, replace(how, method=method, variants=variants))
         rows += [sample | {"load": load} | _errors(truth, curves, i) for i, load in enumerate(loads)]
     return rows

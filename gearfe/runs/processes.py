@@ -16,9 +16,9 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 @contextlib.contextmanager
 def processes(workers: int, *, own: bool = False) -> Iterator[ProcessPoolExecutor]:
-    """Pool of new processes of one thread each, which end when this one does, however it ends.
+    """Return a pool of new processes of one thread each, which end with this process in any case.
 
-    `own`: they need what the caller's script defines; then they run it again.
+    With `own`, workers need definitions of the caller's script and run it again.
     """
     spawn = multiprocessing.get_context("spawn")
     with (
@@ -31,7 +31,7 @@ def processes(workers: int, *, own: bool = False) -> Iterator[ProcessPoolExecuto
 
 @contextlib.contextmanager
 def _one_in_environment():
-    """Processes started here have one thread: the libraries read it from the environment when they start."""
+    """Let processes started here have one thread: the libraries read it from the environment when they start."""
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, "1"))
     try:
@@ -42,7 +42,7 @@ def _one_in_environment():
 
 
 def _end_with_parent():
-    """Leave this process when the one that started it is gone: a killed one can not say so to its workers."""
+    """End this process if its parent is gone: a killed parent sends no signal to its workers."""
     parent = multiprocessing.parent_process()
 
     def watch():

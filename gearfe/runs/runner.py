@@ -1,4 +1,4 @@
-"""The one runner of many jobs, for sweeps, data sets and batches: over processes of this machine, or a Dask scheduler.
+"""Parallel runner of sweeps, data sets and batches: over local processes, or a Dask scheduler.
 
 A job that ends its process (killed, out of memory) costs what was under way; that is tried again, each job alone.
 """
@@ -18,7 +18,7 @@ from ..core.extras import needing
 from ..core.steps import reached
 from .processes import processes
 
-AHEAD = 2  # jobs handed out for each process, so that none waits
+AHEAD = 2  # jobs submitted per process, so that none waits
 TIMEOUT = "20s"  # for a scheduler to answer
 REFRESH = 5.0  # s between two looks at how many workers a scheduler has
 
@@ -47,7 +47,7 @@ def check_workers(workers: int | None) -> None:
 
 
 def count_of(workers: int | None, jobs: Sequence[Any]) -> int:
-    """Number of processes for some jobs: `workers`, or one per core, and no more than there are jobs."""
+    """Return the number of processes for some jobs: `workers`, or one per core, and no more than there are jobs."""
     return min(workers or os.cpu_count() or 1, max(1, len(jobs)))
 
 
@@ -122,7 +122,7 @@ def alone(work: Callable[[Any], Any], jobs: Iterable[Any], *, own: bool = False)
 
 
 def _on_cluster(work, jobs, address):
-    """The same by the workers of a Dask scheduler, which gives the jobs of a lost worker to others."""
+    """Run the jobs by the workers of a Dask scheduler, which gives the jobs of a lost worker to others."""
     with needing("distributed"):
         from distributed import Client, KilledWorker, as_completed
     try:

@@ -1,4 +1,4 @@
-"""Assumptions belong to values: which of a scene's assumptions still hold after a user has changed its numbers.
+"""Assumptions of a scene that still hold after a user has changed its numbers; each belongs to values.
 
 An ``[[assumption]]`` may list the values it speaks of, and ``[given]`` those that the scene's source prints, both by dotted key::
 
@@ -18,7 +18,7 @@ import re
 
 from .schema import shown
 
-OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # in what is said to depend on an assumption
+OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # words in the effects of an assumption
 
 
 def split(file, assumptions, given, tables):
@@ -69,5 +69,5 @@ def _present(file, where, key, tables):
 
 
 def of_stiffness(assumptions):
-    """Those of a scene's assumptions on which the mesh stiffness depends, or that do not say what depends on them."""
+    """Return the assumptions on which the mesh stiffness depends, or that state no effects."""
     return [assumption for assumption in assumptions if not assumption["depends"] or OF_STIFFNESS.search(assumption["depends"])]

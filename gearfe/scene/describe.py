@@ -35,7 +35,7 @@ def keys_page(*schemas: Mapping[str, KeyTable]) -> str:
 
 
 def _places(schema: Mapping[str, KeyTable]) -> dict[str, str]:
-    """Where the nested tables of a schema stand in a file, by their name."""
+    """Return the positions of a schema's nested tables in a file, by their name."""
     out: dict[str, str] = {}
     for name, table in schema.items():
         out |= {key.of: key.heading(out.get(name, "").strip("[]")) for key in table.keys.values() if key.of}

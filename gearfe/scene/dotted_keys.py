@@ -1,4 +1,4 @@
-"""Any value of a scene by its dotted key, ``crack.cracked.level``: which there are, and how one is set in the scene's tables.
+"""Values of a scene by dotted keys such as ``crack.cracked.level``: valid keys, and assignment in the scene's tables.
 
 A part of a key is the name of a table, the case of a list of damage, or the place of a number in a list.
 """
@@ -13,7 +13,7 @@ from .parts import DAMAGE
 from .schema import LISTS, Key, scene_schema
 
 OUTSIDE = ("pair", "case")  # keys by themselves: which pair, which case of damage ("healthy": none)
-BEFORE_LOAD = ("gear", "material")  # what the healthy gears depend on; then damage; the rest shares the gears
+BEFORE_LOAD = ("gear", "material")  # inputs of the healthy gears; then damage; the rest shares the gears
 PRINTED = ("reference", "assumption", "given", "later")  # statements on the source, which no value depends on
 Tables = dict[str, Any]
 
@@ -37,7 +37,7 @@ def check_key(dotted: str, tables: Tables, options: Mapping[str, Any]) -> None:
 
 
 def find_key(dotted: str, tables: Tables) -> Key:
-    """The `Key` that a dotted key names; ValueError if it names no single value of a scene's `tables`."""
+    """Return the `Key` of a dotted key; ValueError if it is no single value of a scene's `tables`."""
     schema, parts = scene_schema(), dotted.split(".")
     table, home, inner = schema["scene"], cast(Any, tables), cast(Any, None)
     kinds = [name for name, key in table.keys.items() if key.of and name not in PRINTED and (tables.get(name) or "set" in tables)]
@@ -97,9 +97,9 @@ def _with_number(home, name, at, value):
 
 
 def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
-    """Tables that one pair in one case of damage needs: the rest would be checked for every case of a sweep, for nothing.
+    """Return the tables of one pair in one case of damage, since the rest would be checked for every case of a sweep.
 
-    The pair of a gearbox has the force that the gearbox puts on it.
+    The pair of a gearbox has its force in the gearbox.
     """
     chosen = tables["pair"][pair]
     if is_gearbox(tables):
@@ -126,7 +126,7 @@ def is_gearbox(tables: Tables) -> bool:
 
 
 def rank(dotted: str) -> int:
-    """Order in which keys are sorted so that cases beside each other share what was solved: 0 gears, 1 damage, 2 the rest."""
+    """Return the sort order of keys, so that neighbouring cases share solutions: 0 gears, 1 damage, 2 the rest."""
     first = dotted.partition(".")[0]
     if first in BEFORE_LOAD or dotted in OUTSIDE:
         return 0

@@ -49,7 +49,7 @@ class ScenePair:
     owned: dict[str, dict[str, parts.Owned]] = field(default_factory=dict)
 
     def case(self, name: str | None = None) -> Case:
-        """The pair as it is solved, in a case of damage; None: healthy. ValueError if there is no such case of this pair."""
+        """Return the pair as a `Case` with a case of damage; None: healthy. ValueError if the pair has no such case."""
         if name is not None and name not in self.damage:
             raise ValueError(f"no case {name!r} of this pair; it has {', '.join(self.damage) or 'none'}")
         given = {own: getattr(self, own) or None for own in ("flanks", "misalignment", "supports", "face")}
@@ -59,10 +59,10 @@ class ScenePair:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A machine: `gears` and `pairs` by name, what had to be assumed, and what `machine.of_scene` needs to run it.
+    """Machine: `gears` and `pairs` by name, assumptions, and the inputs of its dynamic model.
 
-    `references` are what its sources print, `gearfe.scene.references.Reference`; none in a copy whose given values were changed.
-    `changed` says which values are no longer those of the original (see `gearfe.scene.assumed`).
+    `references` are printed values of its sources, `gearfe.scene.references.Reference`; none in a copy with changed values.
+    `changed` lists the values that differ from the original (see `gearfe.scene.assumed`).
     """
 
     name: str
@@ -79,7 +79,7 @@ class Scene:
     train: Train | None = None  # shafts of a gearbox, their speeds and torques
 
     def pair(self, name: str | None = None) -> ScenePair:
-        """The pair called `name`; the first one if None. ValueError if there is no such pair."""
+        """Return the pair called `name`; the first one if None. ValueError if there is no such pair."""
         if name is None:
             return next(iter(self.pairs.values()))
         if name not in self.pairs:
@@ -107,7 +107,7 @@ def load_scene(name_or_path: StrPath) -> Scene:
     Raises
     ------
     ValueError
-        Naming file, table and key if anything is unknown, missing, or of the wrong type, or if a gear or pair cannot be.
+        With file, table and key, if anything is unknown, missing or of the wrong type, or if a gear or pair is impossible.
     """
     return scene_of(*read_tables(name_or_path))
 
@@ -178,7 +178,7 @@ def _with_backlash(pair: GearPair, wanted: float) -> GearPair:
 
 
 def _pair(file, name, rows, gears, materials, forces):
-    """`ScenePair` of the checked tables of a scene; `forces` are those of the pairs of a gearbox [N]."""
+    """Return the `ScenePair` of the checked tables of a scene; `forces` are those of the pairs of a gearbox [N]."""
     row = rows["pair"][name]
     force = row["force_N"] or forces.get(name)
     if force is None:

@@ -1,4 +1,4 @@
-"""`new_scene`: a commented scene file of one's own to start from."""
+"""`new_scene`: a commented scene file as a starting point."""
 
 import math
 from pathlib import Path

@@ -37,7 +37,7 @@ def sides(file: str, where: str, row: Row, name: str, pairs: dict[str, Row]) -> 
 
 
 class Owner(NamedTuple):
-    """Whose tooth is damaged: a `body` of the machine, or by default the one on `side` of the pair `home`."""
+    """Owner of the damaged tooth: a `body` of the machine, or by default the one on `side` of the pair `home`."""
 
     body: str | None
     home: str
@@ -73,7 +73,7 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
 
 
 def crack_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
-    """The crack of a row."""
+    """Return the crack of a row."""
     return [Crack(**arguments("crack", row))]
 
 
@@ -100,18 +100,18 @@ def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
 
 
 def spall_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
-    """The spall of a row, and its mirror image in the other half of a herringbone gear if asked for."""
+    """Return the spall of a row, and its mirror image in the other half of a herringbone gear on request."""
     spall = Spall(**arguments("spall", row, "radius_mm", "z_mm", "sides_mm", "depth_mm", "corner_mm", "tooth"))
     return [spall, *_other_half(row, [spall], made, which, pair)]
 
 
 def missing_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
-    """The missing tooth of a row."""
+    """Return the missing tooth of a row."""
     return [MissingTooth(tooth=row["tooth"])]
 
 
 def chip_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
-    """The chip of a row."""
+    """Return the chip of a row."""
     return [Chip(**arguments("chip", row))]
 
 

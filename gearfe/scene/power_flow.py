@@ -49,7 +49,7 @@ def torques_of(
     place, out = {name: i for i, name in enumerate(speeds)}, {"motor": torque}
     free = [name for name, end in ends.items() if name != "motor" and end["torque_Nm"] is None]
     if len(free) != 1:
-        raise ValueError(f"{file}: {len(free)} loads without torque_Nm: leave it out for one load, which takes what is left")
+        raise ValueError(f"{file}: {len(free)} loads without torque_Nm: leave it out for exactly one load, which takes the rest")
     for name, end in ends.items():
         if name not in ("motor", *free):
             out[name] = -math.copysign(end["torque_Nm"], speeds[end["shaft"]])
@@ -66,6 +66,6 @@ def torques_of(
     left, power = (out[name] * speeds[ends[name]["shaft"]] for name in (free[0], "motor"))
     if not left < -NONE * power:
         raise ValueError(
-            f"{file} [load.{free[0]}]: nothing is left for it; give [machine] torque_Nm more or the other loads less"
+            f"{file} [load.{free[0]}]: no torque remains for it; increase [machine] torque_Nm or reduce the other loads"
         )
     return out

@@ -1,4 +1,4 @@
-"""The check of the tables of a file against a schema, with messages that name file, table, key and value as typed."""
+"""Check of the tables of a file against a schema, with messages that state file, table, key and value as typed."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -106,7 +106,7 @@ def fits(value: Any, kind: str, count: int | None = None) -> bool:
 
 
 def _wrong(key, value):
-    """What the schema says against a value; empty if it is permitted."""
+    """Return the message on a value that the schema does not permit; empty if it is permitted."""
     if not fits(value, key.type, key.count):
         return f": expected {key.expected}{_limit(value)}"
     if key.distinct and not 0 < len(set(value)) == len(value):
@@ -120,11 +120,14 @@ def _limit(value):
 
 
 def unknown(name: Any, names: Iterable[str]) -> str:
-    """Message on an unknown key, with the nearest of the known `names`."""
+    """Return the message on an unknown key, with the nearest of the known `names`."""
     from difflib import get_close_matches
 
     near = get_close_matches(str(name), names := list(names), 1)
-    return f"unknown key {shown(name)}{f' (nearest: {near[0]!r})' if near else ''}; expected {', '.join(names)}"
+    hint = f" (nearest: {near[0]!r})" if near else ""
+    if name == "torque_Nm" and "force_N" in names:
+        hint = " (force_N is the torque of gear_1 in N m times 1000, over its base radius in mm)"
+    return f"unknown key {shown(name)}{hint}; expected {', '.join(names)}"
 
 
 def check_known(file: str, where: str, key: str, name: Any, names: Iterable[str], kind: str) -> None:

@@ -1,4 +1,4 @@
-"""What the sources of a scene print: numbers and statements with tolerance, citation, and what is wrong in them."""
+"""Printed numbers and statements of the sources of a scene, with tolerance, citation and corrections."""
 
 from dataclasses import dataclass
 
@@ -9,13 +9,13 @@ from ..core.units import NEWTON_PER_UM
 class Printed:
     """One printed value.
 
-    `case` is what it is printed for, `pair` a pair of the scene or None. `value` is the number as printed; for a statement 1
-    (true) or 0; nan where the source gives a formula but no number. `corrected` (or None) is that after the `correction`: what is
-    changed in the printed value, or in the conditions ours is computed for. `reason` says why it cannot be reproduced.
+    `case` is its damage case, `pair` a pair of the scene or None. `value` is the number as printed; for a statement 1 (true) or
+    0; nan if the source gives a formula without a number. `corrected` (or None) is the value after the `correction` of the
+    printed value or of its conditions. `reason` is the reason why it is not reproducible.
 
-    `kind` is ``"input"``: ours was put in, or found from this very value; ``"arithmetic"``: follows from printed numbers without
-    a model of the machine; ``"model"``: a result that could have come out otherwise. `set_by` names an assumption of the scene,
-    or choice of ours, that sets our value: agreement then proves nothing, and the verdict says so.
+    `kind` is ``"input"``: the value is an input here, or was derived from it. ``"arithmetic"``: it follows from printed numbers
+    without a model of the machine. ``"model"``: an independent result. `set_by` is an assumption of the scene, or a choice of
+    ours, that sets our value. Agreement then proves nothing, and the verdict states this.
     """
 
     case: str
@@ -29,17 +29,17 @@ class Printed:
 
     @property
     def target(self) -> float:
-        """What ours is compared with: the corrected value if there is one, else the printed one."""
+        """Reference value: the corrected value if there is one, else the printed one."""
         return self.value if self.corrected is None else self.corrected
 
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A quantity as its source prints it.
+    """Quantity as printed by its source.
 
-    `id` is the name of the function that computes it, `unit` is ``statement`` for statements, `source` the article and the place
-    in it. The tolerance is `relative`, a part of the printed value, or `absolute`, in `unit`: one of them, and `tolerance` is its
-    reason. `trend` says whether the order of the cases is what the source concludes from.
+    `id` is the name of the function that computes it. `unit` is ``statement`` for statements. `source` is the article and the
+    place in it. The tolerance is `relative`, a part of the printed value, or `absolute`, in `unit`, one of them; `tolerance` is
+    its reason. `trend` is true if the source draws its conclusion from the order of the cases.
     """
 
     id: str
@@ -60,12 +60,12 @@ class Reference:
 
 
 def read_references(file, tables):
-    """References of the checked [[reference]] tables of a scene file; ValueErrors name file, table and key."""
+    """Return the references of the checked [[reference]] tables of a scene file; ValueErrors state file, table and key."""
     out = tuple(_reference(file, f"reference {i + 1}, {row['id']}", row) for i, row in enumerate(tables))
     names = [reference.id for reference in out]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise ValueError(f"{file}: reference id {twice[0]!r} is used twice; give each its own")
+        raise ValueError(f"{file}: reference id {twice[0]!r} is used twice; give different ids")
     return out
 
 
@@ -76,7 +76,7 @@ def _reference(file, where, row):
     places = [(printed.case, printed.pair) for printed in rows]
     twice = [place for place in places if places.count(place) > 1]
     if twice:
-        raise ValueError(f"{file} [{where}]: two rows of case {twice[0][0]!r} and pair {twice[0][1]!r}; give each its own case")
+        raise ValueError(f"{file} [{where}]: two rows of case {twice[0][0]!r} and pair {twice[0][1]!r}; give different cases")
     keep = {key: row[key] for key in ("id", "quantity", "unit", "source", "relative", "absolute", "tolerance", "trend", "note")}
     return Reference(**keep, rows=rows)
 

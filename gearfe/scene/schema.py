@@ -1,7 +1,7 @@
-"""Schema of TOML files: what each key is (type, unit, range, default, description).
+"""Schema of TOML files: type, unit, range, default and description of each key.
 
-The keys of a scene are defined in ``keys.toml``, those of sweeps and data sets in files of the same form. A value that the schema
-does not permit is a ValueError that names file, table, key and value as typed, and what is permitted.
+The keys of a scene are defined in ``keys.toml``, those of sweeps and data sets in files of the same form. An invalid value raises
+a ValueError with file, table, key and value as typed, and the permitted values.
 """
 
 import math
@@ -31,7 +31,7 @@ IN_PYTHON: dict[str, Callable[[float], float]] = {  # units of TOML in those of 
     "Nm/mrad": lambda value: value * 1e6,
     "urad/kN": lambda value: value / 1e9,
 }
-SPELLED = {"deg": "degrees", "Nm": "N m", "kgm2": "kg m2"}  # units as messages write them
+SPELLED = {"deg": "degrees", "Nm": "N m", "kgm2": "kg m2"}  # units in messages
 QUANTITY = r" = (?:[\[(][^\])]*[\])]|[-+\w.]+)(?: (?:N mm/rad|N/mm(?:\^3)?|rad/N|N m|mm|um|rad|MPa|N)\b)?"  # a value in a message
 
 
@@ -89,7 +89,7 @@ class Key:
 
     @property
     def permitted(self) -> str:
-        """Permitted range or choices in words: what a value must; empty if everything is permitted."""
+        """Permitted range or choices in words, after "must"; empty if everything is permitted."""
         unit = f" {SPELLED.get(self.unit, self.unit)}" if self.unit else ""
         if self.choices:
             return f"be one of {', '.join(self.choices)}"
@@ -110,14 +110,14 @@ class Key:
         return all(compare(one, bound) for bound, compare in rules if bound is not None for one in numbers)
 
     def in_python(self, value: Any) -> Any:
-        """The value in the units of the library; a list as a tuple."""
+        """Return the value in the units of the library; a list as a tuple."""
         convert = IN_PYTHON.get(self.unit, lambda one: one)
         return tuple(map(convert, value)) if isinstance(value, (list, tuple)) else convert(value)
 
 
 @dataclass(frozen=True, slots=True)
 class KeyTable:
-    """A table of keys, with the rules on which of them go together."""
+    """Table of keys, with rules for their combination."""
 
     name: str
     about: str
@@ -127,7 +127,7 @@ class KeyTable:
     together: tuple[tuple[str, str], ...] = ()
 
     def as_typed(self, row: Mapping[str, Any], text: str) -> str:
-        """A message of the library with the keys and values of a `row` as they are typed."""
+        """Return a message of the library with the keys and values of a `row` as they are typed."""
         for key in self.keys.values():
             if (value := row.get(key.name)) is not None and key.python_name != key.name:
                 typed = f"{key.name} = {shown(value)}".replace("\\", r"\\")
@@ -137,7 +137,7 @@ class KeyTable:
         return re.sub(r"([-\d.]+) to ([-\d.]+) rad\b", _in_degrees, text)
 
     def _rules(self, row):
-        """What a row breaks of the rules on which keys go together."""
+        """Yield the rules on combinations of keys that a row violates."""
         given = {name for name, value in row.items() if value is not None and value != self.keys[name].default}
         if self.one_of and len(given.intersection(self.one_of)) != 1:
             stated = (f"{name} ({self.keys[name].label})" for name in self.one_of)
@@ -186,7 +186,7 @@ def _frozen(value):
 
 
 def shown(value: Any) -> str:
-    """A value for a message: no longer than a line, whatever was given."""
+    """Return a value for a message, at most a line long."""
     try:
         text = repr(value)
     except ValueError:  # Python writes no whole numbers of more than 4300 digits

@@ -78,7 +78,7 @@ def _pairs(file, row, pairs, rows):
                 found.append(((one, two), gears))
     if not found:
         raise ValueError(
-            f"{file} [set]: no two pairs make it: give one with the sun as gear_1 and the planet as gear_2, and one of that "
+            f"{file} [set]: two pairs are needed: give one with the sun as gear_1 and the planet as gear_2, and one of that "
             "planet and a ring"
         )
     if len(found) > 1:
@@ -95,7 +95,7 @@ def _force(row, radii, force):
 
 
 def _errors(file, pins, count):
-    """By planet how far its pin stands off, outwards and clockwise [mm]."""
+    """Return pin position errors by planet, outwards and clockwise [mm]."""
     out, said = [(0.0, 0.0)] * count, {}
     for name, row in pins.items():
         planet = _planet(file, f"pin.{name}", "planet", row["planet"], count)

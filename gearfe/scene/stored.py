@@ -1,4 +1,4 @@
-"""Stiffness curves of a scene that took too long to compute each time: files beside the scene, valid for just its numbers."""
+"""Stored stiffness curves of a scene with long computing time: files next to the scene, valid for its exact numbers."""
 
 import csv
 import hashlib
@@ -31,12 +31,12 @@ def _plain(value):
 
 
 def stored_file(scene):
-    """Where the curves of a built-in scene are; it may not exist."""
+    """Return the file of the stored curves of a built-in scene; it may not exist."""
     return resources.files("gearfe.scene.scenes") / f"{scene.name}_fe3d.csv"
 
 
 def read_curves(scene, file=None):
-    """Stored curves by (pair, case): phases, k [N/m], the damaged tooth's own [N/m], relative error estimate, seconds.
+    """Read stored curves by (pair, case): phases, k [N/m], the damaged tooth's own [N/m], relative error estimate, seconds.
 
     Only those computed for just this scene's gears, loads and damages; none if there is no file.
     """

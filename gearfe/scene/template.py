@@ -1,4 +1,4 @@
-"""A scene file with comments, from its tables and the schema: what is stated, and commented lines for all else it can say.
+"""Commented scene file from its tables and the schema, with comment lines for all other keys.
 
 Lines that are keys or tables begin with # and no space; take the # away, and they hold. Text begins with # and a space.
 """

@@ -1,4 +1,4 @@
-"""TOML files as tables and back, and what may be given instead of one: a dictionary of the same structure."""
+"""TOML files as tables and back, or dictionaries of the same structure."""
 
 import json
 import tomllib
@@ -98,7 +98,7 @@ def _tables(value):
 
 
 def toml_value(value: Any) -> str:
-    """A value as TOML writes it."""
+    """Return a value in the notation of TOML."""
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{_key(key)} = {toml_value(entry)}" for key, entry in value.items()) + " }" if value else "{}"
     if isinstance(value, list):

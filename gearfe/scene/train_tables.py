@@ -93,14 +93,14 @@ def _shaft(file, name, row, rows, materials):
             raise ValueError(f"{file} [{where}] bores_mm = {row['bores_mm']}: give bores smaller than the diameters")
     places = sorted(row["gears_at_mm"])
     if min(np.diff(places), default=1.0) <= PART * made.length:
-        raise ValueError(f"{file} [{where}] gears_at_mm = {row['gears_at_mm']}: give each gear a place of its own")
+        raise ValueError(f"{file} [{where}] gears_at_mm = {row['gears_at_mm']}: give each gear a different position")
     for at in places:
         _along(file, where, "gears_at_mm", at, made)
     return _held(file, where, row, rows, made) if row["bearings_at_mm"] is not None else made
 
 
 def _held(file, where, row, rows, made):
-    """The shaft with its bearings."""
+    """Return the shaft with its bearings."""
     for at in row["bearings_at_mm"]:
         _along(file, where, "bearings_at_mm", at, made)
     for kind in row["bearings"] or ():
@@ -169,7 +169,7 @@ def _links(file, rows, gears, train):
         out.append(Link(name, homes[one], homes[two], -gears[two].outward * gears[one].z / gears[two].z))
     names = [*(link.name for link in out), "motor", *rows["load"]]
     if twice := [name for i, name in enumerate(names) if name in names[:i]]:
-        raise ValueError(f"{file}: {twice[0]!r} names two of the pairs, couplings, stages and loads; give each a name of its own")
+        raise ValueError(f"{file}: {twice[0]!r} names two of the pairs, couplings, stages and loads; give each a different name")
     return out
 
 

@@ -1,4 +1,4 @@
-"""What the sources of a scene print beside what gearfe finds: rows with verdicts, and their table."""
+"""Printed results of the sources of a scene compared with ours: rows with verdicts, and their table."""
 
 import math
 import re
@@ -11,9 +11,9 @@ REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correcti
 NOT, NEVER, FORMULA = "not reproduced", "not reproducible", "no number printed"
 STATEMENT = "statement"
 DEPENDS = "depends"  # a statement that holds under some of the values that its source leaves out
-ASSUMED = "set by an assumption"  # within the tolerance, or in order, but by a value of ours
+ASSUMED = "set by an assumption"  # within the tolerance, or in order, but set by a value of ours
 DISTINCT = 1e-3  # two of our values whose relative difference is smaller have no order
-CHANGE = 3.0  # of a trend: each relative change is at least a third of the printed one, and at most three times it
+CHANGE = 3.0  # a trend needs relative changes between a third and three times the printed ones
 SHOWN_AS = {"N/m": "N/um"}  # units of the sources that are shown in ours
 COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
 
@@ -78,7 +78,7 @@ def _verdict(reference, row, ours, ordered):
 
 
 def _ordered(printed, ours):
-    """Whether all our values have the order of the printed ones, and change alike relative to the first: see `CHANGE`."""
+    """Return True if our values have the order of the printed ones, and similar relative changes, see `CHANGE`."""
     if len(ours) < 2 or any(value is None for value in ours):
         return False
     for i, (a, x) in enumerate(zip(printed, ours, strict=True)):
@@ -103,7 +103,7 @@ def _rounded(value):
 
 
 def reason(reference, row):
-    """Why a row has its verdict: the correction, or why it cannot be reproduced."""
+    """Return the reason of a verdict: the correction, or why it is not reproducible."""
     printed = next(entry for entry in reference.rows if (entry.case, entry.pair or "") == (row.case, row.pair))
     if row.verdict == CORRECTED:
         return printed.correction
@@ -139,7 +139,7 @@ def _words(rows):
 
 
 def text(references, rows, beside=None):
-    """Rows as Markdown, with sources, tolerances and reasons below; `beside`: more words on verdicts of a model, by case."""
+    """Return rows as Markdown, with sources, tolerances and reasons below; `beside` has remarks on verdicts by case."""
     cells, notes, codes = [], [], reason_codes(references, rows)
     for reference in references:
         mark = ""

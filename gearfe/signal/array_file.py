@@ -11,7 +11,7 @@ from ..geometry.aliases import StrPath
 from .found import ANGLES, TIMES, Found, numeric, plain
 
 PARTS = 64  # entries of a cell array or a struct array, and columns of a matrix, that are taken for channels
-LONGER = 2  # least ratio of samples to channels in a matrix, so that it is plain which are which
+LONGER = 2  # least ratio of samples to channels in a matrix, so that its axes are clear
 MATLAB_CLASS = "MATLAB_class"
 HDF = b"\x89HDF\r\n\x1a\n"
 
@@ -23,7 +23,7 @@ def array_file(path: StrPath) -> Found:
     ``name 2``...; structs and cell arrays are opened, ``run.acc``, ``run{2}``. Scalars and texts state rate, unit and shaft
     frequency.
     """
-    with open(path, "rb") as file:  # HDF5's mark stands at 0, or behind the header that MATLAB writes
+    with open(path, "rb") as file:  # HDF5's mark is at 0, or after the header of MATLAB
         start = file.read(512 + len(HDF))
     if HDF in (start[: len(HDF)], start[512:]):
         return hdf_file(path)
@@ -59,14 +59,14 @@ def hdf_file(path: StrPath) -> Found:
 
 
 def _wrong_link(name, link):
-    """What is wrong if a name is a link to another file, or stands too deep in groups."""
+    """Return the reason if a name is a link to another file, or is too deep in groups."""
     if hasattr(link, "filename"):
         return f"{name!r} is a link to another file, {link.filename}; copy what it means into this one"
     return f"groups stand in each other more than {PARTS} deep" if name.count("/") > PARTS else None
 
 
 def _hdf_values(item):
-    """Values of a dataset that stands in the file itself.
+    """Return the values of a dataset stored in the file itself.
 
     ValueError if it is read from other files, or announces more values than the bytes stored can hold.
     """
@@ -75,13 +75,13 @@ def _hdf_values(item):
         raise ValueError(f"the values of {item.name!r} stand {kind}, which are not read: copy them into this one")
     stored = item.id.get_storage_size()
     if item.nbytes > MOST_PACKED * (stored + 1024):
-        raise ValueError(f"{item.name!r} says it has {item.nbytes} bytes, but {stored} are stored, which cannot become so many")
+        raise ValueError(f"{item.name!r} states {item.nbytes} bytes, but only {stored} are stored")
     return item[()]
 
 
 def _hdf_item(found, name, item, dataset, matlab):
-    """Take a `dataset`, or what a group states in attributes."""
-    if name.startswith("#"):  # what MATLAB's cells refer to, taken by their own names
+    """Add a `dataset`, or the metadata in attributes of a group."""
+    if name.startswith("#"):  # contents of MATLAB's cells, which are read by their own names
         return
     name = name.replace("/", ".") if matlab else name
     values = isinstance(item, dataset)
@@ -108,7 +108,7 @@ def _matlab(item):
 
 
 def _text(value):
-    """An attribute as text or a number."""
+    """Return an attribute as text or a number."""
     value = value.reshape(-1)[0] if isinstance(value, np.ndarray) and value.size == 1 else value
     if isinstance(value, bytes):
         return value.decode("utf-8", "replace")
@@ -120,7 +120,7 @@ def _opens(value):
 
 
 def _take(found: Found, name: str, value: Any) -> None:
-    """Add what an array holds to the channels, or to what is stated."""
+    """Add the contents of an array to the channels or to the metadata."""
     if isinstance(value, Unread):
         found.other.append(f"{name!r} ({value.why})")
         return
@@ -137,7 +137,7 @@ def _take(found: Found, name: str, value: Any) -> None:
 
 
 def _columns(found, name, value):
-    """A vector, or the columns of a matrix."""
+    """Add a vector, or the columns of a matrix."""
     if value.size == max(value.shape):
         found.vectors[name] = value.reshape(-1)
     elif value.ndim == 2 and max(value.shape) >= LONGER * min(value.shape) and min(value.shape) <= PARTS:
@@ -162,7 +162,7 @@ def _open(found, name, value):
 
 
 def _axes(found):
-    """Times are in s and angles in rad where the file states no other unit."""
+    """Set s for times and rad for angles if the file states no other unit."""
     for kind, unit in ((TIMES, "s"), (ANGLES, "rad")):
         found.units |= {name: found.units.get(name) or unit for name in found.axes(kind)}
 

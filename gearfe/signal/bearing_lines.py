@@ -1,4 +1,4 @@
-"""Frequencies at which a faulty rolling bearing shows."""
+"""Fault frequencies of rolling bearings: FTF, BPFO, BPFI and BSF."""
 
 import math
 

@@ -30,7 +30,7 @@ def signal_of(
     shaft_frequency: float | None = None,
     scale: float = 1.0,
 ) -> Signal:
-    """A channel with its rate, unit and angle; arguments and errors are those of `gearfe.read_signal`."""
+    """Return a channel with its rate, unit and angle; arguments and errors are those of `gearfe.read_signal`."""
     if not (is_number(scale) and math.isfinite(scale) and scale):
         raise ValueError(f"scale = {scale!r}, but give a finite factor other than 0")
     time, angle = (_axis(path, found, name, names, factors) for names, factors in ((TIMES, TIME), (ANGLES, TURN)))
@@ -62,7 +62,7 @@ def _unit(path, found, name, given, scale):
 
 
 def _axis(path, found, channel, names, factors):
-    """Time [s] or angle [rad] of a channel: of its own group, else of the whole file; None if there is none."""
+    """Return time [s] or angle [rad] of a channel: that of its group, else of the whole file; None if there is none."""
     chosen = found.nearest({name: name for name in found.vectors}, channel, names)
     if not chosen:
         return None
@@ -79,15 +79,15 @@ def _axis(path, found, channel, names, factors):
 
 
 def _one(path, name, values, where=""):
-    """The one finite positive number among `values` [Hz], the first of which may be None; None if there is none.
+    """Return the one finite positive number among `values` [Hz], the first of which may be None; None if there is none.
 
-    `where` says what states them.
+    `where` is the source of the others.
     """
     numbers = [_hertz(path, name, value) for value in values if value is not None]
     same = [math.isclose(number, numbers[0]) for number in numbers[1:]]
     if not (all(same) or (values[0] is not None and any(same))):
         listed = f"{' and '.join(f'{number:g}' for number in numbers)} Hz{f' ({where})' if where else ''}"
-        raise ValueError(f"{path}: {name} is given as {listed}; say which holds by {name}=")
+        raise ValueError(f"{path}: {name} is given as {listed}; choose one by {name}=")
     return next(iter(numbers), None)
 
 
@@ -133,5 +133,5 @@ def _whole(path, name, values):
     first, last = edges[most] + 1, edges[most + 1] - 1
     raise ValueError(
         f"{path}: {name!r}: sample {bad[0]} is {values[bad[0]]}, the first of {bad.size} that are missing; cut the file to "
-        f"samples {first} to {last}, its longest whole stretch, or fill the gaps: nothing is filled unasked"
+        f"samples {first} to {last}, its longest whole stretch, or fill the gaps"
     )

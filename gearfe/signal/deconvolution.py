@@ -1,4 +1,4 @@
-"""Deconvolution: the filter that makes a signal most impulsive, so that pulses of a fault smeared on their way stand out."""
+"""Blind deconvolution (MED, MCKD): the filter that makes a signal most impulsive, to reveal smeared fault pulses."""
 
 from dataclasses import replace
 
@@ -9,15 +9,15 @@ from scipy.signal import correlate, lfilter
 from ..core.checks import whole
 from ..geometry.aliases import Floats
 from .given import hertz
-from .series import Signal
+from .series import Signal, expect_signal
 
-RIDGE = 1e-9  # of the signal's power, added to it: keeps the normal equations regular where it has no power at a frequency
+RIDGE = 1e-9  # power added to the signal, relative: keeps the normal equations regular at frequencies without power
 
 
 def deconvolve(
     signal: Signal, frequency: float | None = None, *, length: int = 100, shifts: int = 1, iterations: int = 30
 ) -> tuple[Signal, Floats]:
-    """The signal through that filter of a given length which makes it most impulsive.
+    """Filter a signal so that it is most impulsive: minimum entropy (MED) or correlated kurtosis (MCKD) deconvolution.
 
     Without a `frequency` the filter is the one whose output y has the largest kurtosis (minimum entropy deconvolution),
     ``sum(y**4) / sum(y**2)**2``, which brings out any pulses, also a single one. With the frequency of a fault it is the one with
@@ -56,6 +56,7 @@ def deconvolve(
     - R. A. Wiggins, Geoexploration 16 (1978) 21-35; H. Endo, R. B. Randall, Mech. Syst. Signal Process. 21(2) (2007) 906-919.
     - G. L. McDonald, Q. Zhao, M. J. Zuo, Mech. Syst. Signal Process. 33 (2012) 237-255, eqs. 15-23.
     """
+    expect_signal(signal)
     x, length = signal.values - signal.values.mean(), whole("length", length, 2)
     apart = [0]
     if frequency is not None:

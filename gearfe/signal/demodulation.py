@@ -1,4 +1,4 @@
-"""Faults under noise: the band with the most impulsive signal, and the spectrum of its squared envelope."""
+"""Envelope analysis: the band with the most impulsive signal, and the spectrum of its squared envelope."""
 
 from dataclasses import dataclass
 
@@ -15,10 +15,10 @@ from .spectrum import Spectrum
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Demodulated:
-    """What the kurtogram and the squared envelope show of a signal.
+    """Result of kurtogram and squared envelope of a signal.
 
-    `lines` holds by name ``k f_fault`` the frequency [Hz] and amplitude found; `background` is the median amplitude of the
-    squared envelope's spectrum from half the fault frequency to past the last line [its unit].
+    `lines` has by name ``k f_fault`` the frequency [Hz] and amplitude. `background` is the median amplitude of the squared
+    envelope's spectrum from half the fault frequency to past the last line [its unit].
     """
 
     kurtogram: Kurtogram

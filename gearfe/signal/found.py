@@ -1,4 +1,4 @@
-"""`Found`: the channels that a file of measured signals holds, whatever its format, and what it states about them."""
+"""`Found`: channels and metadata of one measurement file, independent of its format."""
 
 import warnings
 from dataclasses import dataclass, field
@@ -14,17 +14,17 @@ KEYS = (*RATES, *SHAFTS, "unit")
 
 @dataclass(slots=True)
 class Found:
-    """Channels of a file."""
+    """Channels and metadata of one file."""
 
     vectors: dict[str, NDArray[Any]]  # by name, shape (n,)
-    units: dict[str, str] = field(default_factory=dict)  # as stated; missing or empty where nothing is stated
-    stated: dict[str, Any] = field(default_factory=dict)  # what is said under the names of `KEYS`, by full name
+    units: dict[str, str] = field(default_factory=dict)  # as stated; missing or empty if not stated
+    stated: dict[str, Any] = field(default_factory=dict)  # values of the names in `KEYS`, by full name
     rates: dict[str, float] = field(default_factory=dict)  # [Hz] of single channels, in formats that state them there
     starts: dict[str, float] = field(default_factory=dict)  # [s] of single channels, on one clock
-    nested: str = ""  # what parts a group from the names in it: "." in MATLAB structs, "/" in HDF5 and TDMS; empty: no groups
-    other: list[str] = field(default_factory=list)  # what else the file holds, named in messages
-    hint: str = ""  # what to do about a file whose columns have no names
-    parts: bool = False  # whether the values are parts of a full scale that the file does not say
+    nested: str = ""  # separator of group and name: "." in MATLAB structs, "/" in HDF5 and TDMS; empty: no groups
+    other: list[str] = field(default_factory=list)  # other contents of the file, for messages
+    hint: str = ""  # remedy for a file whose columns have no names
+    parts: bool = False  # True if the values are parts of an unknown full scale (WAV files)
 
     def add(self, name: str, values: NDArray[Any], unit: Any = "", step: Any = 0, start: Any = 0.0) -> None:
         """Add a channel; its name gets a number if it is already used. A `step` [s] above 0 states rate and `start` [s]."""
@@ -35,16 +35,16 @@ class Found:
             self.rates[name], self.starts[name] = 1 / float(step), float(start)
 
     def take_clock(self, path: Any, name: str, kind: Any, seconds: NDArray[Any], depth: int) -> None:
-        """Take times of a clock or dates as the time [s] from the first on, whatever the column is called, and warn of that."""
+        """Set times of a clock or dates as the time [s] from the first one, for any column name, and warn of that."""
         if self.axes(TIMES):
-            self.other.append(f"{name!r} (of a clock, beside {self.axes(TIMES)[0]!r})")
+            self.other.append(f"{name!r} (of a clock, in addition to {self.axes(TIMES)[0]!r})")
             return
         taken = name if plain(name) in TIMES else "time"
         self.vectors[taken], self.units[taken] = seconds, "s"
         warnings.warn(f"{path}: {name!r} ({kind}) is taken for the time, in seconds from its first row on", stacklevel=depth + 1)
 
     def state(self, name: str, value: Any) -> None:
-        """Note a value, if `KEYS` has its name."""
+        """Store a value if its name is in `KEYS`."""
         if plain(self.leaf(name)) in KEYS:
             self.stated[name] = value
 
@@ -58,7 +58,7 @@ class Found:
         return list(fit.values())
 
     def named(self, kind: tuple[str, ...]) -> str:
-        """What is stated under names of a kind, with these names, in words."""
+        """Return "name = value" for the metadata of a kind of names."""
         return " and ".join(f"{name} = {value}" for name, value in self.stated.items() if plain(self.leaf(name)) in kind)
 
     def leaf(self, name: str) -> str:
@@ -66,7 +66,7 @@ class Found:
         return name.rsplit(self.nested, 1)[-1] if self.nested else name
 
     def group(self, name: str) -> str:
-        """Groups of a name."""
+        """Return the groups of a name."""
         return name.rsplit(self.nested, 1)[0] if self.nested and self.nested in name else ""
 
     def axes(self, kind: tuple[str, ...]) -> list[str]:
@@ -79,7 +79,7 @@ class Found:
         return [name for name in self.vectors if name not in axes]
 
     def told(self) -> str:
-        """Channels with their units, and what else there is, in words."""
+        """Return the channels with their units, and other contents, for messages."""
         channels = [f"{name!r}{f' [{self.units[name]}]' if self.units.get(name) else ''}" for name in self.channels()]
         return ", ".join(channels + self.other) or "nothing"
 

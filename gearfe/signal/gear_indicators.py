@@ -1,4 +1,4 @@
-"""Indicators of one gear from its synchronous average: FM0, FM4, M6A, M8A, NA4, NB4, energy ratio, sideband level factor.
+"""Condition indicators of one gear from its synchronous average (TSA): FM0, FM4, M6A, M8A, NA4, NB4, ER, SLF.
 
 The average of one turn is parted: the *regular* signal holds the orders of a healthy gear (shaft, mesh and its harmonics with one
 sideband each), the *difference* signal what is left; the *residual* signal keeps the sidebands too (`gearfe.residual_signal`).
@@ -29,14 +29,14 @@ GEAR_SOURCES = {
     "energy ratio": "rms of the difference signal over rms of the regular signal; Vecer 2005",
     "sideband level factor": "sum of the first sidebands' amplitudes f_m +- f_shaft over the rms of the average; Vecer 2005",
 }
-CLEAR = 3.0  # times the median of the orders around it: white noise has such a line in 0.2 % of the cases
+CLEAR = 3.0  # threshold over the median of adjacent orders: white noise exceeds it in 0.2 % of the cases
 EMPTY = 1e-9  # part of the average below which a remainder is rounding
 
 
 def gear_indicators(
     average: ArrayLike, teeth: int, *, before: Sequence[ArrayLike] = (), shaft_orders: int = 2
 ) -> dict[str, float]:
-    """Indicators of a gear from its synchronous average, by the names of `GEAR_SOURCES`, which states their formulae.
+    """Compute the condition indicators of a gear from its synchronous average, by the names of `GEAR_SOURCES` (with formulae).
 
     ::
 

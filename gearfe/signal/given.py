@@ -1,4 +1,4 @@
-"""What functions of signals are given, checked at the border: rows of samples, frequencies, whole numbers."""
+"""Checks of arguments of signal functions: rows of samples, frequencies, whole numbers."""
 
 from typing import Any
 
@@ -7,12 +7,12 @@ import numpy as np
 from ..core.checks import is_number
 from ..geometry.aliases import Floats
 
-SMALLEST, LARGEST = 1e-30, 1e30  # of the largest value of a record, in any unit: eighth powers neither vanish nor overflow
-HERTZ = (1e-12, 1e15)  # frequencies that clocks have
+SMALLEST, LARGEST = 1e-30, 1e30  # limits of the largest value of a record in any unit, for eighth powers
+HERTZ = (1e-12, 1e15)  # limits of frequencies
 
 
 def samples(name: str, values: Any) -> Floats:
-    """A row of real, finite numbers, copied.
+    """Return a copy of a row of real, finite numbers.
 
     ValueError if they are not a row of two or more finite numbers, or the largest is not between `SMALLEST` and `LARGEST`.
     """
@@ -45,14 +45,14 @@ def oscillation(values: Floats, told: str) -> Floats:
 
 
 def hertz(name: str, value: Any) -> float:
-    """A frequency [Hz] as a float; ValueError unless it is a number within `HERTZ`."""
+    """Return a frequency [Hz] as a float; ValueError unless it is a number within `HERTZ`."""
     if not (is_number(value) and HERTZ[0] <= value <= HERTZ[1]):
         raise ValueError(f"{name} = {value!r}, but give a positive number of Hz")
     return float(value)
 
 
 def band_of(band: Any, rate: float, name: str) -> tuple[float, float]:
-    """The ends (low, high) [Hz] of a band within half the rate; of all of it if None.
+    """Return the ends (low, high) [Hz] of a band within half the rate; of all of it if None.
 
     ValueError if `band` is not two numbers with ``0 <= low < high <= rate / 2``.
     """

@@ -7,7 +7,7 @@ from typing import Any, TypedDict, Unpack
 from ..core.table import Column, Table
 from .series import Signal
 
-LABELS = {  # in tables: words; rms may be larger than the peak, of a signal with a mean
+LABELS = {  # labels in tables; rms may be larger than the peak, for a signal with a mean
     "rms": "rms (with the mean)",
     "peak": "peak (from the mean)",
     "crest factor S4": "peak over rms with the mean (article S4)",
@@ -43,7 +43,7 @@ def indicator_table(
     healthy: str = "healthy",
     **options: Unpack[IndicatorOptions],
 ) -> dict[str, dict[str, tuple[float, float]]]:
-    """Indicators of several cases, each with its increment against the healthy one.
+    """Compute the indicators of several cases, each with its increment against the healthy one.
 
     Parameters
     ----------

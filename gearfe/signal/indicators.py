@@ -29,7 +29,7 @@ LOBES = 4  # bins between two lines whose lobes, with a Hann window, do not over
 
 
 def of_values(values, name):
-    """Indicators of the samples ``(n,)`` of a signal called `name` by the names of `SOURCES`, which has their formulae.
+    """Compute the indicators of the samples ``(n,)`` of a signal called `name` by the names of `SOURCES` (with formulae).
 
     The crest factor as S4 prints it, with the mean in the rms only, is no measure of shape: S4's healthy sun moves from -7.21 to
     -10.77 um, which makes it about 0.2, and a fault that moves the mean changes it.
@@ -56,9 +56,9 @@ def sideband_index(found, mesh_frequency, fault_frequency, *, tolerance=None, ha
 
         SI = 1/M sum(|X(k)|), k over n f_m - f_fault and n f_m + f_fault, n = 1 ... harmonics, M = 2 harmonics
 
-    In the unit of the spectrum; a line between two bins is placed there (`find_lines` with ``between=True``), so that its
-    amplitude does not depend on the length of the record: with Hann's window within 1 % where lines are 8 bins or more apart. S4
-    prints 1.03 to 2.26 without unit, beside a mesh line of 0.097 um: not amplitudes in um.
+    It has the unit of the spectrum. A line between two bins is interpolated (`find_lines` with ``between=True``), so that its
+    amplitude does not depend on the record length: with Hann's window within 1 % if lines are 8 bins or more apart. S4 prints
+    1.03 to 2.26 without unit and a mesh line of 0.097 um, so these are not amplitudes in um.
     """
     if fault_frequency < LOBES * found.resolution:
         raise ValueError(
@@ -138,7 +138,7 @@ def both_given(mesh_frequency, fault_frequency):
 
 
 def of_lines(found, mesh_frequency, fault_frequency, *, tolerance=None, harmonics=1):
-    """Indicators of the lines of a `Spectrum` of amplitudes, see `find_lines` and `sideband_index`."""
+    """Compute the indicators of the lines of a `Spectrum` of amplitudes, see `find_lines` and `sideband_index`."""
     at = mesh_frequency, fault_frequency
     return {
         "mesh line": find_lines(found, {"f_m": mesh_frequency}, tolerance, between=True)["f_m"][1],

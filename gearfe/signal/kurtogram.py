@@ -1,4 +1,4 @@
-"""Where in the spectrum the impulses are: Antoni's fast kurtogram."""
+"""Fast kurtogram (J. Antoni): the frequency band with the most impulsive signal."""
 
 import math
 from dataclasses import dataclass
@@ -9,10 +9,10 @@ from scipy.signal import fftconvolve, firwin, upfirdn
 from ..core.checks import one_of, whole
 from ..geometry.aliases import Floats
 from .given import oscillation
-from .series import Signal
+from .series import Signal, expect_signal
 
-HALF_TAPS, THIRD_TAPS = 33, 49  # of the filters that halve a band and cut it in three; both lose 16 samples at their ends
-ANALYTIC_TAPS = 1025  # at most, and at most an eighth of the record: what the filter loses at its ends
+HALF_TAPS, THIRD_TAPS = 33, 49  # filter taps for halves and thirds of a band; both lose 16 samples at their ends
+ANALYTIC_TAPS = 1025  # limit of taps, also an eighth of the record: samples lost at the ends
 WIDER = 1.3  # width of a filter at half amplitude over that of its band; at the edge of the band it still passes 0.96
 EMPTY = 1e-14  # part of the power of the signal below which a band holds only rounding
 FEWEST = 128  # samples at the deepest level, before the ends are cut
@@ -50,21 +50,21 @@ class Kurtogram:
 
 
 def fast_kurtogram(signal: Signal, levels: int | None = None, *, filters: str = "sharp") -> Kurtogram:
-    """Kurtosis of the complex envelope in the bands of a 1/3-binary tree of quasi-analytic filters.
+    """Compute the kurtosis of the complex envelope in the bands of a 1/3-binary tree of quasi-analytic filters.
 
-    Level 0 is the whole signal. Each of the ``2**k`` bands of level k, ``rate / 2**(k + 1)`` wide, is halved into level
-    k + 1 and cut in three into level ``k + log2(3)``, which is not split further and stays below `levels`. The kurtosis of a
-    band c is ``<|c|**4> / <|c|**2>**2 - 2`` (``- 3`` for level 0, which is real; the others come from positive frequencies
-    only, cut off by 1025 taps, half way at 0 Hz and whole from ``rate / 600``), and 0 for a band 140 dB below the signal,
-    which holds only rounding. Antoni's program cuts printed levels after one decimal: its "5.5" is 5.58.
+    Level 0 is the whole signal. Each of the ``2**k`` bands of level k, ``rate / 2**(k + 1)`` wide, is halved into level k + 1 and
+    cut in three into level ``k + log2(3)``, which is not split further and stays below `levels`. The kurtosis of a band c is
+    ``<|c|**4> / <|c|**2>**2 - 2`` (``- 3`` for the real level 0), and 0 for a band 140 dB below the signal, which contains
+    rounding errors only. Other levels use positive frequencies only, filtered with 1025 taps (half at 0 Hz, complete from ``rate
+    / 600``). Antoni's program prints levels truncated after one decimal: its "5.5" is 5.58.
 
-    Filters are Hamming windows of 33 and 49 taps that pass 0.96 at the edges of a band, 0.5 at 1.3 and 0.04 at 1.6 times its
-    half width (Antoni: 17 and 25 taps, 0.96, 0.5 at 1.6): a line beside an edge shows in both bands. Samples that a filter
-    takes from beyond the ends are left out.
+    Filters are Hamming windows of 33 and 49 taps that pass 0.96 at the edges of a band, 0.5 at 1.3 and 0.04 at 1.6 times its half
+    width (Antoni: 17 and 25 taps, 0.96, 0.5 at 1.6). A line at an edge is therefore in both bands. Filtered samples near the ends
+    are discarded.
 
-    ``filters="antoni"`` repeats the program that Antoni published: his filters, of the real signal itself (so that bands beside
-    0 Hz and Nyquist's frequency see both signs of frequency), the mean of each band taken out, 16 samples left out at its start.
-    His figures show 0 where a kurtosis is negative; here it stays.
+    ``filters="antoni"`` repeats the published program of Antoni: his filters for the real signal itself (so that bands at 0 Hz
+    and Nyquist's frequency contain both signs of frequency), the mean of each band removed, 16 samples discarded at its start.
+    His figures show 0 for a negative kurtosis; here it is kept.
 
     Parameters
     ----------
@@ -83,6 +83,7 @@ def fast_kurtogram(signal: Signal, levels: int | None = None, *, filters: str = 
     ----------
     J. Antoni, Mech. Syst. Signal Process. 21(1) (2007) 108-124.
     """
+    expect_signal(signal)
     x = _oscillation(signal)
     deepest = math.floor(math.log2(x.size / FEWEST)) if x.size >= FEWEST else 0
     levels = deepest if levels is None else whole("levels", levels, 0)
@@ -103,7 +104,7 @@ def fast_kurtogram(signal: Signal, levels: int | None = None, *, filters: str = 
 
 
 def _positive(x):
-    """Positive frequencies of x by a long filter: a Fourier transform would click where the ends of the record do not meet."""
+    """Return the positive frequencies of x by a long filter, since a Fourier transform has artefacts at the ends."""
     taps = min(ANALYTIC_TAPS, x.size // 8) // 2 * 2 + 1
     return fftconvolve(x, 2 * firwin(taps, 0.5) * np.exp(0.5j * np.pi * np.arange(taps)), mode="valid")
 
@@ -115,7 +116,7 @@ def _rows(level, parts, bands, floor):
 
 
 def _split(x, parts):
-    """Bands of equal width from low to high, each shifted to 0 ... 1/2 of its own rate."""
+    """Return bands of equal width from low to high, each shifted to 0 ... 1/2 of its rate."""
     taps = {2: HALF_TAPS, 3: THIRD_TAPS}[parts]
     low_pass = firwin(taps, WIDER * 0.5 / parts)
     k = np.arange(taps)
@@ -129,7 +130,7 @@ def _split(x, parts):
 
 
 def _split_antoni(x, parts):
-    """The same by the filters of Antoni's program; the high-pass filter has a tap less."""
+    """Split by the filters of Antoni's program; the high-pass filter has a tap less."""
     taps, cut = {2: (17, 0.4), 3: (25, 0.8 / 3)}[parts]
     k = np.arange(taps)
     low_pass = firwin(taps, cut)
@@ -147,7 +148,7 @@ def _judged_antoni(bands, parts):
     return [x - x.mean() for x in cut]
 
 
-BANKS = {  # what is split first, how, and what the kurtosis is taken of
+BANKS = {  # by filters: the signal to split, the function that splits, and the one before the kurtosis
     "sharp": (_positive, _split, lambda bands, _: bands),
     "antoni": (lambda x: x, _split_antoni, _judged_antoni),
 }

@@ -1,4 +1,4 @@
-"""Amplitude and phase modulation of a mesh line over a turn of the gear, from its sidebands."""
+"""Amplitude and phase modulation of a mesh line over one revolution of the gear, from its sidebands."""
 
 from typing import NamedTuple
 
@@ -14,7 +14,7 @@ EMPTY = 1e-9  # part of the average below which a mesh line is rounding
 
 
 class Modulation(NamedTuple):
-    """Modulation of a mesh line, at equal angles over a turn.
+    """Modulation of a mesh line, at equal angles over one revolution.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class Modulation(NamedTuple):
 
 
 def mesh_modulation(average: ArrayLike, teeth: int, *, harmonic: int = 1, sidebands: int | None = None) -> Modulation:
-    """Amplitude and phase demodulation of a mesh line: where in the turn the mesh is louder, and where it comes early or late.
+    """Amplitude and phase demodulation of a mesh line: over one revolution of the gear.
 
     The orders ``harmonic teeth +- sidebands`` of the average, made analytic and turned back by the mesh itself::
 

@@ -1,4 +1,4 @@
-"""Signals by the angle of a shaft: order spectrum, synchronous average and what is left of it without the healthy mesh."""
+"""Order tracking: order spectrum, synchronous average (TSA), and residual signal without the healthy mesh."""
 
 import math
 from typing import Any
@@ -11,28 +11,29 @@ from scipy.interpolate import make_interp_spline
 from ..core.checks import whole
 from ..geometry.aliases import Floats
 from .given import samples
-from .series import Signal
+from .series import Signal, expect_signal
 from .spectrum import Spectrum, amplitudes
 
-MOST = 10**8  # samples per turn
-SLOWEST = 1 / 16  # of the mean speed: below it resampling by angle would multiply the samples
+MOST = 10**8  # limit of samples per revolution
+SLOWEST = 1 / 16  # limit of the speed relative to the mean: below it resampling by angle would multiply the samples
 
 
 def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
-    """Values at equal steps of the shaft's angle, one row for each whole turn: ``(turns, samples_per_turn)``.
+    """Values at equal steps of the shaft's angle, one row per revolution: ``(turns, samples_per_turn)``.
 
     Interpolated by splines of degree 5, whose amplitude at frequency f is off by ``(f / (rate - f))**6``: 2e-6 at a tenth of
     the rate, 1e-3 at a quarter, 7 % at 1/2.56. By default a row has as many samples as a turn where the shaft is slowest, so that
     no frequency is folded back. ValueError without a shaft (`angle` or `shaft_frequency`), with less than one turn, a speed near
     zero, or too few samples per turn.
     """
+    expect_signal(signal)
     angle = signal.shaft_angle / (2 * math.pi)
     angle = angle - angle[0]
     step = np.diff(angle)
     if step.min() < SLOWEST * step.mean():
         raise ValueError(
-            f"{signal.name}: the shaft slows down to {step.min() * signal.rate:.3g} turns/s from {step.mean() * signal.rate:.3g} "
-            "on average; cut out where it stands or starts"
+            f"{signal.name}: the shaft slows down to {step.min() * signal.rate:.3g} Hz from {step.mean() * signal.rate:.3g} "
+            "on average; cut out standstill and start"
         )
     needed = math.ceil(1 / step.min() - 1e-6)
     count = needed if samples_per_turn is None else whole("samples_per_turn", samples_per_turn, 1)
@@ -42,13 +43,13 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
         raise ValueError(f"samples_per_turn = {count}, but {signal.name} has {needed} where it is slowest: give at least that")
     turns = math.floor(angle[-1] + 1 / count + 1e-9)
     if turns < 1 or angle.size < 6:
-        raise ValueError(f"{signal.name} covers {angle[-1]:.3g} turns with {angle.size} samples; one whole turn is needed")
+        raise ValueError(f"{signal.name} covers {angle[-1]:.3g} revolutions with {angle.size} samples; one revolution is needed")
     grid = np.minimum(np.arange(turns * count) / count, angle[-1])
     return make_interp_spline(angle, signal.values, k=5)(grid).reshape(turns, count)
 
 
 def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, window: str | tuple[Any, ...] = "hann") -> Spectrum:
-    """One-sided amplitude spectrum over the orders of the shaft, sharp also when the speed varies.
+    """Compute the one-sided amplitude spectrum over shaft orders (order tracking), for variable speed.
 
     `by_turn` resamples to whole turns, so that the orders 1, 2, ... are bins; the resolution is ``1 / turns``.
 
@@ -82,36 +83,37 @@ def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, windo
 
 
 def synchronous_average(signal: Signal, samples_per_turn: int | None = None, *, turns_per_period: int = 1) -> tuple[Floats, int]:
-    """Mean over the turns of a shaft: what does not repeat with it falls with ``1 / sqrt(periods)``.
+    """Average over the revolutions of a shaft (TSA): other components fall with ``1 / sqrt(periods)``.
 
     Parameters
     ----------
     signal : Signal
         One that has `angle` or `shaft_frequency` of the shaft; for a sun or a planet those of the gear relative to the carrier.
-    samples_per_turn : int, optional
+    Samples per revolution, see `by_turn`.
         See `by_turn`.
     turns_per_period : int
-        Number of turns in one period, for what repeats only after several turns (hunting tooth).
+        Revolutions in one period, for components that repeat only after several revolutions (hunting tooth).
 
     Returns
     -------
     average : ndarray, shape (samples_per_turn * turns_per_period,)
-        In the unit of the signal, from the angle of its first sample.
+        Average in the unit of the signal, from the angle of its first sample.
     periods : int
-        How many were averaged; turns at the end that make no whole period are left out.
+        Number of averaged periods; revolutions at the end that make no whole period are discarded.
 
     Raises
     ------
     ValueError
-        If the signal has neither `angle` nor `shaft_frequency`, covers less than one whole turn or has fewer than 6 samples; if
-        the shaft slows down to less than a sixteenth of its mean speed; if `samples_per_turn` is no whole number, smaller than
-        the samples of a turn where the shaft is slowest, or above 1e8; if `turns_per_period` is no whole number from 1 on, or
-        above the number of whole turns.
+        If the signal has neither `angle` nor `shaft_frequency`, covers less than one revolution or has fewer than 6 samples. If
+        the shaft slows down to less than a sixteenth of its mean speed. If `samples_per_turn` is no whole number, smaller than
+        the samples of a revolution at the lowest speed, or above 1e8. If `turns_per_period` is no whole number from 1, or above
+        the number of revolutions.
 
     References
     ----------
     P. D. McFadden, Mech. Syst. Signal Process. 1(1) (1987) 83-95.
     """
+    expect_signal(signal)
     turns = by_turn(signal, samples_per_turn)
     periods = turns.shape[0] // whole("turns_per_period", turns_per_period, 1)
     if periods < 1:
@@ -121,7 +123,7 @@ def synchronous_average(signal: Signal, samples_per_turn: int | None = None, *, 
 
 
 def residual_signal(average: ArrayLike, teeth: int, *, sidebands: int = 0, shaft_orders: int = 2) -> Floats:
-    """Synchronous average of one turn without the orders of a healthy gear: a local fault is what stands out of it.
+    """Remove the orders of a healthy gear from a synchronous average: a local fault remains as a peak.
 
     Taken out are the mean, the shaft orders 1 to `shaft_orders`, the mesh orders n `teeth`, and with ``sidebands=1`` also
     n `teeth` +- 1: the difference signal.

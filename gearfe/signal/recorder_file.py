@@ -23,7 +23,7 @@ SAID_NOTHING = ("", "none", "unknown")
 
 @contextmanager
 def _reading(path: StrPath, kind: str, begins: bytes = b"", ends: bytes = b"") -> Iterator[None]:
-    """Around a library that trusts its files: what it raises of a damaged one becomes a ValueError of one line."""
+    """Convert any error of a library that reads a damaged file to a ValueError of one line."""
     try:
         with open(path, "rb") as file:
             if file.read(len(begins)) != begins or (ends and file.read().split()[-1:] != [ends]):
@@ -144,7 +144,7 @@ def labview_file(path: StrPath, lines: list[str]) -> Found:
     for place in range(first, len(columns), 2 if parts.get("X_Columns") == "Multi" else 1):
         if names[place] == "Comment":
             break
-        column = place - first  # of the header, which has no entry for a single time column
+        column = place - first  # column in the header, which has no entry for a single time column
         unit, step, start = (_entry(segment, key, column) for key in ("Y_Unit_Label", "Delta_X", "X0"))
         recording.add(names[place].strip() or "channel", columns[place], unit, step or 0, start or 0.0)
     return recording

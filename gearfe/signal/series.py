@@ -66,7 +66,7 @@ class Signal:
             i = falls[0]
             raise ValueError(
                 f"{self.name}: the angle must rise, but sample {i + 1} has {angle[i + 1]:g} rad after {angle[i]:g}; "
-                "an encoder that starts anew every turn needs numpy.unwrap"
+                "an encoder that restarts every revolution needs numpy.unwrap"
             )
         object.__setattr__(self, "angle", angle)
 
@@ -90,7 +90,7 @@ class Signal:
         return 2 * math.pi * self.shaft_frequency * self.time
 
     def part(self, start: int, stop: int) -> "Signal":
-        """The samples from `start` to before `stop`, with their angles."""
+        """Return the samples from `start` to before `stop`, with their angles."""
         inside = slice(start, stop)
         return replace(self, values=self.values[inside], angle=None if self.angle is None else self.angle[inside])
 
@@ -103,7 +103,7 @@ class Signal:
         tolerance: float | None = None,
         harmonics: int = 1,
     ) -> dict[str, float]:
-        """Condition indicators by the names of `gearfe.signal.indicators.SOURCES`, which states their formulae.
+        """Compute condition indicators by the names of `gearfe.signal.indicators.SOURCES`, which states their formulae.
 
         Parameters
         ----------
@@ -123,8 +123,14 @@ class Signal:
         return out | of_lines(lines, mesh_frequency, fault_frequency, tolerance=tolerance, harmonics=harmonics)
 
 
+def expect_signal(signal: object) -> None:
+    """Raise TypeError, with the way to make a signal, if the argument is none."""
+    if not isinstance(signal, Signal):
+        raise TypeError(f"{type(signal).__name__} in place of a signal: give gf.Signal(values, rate, unit)")
+
+
 def decimate(signal: Signal, rate: float) -> Signal:
-    """The signal at a lower rate, filtered first so that nothing above half of it folds down.
+    """Return the signal at a lower rate, after an anti-aliasing filter.
 
     A linear-phase filter without delay (`scipy.signal.resample_poly`, Kaiser's window): half of the amplitude is left at half
     the new rate, 53 dB are taken off from 1.16 of it on. The ends, ten new samples long, see a record that goes on as a line.
@@ -140,6 +146,7 @@ def decimate(signal: Signal, rate: float) -> Signal:
     ValueError
         If the rate is higher than that of the signal, or no such ratio.
     """
+    expect_signal(signal)
     hertz("rate", rate)
     ratio = Fraction(rate / signal.rate).limit_denominator(1000) if 0 < rate <= signal.rate else Fraction(0)
     if not ratio or abs(ratio * signal.rate / rate - 1) > 1e-9:
@@ -176,6 +183,7 @@ def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
     ValueError
         If `times` is no whole number from 1 on, `above` is not between 0 and half of the rate, or `unit` is an empty text.
     """
+    expect_signal(signal)
     whole("times", times, 1)
     hertz("above", above)
     if not 0 < above < signal.rate / 2:

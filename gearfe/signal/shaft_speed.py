@@ -1,4 +1,4 @@
-"""The angle of a shaft from the lines of the signal itself, at any course of the speed, a constant one too."""
+"""Tacholess speed estimation: the angle of a shaft from lines of the signal itself, for constant or variable speed."""
 
 import math
 from dataclasses import replace
@@ -16,9 +16,9 @@ from .series import Signal
 
 WIDTH = 4  # bins of a line with Hann's window, and how far it may move between windows that overlap by half
 FINE = 4  # speeds tried for each bin of the highest harmonic
-ROUNDS = 3  # of phase demodulation
-BROAD = 32  # widths of a line over which the median is what resonances and noise hold
-PARTS = 4  # of a record, each of which must show its speed
+ROUNDS = 3  # rounds of phase demodulation
+BROAD = 32  # line widths over which the median is the level of resonances and noise
+PARTS = 4  # parts of a record, each of which must show its speed
 # times what chance finds: white noise had 1.09 at most in 160 records, lines that were found 1.4 and more; on records drawn later
 # it refused 300 of 300 of white noise, 113 of 150 of noise through resonances, and none of 150 with lines
 CLEAR = 1.2
@@ -29,7 +29,7 @@ GOLDEN = (math.sqrt(5) - 1) / 2
 def with_estimated_speed(
     signal: Signal, order: float, speeds: tuple[float, float], *, harmonics: int = 3, seconds: float | None = None
 ) -> Signal:
-    """The signal with the angle of its shaft, found from a line and its harmonics, such as those of the mesh.
+    """Estimate the angle of a signal's shaft from a line and its harmonics, such as those of the mesh.
 
     First a path through a spectrogram: at each time the speed whose harmonics stand highest above what is broader than a line,
     in logarithms, on a path on which no line moves further than it is wide from one window to the next. Then the phase of the
@@ -89,18 +89,18 @@ def with_estimated_speed(
         turned = turned - _lag(signal, order, turned, size)
     back = np.flatnonzero(np.diff(turned) <= 0)
     if back.size:
-        raise ValueError(f"{signal.name}: the angle found turns back at {signal.time[back[0]]:.3g} s: {LOOK}")
+        raise ValueError(f"{signal.name}: the estimated angle reverses at {signal.time[back[0]]:.3g} s: {LOOK}")
     return replace(signal, angle=turned - turned[0], shaft_frequency=None)
 
 
 def _path(signal, order, speeds, count, size):
-    """Middles of windows and the speed in each, by the path whose lines hold most; ValueError if chance finds as much."""
+    """Middles of windows and the speed in each, by the path whose lines hold most; ValueError if noise would give as much."""
     x = signal.values - signal.values.mean()
     frequency, time, lines = stft(x, signal.rate, nperseg=size, noverlap=size // 2, nfft=2 * size, boundary=None, padded=False)
     bin_ = signal.rate / size
     tried = np.linspace(*speeds, max(8, math.ceil(FINE * count * order * (speeds[1] - speeds[0]) / bin_)))
     power = np.abs(lines) + 1e-6 * np.abs(lines).max() + 1e-300
-    # what resonances and noise hold is wider than a line: a line that stays at its frequency is left standing
+    # resonances and noise are wider than a line: a line at constant frequency is kept
     floor = median_filter(np.median(power, axis=1), BROAD * WIDTH, mode="nearest")
     level = np.log(power / floor[:, None])
     score = sum(np.array([np.interp(k * order * tried, frequency, frame) for frame in level.T]) for k in range(1, count + 1))
@@ -111,7 +111,7 @@ def _path(signal, order, speeds, count, size):
 
 
 def _followed(score, step):
-    """Of all paths that move by at most `step` speeds from window to window, the one with the largest sum (R. Bellman)."""
+    """Return the path with the largest sum of all that move by at most `step` speeds between windows (R. Bellman)."""
     total, came = score[0], []
     for frame in score[1:]:
         reach = sliding_window_view(np.pad(total, step, constant_values=-np.inf), 2 * step + 1)
@@ -125,7 +125,7 @@ def _followed(score, step):
 
 
 def _check_followed(signal, order, time, score, step, path):
-    """Compare with the best path through the same windows, each turned to other speeds, in which no line goes on."""
+    """Compare with the best path through the same windows with permuted speeds, in which no line continues."""
     turned = np.array([np.roll(frame, int(i * GOLDEN * frame.size)) for i, frame in enumerate(score)])
     rows = np.arange(len(path))
     chance = turned[rows, _followed(turned, step)].mean()
@@ -148,13 +148,13 @@ def _between(score, tried, path):
 
 
 def _straight_ends(angle, time, speed, t):
-    """An angle at times `t`; before the first and after the last window at the speed there."""
+    """Return an angle at times `t`; before the first and after the last window at the speed there."""
     inside = np.clip(t, time[0], time[-1])
     return angle(inside) + 2 * np.pi * ((t - inside) * np.where(t < time[0], speed[0], speed[-1]))
 
 
 def _lag(signal, order, turned, size):
-    """How far a line lags behind an angle [rad of the shaft], smooth over a window."""
+    """Return the lag of a line behind an angle [rad of the shaft], smooth over a window."""
     window = get_window("hann", size + 1, fftbins=False)
     wave = (signal.values - signal.values.mean()) * np.exp(-1j * order * turned)
     slow = fftconvolve(wave, window, mode="same") / fftconvolve(np.ones(wave.size), window, mode="same")

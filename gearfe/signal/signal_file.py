@@ -1,4 +1,4 @@
-"""Measured signals from files of many formats. Rate and unit are stated, in the file or by the caller, never guessed."""
+"""Measured signals from files of many formats. Rate and unit come from the file or the caller and are never guessed."""
 
 import warnings
 from collections.abc import Mapping, Sequence
@@ -35,15 +35,15 @@ def read_signal(
 ) -> Signal:
     """Read one channel of a file of measured signals; `read_signals` reads several.
 
-    The rate is ``rate`` (or ``fs``, ``sampling_rate``, ``sample_rate``, ``sampling_frequency``) [Hz], or follows from ``time``
-    (or ``t``), or is given here; where it is given twice the values must agree. The unit is stated beside the values, or here.
+    The rate is ``rate`` (or ``fs``, ``sampling_rate``, ``sample_rate``, ``sampling_frequency``) [Hz] in the file, or follows from
+    ``time`` (or ``t``), or is an argument. If it is given twice, the values must agree. The unit is in the file or an argument.
 
     - ``.csv``, ``.txt``: columns by comma, semicolon, tab or blanks, numbers with a decimal point or comma. The last row above
-      the numbers, or the last comment (# or %), names the columns and their units: ``time [s], housing [m/s^2]``; units may
-      stand in a row below the names. Rows above are titles. Time in s, ms or us, a shaft's ``angle`` in rad or deg. Titles and
-      comments may state ``rate = 61440 Hz``, ``unit = m/s^2``, ``shaft_frequency = 16.7 Hz``. In UTF-8 or UTF-16. Warned of:
-      Windows-1252, marks between thousands, empty cells, times of a clock (``2024-03-12 10:00:00.25``, ``10:00:00,25``), which
-      are the time, times rounded to more than a tenth of a step.
+      the numbers, or the last comment (# or %), has the names of the columns and their units: ``time [s], housing [m/s^2]``.
+      Units may be in a row below the names. Rows above are titles. Time is in s, ms or us, a shaft's ``angle`` in rad or deg.
+      Titles and comments may state ``rate = 61440 Hz``, ``unit = m/s^2``, ``shaft_frequency = 16.7 Hz``. The encoding is UTF-8 or
+      UTF-16. There are warnings for Windows-1252, thousands separators, empty cells, clock times (``2024-03-12 10:00:00.25``,
+      ``10:00:00,25``), which become the time, and times rounded to more than a tenth of a step.
     - ``.mat`` (also of version 7.3), ``.npz``, ``.h5``, ``.hdf5``: vectors by name, columns of long matrices (``acc 1``), fields
       of structs (``run.acc``) and cells (``run{2}``); ``time`` [s], ``angle`` [rad]; scalars ``rate``, ``shaft_frequency`` [Hz];
       text or attribute ``unit``. A response that gearfe wrote: columns by channel.
@@ -51,8 +51,8 @@ def read_signal(
     - ``.uff``, ``.unv`` (data sets 58, functions over time), ``.tdms``, ``.parquet``, ``.lvm`` (or text that begins with
       ``LabVIEW Measurement``): channels with the units and steps stated; dates of a clock in Parquet are the time.
 
-    Nothing is unpickled, no other file is opened, and an archive, MATLAB or HDF5 file that announces more numbers than it can
-    hold is refused. HDF5, version 7.3, UFF, TDMS, Parquet and LVM need ``pip install 'gearfe[signals]'``.
+    Nothing is unpickled, no other file is opened, and an archive, MATLAB or HDF5 file that states more numbers than it can hold
+    is rejected. HDF5, version 7.3, UFF, TDMS, Parquet and LVM need ``pip install 'gearfe[signals]'``.
 
     Parameters
     ----------
@@ -60,12 +60,12 @@ def read_signal(
     column : str, optional
         Name of the channel, without its groups if it is the only one of that name; needed if there are several channels.
     rate, shaft_frequency : float, optional
-        [Hz]. Where the file itself gives several rates, the one that `rate` names counts.
+        Sampling rate and shaft frequency [Hz]. If the file itself has several rates, the one that `rate` names counts.
     unit : str, optional
     header : str, optional
-        Of a text table without names: ``"time [s], housing [m/s^2]"``.
+        Header of a text table without names: ``"time [s], housing [m/s^2]"``.
     scale : float
-        Factor on the values, for instance of the sensor: `unit` per unit in the file. Then `unit` replaces what the file states.
+        Calibration factor, for instance of the sensor: `unit` per unit in the file. Then `unit` replaces the unit of the file.
 
     Returns
     -------
@@ -75,8 +75,8 @@ def read_signal(
     Raises
     ------
     ValueError
-        Naming file and cause: no rate, two rates, times that fall or have gaps, no unit, an unknown unit, several columns, a
-        cell that is no number (with its line), a sample that is not finite, a damaged file; what was found in it.
+        The message states file and cause: no rate, two rates, times that fall or have gaps, no unit, an unknown unit, several
+        columns, a cell that is no number (with its line), a sample that is not finite, a damaged file; and the contents.
     RuntimeError
         If the library that reads the format is missing.
     """
@@ -144,7 +144,7 @@ def read_signals(
         names = [_choose(path, recording, column) for column in columns]
     if not names:
         _choose(path, recording, None)
-    if not isinstance(units, Mapping):  # for the channels without a unit; of a single one it is compared with that of the file
+    if not isinstance(units, Mapping):  # used for the channels without a unit; for a single one it must agree with the file
         units = {name: units for name in names if units and (len(names) == 1 or not recording.units.get(name))}
     unknown = [name for name, unit in units.items() if name not in recording.vectors and unit is not None]
     if unknown:
@@ -186,9 +186,9 @@ def _aligned(path, found, signals):
 
 
 def channels(path: StrPath, header: str | None = None) -> Found:
-    """What a file holds: its channels, their units and rates.
+    """Return the contents of a file: its channels, their units and rates.
 
-    ValueError if its suffix is unknown, or if it cannot be read, is damaged, or holds no channel.
+    ValueError if its suffix is unknown, or if it is unreadable, is damaged, or holds no channel.
     """
     suffix = suffix_of(path, "signal", reading=True)
     try:

@@ -9,12 +9,12 @@ from scipy.signal import welch
 
 from ..core.checks import is_number
 from .given import band_of
-from .series import Signal
+from .series import Signal, expect_signal
 from .spectrum import Spectrum, amplitudes, noise_bins
 
 
 def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spectrum:
-    """One-sided amplitude spectrum: a sine of amplitude A on a bin gives A there.
+    """Compute the one-sided amplitude spectrum: a sine of amplitude A on a bin gives A there.
 
     The mean is taken out first and stands at 0 Hz. With ``hann`` a line between two bins is up to 15 % too low (scalloping),
     with ``flattop`` 0.1 %, with ``boxcar`` 36 %; ``boxcar`` keeps the energy,
@@ -48,13 +48,14 @@ def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spect
     >>> sine.values[[0, 50]].round(6).tolist(), sine.resolution, sine.bandwidth
     ([2.0, 3.0], 1.0, 1.5)
     """
+    expect_signal(signal)
     return amplitudes(signal.values, signal.rate, window, signal.unit, signal.name, "Hz")
 
 
 def power_spectral_density(
     signal: Signal, *, resolution: float | None = None, window: str | tuple[Any, ...] = "hann"
 ) -> Spectrum:
-    """One-sided power spectral density by Welch's mean over half-overlapping segments; it integrates to the variance.
+    """Compute the one-sided power spectral density (PSD) by Welch's mean over half-overlapping segments.
 
     Its unit is ``(unit)^2/Hz``.
 
@@ -81,6 +82,7 @@ def power_spectral_density(
     ----------
     P. D. Welch, IEEE Trans. Audio Electroacoust. 15(2) (1967) 70-73.
     """
+    expect_signal(signal)
     n = signal.values.size
     size = (
         max(n // 16, min(n, 8))
@@ -105,6 +107,7 @@ def analytic(signal, band=None):
     The band is cut between bins of the discrete Fourier transform, as `scipy.signal.envelope` does: exact for a record that
     closes; any other rings at its ends, for about ``1 / (high - low)``.
     """
+    expect_signal(signal)
     low, high = band_of(band, signal.rate, signal.name)
     n = signal.values.size
     frequency = fftfreq(n, 1 / signal.rate)

@@ -1,4 +1,4 @@
-"""Lines of a spectrum: where a faulty gear shows, and how much is found there."""
+"""Lines of a spectrum: expected frequencies of a faulty gear, and their amplitudes."""
 
 import math
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from .given import hertz
 from .spectrum import Spectrum
 
 HANN = 1.5  # equivalent noise bandwidth of its window, in bins
-BINS = 2  # on either side of an expected frequency in which a line is looked for
+BINS = 2  # bins on either side of an expected frequency in which the line is searched
 
 
 def expected_lines(
@@ -21,7 +21,7 @@ def expected_lines(
     *,
     harmonics: int = 1,
 ) -> dict[str, float]:
-    """Frequencies at which a faulty gear shows in a spectrum.
+    """Return the expected frequencies of a faulty gear in a spectrum.
 
     Where ``f_m`` is a multiple of ``f_fault`` (S0: 280 = 7 x 40 Hz, S4: 480 = 6 x 80 Hz), harmonics of the fault fall on
     sidebands and both names have the same frequency.
@@ -82,7 +82,7 @@ def _times(n, name):
 def find_lines(
     found: Spectrum, lines: Mapping[str, float], tolerance: float | None = None, *, between: bool = False
 ) -> dict[str, tuple[float, float]]:
-    """Largest bin near each expected line; bins nearer to another one (a bin or more away) do not count.
+    """Find the largest bin near each expected line; bins nearer to another one (a bin or more away) do not count.
 
     Parameters
     ----------
@@ -130,15 +130,15 @@ def find_lines(
 
 
 def between_bins(found: Spectrum, top: int) -> tuple[float, float]:
-    """Frequency and amplitude of the line whose largest bin is `top`, from that and the larger of its neighbours.
+    """Return frequency and amplitude of the line whose largest bin is `top`, from it and the larger of its neighbours.
 
     ::
 
         r = X[top +- 1] / X[top],  d = (2 r - 1) / (r + 1),  A = X[top] pi d (1 - d**2) / sin(pi d)
 
-    d is how many bins beside `top` the line lies. Exact for a lone line with Hann's window, apart from its image at negative
-    frequencies; other lines should be 4 bins away or more. What is no local maximum, and spectra with other windows, are left as
-    they are.
+    d is the distance of the line from `top` in bins. It is exact for a lone line with Hann's window, apart from its image at
+    negative frequencies. Other lines should be 4 bins away or more. Bins that are no local maximum, and spectra with other
+    windows, are not changed.
 
     References
     ----------

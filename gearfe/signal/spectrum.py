@@ -49,7 +49,7 @@ class Spectrum:
 
 
 def amplitudes(values, rate, window, unit, name, axis):
-    """`Spectrum` of equally spaced values, `rate` of them per second or per turn."""
+    """`Spectrum` of equally spaced values, `rate` of them per second or per revolution."""
     n, mean = values.size, values.mean()
     frequency, power = periodogram(values - mean, rate, window=window, detrend=False, scaling="spectrum")
     amplitude = np.sqrt(2 * power)

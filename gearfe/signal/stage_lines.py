@@ -1,4 +1,4 @@
-"""Where the lines of a planetary stage lie in what a sensor on its ring or housing receives."""
+"""Sidebands of a planetary stage at a fixed sensor on its ring or housing (planet-pass modulation)."""
 
 import math
 from collections.abc import Sequence
@@ -8,7 +8,7 @@ import numpy as np
 from ..core.checks import numbers, whole
 from .given import hertz
 
-NEAR = 1e-3  # of a tooth, or of the sum over all planets
+NEAR = 1e-3  # tolerance: part of a tooth, or of the sum over all planets
 HIGHEST = {"harmonics": 1, "turns": 3, "window": 1}
 
 
@@ -23,7 +23,7 @@ def stage_lines(
     angles: Sequence[float] | None = None,
     **highest: int,
 ) -> dict[str, float]:
-    """Frequencies of a planetary stage with a fixed ring, as a sensor that stands still finds them.
+    """Return the frequencies of a planetary stage with a fixed ring at a fixed sensor.
 
     Planet p is at the angle ``2 pi (f_c t + p / N)`` and is heard through a window over that angle, whose harmonics j up to
     `window` shift its lines by j f_c. Its forces are those of planet 0 at another time: multiples n of the mesh frequency

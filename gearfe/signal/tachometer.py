@@ -14,14 +14,14 @@ from .series import Signal
 
 SPEEDS = {"rpm": 1 / 60, "1/min": 1 / 60, "min^-1": 1 / 60, "U/min": 1 / 60, "tr/min": 1 / 60}  # turns per second, by unit
 FEWEST = 4  # pulses
-QUIET = 0.25  # of the height of the pulses: how far below the level a signal must fall before it can rise again
-MISSED = 1.7  # an interval this many times those before and after it hides a lost pulse
+QUIET = 0.25  # hysteresis, as a part of the height of the pulses
+MISSED = 1.7  # ratio of an interval to its neighbours that means a lost pulse
 
 
 def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool = False) -> Floats:
-    """Times at which a tachometer's signal rises (falls) through a level [s], between samples by a straight line.
+    """Return the times at which a tachometer's signal rises (falls) through a level [s], linear between samples.
 
-    `level` and `falling` are as of `with_tachometer`. ValueError if the signal has no pulses or only few.
+    `with_tachometer` describes `level` and `falling`. ValueError if the signal has no pulses or only few.
     """
     x = -tachometer.values if falling else tachometer.values
     low, high = float(x.min()), float(x.max())
@@ -76,18 +76,15 @@ def shaft_ratio(ratio: object) -> float:
 
 
 def with_speed_record(signal: Signal, speed: Signal, *, ratio: float = 1.0) -> Signal:
-    """A signal with the `angle` of a shaft whose speed was recorded with it: the integral of the speed, from 0.
+    """Return a signal with the `angle` of a shaft whose speed was recorded with it: the integral of the speed, from 0.
 
-    Errors of the speed add up, so that the angle drifts against the shaft; pulses (`with_tachometer`) do not. The speed is in one
-    of the units of `SPEEDS`; `ratio` is as of `with_tachometer`. ValueError if the two differ in rate or length, or the shaft
-    stands still or turns back.
+    Errors of the speed accumulate, so that the angle drifts; pulses (`with_tachometer`) do not. The speed has one of the units of
+    `SPEEDS`. `with_tachometer` describes `ratio`. ValueError if the two differ in rate or length, or the shaft stops or reverses.
     """
     _check_together(signal, speed)
     low = int(np.argmin(speed.values))
     if not speed.values[low] > 0:
-        raise ValueError(
-            f"{speed.name}: {speed.values[low]:g} {speed.unit} at sample {low}, but orders need a shaft that turns on"
-        )
+        raise ValueError(f"{speed.name}: {speed.values[low]:g} {speed.unit} at sample {low}, but orders need a rotating shaft")
     turns = np.cumsum((speed.values[1:] + speed.values[:-1]) / 2) * SPEEDS[speed.unit] / speed.rate
     return replace(signal, angle=2 * np.pi * shaft_ratio(ratio) * np.append(0.0, turns), shaft_frequency=None)
 
@@ -101,7 +98,7 @@ def with_tachometer(
     level: float | None = None,
     falling: bool = False,
 ) -> Signal:
-    """The part of a signal between the first and the last pulse of a tachometer, with the `angle` of the shaft.
+    """Return the part of a signal between the first and the last pulse of a tachometer, with the `angle` of the shaft.
 
     For order spectra and synchronous averages of a machine whose speed changes.
 

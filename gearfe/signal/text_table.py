@@ -1,4 +1,4 @@
-"""Channels of text tables as people export them: title rows, comments, units below the names, decimal commas, no names at all."""
+"""Channels of exported text tables: title rows, comments, units below the names, decimal commas, missing names."""
 
 import contextlib
 import csv
@@ -14,15 +14,15 @@ import numpy as np
 from ..geometry.aliases import StrPath
 from .found import KEYS, Found, plain
 
-SEPARATORS = (";", "\t", ",", None)  # of cells; None: blanks
-LOOKED = 200  # rows at the end of a table from which its way of writing numbers is found
+SEPARATORS = (";", "\t", ",", None)  # separators of cells; None: blanks
+LOOKED = 200  # rows at the end of a table from which its number format is found
 LONGEST = 300  # characters of a title that states a value
 UNITS = re.compile(
     r"-|%|V|mV|pC|g|s|ms|us|rad|deg|°|k?Hz|rpm|1/min|[munkM]?(m|N|Nm|Pa|W|A)|[mu]?m/s(\^?2|²|\*\*2)?|°C|K|bar|hh:mm:ss\S*|\[.*\]|\(.*\)"
 )
 STATEMENT = re.compile(r"([\w ]+?)\s*(?:[\[(](\w+)[\])])?\s*[:=;,\t]+\s*([^;,\t]+(?:,\d+)?)[;,\t\s]*(\w*)[;,\t\s]*")
 SPACE = "[ \xa0\u2009\u202f]"  # blanks, also those that do not break
-GROUPS = {  # by decimal mark, what stands between thousands (a regular expression), and numbers that have it
+GROUPS = {  # by decimal mark: thousands separators (a regular expression), and numbers that have them
     mark: {one: re.compile(rf"[-+]?\d{{1,3}}({one}\d{{3}})+({re.escape(mark)}\d*)?(e[-+]?\d+)?", re.IGNORECASE) for one in groups}
     for mark, groups in {".": (",", "'", SPACE), ",": (r"\.", "'", SPACE)}.items()
 }
@@ -34,7 +34,7 @@ DAY = 86400.0  # s
 
 
 class Way(NamedTuple):
-    """How a table writes its numbers: what parts cells, the decimal mark, cells in a row, rows of text above the numbers.
+    """Number format of a table: separator of cells, the decimal mark, cells in a row, rows of text above the numbers.
 
     `group` is what stands between thousands, as a regular expression; empty if nothing does.
     """
@@ -56,7 +56,7 @@ class Way(NamedTuple):
         return cells + [""] * min((count or 0) - len(cells), empty)
 
     def number(self, cell: str) -> float | None:
-        """Number of a cell; None if it is none."""
+        """Return the number of a cell; None if it is none."""
         if self.group and GROUPS[self.mark][self.group].fullmatch(cell):
             cell = re.sub(self.group, "", cell)
         elif self.mark == "," and "." in cell:
@@ -67,7 +67,7 @@ class Way(NamedTuple):
             return None
 
     def numbers(self, line: str) -> int:
-        """Count of the cells of a row if they are numbers, or numbers beside dates and times of a clock; else 0."""
+        """Return the count of the cells of a row if they are numbers, also with dates and clock times; else 0."""
         cells = self.cells(line)
         rest = [cell for cell in cells if self.number(cell) is None]
         clocks = all(CLOCK.fullmatch(cell) or DATE.fullmatch(cell) for cell in rest)
@@ -182,7 +182,7 @@ def _table(path, rows, way, count):
 
 
 def _by_cell(path, rows, way, count):
-    """As `_table`, cell by cell: with marks between thousands, commas between quotes and empty cells, of which it warns."""
+    """Return `_table` cell by cell: with thousands separators, commas in quotes and empty cells, with a warning."""
     cells = [way.cells(line, count) for _, line in rows]
     table = [[way.value(cell) for cell in row] for row in cells]
     for (i, line), row in zip(rows, table, strict=True):
@@ -210,7 +210,7 @@ def _clocks(path, found, first):
 
 
 def _state(path, found, line, mark):
-    """Note what a title row or a comment states: ``rate = 5120 Hz``, ``Sample rate [Hz];5120``."""
+    """Store the metadata of a title row or a comment: ``rate = 5120 Hz``, ``Sample rate [Hz];5120``."""
     match = len(line) <= LONGEST and (re.fullmatch(r"([\w ]+?)\s*[:=]\s*(.+)", line) or STATEMENT.fullmatch(line))
     key = plain(match[1]) if match else ""
     if key not in KEYS:

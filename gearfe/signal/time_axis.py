@@ -1,4 +1,4 @@
-"""The rate of a column of times: equal steps, also where they are printed with few digits; gaps are told from rounding."""
+"""Sampling rate of a column of times: equal steps, also if printed with few digits; gaps differ from rounding."""
 
 import warnings
 from typing import Any
@@ -8,8 +8,8 @@ from scipy.optimize import minimize_scalar
 
 from ..geometry.aliases import Floats
 
-UNEVEN = 0.1  # part of a step by which clocks may wander; a lost sample is more
-DECIMALS, DIGITS = range(-3, 13), range(3, 10)  # of printed times
+UNEVEN = 0.1  # tolerance of clocks, as a part of a step; a lost sample is more
+DECIMALS, DIGITS = range(-3, 13), range(3, 10)  # decimals and significant digits of printed times
 CLOSE = 1e-2  # part of a rounding: tolerance for binary numbers and the fit
 BLURRED = 1e-3  # part of the whole record: times rounded more coarsely determine no rate
 
@@ -80,10 +80,10 @@ def _multiples(time, unit):
 
 
 def _fitted(time, step, half, *, known):
-    """Step of a line and how far the times are from it, over the largest `half`: more than 1 if it does not pass within it.
+    """Return the step of a line and the distance of the times from it over the largest `half`: above 1, none passes within it.
 
-    A line of slope s passes all times within `half` if ``max(y - half) <= min(y + half)`` of what it leaves, ``y = time - s i``.
-    The difference of both sides is convex in s; its minimum is sought unless the step is `known`.
+    A line of slope s passes all times within `half` if ``max(y - half) <= min(y + half)`` of the remainder ``y = time - s i``.
+    The difference of both sides is convex in s; its minimum is searched unless the step is `known`.
     """
     place, wide = np.arange(time.size), 2 * float(half.max())
 

@@ -1,4 +1,4 @@
-"""How a spectrum changes with time (spectrogram), and how its lines repeat (cepstrum)."""
+"""Spectrogram (spectrum over time) and cepstrum (families of sidebands and echoes)."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -10,10 +10,10 @@ from scipy.signal import ShortTimeFFT, get_window
 from ..core.checks import whole
 from ..geometry.aliases import Floats
 from .given import oscillation
-from .series import Signal
+from .series import Signal, expect_signal
 from .spectrum import Spectrum
 
-FLOOR = 1e-12  # of the largest amplitude: what a logarithm takes for zero
+FLOOR = 1e-12  # amplitudes below this part of the largest count as zero in logarithms
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +39,7 @@ class Spectrogram:
 
 
 def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[Any, ...] = "hann") -> Spectrogram:
-    """Amplitude spectra of frames that overlap by three quarters.
+    """Compute amplitude spectra of frames that overlap by three quarters.
 
     Parameters
     ----------
@@ -61,6 +61,7 @@ def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[
     ValueError
         If `size` is no whole number from 8 to half of the samples, or scipy does not know the window.
     """
+    expect_signal(signal)
     n = signal.values.size
     size = 2 ** round(np.log2(8 * n) / 2) if size is None else whole("size", size, 1)
     if not 8 <= size <= n // 2:
@@ -72,31 +73,32 @@ def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[
 
 
 def cepstrum(signal: Signal) -> Spectrum:
-    """Real cepstrum: the inverse Fourier transform of the logarithm of the amplitudes.
+    """Compute the real cepstrum: the inverse Fourier transform of the logarithm of the amplitudes.
 
     ::
 
         c(t) = IFFT(log|FFT(x)|)
 
-    A family of sidebands f apart, and equally an echo after ``1 / f``, makes one peak at the quefrency ``1 / f`` (and smaller
-    ones at its multiples). An echo of part a adds ``a / 2`` there, ``-a**2 / 4`` at twice that. Mesh lines become peaks at tooth
-    periods, modulations at turns of the shaft.
+    A family of sidebands f apart makes one peak at the quefrency ``1 / f`` (and smaller ones at its multiples), and so does an
+    echo after ``1 / f``. An echo of part a adds ``a / 2`` there, ``-a**2 / 4`` at twice that. Mesh lines become peaks at tooth
+    periods, modulations at shaft periods.
 
     Parameters
     ----------
     signal : Signal
-        Its mean is taken out. Amplitudes below 1e-12 of the largest count as that.
+        Signal, whose mean is removed. Amplitudes below 1e-12 of the largest are raised to that.
 
     Returns
     -------
     Spectrum
-        Over quefrency [s], from 0 to half the duration; without unit ("1"), as a logarithm is.
+        Cepstrum over quefrency [s], from 0 to half the duration; without unit ("1"), like a logarithm.
 
     References
     ----------
     B. P. Bogert, M. J. R. Healy, J. W. Tukey, Proc. Symp. Time Series Analysis (1963) 209-243; R. B. Randall, Mech. Syst. Signal
     Process. 97 (2017) 3-19.
     """
+    expect_signal(signal)
     x = oscillation(signal.values, f"{signal.name} is constant: it has no cepstrum")
     amplitude = np.abs(rfft(x))
     values = irfft(np.log(np.maximum(amplitude, FLOOR * amplitude.max())), x.size)[: x.size // 2 + 1]

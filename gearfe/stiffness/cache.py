@@ -1,4 +1,4 @@
-"""Gears solved before by finite elements or in three dimensions: kept in this process, and on disk between processes.
+"""Cache of gears solved by finite elements or in three dimensions: in this process, and on disk between processes.
 
 A stored flexibility is used only if the digest of its key and content is that of the key asked for: the gear, its
 material and damage, the options, the source code of both packages and the versions of the libraries that made it. A file that is
@@ -34,10 +34,11 @@ def folder():
 
 
 def solved_gear(gear, material, cracks=(), *, cache=True, **options):
-    """Flexibility of a gear's section by finite elements, from the cache if it is there.
+    """Return the flexibility of a gear's section by finite elements, from the cache if possible.
 
-    `cache` as of `gearfe.flexibility.solved.solved_gears`; False: solve anew, store nothing. Only with the results of this
-    process is the disk used. `options` as of `finite_elements.fe.damaged_flexibility`: broken, neighbours, state, refine, teeth.
+    `gearfe.flexibility.solved.solved_gears` describes `cache`; False solves again and stores nothing. The disk is only used with
+    the results of this process. `options` are those of `finite_elements.fe.damaged_flexibility`: broken, neighbours, state,
+    refine, teeth.
     """
     kept = solved_gears(cache)
 
@@ -52,15 +53,16 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
 
 
 def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options):
-    """`Flexibility3D` of a gear of finite width by finite elements of all of it, from the cache if it is there.
+    """Return the `Flexibility3D` of a gear of finite width by finite elements of the whole gear, from the cache if possible.
 
-    `cache` as of `solved_gear`, `options` as of `finite_elements.fe_gear3d.MeshedGear`: neighbours, degree, less, refine, section
-    and shaft. `tell` gets one line of text before each solve: which gear, the unknowns, the expected seconds and memory.
+    `solved_gear` describes `cache`. `options` are those of `finite_elements.fe_gear3d.MeshedGear`: neighbours, degree, less,
+    refine, section, shaft. `tell` gets one line of text before each solve with the gear, the unknowns, the expected seconds and
+    memory.
     """
     kept = solved_gears(cache)
     for one in damage:
         if isinstance(one, Crack):
-            meshed_path(gear, one)  # refused before the sound gear is solved
+            meshed_path(gear, one)  # invalid cracks raise before the healthy gear is solved
 
     def said(plan):
         hurt = f", {told({'': gear}, {'': damage})}" if damage else ""
@@ -75,9 +77,9 @@ def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options)
 
 
 def solved_energy(gear, material, damage=(), *, cache=True, **options):
-    """`Flexibility3D` of a gear of finite width by the energy model, from the cache if it is there.
+    """Return the `Flexibility3D` of a gear of finite width by the energy model, from the cache if possible.
 
-    `cache` as of `solved_gear`, `options` as of `energy.ritz.solid.flexibility3d`: neighbours, order, axial, refine.
+    `solved_gear` describes `cache`. `options` are those of `energy.ritz.solid.flexibility3d`: neighbours, order, axial, refine.
     """
     kept = solved_gears(cache)
     solve = partial(flexibility3d, gear, material, damage, cache=kept, **options)
@@ -89,7 +91,7 @@ def _solid_case(material, damage, options):
 
 
 def unsolved(gear, material, damage=(), *, cache=True, **options):
-    """`finite_elements.solver.SolveCost` by key of what `solved_solid` would solve now, without what is kept or on the disk.
+    """`finite_elements.solver.SolveCost` by key of the solves that `solved_solid` would need now.
 
     RuntimeError, with the numbers, if one of them does not fit into memory.
     """
@@ -102,7 +104,7 @@ def unsolved(gear, material, damage=(), *, cache=True, **options):
 
 
 def _file(key):
-    """Where a result is on the disk, None if that is switched off, and its key spelled out."""
+    """Return the path of a result on disk, None if that is switched off, and its key as text."""
     place = folder()
     if place is None:
         return None, ""
@@ -111,7 +113,7 @@ def _file(key):
 
 
 def _kept(kind, gear, case, solve, kept):
-    """What `solve` gives, from `kept` or, if that is of this process, from the disk if it is there."""
+    """Return the result of `solve` from `kept`, from the disk if `kept` is that of this process, or by solving."""
     return kept.get((kind, gear, *case), partial(_stored, kind, gear, case, solve) if kept is PROCESS else solve)
 
 

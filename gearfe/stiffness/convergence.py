@@ -1,4 +1,4 @@
-"""`convergence`: the stiffness of a case over resolution and order, the estimate next to the true difference."""
+"""`convergence`: the stiffness of a case over resolution and order, with the error estimate and the true difference."""
 
 import os
 import time

@@ -1,4 +1,4 @@
-"""`StiffnessCurve`: a mesh stiffness over one mesh cycle, in SI units, with all it takes to repeat it."""
+"""`StiffnessCurve`: mesh stiffness over one mesh cycle, in SI units, with all data to repeat it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -23,32 +23,32 @@ if TYPE_CHECKING:
 @renamed(lte="deflection", lte_supports="support_deflection")
 @dataclass(frozen=True, slots=True)
 class StiffnessCurve:
-    """Mesh stiffness along the line of action.
+    """Time-varying mesh stiffness (TVMS) along the line of action.
 
     Attributes
     ----------
     phase : ndarray, shape (n,)
         Mesh phase: 0 when a pair enters at the start of the path of contact, 1 one transverse base pitch later.
     k : ndarray, shape (n,)
-        Secant stiffness, force over loaded transmission error [N/m].
+        Secant stiffness [N/m]: force divided by `deflection`.
     k_tangent : ndarray, shape (n,)
         Tangent stiffness dF/dx [N/m].
     deflection : ndarray, shape (n,)
-        Loaded minus unloaded transmission error, as a length on the line of action [m]; ``k = force / deflection``, also where so
-        light a load leaves part of the pairs open.
+        Loaded minus unloaded transmission error, as a length on the line of action [m]; ``k = force / deflection``, also if a
+        light load leaves pairs open.
     order : ndarray, shape (pairs,)
-        Which tooth pairs the columns below belong to: pair k is k base pitches ahead of the newest.
+        Numbers of the tooth pairs in the columns below: pair k is k base pitches ahead of the newest.
     force : ndarray, shape (n, pairs)
-        Force each pair carries [N]; nan where a model gives only the total stiffness.
+        Force of each pair [N]; nan if a model gives only the total stiffness.
     pressure : ndarray, shape (n, pairs)
         Largest contact pressure of each pair [Pa]; nan for methods without one.
     error : ndarray, shape (n,) or None
-        Estimated discretisation error of k [N/m], if one was asked for.
+        Estimated discretisation error of k [N/m], if requested.
     unloaded : ndarray, shape (n,) or None
-        Transmission error without load [m]: 0 for involutes, otherwise where the first pair of modified flanks touches.
+        Unloaded transmission error [m]: 0 for involutes, otherwise where the first pair of modified flanks touches.
     support_deflection : ndarray, shape (n,) or None
-        The part of `deflection` that shafts and springs under the hubs give way [m], the mean over the loads of the contact; None
-        of rigid bores.
+        Part of `deflection` by shafts and springs under the hubs [m], its mean weighted with the contact loads; None for rigid
+        bores.
     meta : dict
         Gears, centre distance, load, materials, method, resolution, versions: all that is needed to repeat it.
     """
@@ -75,7 +75,7 @@ class StiffnessCurve:
         return f"<StiffnessCurve by {meta.get('method', '?')}: {phases}{load}, k {text}>"
 
     def to_pandas(self) -> Any:
-        """The curve as a `pandas.DataFrame`, one row for each phase.
+        """Return the curve as a `pandas.DataFrame`, one row for each phase.
 
         Columns have units in their names, as in the CSV table; the index is ``phase [-]``; ``attrs`` holds `meta`. RuntimeError
         if pandas is missing; the message names what to install.
@@ -91,7 +91,7 @@ class StiffnessCurve:
         return table
 
     def to_xarray(self) -> Any:
-        """The curve as an `xarray.Dataset` with named axes ``phase`` and ``order`` (the tooth pair), units in ``attrs``.
+        """Return the curve as an `xarray.Dataset` with named axes ``phase`` and ``order`` (the tooth pair), units in ``attrs``.
 
         ``k``, ``k_tangent``, ``deflection`` and, if there is one, ``error`` over ``phase``; ``force`` and ``pressure`` over both.
         RuntimeError if xarray is missing; the message names what to install.
@@ -107,7 +107,7 @@ class StiffnessCurve:
         return xarray.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
 
     def __call__(self, phase: ArrayLike) -> NDArray:
-        """Secant stiffness [N/m] at phases of any shape, straight between those of the curve; for models of dynamics.
+        """Return the secant stiffness [N/m] at phases of any shape, linear between those of the curve; for dynamic models.
 
         Phases that go round a mesh cycle are continued periodically. Those of a damaged tooth's engagement (``span="tooth"``) are
         not: what comes before and after it is another tooth, and a ValueError says that the curve has no value there.
@@ -129,14 +129,14 @@ class StiffnessCurve:
 
     @property
     def te(self) -> Floats:
-        """Transmission error under load ``(n,)`` [m], its unloaded part included, as a length on the line of action."""
+        """Loaded transmission error (LTE) ``(n,)`` [m], its unloaded part included, as a length on the line of action."""
         return self.deflection if self.unloaded is None else self.deflection + self.unloaded
 
     def without_supports(self) -> "StiffnessCurve":
-        """The stiffness of the teeth and bodies alone, loaded as they are on their shafts.
+        """Return the curve of the teeth and bodies alone, under the loads that they have on their shafts.
 
-        For models that have shafts and bearings of their own: they must not be counted twice. The tangent stiffness takes the
-        shafts' tangent for their secant, which is exact of hubs that do not tilt.
+        It is for models with separate shafts and bearings, which must not be counted twice. The tangent stiffness uses the secant
+        compliance of the shafts for the tangent one, which is exact for hubs that do not tilt.
         """
         if self.support_deflection is None:
             return self
@@ -148,11 +148,11 @@ class StiffnessCurve:
 
     @property
     def share(self) -> Floats:
-        """Load share of each pair ``(n, pairs)``, rows sum to 1."""
+        """Load sharing ratio of each pair ``(n, pairs)``; rows sum to 1."""
         return self.force / self.force.sum(axis=1, keepdims=True)
 
     def zones(self) -> dict[str, float]:
-        """Mean stiffness [N/m] by zone: ``single``, ``double`` (or more pairs, on the path of contact), ``mean``, ``max``.
+        """Return the mean stiffness [N/m] by zone: ``single``, ``double`` (or more pairs), ``mean``, ``max``.
 
         A zone none of the phases falls into is left out, and so are those of helical teeth.
         """
@@ -186,7 +186,7 @@ class StiffnessCurve:
 
     @classmethod
     def from_csv(cls, path: StrPath) -> "StiffnessCurve":
-        """Read what `to_csv` wrote; ValueError if the file is not such a table, or its phases do not rise."""
+        """Read a table of `to_csv`; ValueError if the file is not such a table, or its phases do not rise."""
         return cls(**read_fields(path))
 
     def plot(self, path: StrPath | None = None, title: str | None = None) -> "Figure":
@@ -198,7 +198,7 @@ class StiffnessCurve:
 
 
 def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
-    """One curve of several that follow each other, of the same gears under the same load; columns of pairs by their order."""
+    """Join curves that follow each other, of the same gears under the same load; columns of pairs by their order."""
     order = np.unique(np.concatenate([curve.order for curve in curves]))
 
     def rows(name: str) -> Floats:

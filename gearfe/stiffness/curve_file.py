@@ -1,4 +1,4 @@
-"""What a stiffness curve puts into a file, and how its CSV table is read back; the formats are those of `gearfe.core.files`."""
+"""Contents of a file with a stiffness curve, and its reader; the formats are those of `gearfe.core.files`."""
 
 import json
 

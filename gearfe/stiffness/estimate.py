@@ -1,4 +1,4 @@
-"""The estimated discretisation error of a stiffness, a property of its phase: neighbours in a list of phases do not enter."""
+"""Estimated discretisation error of a stiffness at a phase, independent of the other phases of a list."""
 
 import numpy as np
 
@@ -9,19 +9,19 @@ ORDER = {"fe": 2, "ritz": 4}
 SAFETY = 3.0  # P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: where two meshes are compared
 FINER = 2.0  # times finer hats at tip corners; their error falls at least linearly with their length
 STEPS = 16  # fixed phases per base pitch
-# The largest difference is taken from the fixed phases so close, on either side. Meshes of finite elements of different size can
+# The largest difference is taken from the fixed phases this close, on either side. Meshes of different size can
 # agree by chance over a quarter of a base pitch.
 WINDOW = {"fe": 1 / 2, "ritz": 1 / 8}
 # Error of the contact against pressed whole outlines where no mesh is to blame, as a part of k, in nine of ten phases. Lines of
 # contact in three dimensions have the laws of the section.
 MODEL = 1e-3
-MEAN = 1 / 2  # the mean difference is that of the fixed phases so close: one base pitch in all
+MEAN = 1 / 2  # half-width of the averaging window [base pitches]
 
 
 def fixed_phases(phase, periodic):
-    """Multiples ``(m,)`` of ``1 / STEPS`` that the estimate at `phase` ``(n,)`` looks at.
+    """Return the multiples ``(m,)`` of ``1 / STEPS`` at which the error of `phase` ``(n,)`` is estimated.
 
-    `periodic`: all teeth are alike, so that one base pitch says it all.
+    With `periodic`, all teeth are equal, so that one base pitch is sufficient.
     """
     if periodic:
         return np.arange(STEPS) / STEPS

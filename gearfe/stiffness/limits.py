@@ -1,4 +1,4 @@
-"""Limits of what is asked for, with their reasons: kinds of values, resolution, number and range of phases, memory."""
+"""Limits of arguments, with their reasons: types of values, resolution, number and range of phases, memory."""
 
 import math
 from numbers import Integral
@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from ..core.checks import is_number
 from ..core.memory import free_memory
 
-MOST_PHASES = 100_000  # of a cycle: k changes by less than 1e-4 between two of them even where teeth enter
+MOST_PHASES = 100_000  # limit of phases per cycle: k changes by less than 1e-4 between two of them even where teeth enter
 FURTHEST = 1e6  # cycles: beyond, rounding moves contacts by more than 1e-10 of a pitch
 SECTION = (9_000, 4_200, 3_700)  # unknowns of a whole section of 20 to 30 teeth by powers of refine, measured at 1, 2, 4 and 8
 SECTION_BYTES = (3500.0, 400.0)  # memory of its solve for each unknown by powers of refine, measured at 1, 4 and 8
 
 
 def check_count(phases: Any) -> int:
-    """A number of phases as an int, if it is a whole one from 1 to `MOST_PHASES`."""
+    """Return a number of phases as an int, if it is a whole one from 1 to `MOST_PHASES`."""
     if not is_number(phases) or not math.isfinite(phases) or phases != int(phases) or phases < 1:
         raise ValueError(f"phases = {phases!r}, but give a number of phases >= 1, or an array of phases")
     if phases > MOST_PHASES:

@@ -21,7 +21,7 @@ from .limits import check_count
 from .solve import Solve, solve
 
 MARGIN = 0.25  # mesh cycles before and after the path of contact in which corners touch
-AT_ONCE = 16  # mesh cycles solved in one call: memory grows with their square
+AT_ONCE = 16  # mesh cycles per call, since memory grows with their square
 MOST = 1_000_000  # phases of a hunting period in which every cycle differs
 NAMES = tuple(name for name, _ in SIDES)
 
@@ -107,7 +107,7 @@ def mesh_cycle(case: Case, how: Solve | None = None, *, curve: Callable[[Case, S
     how : Solve, optional
         Its `phases` are a number per mesh cycle.
     curve : callable, optional
-        ``curve(case, how)`` is solved instead of `solve`, for example for a law of force.
+        ``curve(case, how)`` is solved instead of `solve`, for example for a force law.
 
     Returns
     -------
@@ -153,7 +153,7 @@ def mesh_cycle(case: Case, how: Solve | None = None, *, curve: Callable[[Case, S
 
 
 def like_all(case: Case, sides: Sequence[int]) -> Case:
-    """The case with all teeth of some gears (0: pinion, 1: wheel) alike: no damage, no deviations from tooth to tooth."""
+    """Return the case with equal teeth of some gears (0: pinion, 1: wheel): no damage, no deviations from tooth to tooth."""
     damage, flanks = dict(case.damage or {}), dict(case.flanks or {})
     for side in sides:
         name = NAMES[side]
@@ -177,7 +177,7 @@ def differing(case: Case, side: int) -> tuple[int, ...]:
 
 
 def renumbered(case: Case, by: int) -> Case:
-    """The case with the teeth of the wheel numbered higher, so that tooth k of the pinion meets what was tooth k - `by`."""
+    """Return the case with wheel teeth renumbered, so that tooth k of the pinion meets the former tooth k - `by`."""
     damage, flanks, z = dict(case.damage or {}), dict(case.flanks or {}), case.pair.gear_2.z
     if "wheel" in damage:
         damage["wheel"] = [replace(hurt, tooth=(hurt.tooth + by) % z) for hurt in damage["wheel"]]
@@ -193,7 +193,7 @@ def _gears(case):
 
 
 def _plain(flank, gear):
-    """The flank of most teeth. Its pitch is spelled out, so that all teeth are solved in the same way as those that differ."""
+    """Return the flank of most teeth, with explicit pitch, so that all teeth are solved in the same way."""
     if not flank.on(gear).differs:
         return flank
     pitch = (_commonest(flank.pitch or (0.0,)),) * gear.z
@@ -212,7 +212,7 @@ def _windows(case, side, n):
     if not teeth:
         return []
     span = case.pair.eps_alpha + case.overlap()
-    before = math.ceil((neighbours_of(case.pair) + FURTHER + MARGIN) * n)  # damage reaches as many teeth
+    before = math.ceil((neighbours_of(case.pair) + FURTHER + MARGIN) * n)  # damage has an effect on this number of teeth
     length = before + math.ceil(span * n) + before
     entries = sorted(-tooth % z for tooth in teeth)
     breaks = [i for i, entry in enumerate(entries) if (entries[i - len(entries) + 1] - entry - 1) % z * n + n > length]
@@ -226,7 +226,7 @@ def _windows(case, side, n):
 
 
 def _meetings(case, both, n):
-    """Samples (start, stop) of the hunting period in which teeth of both gears that differ are in mesh at the same time."""
+    """Return samples (start, stop) of the hunting period in which differing teeth of both gears are in mesh together."""
     z_1, z_2 = (gear.z for gear in _gears(case))
     cycles = math.lcm(z_1, z_2)
     spans = {span for one in both[0] for two in both[1] for span in _overlaps((one, z_1 * n), (two, z_2 * n), cycles * n)}
@@ -239,7 +239,7 @@ def _meetings(case, both, n):
 
 
 def _overlaps(first, second, size):
-    """Samples (start, stop) of a hunting period of `size` samples in which windows of both gears overlap."""
+    """Return samples (start, stop) of a hunting period of `size` samples in which windows of both gears overlap."""
     (one, turn_1), (two, turn_2) = first, second
     whole_1, whole_2 = (window.stop - window.start == turn for window, turn in (first, second))
     if whole_1 and whole_2:
@@ -268,7 +268,7 @@ def _solved(curve, case, how, n, samples, position):
     found = [curve(case, replace(how, phases=np.arange(low, high) / n, span="tooth")) for low, high in spans]
     if len(found) > 1 and not all(isinstance(one, StiffnessCurve) for one in found):
         raise ValueError(
-            "a law of force over several loads is of single teeth that differ, but here all teeth of a gear do: give one load"
+            "a force law over several loads is of single teeth that differ, but here all teeth of a gear do: give one load"
         )
     if len(found) > 1:
         bare = [replace(one, order=one.order[:0], force=one.force[:, :0], pressure=one.pressure[:, :0]) for one in found]

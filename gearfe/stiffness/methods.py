@@ -1,15 +1,15 @@
-"""The methods of `mesh_stiffness` and what each can: one row for each, read wherever somebody asks.
+"""Methods of `mesh_stiffness` and their abilities: one row for each, used everywhere.
 
-A row answers for itself: `Method.refuses` what it does not model of a case, `Method.curves` the stiffness. The command line's
-help, `compare` and `error_map` list its names. It imports nothing heavy.
+`Method.refuses` raises for everything in a case that the method does not model, and `Method.curves` computes the stiffness. The
+help of the command line, `compare` and `error_map` list the names. The module imports nothing heavy.
 
 To add a closed form, write one file in ``gearfe/flexibility/energy/closed/`` and one row in `ROWS`:
 
-- kind "sum", if it describes one tooth and the pairs are springs side by side: the file has ``components(gear, material, roll,
-  *, damage=ToothDamage(), ...)``, which gives `gearfe.flexibility.energy.closed.beam.Components`, as ``textbook.py``;
-  its other keywords become the variants of the method. ``DEFAULTS``, if it is there, holds its contact law and root profile;
-- kind "section", if it describes what a whole gear gives to all its contacts: the file has ``flexibility(gear, material, *,
-  neighbours, state)``, which gives `gearfe.flexibility.plane.Flexibility`, as ``coupled.py``.
+- kind "sum", if it describes one tooth and the pairs are parallel springs: the file has ``components(gear, material, roll, *,
+  damage=ToothDamage(), ...)``, which returns `gearfe.flexibility.energy.closed.beam.Components`, like ``textbook.py``. Its other
+  keywords become the variants of the method. The optional ``DEFAULTS`` contains its contact law and root profile;
+- kind "section", if it describes a whole gear with all its contacts: the file has ``flexibility(gear, material, *, neighbours,
+  state)``, which returns `gearfe.flexibility.plane.Flexibility`, like ``coupled.py``.
 """
 
 from dataclasses import dataclass, replace
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 SPUR = ("spur",)
 FACES = ("spur", "helical", "herringbone")  # how teeth run
-WAYS = {  # who makes curves of a kind of method
+WAYS = {  # functions that make the curves of each kind of method
     "section": "gearfe.stiffness.section_curves:section_curves",
     "sum": "gearfe.stiffness.section_curves:sum_curves",
     "solid": "gearfe.stiffness.wide_curves:solid_curves",
@@ -34,41 +34,41 @@ WAYS = {  # who makes curves of a kind of method
 
 @dataclass(frozen=True, slots=True)
 class Method:
-    """One method, and what it takes.
+    """Method of `mesh_stiffness`, and its abilities.
 
     Attributes
     ----------
     name : str
     about : str
-        What it is, in one line.
+        Description in one line.
     kind : {"section", "solid", "sum"}
-        ``section``: the flexibility of the transverse section, plane; ``solid``: of gears of finite width; ``sum``: no
-        flexibility of a gear, but the stiffness of tooth pairs that ignore each other, sliced along the width.
+        ``section``: the flexibility of the transverse section, plane. ``solid``: that of gears of finite width. ``sum``: the
+        stiffness of uncoupled tooth pairs, sliced along the width.
     home : str
         ``module:function`` that computes it; imported on first use (`load`).
     cost : str
-        Of one curve: milliseconds, seconds or minutes.
+        Computing time of one curve: milliseconds, seconds or minutes.
     converged : bool
         Its discretisation can be refined to the limit; otherwise a closed form.
     cracks : {"", "through", "any"}
-        None; of one depth through the whole width; also of part of the width, or of a depth that changes along it.
+        Cracks: none; of one depth through the whole width; also of part of the width, or of variable depth.
     pits, broken : bool
-        Whether it has pits and spalls, and missing teeth and chipped tips.
+        True if it models pits and spalls, and missing teeth and chipped tips.
     rings : {"yes", "no", "external", "printed"}
-        The last two: only with the variant ``foundation`` saying what a ring's body does; of a scene's rings it is this one.
+        The last two: only with the variant ``foundation``, which defines the ring's body; this one is used for rings of scenes.
     faces : tuple of str
-        How the teeth may run. A section takes helical gears as spur gears of the same width.
+        Permitted types of teeth. A section replaces helical gears by spur gears of the same width.
     variants, teeth, error, extended, flanks : bool
-        Whether it has variants, can leave out teeth, estimates its error, lets tip corners touch off the path of contact, takes
-        modified flanks.
+        True if it has variants, can model only some teeth, estimates its error, models tip-corner contact off the path of
+        contact, models modified flanks.
     order : int or None
         Default order of its polynomials.
     kept : {"", "process", "disk"}
-        Whether its function takes ``cache``, and keeps solved gears there: in this process, or also on disk, as finite elements.
+        Cache of its solved gears: none, in this process, or also on disk.
     crack_models : tuple of str
-        Limit lines of a crack with which `gearfe.error_map` judges it.
+        Limit lines of a crack in `gearfe.error_map`.
     own : OwnFlexibility or None
-        A model of the user's own, of which this is the row.
+        User-defined model of this row.
     """
 
     name: str
@@ -94,15 +94,15 @@ class Method:
 
     @property
     def brute(self) -> bool:
-        """Whether it is finite elements of whole gears in three dimensions, whose matrices are large."""
+        """True for finite elements of whole gears in three dimensions, whose matrices are large."""
         return self.kind == "solid" and self.kept == "disk"
 
     def load(self) -> Any:
-        """The function, or for a sum the module, that computes it."""
+        """Return the function, or for a sum the module, that computes it."""
         return _loaded(self.home)
 
     def refuses(self, case: "Case", how: Any) -> None:
-        """Raise ValueError for what the method does not model of a `Case`, or has no option for (`gearfe.stiffness.refusals`)."""
+        """Raise ValueError for anything in a `Case` that the method does not model, and for options that it does not have."""
         _loaded("gearfe.stiffness.refusals:refuses")(self, case, how)
 
     def curves(self, case: "Case", how: Any, phase: "NDArray") -> list[Any]:
@@ -114,7 +114,7 @@ class Method:
 
 
 def _loaded(home):
-    """What ``module:name`` names, or the module."""
+    """Return the object of ``module:name``, or the module."""
     module, _, name = home.partition(":")
     with loading:
         loaded = import_module(module)
@@ -162,10 +162,10 @@ METHODS = {row.name: row for row in ROWS}
 FORMER = {"published": "herringbone_article"}  # former names of methods
 NAMES = ("auto", *METHODS)
 SUMS = tuple(row.name for row in ROWS if row.kind == "sum")
-RING_FOUNDATIONS = {  # variants `foundation` that say what a ring's body does
+RING_FOUNDATIONS = {  # treatment of a ring's body by variants `foundation`
     "external": "has no foundation for a ring: the ring's body is left out",
-    "none": "is taken without foundations",
-    "printed": "takes the ring's foundation as its article prints it, by the formula of discs with h = 1",
+    "none": "is computed without foundations",
+    "printed": "has the printed foundation of the ring, by the formula of discs with h = 1",
 }
 
 
@@ -180,7 +180,7 @@ def current(name: Any) -> Any:
 
 
 def described():
-    """One line of text for each method: its name, what it is, what it costs."""
+    """Return one line of text for each method: name, description, cost."""
     return "\n".join(f"  {row.name:19s} {row.about}; {row.cost}" for row in ROWS)
 
 
@@ -191,16 +191,16 @@ def having(what, kind=None):
 
 
 def fitted(method, case):
-    """A case as far as a method knows it, with the variants it needs (or None), and in words what is left out.
+    """Return a case as far as a method models it, with its variants (or None), and the neglected parts in words.
 
-    This is the one rule for which face, groove and variants go to which method:
+    This is the only rule for face, groove and variants of each method:
 
-    - a transverse section takes a helical or herringbone pair as a spur pair of the width that carries, b less the groove;
-    - whatever knows no width takes shafts that tilt their gears as such that only give way;
-    - a plain sum takes a ring's body as its row says: left out, or as its article prints it.
+    - a transverse section replaces a helical or herringbone pair by a spur pair of the loaded width, b less the groove;
+    - two-dimensional methods neglect the tilt of gears on their shafts, and keep the deflection;
+    - a plain sum treats a ring's body as its row states: without it, or as its article prints it.
 
-    `method` is one of `NAMES`; ``auto`` takes everything. `gearfe.solve` itself refuses such cases, so that nobody gets a section
-    who asked for a helical gear.
+    `method` is one of `NAMES`; ``auto`` models everything. `gearfe.solve` itself rejects such cases, so that a section never
+    silently replaces a helical gear.
     """
     if method not in METHODS:
         return case, None, ()
@@ -215,7 +215,7 @@ def fitted(method, case):
         left_out.append(f"{method} is the transverse section: {case.runs} teeth are taken as spur teeth {width:g} mm wide{less}")
     if row.kind != "solid" and any(held.tilts for held in case.held or () if held):
         changed["supports"] = {name: held and held.untilted() for name, held in case.supports.items()}
-        left_out.append(f"{method} knows no width: shafts give way, but do not tilt their gears")
+        left_out.append(f"{method} is two-dimensional: shafts deflect, but do not tilt their gears")
     if pair.gear_2.internal and row.rings in RING_FOUNDATIONS:
         variants = {"foundation": row.rings}
         left_out.append(f"{method} {RING_FOUNDATIONS[row.rings]}")

@@ -1,4 +1,4 @@
-"""`OwnFlexibility`: a model of the user's own of how one gear gives, in place of `ritz` or `fe`."""
+"""`OwnFlexibility`: a user-defined flexibility of one gear, in place of `ritz` or `fe`."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -27,52 +27,52 @@ NO_FLEXIBILITY = (
 
 @dataclass(frozen=True, slots=True)
 class OwnFlexibility:
-    """How one gear gives between its contacts, by a model of your own: ``mesh_stiffness(..., method=OwnFlexibility(f))``.
+    """User-defined flexibility of a gear between its contacts: ``mesh_stiffness(..., method=OwnFlexibility(f))``.
 
-    Yours is what the gear does under unit loads, neighbours and all: the displacement of contact i, along the line of action and
-    into the gear, under a unit line load at contact j, bore (of a ring: rim) held, at the same time for all teeth in contact. The
-    diagonal is each tooth's own, the rest is how teeth move each other through their body; zeros there say that they do not.
+    The model describes the gear under unit loads, with all teeth in contact at the same time. It returns the displacement of
+    contact i, along the line of action and into the gear, under a unit line load at contact j. The bore (of a ring: the rim) is
+    held. The diagonal is the flexibility of each tooth. The other entries are the coupling of teeth by their body; zeros mean no
+    coupling.
 
-    gearfe adds the rest: which teeth touch where, the other gear, the local contact under the load that each pair really
-    carries, and who carries how much. With P the line load and ``c = 2 (1 - nu**2) / (pi E)``, the contact adds to each gear
-    ``c P (ln(2 / a) + 1/2)``, lengths in mm and a Hertz's half width (`gearfe.contact.sharing.line_contact`). What of the local
-    dent is yours therefore is a question of where you cut, and `given` says it:
+    gearfe adds the rest: contacts of the teeth, the other gear, the local contact under the load of each pair, and load sharing.
+    With P the line load and ``c = 2 (1 - nu**2) / (pi E)``, the contact adds to each gear ``c P (ln(2 / a) + 1/2)``, lengths in
+    mm and a Hertz's half width (`gearfe.contact.sharing.line_contact`). `given` states which part of the local contact deflection
+    the model contains:
 
-    - ``bulk``: your values hold beam, shear, compression and body, and no dent, as closed forms do. gearfe adds Weber's whole
-      local deflection down to the tooth's centre-line (`gearfe.flexibility.energy.closed.coupled.local_remainder`).
-    - ``smooth``: your values hold everything but the half-plane's logarithm: the displacement u(r) at a distance r from a
-      unit line load, plus ``c ln r`` (r in mm), for r to 0. So do those of `ritz` and finite elements.
+    - ``bulk``: the values contain beam, shear, compression and body, without contact deflection, like closed forms. gearfe adds
+      Weber's whole local deflection down to the tooth's centre-line (`gearfe.flexibility.energy.closed.coupled.local_remainder`).
+    - ``smooth``: the values contain everything but the half-plane's logarithm: the displacement u(r) at a distance r from a unit
+      line load, plus ``c ln r`` (r in mm), for r to 0. This holds for `ritz` and finite elements.
 
-    There is no contact at tip corners off the path of contact, as with closed forms (``extended`` of the curve's ``meta`` is
-    False), unless both gears are `Flexibility` objects or methods that know of it. Damage is yours, too: a function
-    knows the number of the tooth; ``damage`` of `mesh_stiffness` is refused.
+    There is no contact at tip corners off the path of contact, like for closed forms (``extended`` of the curve's ``meta`` is
+    False), unless both gears are `Flexibility` objects or methods that model it. A function must include the damage itself, since
+    it receives the number of the tooth; ``damage`` of `mesh_stiffness` is rejected.
 
     Parameters
     ----------
     pinion : callable, Flexibility or str
-        ``f(gear, material, radius, tooth) -> (n, n)`` [mm per N/mm]: `radius` (n,) are the radii of the contacts [mm], ndarray,
-        between form and tip circle; `tooth` (n,) the teeth they are on, whole numbers counted from tooth 0 towards the gear's
-        loaded side (of the wheel that of pair k is tooth -k), so that teeth i and j are ``(j - i) 2 pi / z`` apart. It is called
-        once for each phase. Or an object
-        with ``matrix(roll, teeth)`` as `gearfe.flexibility.plane.Flexibility`, of just this gear and ``smooth`` by definition.
-        Or the name of a method that has a flexibility: ``"ritz"``, ``"fe"``, ``"coupled"``.
+        ``f(gear, material, radius, tooth) -> (n, n)`` [mm per N/mm]. `radius` (n,) are the radii of the contacts [mm], ndarray,
+        between form and tip circle. `tooth` (n,) are their teeth, whole numbers counted from tooth 0 towards the gear's loaded
+        side (the wheel's tooth in pair k is -k), so that teeth i and j are ``(j - i) 2 pi / z`` apart. It is called once for each
+        phase. Or an object with ``matrix(roll, teeth)`` like `gearfe.flexibility.plane.Flexibility`, for this gear and ``smooth``
+        by definition. Or the name of a method that has a flexibility: ``"ritz"``, ``"fe"``, ``"coupled"``.
     wheel : callable, Flexibility or str, optional
-        Default: as the pinion.
+        Model of the wheel; default: that of the pinion.
     given : {"bulk", "smooth"}
-        What the functions' values hold.
+        Content of the functions' values.
     name : str, optional
-        Of the method in ``meta`` and tables; default: the function's.
+        Name of the method in ``meta`` and tables; default: the function's.
 
     Raises
     ------
     ValueError
-        If something is none of these, such as a plain sum of tooth pairs (``"textbook"``, ``"herringbone_article"``).
-        `mesh_stiffness` raises one if a function fails, or its matrix has another shape, is not real or finite, not symmetric, or
-        (``bulk``) gives way against a load.
+        If a model is none of these, such as a plain sum of tooth pairs (``"textbook"``, ``"herringbone_article"``).
+        `mesh_stiffness` raises one if a function fails, or its matrix has another shape, is not real, finite and symmetric, or
+        (``bulk``) is not positive definite.
 
     Examples
     --------
-    Teeth as bars of constant thickness on stiff bodies, beside the converged energy model, in N/(mm um):
+    Teeth as bars of constant thickness on rigid bodies, compared with the converged energy model, in N/(mm um):
 
     >>> import math, numpy as np, gearfe as gf
     >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), b=20.0)
@@ -109,7 +109,7 @@ class OwnFlexibility:
 
     @property
     def extended(self) -> bool:
-        """Whether both gears know what to do at a corner."""
+        """True if both gears model tip-corner contact."""
         return all(METHODS[gear].extended if isinstance(gear, str) else bool(getattr(gear, "own", None)) for gear in self.gears)
 
     @property
@@ -138,12 +138,12 @@ def _check(side: str, one: object) -> None:
 
 
 def _unknown(gear: Any, roll: NDArray, tooth: int) -> None:
-    """Nothing is known of loads across the normal."""
+    """Return None: the flexibility across the normal is unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class OwnGear:
-    """A user's function, as in `OwnFlexibility`, with all that `gearfe.contact.pair_contact.PairContact` asks of a gear."""
+    """User's function of `OwnFlexibility`, with the interface that `gearfe.contact.pair_contact.PairContact` needs."""
 
     function: Callable
     gear: Gear
@@ -178,14 +178,16 @@ class OwnGear:
         if self.given == "smooth":
             return values
         if np.linalg.eigvalsh(values).min() < -SAME * np.abs(values).max():
-            raise ValueError(f"{where}: its matrix is not positive (semi)definite, so some loads would gain work from the gear")
+            raise ValueError(
+                f"{where}: its matrix is not positive (semi)definite, so the gear would release energy under some loads"
+            )
         dent = coupled.local_remainder(self.gear, self.material, roll, state=self.state)
         return values + np.diag(dent)
 
 
 @dataclass(frozen=True, slots=True)
 class OwnMatrix:
-    """A user's object that has just ``matrix(roll, teeth)``, with all that contact asks of a gear; its values are checked."""
+    """User's object with ``matrix(roll, teeth)``, with the interface that contact needs; its values are checked."""
 
     made: Any
     gear: Gear
@@ -196,7 +198,7 @@ class OwnMatrix:
     yields_across = _unknown
 
     def matrix(self, roll: NDArray, teeth: NDArray) -> NDArray:
-        """Smooth flexibility ``(..., n, n)`` [mm per N/mm] as the object gives it; zeros for contacts off the flank."""
+        """Return the smooth flexibility ``(..., n, n)`` [mm per N/mm] of the object; zeros for contacts off the flank."""
         roll, on = _on_flank(self.gear, roll)
         shape = (*roll.shape, np.size(teeth))
         where = f"{type(self.made).__name__}.matrix of z = {self.gear.z}, roll of shape {roll.shape}, {np.size(teeth)} teeth"
@@ -205,7 +207,7 @@ class OwnMatrix:
 
 
 def _on_flank(gear: Gear, roll: NDArray) -> tuple[Floats, NDArray[np.bool_]]:
-    """Roll lengths brought onto the flank where they are beside it, and which were on it."""
+    """Return roll lengths clipped to the flank, and which were on it."""
     roll = np.asarray(roll, dtype=float)
     low, high = sorted((gear.roll_f, gear.roll_a))
     slack = 1e-6 * gear.m_n
@@ -213,10 +215,10 @@ def _on_flank(gear: Gear, roll: NDArray) -> tuple[Floats, NDArray[np.bool_]]:
 
 
 def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Floats:
-    """What a user's function gives, if it is real, finite and symmetric and has the shape; else a ValueError that names it."""
+    """Return the checked result of a user's function: real, finite and symmetric with the shape; else a ValueError."""
     try:
         returned = work()
-    except Exception as error:  # it may raise whatever it likes
+    except Exception as error:  # it may raise any error
         raise ValueError(f"{where}: it failed with {type(error).__name__}: {error}") from error
     if isinstance(returned, Components):
         raise ValueError(
@@ -226,13 +228,13 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Flo
     try:
         values = np.asarray(returned)
     except ValueError as error:  # rows of different lengths
-        raise ValueError(f"{where}: it gives rows that make no array, but give a matrix of numbers [mm per N/mm]") from error
+        raise ValueError(f"{where}: its rows have different lengths; give a matrix of numbers [mm per N/mm]") from error
     if values.dtype.kind not in "fiu":
         raise ValueError(f"{where}: it gives values of type {values.dtype}, but give a matrix of real numbers [mm per N/mm]")
     if values.shape != shape:
         raise ValueError(
             f"{where}: it gives an array of shape {values.shape}, but give {shape}: displacement of contact i under a "
-            "unit load at contact j (numpy.diag makes one of teeth that do not move each other)"
+            "unit load at contact j (numpy.diag is that of uncoupled teeth)"
         )
     values = values.astype(float)
     if not np.isfinite(values).all():
@@ -243,7 +245,7 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Flo
 
 
 def flexibility_of(own: OwnFlexibility, side: int, gear: Gear, material: Material, state: str, named: Callable) -> Any:
-    """What contact reads of one gear (side 0: pinion, 1: wheel); ``named(row, gear, material)`` gives that of a method."""
+    """Return the flexibility of one gear (side 0: pinion, 1: wheel); ``named(row, gear, material)`` is that of a method."""
     model = own.gears[side]
     if isinstance(model, str):
         return named(METHODS[model], gear, material)

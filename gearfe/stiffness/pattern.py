@@ -1,4 +1,4 @@
-"""`contact_pattern`: where and how hard the flanks of a pair press over the mesh cycle."""
+"""`contact_pattern`: contact lines of a pair over the mesh cycle with loads and pressures."""
 
 from typing import Unpack
 
@@ -23,33 +23,33 @@ def contact_pattern(
     phases: int | ArrayLike = 24,
     **given: Unpack[CaseOptions],
 ) -> Contact3D:
-    """Contact of a pair over the mesh cycle by ``ritz3d``: every contact line with its loads and pressures.
+    """Compute the contact pattern of a pair over the mesh cycle by ``ritz3d``: loads and pressures of every contact line.
 
-    `gearfe.plot_contact` draws it, ``phase=None`` the pattern of all phases; where a tip corner or an end face carries the most,
-    it is marked as edge contact.
+    `gearfe.plot_contact` draws it; ``phase=None`` draws all phases. If a tip corner or an end face has the largest load, it is
+    marked as edge contact.
 
     Parameters
     ----------
     pair : GearPair or Case
     force : float
-        Along the line of action [N].
+        Force along the line of action [N].
     material : Material or (Material, Material)
     torque : float, optional
         Instead of `force`: torque on the pinion [N m].
     phases : int or array
-        As of `Solve`.
+        See `Solve`.
     **given
-        As of `Case`: ``flanks``, ``misalignment``, ``supports``, ``damage``, ``face``, ``groove``.
+        Options of `Case`: ``flanks``, ``misalignment``, ``supports``, ``damage``, ``face``, ``groove``.
 
     Returns
     -------
     Contact3D
-        `cells` holds for each phase the pieces of the contact lines: where they are, their loads [N] and pressures [MPa].
+        `cells` holds for each phase the pieces of the contact lines: positions, loads [N] and pressures [MPa].
 
     Raises
     ------
     ValueError
-        If an input is impossible; the message says which.
+        If an input is impossible; the message states which.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Which phases of the mesh cycle a curve is at: a number of them over a span, or spelled out."""
+"""Phases of a curve in the mesh cycle: their number over a span, or a list."""
 
 import math
 from collections.abc import Iterable
@@ -13,7 +13,7 @@ from .limits import check_count, check_range
 from .turns import check_length, cycles_in
 
 SPANS = ("cycle", "tooth", "revolution", "hunting")
-LONG = SPANS[2:]  # of many cycles
+LONG = SPANS[2:]  # spans of many cycles
 
 
 def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0, teeth: Iterable[int] = (0,)) -> Floats:

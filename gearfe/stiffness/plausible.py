@@ -1,4 +1,4 @@
-"""Whether a stiffness curve is within what linear elasticity can say; called once at the end of `mesh_stiffness`.
+"""Limits of linear elasticity for a stiffness curve; checked once at the end of `mesh_stiffness`.
 
 The limits hold for every material, because they are strains. A force F on a tooth of width b bends it to about ``4 F / (b m)`` at
 the root, and the mesh approaches by ``F / (b c')`` with ``c' = E / 14`` or so: an approach of 1 % of the module comes with root
@@ -20,8 +20,8 @@ from ..flexibility.hertz import contact_modulus
 from ..geometry.pair.gear_pair import GearPair
 from .curve import StiffnessCurve
 
-WARN = 0.05  # approach, of the module
-DENTED = 0.035  # largest pressure, of the contact modulus E*
+WARN = 0.05  # limit of the approach [modules] for a warning
+DENTED = 0.035  # limit of the largest pressure [contact modulus E*] for a warning
 
 
 def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Material, Material]) -> None:
@@ -36,7 +36,7 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
         raise ValueError(f"k at phase {bad:.6g} is not positive and finite: no model holds for these gears at {force:g} N")
     deflection = (
         curve.deflection if curve.support_deflection is None else curve.deflection - curve.support_deflection
-    )  # of the teeth alone, without their shafts
+    )  # deflection of the teeth alone, without their shafts
     ratio = float(np.median(deflection)) * 1e3 / module
     message = f"under {force:g} N the gears approach by {1e3 * ratio * module:.3g} um, {100 * ratio:.3g} % of the module"
     if ratio > REFUSE:
@@ -45,7 +45,7 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
             "break: give a smaller force, a wider face or a larger module, forces in N, lengths in mm, E in MPa"
         )
     if ratio > WARN:
-        warnings.warn(f"{message}: more than teeth bear ({100 * WARN:g} %); k is that of linear elasticity", stacklevel=4)
+        warnings.warn(f"{message}: more than teeth withstand ({100 * WARN:g} %); k is that of linear elasticity", stacklevel=4)
     most, limit = _pressure(curve), DENTED * contact_modulus(materials)
     if most > limit:
         warnings.warn(

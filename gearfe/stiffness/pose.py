@@ -1,4 +1,4 @@
-"""Which gear an approach turns: the mean pose that every method solves in, or one gear against the held other."""
+"""Pose of the gears: the mean pose of all methods, or one gear rotating against the fixed other."""
 
 from dataclasses import replace
 
@@ -7,21 +7,21 @@ import numpy as np
 from ..flexibility.section_contact import MARKS
 from ..geometry.pair.modified import flank_contacts
 
-SHIFT = {"mean": 0.0, "pinion": 0.5, "wheel": -0.5}  # of the phase, in approaches over the base pitch
+SHIFT = {"mean": 0.0, "pinion": 0.5, "wheel": -0.5}  # shift of the phase, in approaches over the base pitch
 SETTLED, PART = 1e-7, 1e-3  # largest last change of a phase, and as a part of the shift by the elastic approach (light loads)
 LEAST = 1e-13  # smallest change that is asked for, above the rounding of a phase
 MOST = 20  # solves
 
 
 def in_pose(curve_at, phase, pair, pose, flanks=None):
-    """Stiffness curve of gears of which only one turns (`pose` ``pinion`` or ``wheel``), from curves in the mean pose.
+    """Return the stiffness curve with only one gear rotating (`pose` ``pinion`` or ``wheel``), from curves in the mean pose.
 
-    With the wheel held at its place at `phase` and the pinion turned by an approach delta, both stand as in the mean pose at
-    ``phase + delta / (2 p_bt)``; with the pinion held, at ``phase - delta / (2 p_bt)`` (`geometry.pair.contacts`). Delta is the
-    approach found there, so the shift is solved for, phase by phase; RuntimeError if it does not settle.
+    With the wheel fixed at its position at `phase` and the pinion rotated by an approach delta, both are in the mean pose at
+    ``phase + delta / (2 p_bt)``. With the pinion fixed, it is ``phase - delta / (2 p_bt)`` (`geometry.pair.contacts`). Delta is
+    the approach found there, so the shift is solved for, phase by phase. RuntimeError if it does not settle.
 
-    `curve_at` maps phases ``(n,)`` to their `StiffnessCurve` in the mean pose. With modified `flanks`, without load, too, one
-    gear is turned until they touch.
+    `curve_at` maps phases ``(n,)`` to their `StiffnessCurve` in the mean pose. With modified `flanks`, one gear is also rotated
+    without load until they touch.
     """
     shift = SHIFT[pose] / pair.p_bt
     at, curve = _settled(

@@ -1,4 +1,4 @@
-"""What is written beside a stiffness curve: gears, materials, options and versions; nothing reads it to decide anything."""
+"""Metadata of a stiffness curve: gears, materials, options and versions; no computation depends on them."""
 
 from dataclasses import asdict, replace
 from functools import lru_cache

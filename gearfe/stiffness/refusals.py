@@ -1,4 +1,4 @@
-"""What a method does not model is refused, by its row of the table, so that nobody gets something else than was asked for."""
+"""Checks of a case against the abilities of a method, so that no model silently replaces the requested one."""
 
 import math
 from inspect import signature
@@ -17,9 +17,9 @@ CRACK_MODELS = tuple(dict.fromkeys(model for row in METHODS.values() for model i
 
 
 def refuses(row, case, how):
-    """Raise ValueError for what the method of a `row` of the table does not model of a case, or has no option for.
+    """Raise ValueError for anything in a case that the method of a `row` does not model, and for options that it does not have.
 
-    The message says what was given, and which methods have it. RuntimeError if a section of finite elements does not fit into
+    The message states the input and the methods that model it. RuntimeError if a section of finite elements does not fit into
     memory.
     """
     method = f"method = {row.name!r}"
@@ -38,7 +38,7 @@ def refuses(row, case, how):
 
 
 def _teeth(row, case, method):
-    """How teeth run, and how many are in contact."""
+    """Yield messages on the type of teeth and the number in contact."""
     if case.face not in (None, *row.faces):
         yield f"face = {case.face!r} with {method}, a transverse section: use method = 'ritz3d' or a closed form"
     if case.groove and "herringbone" not in row.faces:
@@ -69,16 +69,17 @@ def _damage(row, case, method):
 
 def _flanks(row, case, method):
     if case.forms is not None and not row.flanks:
-        yield f"modified flanks with {method}, which takes involutes only: use {having('flanks')}"
+        yield f"modified flanks with {method}, which models involutes only: use {having('flanks')}"
     if row.kind == "section" and any(form.wide for form in case.forms or ()):
         yield (
-            f"flanks that change along the width, or misalignment, with {method}, which knows no width: use method = 'ritz3d', "
+            f"flanks that change along the width, or misalignment, with {method}, which is two-dimensional: "
+            "use method = 'ritz3d', "
             "'fe3d' or a plain sum"
         )
 
 
 def _options(row, how, method):
-    """Options that the method does not have: refused, not ignored."""
+    """Yield messages on options that the method does not have."""
     if how.teeth is not None and not row.teeth:
         yield f"teeth = {how.teeth} with {method}: only {having('teeth')!r} can leave teeth out"
     if how.variants and not row.variants:
@@ -94,7 +95,7 @@ def _options(row, how, method):
 
 
 def _check_variants(row, case, how, method):
-    """ValueError for variants that the formulas have not, and for rings whose body nobody said what to do with."""
+    """Raise ValueError for variants that the formulas do not have, and for rings without a choice of their body."""
     variants = how.variants or {}
     if case.pair.gear_2.internal and row.rings in RING_FOUNDATIONS and variants.get("foundation") not in RING_FOUNDATIONS:
         raise ValueError(

@@ -70,7 +70,7 @@ def section_solver(row, case, how, phase, hats=1.0, **coarser):
 
 
 def _numeric(row, how):
-    """Of refine, order and teeth those that a method has."""
+    """Return those of refine, order and teeth that a method has."""
     has = {"refine": row.converged, "order": row.order is not None, "teeth": row.teeth}
     order = row.order if how.order is None else how.order
     return {name: value for name, value in (("refine", how.refine), ("order", order), ("teeth", how.teeth)) if has[name]}
@@ -107,7 +107,7 @@ def curve(case, phase, force, solve, meta):
 
 
 def with_error(row, curves, case, how):
-    """The curves with their estimated error, by other solves of the same case."""
+    """Return the curves with their estimated error, by other solves of the same case."""
     order = _numeric(row, how).get("order")
     periodic = not (case.damaged or any(form.differs for form in case.forms or ()))
     phase = curves[0].phase

@@ -1,4 +1,4 @@
-"""`solve`: from a `Case` to its stiffness curve, as a `Solve` says; `mesh_stiffness` is both in one call."""
+"""`solve`: stiffness curve of a `Case` with the options of a `Solve`; `mesh_stiffness` combines both."""
 
 import contextlib
 import warnings
@@ -31,41 +31,39 @@ Materials = Material | tuple[Material, Material] | None
 
 @dataclass(frozen=True, slots=True)
 class Solve:
-    """How a `Case` is solved: by which method, at which phases, how finely.
+    """Options of a solution: method, phases and resolution.
 
     Parameters
     ----------
     method : {"auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", "textbook", "herringbone_article"} or OwnFlexibility
-        What each takes is written in one table, `gearfe.stiffness.methods.ROWS`; in words:
-        ``ritz``: the converged energy model of the transverse section, milliseconds (`energy.ritz.plane`). ``ritz3d``: the
-        same in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact
-        (`gearfe.contact.wide_contact`). ``auto``: ``fe3d`` for shafts that are one piece with
-        their gear, ``ritz3d`` for helical gears and for what changes along the width (pits, spalls, cracks of part of the width,
-        lead, misalignment, hubs that tilt), otherwise ``ritz``; ``meta["why"]`` says why. To compare a damaged curve with the
-        healthy one ask for both by the same method.
-        ``fe``: finite elements of whole sections, not those of `ritz` (`gearfe.flexibility.finite_elements.fe`).
-        ``fe3d``: hexahedra of whole gears of finite width, the same for ``ritz3d``, minutes (`finite_elements.fe_gear3d`).
-        ``coupled``: closed forms repaired by known means, external healthy gears (`energy.closed.coupled`). All with line
-        contact, neighbour coupling and load sharing. ``textbook``, ``herringbone_article``: beam energies and a plain sum of the
-        pairs (`energy.closed.plain_sum`). An `OwnFlexibility`: your own model of how one gear gives, where ``ritz`` and ``fe``
-        stand otherwise.
+        ``ritz``: the converged energy model of the transverse section, milliseconds (`energy.ritz.plane`). ``ritz3d``: the same
+        in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact
+        (`gearfe.contact.wide_contact`). ``auto``: ``fe3d`` for shafts in one piece with their gear; ``ritz3d`` for helical gears
+        and changes along the width (pits, spalls, cracks of part of the width, lead, misalignment, hubs that tilt); otherwise
+        ``ritz``. ``meta["why"]`` states the reason. To compare a damaged and a healthy curve, use the same method for both.
+        ``fe``: finite elements of whole sections, the independent reference (`gearfe.flexibility.finite_elements.fe`). ``fe3d``:
+        hexahedra of whole gears of finite width, the reference for ``ritz3d``, minutes (`finite_elements.fe_gear3d`).
+        ``coupled``: closed forms with known corrections, external healthy gears (`energy.closed.coupled`). All these have line
+        contact, neighbour coupling and load sharing. ``textbook`` (potential energy method), ``herringbone_article``: beam
+        energies and a plain sum of the pairs (`energy.closed.plain_sum`). An `OwnFlexibility`: a user-defined flexibility of a
+        gear. `gearfe.stiffness.methods.ROWS` is the table of their abilities.
 
         Cracks: all but ``coupled``; of part of the width or of a depth that changes along it: ``ritz3d`` and ``fe3d``. Pits and
         spalls: ``ritz3d``, ``fe3d`` and the plain sums. Flanks: all methods; what changes along the width, misalignment too,
         needs ``ritz3d``, ``fe3d`` or a plain sum. Hubs that tilt: ``ritz3d`` or ``fe3d``.
     phases : int or array
-        Number of equidistant phases per mesh cycle, or the phases themselves; with pitch deviations those of as many teeth as are
-        to be seen.
+        Number of equidistant phases per mesh cycle, or the phases themselves. With pitch deviations, phases over as many teeth as
+        are of interest.
     span : {"cycle", "tooth", "revolution", "hunting"}
-        Which phases a number stands for: from 0 to 1; or the whole engagements of the tooth pairs with damage (without damage of
-        pair 0) and a quarter cycle before and after each; or every cycle of one revolution of the pinion, or of the hunting
-        period after which the same teeth meet again (for pitch deviations; cycles that are alike are solved once). Pair k, of the
-        teeth k of both gears, enters at phase -k, in three dimensions at one end.
+        Range of a number of phases. ``cycle``: from 0 to 1. ``tooth``: the whole engagements of the tooth pairs with damage
+        (without damage, of pair 0), and a quarter cycle before and after each. ``revolution``: every cycle of one revolution of
+        the pinion. ``hunting``: every cycle of the hunting period after which the same teeth meet again (for pitch deviations;
+        equal cycles are solved once). Pair k, of the teeth k of both gears, enters at phase -k, in three dimensions at one end.
     extended : bool
-        Let corners touch before the start and after the end of the path of contact (all but the closed
-        forms, which know no contact there).
+        If True, corners touch before the start and after the end of the path of contact (all but the closed forms, which have no
+        contact there).
     state : {"plane strain", "plane stress"}
-        For ``ritz`` and ``fe``; the beams of the closed forms use E as their sources do.
+        For ``ritz`` and ``fe``; the beams of the closed forms use E like their sources.
     refine : float
         Resolution of ``ritz`` and ``fe``, also in three dimensions: divides the edge lengths; 0.2 to 64.
     order : int, optional
@@ -80,21 +78,21 @@ class Solve:
         For ``ritz`` and ``fe``, also in three dimensions: estimate the discretisation error of every k from coarser solves (see
         `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.wide_curves.solid_curves`).
     cache : bool
-        Reuse what was solved before in this process; for ``ritz3d``, ``fe`` and ``fe3d`` also in an earlier one (see
-        `gearfe.stiffness.cache`). False: solve everything anew, keep and displace nothing.
+        Reuse earlier solutions of this process; for ``ritz3d``, ``fe`` and ``fe3d`` also of earlier processes (see
+        `gearfe.stiffness.cache`). False: solve everything again and store nothing.
     tell : callable, optional
-        For ``fe3d``: gets a line of text before the first of several gears, with the expected seconds of all (with `error` those
-        of its coarser gears, too), and one before each, with its unknowns, seconds and memory. What does not fit into memory is
-        refused before the first.
+        For ``fe3d``: gets a line of text before the first of several gears, with the expected seconds of all (with `error`,
+        coarser gears included), and one before each, with its unknowns, seconds and memory. A gear that does not fit into memory
+        raises before the first solve.
     pose : {"mean", "pinion", "wheel"}
-        Which gear the approach turns from where the phase has both: each by half of it (as a length on the line of action), or
-        one against the held other. Near the ends of double contact k differs by 1 to 2 % (`geometry.pair.contacts`); the last two
-        solve the contact about four times.
+        Gear that the approach rotates: each by half of it (as a length on the line of action), or one gear with the other fixed.
+        Near the ends of double contact k differs by 1 to 2 % (`geometry.pair.contacts`). The last two solve the contact about
+        four times.
 
     Raises
     ------
     ValueError
-        If an option is impossible; the message says which.
+        If an option is impossible; the message states which.
     """
 
     method: str | OwnFlexibility = "auto"
@@ -112,11 +110,15 @@ class Solve:
     pose: str = "mean"
 
     def __post_init__(self) -> None:
-        """Check what can be said without a case."""
+        """Check all options that do not depend on a case."""
         object.__setattr__(self, "method", current(self.method))
         custom = isinstance(self.method, OwnFlexibility)
         if not custom and not (isinstance(self.method, str) and self.method in METHOD_NAMES):
-            raise ValueError(f"method = {self.method!r}, but it must be one of {', '.join(METHOD_NAMES)}, or an OwnFlexibility")
+            from difflib import get_close_matches
+
+            near = get_close_matches(self.method, METHOD_NAMES, 1) if isinstance(self.method, str) else ()
+            more = f"; nearest: {near[0]}" if near else "" if isinstance(self.method, str) else ", or an OwnFlexibility"
+            raise ValueError(f"method = {self.method!r}, but it must be one of {', '.join(METHOD_NAMES)}{more}")
         for name in ("error", "extended"):
             object.__setattr__(self, name, truth(name, getattr(self, name)))
         object.__setattr__(self, "refine", checked_refine(self.refine))
@@ -134,11 +136,11 @@ class Solve:
             object.__setattr__(self, name, frozen(getattr(self, name)))
 
     def chosen(self, case: Case) -> tuple[Method, str]:
-        """The method's row of the table, of ``auto`` that which fits the case, and why it was chosen."""
+        """Return the method's row of the table, for ``auto`` the one that fits the case, and the reason for the choice."""
         if isinstance(self.method, OwnFlexibility):
             model = self.method
             row = Method(
-                str(model.name), "a model of one's own", "section", "", "", extended=model.extended, flanks=True, own=model
+                str(model.name), "a user-defined model", "section", "", "", extended=model.extended, flanks=True, own=model
             )
             return row, "asked for"
         if self.method != "auto":
@@ -155,35 +157,35 @@ OPTIONS = tuple(own.name for own in fields(Solve))
 
 
 def solve(case: Case, how: Solve | None = None) -> Any:
-    """Stiffness curve of a `Case`, as a `Solve` says.
+    """Compute the stiffness curve of a `Case` with the options of a `Solve`.
 
-    ``k = F / delta``: F the force along the line of action, delta the loaded minus the unloaded transmission error as a
-    length on it, bores held, or on supports that give way.
+    The stiffness is ``k = F / delta``. F is the force along the line of action. Delta is the loaded minus the unloaded
+    transmission error as a length on it. Bores are held or on elastic supports.
 
     Parameters
     ----------
     case : Case
-        The pair, its load and materials, and what else differs from healthy gears on rigid bores.
+        Pair, load, materials, damage, flanks and supports.
     how : Solve, optional
-        By which method, at which phases, how finely; default: ``Solve()``.
+        Method, phases and resolution; default: ``Solve()``.
 
     Returns
     -------
     StiffnessCurve, or a list of them if the case has several loads
-        k [N/m] over the mesh phase, and what belongs to it.
+        k [N/m] over the mesh phase, with its data.
 
     Raises
     ------
     ValueError
-        If the method has no such thing as the case or the options have; the message says which. If the gears approach so
-        far that strains are no longer small (`gearfe.stiffness.plausible`).
+        If the method does not model the case or does not have an option; the message states which. Also if the approach is so
+        large that strains are not small (`gearfe.stiffness.plausible`).
     RuntimeError
         If a system of ``fe`` or ``fe3d`` does not fit into memory, before it is solved; the message has the numbers.
 
     Warns
     -----
     UserWarning
-        If deflection or pressure are beyond what teeth bear, see `gearfe.stiffness.plausible`.
+        If deflection or pressure exceed the strength of teeth, see `gearfe.stiffness.plausible`.
     """
     how = how or Solve()
     row, why = how.chosen(case)
@@ -196,7 +198,7 @@ def solve(case: Case, how: Solve | None = None) -> Any:
 
 
 def _curves(row, case, how):
-    """A curve for each load, over the span and in the pose that were asked for."""
+    """Return a curve for each load, over the span and in the pose of the options."""
     pair = case.pair
 
     def of_loads(at, loads=case):
@@ -289,10 +291,10 @@ def mesh_stiffness(
     torque: Any = None,
     **options: Unpack[StiffnessOptions],
 ) -> Any:
-    """Mesh stiffness of a gear pair over one mesh cycle: a `Case` and a `Solve` in one call.
+    """Compute the time-varying mesh stiffness (TVMS) of a gear pair: a `Case` and a `Solve` in one call.
 
-    ``k = F / delta``: F the force along the line of action, delta the loaded minus the unloaded transmission error as a
-    length on it, bores held, or on `supports` that give way.
+    The stiffness is ``k = F / delta``. F is the force along the line of action. Delta is the loaded minus the unloaded
+    transmission error as a length on it. Bores are held or on elastic `supports`.
 
     Parameters
     ----------
@@ -305,12 +307,12 @@ def mesh_stiffness(
     torque : float or sequence of float, optional
         Instead of `force`: torque on the pinion [N m].
     **options
-        ``damage``, ``flanks``, ``misalignment``, ``supports``, ``face``, ``groove`` of a `Case`, and ``method``,
-        ``phases``, ``span``, ``extended``, ``state``, ``refine``, ``order``, ``teeth``, ``variants``, ``error``, ``cache``,
-        ``tell``, ``pose`` of a `Solve`: there it says what they are. `flanks` make the curve's `te` the transmission error under
-        load and `unloaded` that without; of `supports` the curve's `support_deflection` is their part of the deflection.
-        ``meta["crack_closed_phases"]`` says where the load presses faces of a crack together, ``meta["tip_in_fillet_phases"]``
-        where a tip presses into its mate's fillet.
+        ``damage``, ``flanks``, ``misalignment``, ``supports``, ``face``, ``groove``: see `Case`. ``method``, ``phases``,
+        ``span``, ``extended``, ``state``, ``refine``, ``order``, ``teeth``, ``variants``, ``error``, ``cache``, ``tell``,
+        ``pose``: see `Solve`. With ``flanks``, the result also has the loaded (`te`) and unloaded (`unloaded`) transmission
+        error. With ``supports``, `support_deflection` is the deflection of the supports. ``meta["crack_closed_phases"]`` are
+        phases at which crack faces are in contact, ``meta["tip_in_fillet_phases"]`` phases at which a tip touches its mate's
+        fillet.
 
     Returns
     -------
@@ -319,7 +321,7 @@ def mesh_stiffness(
     Raises
     ------
     ValueError, RuntimeError
-        As `Case`, `Solve` and `solve`.
+        See `Case`, `Solve` and `solve`.
 
     Examples
     --------

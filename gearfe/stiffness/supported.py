@@ -1,4 +1,4 @@
-"""What the supports of a pair's hubs add to a model that knows no width."""
+"""Compliance of the supports of a pair's hubs in two-dimensional models."""
 
 from dataclasses import replace
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def check_integral(case, method):
-    """ValueError for a gear that is one piece with its shaft where no method has it."""
+    """Raise ValueError for a gear in one piece with its shaft if the method does not model it."""
     for name, gear, held in zip(
         ("pinion", "wheel"), (case.pair.gear_1, case.pair.gear_2), case.held or (None, None), strict=True
     ):
@@ -24,21 +24,21 @@ def check_integral(case, method):
 
 
 def check_tilt(case, method):
-    """ValueError if a force tilts a gear, by a method that knows no width: no section has its load move to one end."""
+    """Raise ValueError if a force tilts a gear, for a two-dimensional method: the load of a section cannot move to one end."""
     for name, held in zip(("pinion", "wheel"), case.held or (None, None), strict=True):
         if held is not None and held.tilts:
             raise ValueError(
-                f"the {name}'s support tilts it under a force, with method = {method!r}, which knows no width: use method = "
+                f"the {name}'s support tilts it under a force, with method = {method!r}, which is two-dimensional: use method = "
                 "'ritz3d' or 'fe3d', or give a Support without coupling to leave the tilt out"
             )
 
 
 def yielding(solve, case):
-    """`solve` of `gearfe.stiffness.section_curves.curve` with supports in series; loads are shared as without them.
+    """Return `solve` of `gearfe.stiffness.section_curves.curve` with supports in series; load sharing does not change.
 
-    Both hubs give way along the line of action and turn, by ``b (1 / radial + r_b**2 / torsion)`` of pinion and wheel per line
-    load [mm per N/mm]. A constant added to all entries of a flexibility adds itself times the load to the approach, and changes
-    no force.
+    Both hubs deflect along the line of action and rotate, by ``b (1 / radial + r_b**2 / torsion)`` of pinion and wheel per line
+    load [mm per N/mm]. A constant added to all entries of a flexibility adds its product with the load to the approach and does
+    not change forces.
     """
     if case.held is None:
         return solve

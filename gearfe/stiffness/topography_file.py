@@ -1,4 +1,4 @@
-"""`read_topography`: a measured flank from a table, as `gearfe.Flank` takes it."""
+"""`read_topography`: a measured flank from a table, for `gearfe.Flank`."""
 
 import csv
 import os
@@ -12,7 +12,7 @@ Topography = tuple[tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...]
 
 
 def read_topography(path: str | os.PathLike[str], unit: str = "um") -> Topography:
-    """A measured flank from a CSV table.
+    """Read a measured flank from a CSV table.
 
     The first row holds a text and the heights z [mm], every further row a roll length [mm] and the material removed at these
     heights; both rise.

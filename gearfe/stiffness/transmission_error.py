@@ -1,4 +1,4 @@
-"""`transmission_error`: how far the driven gear lags over the mesh cycle, load by load (a Harris map)."""
+"""`transmission_error`: transmission error over the mesh cycle under several loads (a Harris map)."""
 
 from __future__ import annotations
 
@@ -90,11 +90,11 @@ def transmission_error(
     torque: Loads | None = None,
     **options: Unpack[StiffnessOptions],
 ) -> TransmissionError:
-    """Transmission error of a gear pair over the mesh cycle under several loads, which share one solve of the gears.
+    """Compute the loaded transmission error of a gear pair over the mesh cycle under several loads, which share one solve.
 
-    The driven gear lags by ``te`` on the line of action, elastic deflection and unloaded part (modified flanks, pitch) together;
-    ``te - unloaded = force / k``. Its change over the mesh cycle is what excites a transmission. S. L. Harris (Proc. Inst.
-    Mech. Eng. 172 (1958) 87-112) drew it over phase for a row of loads: with a tip relief it is flat at one of them.
+    The driven gear lags by ``te`` on the line of action: elastic deflection plus the unloaded part (modified flanks, pitch), with
+    ``te - unloaded = force / k``. Its variation over the mesh cycle excites vibration. S. L. Harris (Proc. Inst. Mech. Eng. 172
+    (1958) 87-112) drew it over phase for several loads: with a tip relief it is flat at one of them.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def transmission_error(
     torque : sequence of float, optional
         Instead of `forces`: torques on the pinion [N m].
     **options
-        As of `mesh_stiffness`: ``flanks``, ``method``, ``phases``, ``pose`` and so on.
+        Options of `mesh_stiffness`: ``flanks``, ``method``, ``phases``, ``pose`` and so on.
 
     Returns
     -------
@@ -114,7 +114,7 @@ def transmission_error(
     Raises
     ------
     ValueError
-        If an input is impossible; the message says which.
+        If an input is impossible; the message states which.
 
     Examples
     --------

@@ -27,20 +27,19 @@ SAFETY = {"layers": 3.0, "section": 1.25}
 
 
 def solid_curves(row, case, how, phase):
-    """`StiffnessCurve` of a pair in three dimensions under each of its forces, by the energy model or by finite elements.
+    """Return the `StiffnessCurve` of a pair in three dimensions for each force, by the energy model or finite elements.
 
-    The estimate of the discretisation error (``how.error``) is made of longer cells along the contact lines and of other bodies,
-    each on its own, the differences added. Of the energy model: an order and a quarter of the axial degrees less. Of finite
-    elements: layers of `COARSER` resolution with `LESS` axial degrees less, and what the section lacks in plane strain against
-    one of `finite_elements.section_error.FINER` times its resolution. (Both apart, because the quads of a section do not get
-    coarser in proportion: gmsh fills an outline, and the error stands still or jumps.) From a difference d between edges h and r
-    h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the coarser, with p of `ORDER`; times `SAFETY`.
-    The estimate at a phase is that of k there, or, because that can vanish by chance, the mean of those at the fixed phases of
-    one base pitch about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not enter. What the laws
-    of contact leave out is added: `estimate.MODEL`, sliding along cracked teeth at corners, and movement where no contact on the
-    path carries (`PhaseContact`).
+    The estimate of the discretisation error (``how.error``) is the sum of two differences: longer cells along the contact lines,
+    and other bodies. For the energy model these have an order and a quarter of the axial degrees less. For finite elements they
+    have layers of `COARSER` resolution with `LESS` axial degrees less. The missing flexibility of the section in plane strain,
+    relative to `finite_elements.section_error.FINER` times its resolution, is a separate part, because gmsh does not coarsen
+    quads in proportion. From a difference d between edges h and r h follows the error ``d / (r**p - 1)`` of the finer and
+    ``r**p`` times that of the coarser, with p of `ORDER`, times `SAFETY`. The estimate at a phase is that of k there or the mean
+    of those at the fixed phases of one base pitch about it (`estimate.fixed_phases`), whichever is larger. Other phases of the
+    list have no effect. The model error of the contact laws is added: `estimate.MODEL`, and sliding along cracked teeth at
+    corners, and motion if no contact on the path carries load (`PhaseContact`).
 
-    `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
+    `pressure` is the largest of each pair's contact line without tip corners; nan if only corners touch.
     """
     started = time.perf_counter()
     written = {"face": case.runs, "groove": case.groove, "extended": how.extended, "refine": how.refine}
@@ -124,7 +123,7 @@ def _bodies(how):
 
 
 def _foretold(how, bodies, *, neighbours):
-    """RuntimeError if a body does not fit, before the first is solved; tell the cost of all, coarser ones of an estimate too."""
+    """Raise RuntimeError if a body does not fit, before the first solve; report the cost of all, with those of an estimate."""
     levels = [{"refine": how.refine}, {"refine": COARSER[0] * how.refine, "section": how.refine, "less": LESS}][: 1 + how.error]
     plans = {}
     for level in levels:
@@ -148,6 +147,6 @@ def _coarser(case, phase, options, how):
 
 
 def _finer_section(how, gear, material, damage=(), **options):
-    """A gear whose section is finer."""
+    """Return a gear with a finer section."""
     flexibility = solved_solid(gear, material, damage, refine=how.refine, cache=how.cache, tell=how.tell, **options)
     return finer_section(flexibility, material, damage, refine=how.refine, cache=how.cache)

@@ -1,1 +1,1 @@
-"""What a loaded tooth bears: its deflection, its root stress, the stress intensity of its cracks, all by finite elements."""
+"""Strength of a loaded tooth: deflection, root stress and stress intensity of cracks, by finite elements."""

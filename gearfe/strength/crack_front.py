@@ -22,8 +22,8 @@ from .front_integral import front_intensity
 # edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.2, "root": 0.4, "near": 0.7, "far": 2.0, "crack": 0.25}
 LAYER, LAYERS, END_LAYER = 0.5, 12, 0.25  # height of the layers [m_n], least number of them, height at the ends against that
-SHALLOW = 0.25  # part of the largest depth below which a front that runs out has no room for the tubes
-LEAST = 0.15, 0.8  # depth and width of a crack [m_n]: edges of its section, one tube to either side
+SHALLOW = 0.25  # part of the largest depth below which the tubes do not fit around a front that runs out
+LEAST = 0.15, 0.8  # least depth and width of a crack [m_n]: edges of its section, one tube to either side
 TUBE = 0.4, 0.5  # radius of the wider tube of the integral [m_n], and the largest part of the least depth that it may be
 TIPS = 1 / 13, 1 / 15, 1 / 11  # edge lengths at the front over that radius, tried until no quad folds; finer if `refine` > 1
 
@@ -61,10 +61,10 @@ def stress_intensity_along_front(
     *,
     refine: float = 1.0,
 ) -> FrontIntensity:
-    """Stress intensities K_I, K_II, K_III along the front of a crack of tooth 0, whose depth may change along the width.
+    """Compute K_I, K_II, K_III along the front of a crack of tooth 0, whose depth may change along the width.
 
-    The load lies on the contact line through `radius` at half the width, as of `gearfe.root_stress_along_width`. The elements
-    follow the front; the interaction integral is taken over two tubes around it and carried to radius zero
+    The load is on the contact line through `radius` at half the width, see `gearfe.root_stress_along_width`. The elements follow
+    the front. The interaction integral is evaluated on two tubes around it and extrapolated to radius zero
     (`gearfe.strength.front_integral`). Crack faces may pass through each other: where K_I < 0 they would touch.
 
     Parameters
@@ -72,7 +72,7 @@ def stress_intensity_along_front(
     gear : Gear
         Its bore (of a ring the outside) is held over the whole width.
     crack : Crack
-        Of tooth 0, straight.
+        Straight crack of tooth 0.
     radius : float
         Radius of the loaded flank point at half the width [mm].
     line_load : float or callable
@@ -84,9 +84,9 @@ def stress_intensity_along_front(
     Returns
     -------
     FrontIntensity
-        At the layers of elements: a front that runs out is left out where it is less than a quarter as deep as where it is
-        deepest. The values at the first and the last place are means with a one-sided weight; on end
-        faces K_III is not to be used (the unit field of that mode pulls at the face: a few percent of K_I where there is none).
+        Values at the layers of elements. Where the crack front runs out, values at less than a quarter of the maximum depth are
+        omitted. The values at the first and the last place are means with a one-sided weight. Do not use K_III at the end faces:
+        the auxiliary mode III field violates the traction-free condition there (error: a few per cent of K_I).
 
     Raises
     ------

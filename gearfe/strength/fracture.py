@@ -1,4 +1,4 @@
-"""Stress intensity factors of a root crack, and where it would grow."""
+"""Stress intensity factors of a root crack, and its direction of growth."""
 
 import math
 from dataclasses import dataclass

@@ -26,13 +26,13 @@ TO_ZERO = np.linalg.inv(np.vander(TUBES, increasing=True))[0]
 
 
 def front_intensity(points, cells, moved, material, front, ahead, normal, radius):
-    """K_I, K_II and K_III at places of a crack front ``(3, k)`` [MPa sqrt(mm)].
+    """Compute K_I, K_II and K_III at places of a crack front ``(3, k)`` [MPa sqrt(mm)].
 
-    `points` and `moved` ``(3, n)`` are nodes and displacements [mm], `cells` ``(20, m)`` hexahedra as of
-    `geometry.mesh.solid.Solid`; the crack's faces have nodes of their own. `front` ``(k, 3)`` are places along the front [mm], k
-    > 1; K is a mean with the weight of a hat from the place before to the place after. `ahead`, `normal` ``(k, 3)`` are unit
-    vectors there: in the crack's plane away from the crack, and at right angles to that plane. `radius` is that of the widest
-    tube [mm]; it must not reach other boundaries, and six rings of elements should lie within half of it.
+    `points` and `moved` ``(3, n)`` are nodes and displacements [mm]. `cells` ``(20, m)`` are hexahedra, see
+    `geometry.mesh.solid.Solid`; the crack's faces have separate nodes. `front` ``(k, 3)`` are places along the front [mm], k > 1.
+    K is a mean with the weight of a hat from the place before to the place after. `ahead`, `normal` ``(k, 3)`` are unit vectors
+    there: in the crack's plane away from the crack, and at right angles to that plane. `radius` is that of the widest tube [mm].
+    It must not reach other boundaries, and six rings of elements should lie within half of it.
 
     References
     ----------
@@ -68,7 +68,7 @@ def front_intensity(points, cells, moved, material, front, ahead, normal, radius
 
 
 def _flows(du, r, angle, material):
-    """What is multiplied by the slope of q, for the three modes: ``(3, 3, ...)``."""
+    """Return the factors of the slope of q, for the three modes: ``(3, 3, ...)``."""
     lam, mu = material.lame("plane strain")
     stress = mu * (du + du.swapaxes(0, 1))
     for d in range(3):

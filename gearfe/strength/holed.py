@@ -1,4 +1,4 @@
-"""A damaged tooth with its pits as holes and its crack as a seam, under the contact load of its pair: straight second-order tets.
+"""Damaged tooth with pits as holes and a crack as a seam, under the contact load of its pair: straight second-order tets.
 
 The load is that of `gearfe.contact.wide_contact` along the true contact lines, spread over a narrow strip to either side. The
 sector of the gear is held at the bore (or the outside of a ring) and where it was cut off.
@@ -20,18 +20,18 @@ from ..geometry.tooth.profile import arc_at, cartesian, flank, flank_normal, tur
 from ..stiffness.supported import check_integral
 from .fields import Field, von_mises
 
-SPREAD = 0.15  # of the load to either side of its line, in modules
+SPREAD = 0.15  # half width of the load about its line [m_n]
 BEND = math.radians(40)  # edges at which the surface bends by more are drawn
-PARTS = 5  # parts along each side of a loaded triangle: it is cut into the square of this number
+PARTS = 5  # divisions of each side of a loaded triangle
 
 
 @dataclass(frozen=True, slots=True)
 class Pressed:
-    """A damaged tooth under load at p phases: `load` ``(p,)`` on tooth 0, at right angles to its flank [N].
+    """Damaged tooth under load at p phases: `load` ``(p,)`` on tooth 0, at right angles to its flank [N].
 
     `nodes` ``(3, n)`` are vertices and edge middles of the `sector` [mm], `cells` ``(10, m)`` those of the gear with holes, in
-    VTK's order. `moved` ``(p, 3, n)`` are displacements [mm], nan at nodes inside of the pits; `stress` ``(p, 6, n)`` xx, yy, zz,
-    xy, yz, xz at the nodes [MPa], mean of the tets there weighted by their volume. `gear` is ``pinion`` or ``wheel``.
+    VTK's order. `moved` ``(p, 3, n)`` are displacements [mm], nan at nodes inside the pits. `stress` ``(p, 6, n)`` are xx, yy,
+    zz, xy, yz, xz at the nodes [MPa], means of the adjacent tets weighted by their volume. `gear` is ``pinion`` or ``wheel``.
     """
 
     sector: Holed
@@ -45,36 +45,36 @@ class Pressed:
 
 
 def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, sizes=None, strip=None, spread=SPREAD):
-    """`Pressed`: the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
+    """Solve the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
 
-    The damage is that of one tooth of one gear, its pits in one half if herringbone, or the same in both; without any it is tooth
-    0 of the pinion. `phases`: default the one of 16 at which the damaged tooth carries most. `refine`, `teeth`, `sizes` as of
-    `geometry.mesh.holes.holed_sector`; `strip` is the edge length along the loaded contact lines of the damaged tooth [modules],
-    default that of the flank; `spread` that of the load to either side of its line, as a hat [modules]: one of 1.2 Hertz half
-    widths is as wide as his pressure.
+    The damage is that of one tooth of one gear, its pits in one half if herringbone, or the same in both. Without damage it is
+    tooth 0 of the pinion. Of a missing tooth it is the next one, which carries alone before the gap. `phases`: default the one of
+    16 at which the tooth has the largest load.
+    `geometry.mesh.holes.holed_sector` describes `refine`, `teeth` and `sizes`. `strip` is the edge length along the loaded
+    contact lines of the damaged tooth [modules], default that of the flank. `spread` is the half width of the load about its
+    line, as a hat [modules]: 1.2 Hertz half widths are as wide as his pressure.
 
-    ValueError if the damage is not that of one tooth, or cannot be. RuntimeError if a hole was not cut as it should, or the
-    system does not fit.
+    ValueError if the damage is not that of one tooth, or is impossible. RuntimeError if a hole was not cut correctly, or the
+    system does not fit into memory.
     """
     if not spread > 0:
         raise ValueError(f"spread = {spread}, but it is a length to either side of the contact line: give spread > 0")
-    case.without_broken("a tooth with holes")
     pair, materials, face, cracks, pits = case.pair, case.materials, case.runs, case.cracks, case.pits
-    which = [i for i in (0, 1) if cracks[i] or pits[i]] or [0]
-    if len(which) > 1 or len(cracks[which[0]]) > 1:
+    which = [i for i in (0, 1) if cracks[i] or pits[i] or case.broken[i]] or [0]
+    side, broken = which[0], case.broken[which[0]]
+    if len(which) > 1 or len(cracks[side]) > 1 or (broken and len([*cracks[side], *pits[side], *broken]) > 1):
         raise ValueError("give damage of the flank, one crack or both, of one tooth of one gear: holes are cut into one tooth")
-    side = which[0]
     gear, half, own_pits = _own(pair, side, face, case.groove, pits[side])
     crack = next(iter(cracks[side]), None)
-    tooth = next((one.tooth for one in (*pits[side], *cracks[side])), 0)
-    order = (1, -1)[side] * tooth
+    tooth = next((one.tooth for one in (*pits[side], *cracks[side], *broken)), 0) + (1, -1)[side] * case.missing
+    broken, order = [replace(one, tooth=one.tooth - tooth) for one in broken], (1, -1)[side] * tooth
     with part("contact", 0.0, 0.2):
         contact = contact_of(case, phases, order, extended=False)
     lines = [_lines(pair, of_phase, side, tooth, half) for of_phase in contact.cells]
     spread *= gear.m_n
     strips = () if strip is None else _strips(gear, lines, strip * gear.m_n / refine, spread)
     with part("mesh", 0.2, 0.5):
-        sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes, strips=strips)
+        sector = holed_sector(gear, own_pits, crack, broken=broken, teeth=teeth, refine=refine, sizes=sizes, strips=strips)
     nodes, cells, number = second_order(sector.points, sector.cells)
     kept = cells[:, sector.plug < 0]
     loads = np.column_stack([_pressure(sector, nodes, number, of_phase, spread) for of_phase in lines])
@@ -138,7 +138,7 @@ def _edges(points, cells):
 
 
 def _own(pair, side, face, groove, pits):
-    """The gear as it is drawn, which half of it that is (0 or 1), and its pits there; half 1 is drawn as its mirror image."""
+    """Return the drawn gear, its half (0 or 1), and its pits there; half 1 is drawn as its mirror image."""
     gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
     if face != "herringbone":
         return replace(gear, beta=sense * pair.gear_1.beta), 0, pits
@@ -174,7 +174,8 @@ def contact_of(case, phases, order, *, extended=True):
     if given:
         return contact
     carried = contact.load[:, contact.order == order].sum(axis=1)
-    alike = np.flatnonzero(carried > (1 - 1e-9) * carried.max())  # a pair that is alone carries the same at several phases
+    # a pair that carries the whole load has the same load at several phases
+    alike = np.flatnonzero(carried > (1 - 1e-9) * carried.max())
     best = int(alike[alike.size // 2])
     numbers = {name: getattr(contact, name)[[best]] for name in ("phase", "k", "approach", "load", "unloaded")}
     return replace(contact, cells=(contact.cells[best],), **numbers)
@@ -197,7 +198,7 @@ def _lines(pair, cells, side, tooth, half):
 
 
 def _strips(gear, lines, edge, spread):
-    """Loaded contact lines of tooth 0 in the frame that turns with the helix, for a mesh with edges of a length [mm] there."""
+    """Return the loaded contact lines of tooth 0 in the frame of the helix, for a mesh with edges of a length [mm] there."""
     out = []
     for of_phase in lines:
         for z, _, roll, load in of_phase.get(0, ()):
@@ -271,6 +272,6 @@ def _thirds():
 
 
 def _normal(gear, roll, turn):
-    """Unit normals out of the loaded flank at `roll` on a section turned clockwise by `turn`."""
+    """Return unit normals out of the loaded flank at `roll` on a section rotated clockwise by `turn`."""
     plane = math.cos(gear.beta_b) * flank_normal(gear, roll)
     return turned((*plane, np.full(roll.shape, -math.sin(gear.beta_b))), turn)

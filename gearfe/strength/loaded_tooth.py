@@ -1,4 +1,4 @@
-"""One loaded tooth: its deflection and its root stress, as rating engineers and strain gauges see them."""
+"""One loaded tooth: its deflection and its root stress, as in rating and strain gauge measurements."""
 
 import math
 
@@ -15,7 +15,8 @@ from ..flexibility.finite_elements.one_tooth import NARROW, check_line_load, che
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import flank, lengths, roll_at_arc
 
-STRESS_EDGES = {"flank": 0.1, "fillet": 0.01, "near": 0.4, "far": 0.9}  # in modules; the fillet decides
+# edge lengths in modules; the fillet determines the accuracy
+STRESS_EDGES = {"flank": 0.1, "fillet": 0.01, "near": 0.4, "far": 0.9}
 COARSER = (0.5, 0.7)  # resolutions that the estimated error compares with
 HIGH, NEIGHBOURS = 0.9, 3  # which points of the fillet belong to the neighbourhood of the peak, see `_peak`
 

@@ -12,7 +12,7 @@ from .window import plotting
 
 HURT = "#d55e00"  # pits, and the rims of crack faces
 IN_FRONT = -1e5  # units of depth by which rims of cracks are drawn before what hides them
-NEAR = 1.6  # half height of a close-up against the size of what is shown
+NEAR = 1.6  # half height of a close-up relative to the size of the damage
 
 
 def render_mesh(
@@ -91,7 +91,7 @@ def _camera(parts, close_up):
 
 
 def _into_pits(part, faces):
-    """Direction from pits to who looks into them over the next tooth: out of the flank, and away from what is held."""
+    """Return the direction of view into pits over the next tooth: out of the flank, and away from the held edge."""
     edges = np.sort(np.hstack([faces[[0, 1]], faces[[1, 2]], faces[[0, 2]]]), axis=0)
     sides, count = np.unique(edges, axis=1, return_counts=True)
     middle = part.points[:, np.unique(faces)].mean(axis=1)

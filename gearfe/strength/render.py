@@ -20,9 +20,9 @@ from .fields import MISES, loaded_phase, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, root_error, tooth_field
 from .window import drawing_library, plotting
 
-COLOURS, ABOVE = "viridis", "#d55e00"  # even steps, told apart by the colour-blind too; beyond the scale
-OPENING = 0.2  # of a crack in a picture, in modules
-STEPS = (1, 2, 5)  # by which displacements are enlarged, times powers of ten
+COLOURS, ABOVE = "viridis", "#d55e00"  # perceptually uniform scale, also for colour-blind readers; colour beyond the scale
+OPENING = 0.2  # opening of a crack in a picture [m_n]
+STEPS = (1, 2, 5)  # magnifications of displacements, times powers of ten
 LEAST = 40_000  # unknowns of a tooth in three dimensions at refine 1, at least; they grow with its power 2.5 to 3
 DEEP = 1.6  # modules of the body below the root circle that a picture of a tooth shows
 # edge lengths of such a picture, see gearfe.geometry.mesh.holes.SIZES
@@ -43,22 +43,22 @@ def render_stress(
     refine: float = 1.0,
     title: str = "",
 ) -> dict[str, Any]:
-    """Von Mises stress of loaded gears as a picture, without a screen, or as a VTK file.
+    """Draw von Mises stress of loaded gears to a file (works without a display), or write it as a VTK file.
 
-    Spur gears without pits: both gears in their transverse section, pressed by Hertz's ellipse on a surface meshed for it.
-    Helical and herringbone gears, pits, and loads that change along the width (crowning, misalignment, shafts that tilt): the
-    damaged tooth in three dimensions, pits as holes, with the load of the pair along its contact lines (`gearfe.strength.holed`).
-    Displacements are enlarged if there is a crack, so that it opens; the picture says how much.
+    Spur gears without pits: both gears in their transverse section, under Hertzian pressure on a refined surface. Helical and
+    herringbone gears, pits, and loads that change along the width (crowning, misalignment, shafts that tilt): the damaged tooth
+    in three dimensions, pits as holes, with the load of the pair along its contact lines (`gearfe.strength.holed`). Displacements
+    are magnified if there is a crack, so that it opens; the picture states the magnification.
 
     Parameters
     ----------
     pair : Case or ScenePair
-        What is loaded; of a scene's pair its case of damage that is called `case`, default healthy.
+        Loaded pair; for a scene's pair, `case` is its case of damage, default healthy.
     path : path
         A ``.png`` file, or ``.vtu``: mesh, displacement and stress.
     case : str, optional
     phase : float, optional
-        Mesh phase; default where the damaged tooth carries most, 0 for healthy spur gears.
+        Mesh phase; default: maximum load on the damaged tooth, 0 for healthy spur gears.
     size : tuple of int
         Pixels.
     refine : float
@@ -69,14 +69,14 @@ def render_stress(
     Returns
     -------
     dict
-        What is shown: ``phase``, ``largest`` and ``root`` (von Mises stress anywhere and on the loaded fillets) [MPa],
+        Contents of the picture: ``phase``, ``largest`` and ``root`` (von Mises stress anywhere and on the loaded fillets) [MPa],
         ``root_error`` (its estimated error [MPa], in three dimensions only: `gearfe.strength.holed.root_error`),
-        ``enlarged`` (by which displacements are), ``load`` [N] (on the tooth shown; in a plane on the pair), ``text``.
+        ``enlarged`` (magnification of displacements), ``load`` [N] (on the tooth shown; in a plane on the pair), ``text``.
 
     Raises
     ------
     RuntimeError
-        If pyvista or a renderer is missing; the message names what to install. If the solve does not fit into memory.
+        If pyvista or a renderer is missing (the message states the package), or the solve does not fit into memory.
     """
     suffix, refine = suffix_of(path, "stress"), checked_refine(refine)
     if suffix == ".png":
@@ -112,7 +112,7 @@ def render_contact(case, path, *, phase=None, title=""):
 
 
 def _check_size(wide, refine):
-    """Refuse a picture whose solve does not fit into memory, before it is meshed; of a tooth in 3-D by a low estimate."""
+    """Reject a picture whose solve does not fit into memory, before it is meshed; for a tooth in 3-D by a low estimate."""
     if not wide:
         check_section(refine)
     elif refine > 1:
@@ -156,7 +156,7 @@ def _text(title, told):
 
 @contextlib.contextmanager
 def _picture(path, size, text, top):
-    """A plotter and how to draw stress with it; text and colour bar are added, and the picture is written to `path`."""
+    """Return a plotter and a function that draws stress; text and colour bar are added, and the picture is written to `path`."""
     with plotting(window_size=list(size), lighting="none") as plotter:
         plotter.set_background("white")
         look = {"scalars": MISES, "clim": [0, top], "cmap": COLOURS, "above_color": ABOVE, "show_scalar_bar": False}
@@ -201,13 +201,13 @@ def _lines(field, scale, kept=None, lift=0.0):
 
 
 def rounded_up(value):
-    """The next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten."""
+    """Return the next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(value))
     return next(s * power for s in (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if s * power >= value * (1 - 1e-9))
 
 
 def _length_scale(plotter, size, up, view):
-    """A bar of a round length at the lower left, in the plane of the picture, nearer than all else."""
+    """Draw a bar of a round length at the lower left, in the plane of the picture, in front of everything."""
     import pyvista
 
     up, view, focus = np.array(up), np.array(view), np.array(plotter.camera.focal_point)
@@ -253,7 +253,7 @@ def _draw_gears(pair, fields, told, path, size):
 
 
 def _draw_tooth(pair, fields, told, path, size):
-    """The loaded flank of tooth 0; the tooth before it is cut away, because it would hide it."""
+    """Draw the loaded flank of tooth 0; the tooth before it is cut away, because it would hide it."""
     import pyvista
 
     (field,), gear, scale = fields, told["sector"].gear, told["enlarged"]
@@ -274,7 +274,7 @@ def _draw_tooth(pair, fields, told, path, size):
     view = out + 0.45 * up + np.array([0, 0, 0.6])
     view /= np.linalg.norm(view)
     right = np.cross(up, view) / np.linalg.norm(np.cross(up, view))
-    plane = np.array([right, np.cross(view, right)])  # of the picture
+    plane = np.array([right, np.cross(view, right)])  # plane of the picture
     low, high = (edge((plane @ surface.points.T).T, axis=0) for edge in (np.min, np.max))
     focus = plane.T @ ((low + high) / 2)
     wide, tall = (high - low) / (0.76, 0.76)  # text above, colour bar on the right

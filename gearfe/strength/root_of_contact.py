@@ -1,4 +1,4 @@
-"""Root stress along the width under the load that the contact of a pair puts on a tooth."""
+"""Root stress along the width under the load of the contact of a pair."""
 
 from numbers import Integral
 
@@ -29,7 +29,7 @@ def root_stress_of_contact(
     half_width: float | None = None,
     refine: float = 1.0,
 ) -> RootStress:
-    """Root stress along the width of one tooth under its part of the contact of a pair, as it is shared along the line.
+    """Compute the root stress along the width of one tooth under its share of the contact load of a pair.
 
     The loads of the other tooth pairs are left out. Heights count from the end that touches first. The load of the tooth is that
     of its cells, line by line; over the face it goes straight from cell to cell.
@@ -72,7 +72,7 @@ def root_stress_of_contact(
         pair = pair.pair
     if not isinstance(pair, GearPair) or not isinstance(contact, Contact3D):
         types = f"pair of type {type(pair).__name__}, contact of type {type(contact).__name__}"
-        raise ValueError(f"{types}: give a GearPair, and what gearfe.contact_pattern gives for it")
+        raise ValueError(f"{types}: give a GearPair, and the result of gearfe.contact_pattern for it")
     check_one(pair.gear_1, material, refine)
     if gear not in ("pinion", "wheel"):
         raise ValueError(f"gear = {gear!r}, but it must be 'pinion' or 'wheel'")
@@ -83,9 +83,7 @@ def root_stress_of_contact(
         raise ValueError("a herringbone pair: root stress is that of one body; give the contact of one half as a helical pair")
     loaded = np.flatnonzero((cells.order == order) & (cells.load > 0))
     if not loaded.size:
-        raise ValueError(
-            f"order = {order}: this tooth pair carries nothing at that phase; {sorted(set(cells.order.tolist()))} may"
-        )
+        raise ValueError(f"order = {order}: this tooth pair is unloaded at that phase; {sorted(set(cells.order.tolist()))} may")
     number = 0 if gear == "pinion" else 1
     body, offset = seen_gears(pair, "helical", 0.0)[number]
     loaded = loaded[np.argsort(cells.depth[loaded])]

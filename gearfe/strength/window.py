@@ -1,4 +1,4 @@
-"""The library that draws, and its window: found without a screen, or what is missing is said with the command for it."""
+"""Drawing library and its offscreen window, or the command that installs a missing one."""
 
 import contextlib
 import ctypes
@@ -13,12 +13,12 @@ RENDERER_HELP = (
     "rendering needs pyvista and, without a screen, EGL or OSMesa: "
     "'pip install pyvista' and, on Debian, 'apt-get install libgl1 libegl1'"
 )
-_turn = threading.RLock()  # of the threads: pyvista is loaded part by part, and VTK's windows are the process's
+_turn = threading.RLock()  # lock of the threads: pyvista is loaded in parts, and VTK's windows belong to the process
 OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRenderWindow"}
 
 
 def drawing_library():
-    """Give pyvista, with a window it can open; RuntimeError that says what to install if it, VTK or a window is missing."""
+    """Return pyvista with a window that it can open; RuntimeError with the package to install if something is missing."""
     with _turn:
         try:
             import pyvista
@@ -31,7 +31,7 @@ def drawing_library():
 
 @contextlib.contextmanager
 def plotting(**options):
-    """A plotter without a screen, closed whatever happens; that of another thread waits until then."""
+    """Return a plotter without a screen, closed in any case; other threads wait."""
     free = free_memory()
     if free < ADDRESSES:
         raise RuntimeError(

@@ -1,4 +1,5 @@
-"""What is wrong with a tooth: root cracks (straight, turning, in parts of the width) and pits (circular, elliptic).
+"""Damage of a tooth: root cracks (straight, kinked, in parts of the width), pits, spalls, missing teeth and chips.
 
-Where the damage lies on the tooth, and the cracks' seams in a mesh; what it does to stiffness is computed in `gearfe`.
+This package contains the position of the damage on the tooth, and the cracks' seams in a mesh. Its effect on stiffness is
+computed in `gearfe`.
 """

@@ -1,4 +1,4 @@
-"""`Chip`: a tip that has broken off along a plane."""
+"""`Chip`: a tooth tip broken off along a plane."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -170,11 +170,11 @@ def _arc(radius, first, last):
 
 
 def chip_of(gear: Gear, broken: Iterable[Any], tooth: int) -> Chip | None:
-    """The chip of a tooth among damage; None if it has none."""
+    """Return the chip of a tooth among damage; None if it has none."""
     return next((one for one in broken if isinstance(one, Chip) and (one.tooth - tooth) % gear.z == 0), None)
 
 
 def loaded_side(gear: Gear, broken: Iterable[Any], tooth: int) -> Gear:
-    """The gear whose loaded flanks end where that of a tooth with such damage ends."""
+    """Return the gear whose loaded flanks end where that of a tooth with such damage ends."""
     chip = chip_of(gear, broken, tooth)
     return gear if chip is None else shortened(gear, chip.end_roll(gear, "loaded"))

@@ -1,4 +1,4 @@
-"""`Crack`: a root crack of one tooth, where it starts, how it runs, and how far it is open along the width."""
+"""`Crack`: a root crack of one tooth: start, path, and open part along the width."""
 
 import math
 from dataclasses import dataclass
@@ -26,8 +26,8 @@ from .given import finite, tooth_and_side
 TANGENTS = {"30deg": math.pi / 6, "60deg": math.pi / 3}  # with the centre-line of the tooth
 STARTS = (*TANGENTS, "root", "middle")
 SLACK = 1e-9  # rounding of the open part of a crack
-SECTOR = 0.9  # of a pitch, within which a sector can be meshed with a polyline
-SHORTEST = 1e-4  # length of a crack in modules; k falls by 1e-5 by it, and meshes cannot be that small
+SECTOR = 0.9  # part of a pitch within which a sector can be meshed with a polyline
+SHORTEST = 1e-4  # length of the shortest crack [m_n]: k falls by 1e-5, and meshes are not finer
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,12 +116,12 @@ class Crack:
 
     @property
     def even(self) -> bool:
-        """Whether it is as deep at every height between its ends."""
+        """True if it has the same depth at every height between its ends."""
         return len(set(self.ends)) == 1
 
     @property
     def bends(self) -> bool:
-        """Whether it has turned at the tooth's centre-line or is a polyline: its path is not straight."""
+        """True if its path has a kink at the tooth's centre-line or is a polyline."""
         if self.path is not None:
             return len(self.path) > 1
         return self.turning and self.level is not None and self.level > 0.5
@@ -142,7 +142,7 @@ class Crack:
         return f"{path_length(gear, self):.3g} mm crack {angle} (level {self.level:.3g})"
 
     def _warning(self, gear: Gear) -> str:
-        """What to warn of when it meets its gear: nothing."""
+        """Return no warning."""
         return ""
 
 
@@ -243,7 +243,7 @@ def front(crack, b, z):
 
 @lru_cache(maxsize=256)
 def start_arc(gear, crack):
-    """Where the crack starts, as arc of `gearfe.geometry.tooth.profile.root_curve` [mm]."""
+    """Return the start of the crack as an arc of `gearfe.geometry.tooth.profile.root_curve` [mm]."""
     if not isinstance(crack.start, str):
         least = root_half_angle(gear) * gear.r_f - math.pi / gear.z * gear.r_f
         if not least <= crack.start <= fillet_length(gear):
@@ -331,11 +331,11 @@ def check_apart(gear, cracks):
                 raise ValueError(f"two cracks on the {side} side of tooth {tooth}; one is enough")
             near = np.abs(_sampled(path)[:, :, None] - _sampled(other)[:, None, :])
             if np.hypot(*near).min() < 0.1 * gear.m_n:
-                raise ValueError(f"two cracks of tooth {tooth} meet: the tooth is off; make one of them shorter")
+                raise ValueError(f"two cracks of tooth {tooth} meet: the tooth breaks off; make one of them shorter")
 
 
 def check_single(gear, cracks):
-    """Raise ValueError if a body has two cracks on one side of a tooth, even beside each other along the width."""
+    """Raise ValueError if a body has two cracks on one side of a tooth, also at different heights."""
     if len({(crack.tooth % gear.z, crack.side) for crack in cracks}) < len(cracks):
         raise ValueError(f"two cracks on one side of a tooth of a body of b = {gear.b:g} mm; only one can be meshed")
 
@@ -387,5 +387,5 @@ def _check_inside(gear, crack, path):
     fillet_points = cartesian(*root_curve(gear, arcs)) * [[-1], [1]]
     if np.hypot(*(fillet_points - tip[:, None])).min() < margin:
         raise ValueError(
-            f"crack of {_size(crack)}: its tip reaches the opposite fillet of z = {gear.z}, the tooth is off; make it shorter"
+            f"crack of {_size(crack)}: its tip reaches the opposite fillet of z = {gear.z}, the tooth breaks off; make it shorter"
         )

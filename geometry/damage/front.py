@@ -1,4 +1,4 @@
-"""The front of a crack whose depth changes along the width, as meshes follow it.
+"""Front of a crack whose depth changes along the width, for meshes that follow it.
 
 A mesh cannot follow a front down to depth nothing: where the front runs out it stays at a least depth, and the crack ends a
 little further on.
@@ -35,7 +35,7 @@ def shallowest(crack):
 
 
 def whole(crack):
-    """The crack as a section through its deepest place has it: open over the whole width.
+    """Return the crack in a section through its deepest place: open over the whole width.
 
     ValueError if it has a bend, and another depth than that of its full length.
     """
@@ -51,12 +51,12 @@ def whole(crack):
 
 
 def shallower(crack, part):
-    """The crack with a `part` of its length."""
+    """Return the crack with a `part` of its length."""
     return replace(crack, **({"length": part * crack.length} if crack.level is None else {"level": part * crack.level}))
 
 
 def crack_in_band(crack, b, first, last):
-    """The crack of a gear of width `b` [mm] as a band of it sees it; None if it is not open anywhere in the band.
+    """Return the part of a crack of a gear of width `b` [mm] in a band of the width; None if it is closed in the band.
 
     Heights in the band are counted from its end at z = `first` to that at z = `last` [mm]; `first` may be the higher one.
     """
@@ -78,7 +78,7 @@ def crack_in_band(crack, b, first, last):
 
 @dataclass(frozen=True, slots=True)
 class Front:
-    """The front of a crack as a mesh follows it.
+    """Front of a crack followed by a mesh.
 
     `width` is that of the face [mm], `least` the least depth followed, in the deepest.
     """

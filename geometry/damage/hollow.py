@@ -1,14 +1,14 @@
-"""What takes contact away: hollows of constant depth, cut along the flank normal out of one flank, whatever their outline.
+"""Hollows that remove contact: constant depth along the flank normal, with any outline on one flank.
 
 An outline is described on the flank by u, the arc of the transverse profile from the hollow's centre (towards the tip), and w,
 the axial distance from its centre along the tooth trace. A kind of hollow (`Pit`) has `radius, z, depth, tooth, side` and
 
 - `axes`, `angle`: half extents [mm] along the profile and along the width before it is turned, and by how much [rad];
 - `reach`: half extents along the profile and along the width [mm];
-- ``covers(u, w)``: whether places are in it; ``span(u)``: between which w it lies at u; ``crossing(gear, roll, z)``: where a
-  straight contact line runs through it; ``along(p, q, dp, dq)``: where straight lines do, in units of its half extents;
-- `kinks`: u and w (two tuples) where its outline is not smooth between its ends; ``edge()``: its outline;
-- ``drawn(centre, axes)``: its outline in space by curves, as `gearfe.geometry.mesh.tetrahedra.tetrahedra` takes them.
+- ``_contains(u, w)``: whether places are in it. ``span(u)``: the range of w at u. ``crossing(gear, roll, z)``: the part of a
+  straight contact line inside it. ``_chord(p, q, dp, dq)``: the part of straight lines inside it, in units of its half extents;
+- `kinks`: u and w (two tuples) where its outline is not smooth between its ends. ``_edge()``: its outline;
+- ``_contours(centre, axes)``: its outline in space by curves, for `gearfe.geometry.mesh.tetrahedra.tetrahedra`.
 """
 
 import math
@@ -26,10 +26,10 @@ def centre_arc(gear, hollow):
 
 
 def on_line(gear, hollow, roll, z):
-    """A straight contact line beside a hollow: roll lengths and heights [mm] at its ends, t = 0 and t = 1.
+    """Return the place of a straight contact line relative to a hollow, from roll lengths and heights [mm] at its ends (t 0, 1).
 
-    Returns the coefficients of its place u(v) [mm], quadratic in ``v = (z - hollow.z) / hollow.reach[1]``, which is between -1
-    and 1 in the hollow whatever the line's length; and a function that turns ranges of v into ranges of t and drops empty ones.
+    The place u(v) [mm] is quadratic in ``v = (z - hollow.z) / hollow.reach[1]``, which is between -1 and 1 in the hollow for any
+    length of the line. Returns its coefficients, and a function that converts ranges of v to ranges of t and drops empty ones.
     """
     slope, reach = z[1] - z[0], hollow.reach[1]
     change = (roll[1] - roll[0]) / slope
@@ -77,25 +77,25 @@ def takes_all(gear, hollow):
 
 
 def warning_of(gear, hollow, size):
-    """What to warn of when a hollow of a `size` in words meets its gear; empty if nothing."""
+    """Return a warning for a hollow of a `size` in words on its gear; empty if there is none."""
     if not takes_all(gear, hollow):
         return ""
     return (
-        f"{hollow._nouns[0]} with {size} mm takes the whole flank of z = {gear.z}: nothing of it is left to carry, but the "
+        f"{hollow._nouns[0]} with {size} mm removes the whole flank of z = {gear.z}: no flank is left to carry load, only the "
         f"{hollow._nouns[0]}'s floor, {hollow.depth:g} mm lower; lengths are in mm"
     )
 
 
 def warning_together(gear, hollows):
-    """What to warn of if several hollows of one flank together take all of it; empty if they do not, or one does alone."""
+    """Return a warning if several hollows of one flank together remove all of it; empty if not, or if one alone does."""
     arcs = arc_at(gear, np.linspace(gear.roll_f, gear.roll_a, PLACES))
     if len(hollows) < 2 or any(takes_all(gear, hollow) for hollow in hollows):
         return ""
     if (union_length(*intervals(gear, hollows, arcs)) < gear.b * (1 - 1e-9)).any():
         return ""
     return (
-        f"{len(hollows)} hollows together take the whole flank of tooth {hollows[0].tooth} of z = {gear.z}: nothing of it is "
-        "left to carry, but their floors"
+        f"{len(hollows)} hollows together remove the whole flank of tooth {hollows[0].tooth} of z = {gear.z}: no flank is "
+        "left to carry load, only their floors"
     )
 
 
@@ -157,9 +157,9 @@ def union_length(low, high):
 
 
 def in_circle(p, q, dp, dq, flat):
-    """Where lines ``(p + t dp, q + t dq)`` are in the circle of radius 1: from t to t, equal where nowhere.
+    """Return the intervals (t0, t1) in which lines ``(p + t dp, q + t dq)`` lie in the unit circle; t0 == t1 if they miss it.
 
-    Those with ``dp**2 + dq**2`` below `flat` stay where they are.
+    Lines with ``dp**2 + dq**2`` below `flat` are points.
     """
     a, half, c = dp * dp + dq * dq, p * dp + q * dq, p * p + q * q - 1
     root = np.sqrt(np.maximum(half * half - a * c, 0.0))

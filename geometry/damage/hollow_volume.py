@@ -11,7 +11,7 @@ GRID = 400  # points of the quadrature across a hollow
 
 
 def hollow_frame(gear, one):
-    """Of a hollow, in the frame that turns: centre, half axes ``(3, 2)``, push to the bottom [mm], normal in the section."""
+    """Return the frame of a hollow: centre, half axes ``(3, 2)``, push to the bottom [mm], normal in the section."""
     roll = math.sqrt(max(one.radius**2 - gear.r_b**2, 0.0))
     sign = 1 if one.side == "loaded" else -1
     mirror = np.array([sign, 1.0])
@@ -61,14 +61,14 @@ def _places(low, high, kinks):
 
 
 def _below(gear, one, s, z):
-    """Where a hollow begins and ends below the flank at arcs `s` and heights `z`, weighted: two arrays ``(s, z)`` [mm]."""
+    """Return where a hollow begins and ends below the flank at arcs `s` and heights `z`, weighted: two arrays ``(s, z)`` [mm]."""
     centre, axes, push, normal = hollow_frame(gear, one)
     sign = 1 if one.side == "loaded" else -1
     roll = roll_at_arc(gear, s)
     place = np.array([*(cartesian(*flank(gear, roll)) * [[sign], [1]]), 0 * s])
     inward = -np.array([*(flank_normal(gear, roll) * [[sign], [1]]), 0 * s])
     start = (place - centre[:, None])[:, :, None] + np.array([0, 0, 1])[:, None, None] * z
-    deep = push @ -normal  # of the bottom below the tangent plane
+    deep = push @ -normal  # depth of the bottom below the tangent plane
     dual = np.linalg.inv(np.column_stack([axes, -push / deep]))  # places in half axes and height
     p, q, h = np.einsum("ij,jsz->isz", dual, start)
     dp, dq, dh = (dual @ inward)[:, :, None]

@@ -1,4 +1,4 @@
-"""All kinds of damage, and what is asked of them together; a new kind is a class and a word in `Damage`.
+"""All types of damage and their common functions; a new type is a class and a name in `Damage`.
 
 Damage acts in two ways, `split`: a crack weakens the body it runs into; pits and spalls take contact away (and with it a
 little material, which plain sums and holes in meshes see). Missing teeth and chipped tips are `BROKEN`: they do both and are in
@@ -56,14 +56,14 @@ def _listed(damage, side):
 
 
 def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    """What weakens the body, and what takes contact away: two tuples."""
+    """Return damage that weakens the body, and damage that removes contact: two tuples."""
     damage = tuple(damage)
     weakens, removes = (tuple(defect for defect in damage if defect._removes_contact is removing) for removing in (False, True))
     return weakens, removes
 
 
 def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> str:
-    """Damage of gears in words: one of a kind says its size, of several there is the number."""
+    """Return a description of the damage of gears: the size for one of a type, the number for several."""
     by_noun: dict[str, list[str]] = {}
     for side, gear_damage in damage.items():
         for defect in gear_damage:
@@ -74,12 +74,12 @@ def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> s
 
 
 def called(damage: Iterable[Damage]) -> str:
-    """What a tooth with such damage is called: cracked, pitted or spalled; damaged if it is more than one of these."""
+    """Return the adjective of a tooth with such damage: cracked, pitted or spalled; damaged for more than one of these."""
     names = {defect._adjective for defect in damage}
     return names.pop() if len(names) == 1 else "damaged"
 
 
 def why_wide(damage: Sequence[Damage]) -> str:
-    """Which damage no transverse section shows, because it changes along the width; empty if none does."""
+    """Return which damage changes along the width and is not modelled in a transverse section; empty if none does."""
     nouns = {defect._nouns[1] for defect in damage if not defect.through}
     return next((f"{kind._nouns[1]} change along the width" for kind in get_args(Damage) if kind._nouns[1] in nouns), "")

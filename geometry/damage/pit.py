@@ -1,4 +1,4 @@
-"""`Pit`: an elliptic pit on a flank, and where lines cross it."""
+"""`Pit`: an elliptic pit on a flank, and its intersections with lines."""
 
 import math
 from collections.abc import Sequence
@@ -48,7 +48,7 @@ class Pit:
     Raises
     ------
     ValueError
-        If the description is contradictory; a pit beside its flank is refused when it meets its gear, see
+        If the description is contradictory. A pit off its flank is rejected when it is used with its gear, see
         `gearfe.geometry.damage.hollow.check_hollows`.
 
     >>> Pit(radius=21.0, z=10.0, axes=(1.0, 2.0), depth=0.2).reach
@@ -108,11 +108,11 @@ class Pit:
         return profile(gear, self)
 
     def _description(self, gear: Gear) -> str:
-        """The pit in words."""
+        """Return a description of the pit."""
         return "1 pit"
 
     def _warning(self, gear: Gear) -> str:
-        """What to warn of when it meets its gear; empty if nothing."""
+        """Return a warning for the pit on its gear; empty if there is none."""
         return warning_of(gear, self, f"semi-axes {self.axes[0]:g} x {self.axes[1]:g}")
 
     def mirrored(self, b: float) -> Self:
@@ -145,11 +145,11 @@ class Pit:
         return [("ellipse", np.column_stack([centre, turned * size]))]
 
     def _chord(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[Floats, Floats]:
-        """Where lines ``(p + t dp, q + t dq)``, in units of the semi-axes, are in it: from t to t, equal where nowhere."""
+        """Return the interval (t0, t1) of lines ``(p + t dp, q + t dq)``, scaled by the axes, in the pit; t0 == t1 outside."""
         return in_circle(p, q, dp, dq, 1e-12 / min(self.axes) ** 2)
 
     def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
-        """Ranges of t in which a straight contact line is in it, at most two; the line as of `geometry.damage.hollow.on_line`."""
+        """Return the ranges of t of a straight contact line (see `hollow.on_line`) inside the pit, at most two."""
         across, mixed, along = self.form
         u, ranges = on_line(gear, self, roll, z)
         w = np.array([0.0, self.reach[1]])
@@ -164,7 +164,7 @@ class Pit:
 
 
 def pit_row(count, first, last, **numbers):
-    """Return `count` equal pits with centres evenly from z = `first` to `last` [mm]; `numbers` as of `Pit`.
+    """Return `count` equal pits with centres evenly from z = `first` to `last` [mm]; `Pit` describes `numbers`.
 
     Raises
     ------

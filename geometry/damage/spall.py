@@ -1,4 +1,4 @@
-"""`Spall`: a spall of rectangular outline with rounded corners on a flank, and where lines cross it."""
+"""`Spall`: a spall of rectangular outline with rounded corners on a flank, and its intersections with lines."""
 
 import math
 from collections.abc import Sequence
@@ -20,11 +20,11 @@ CORNERS = (1, 1), (-1, 1), (-1, -1), (1, -1)  # towards which half side they lie
 
 @dataclass(frozen=True, slots=True)
 class Spall:
-    """A hollow of constant depth cut along the flank normal out of one flank, its outline a rectangle with rounded corners.
+    """Hollow of constant depth cut along the flank normal out of one flank, with a rounded rectangle as outline.
 
-    The rectangle of the spalling literature: F. Chaari, W. Baccar, M. S. Abbes, M. Haddar, Eur. J. Mech. A/Solids 27 (2008)
+    It is the rectangle of the spalling literature: F. Chaari, W. Baccar, M. S. Abbes, M. Haddar, Eur. J. Mech. A/Solids 27 (2008)
     691-705; H. Ma, Z. Li, M. Feng, R. Feng, B. Wen, Eng. Fail. Anal. 66 (2016) 166-176. Its sides lie along the transverse
-    profile and along the tooth trace, as the axes of a `Pit`.
+    profile and along the tooth trace, like the axes of a `Pit`.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Spall:
     sides : (float, float)
         Whole lengths along the profile and along the width [mm]: the literature's w_s and a_s.
     depth : float
-        Along the flank normal [mm]: the literature's h_s.
+        Depth along the flank normal [mm]: the literature's h_s.
     corner : float
         Radius of its corners [mm]; 0: sharp.
     tooth : int
@@ -46,7 +46,7 @@ class Spall:
     Raises
     ------
     ValueError
-        If the description is contradictory; a spall beside its flank is refused when it meets its gear, see
+        If the description is contradictory. A spall off its flank is rejected when it is used with its gear, see
         `gearfe.geometry.damage.hollow.check_hollows`.
 
     >>> Spall(radius=21.0, z=10.0, sides=(1.5, 6.0), depth=0.2, corner=0.3).reach
@@ -95,7 +95,7 @@ class Spall:
 
     @property
     def kinks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Where its sides end along the profile and along the width, from its centre [mm]."""
+        """Ends of its sides along the profile and along the width, from its centre [mm]."""
         along, across = (tuple(sorted({-half, self.corner - half, half - self.corner, half})) for half in self.axes)
         return along, across
 
@@ -104,11 +104,11 @@ class Spall:
         return profile(gear, self)
 
     def _description(self, gear: Gear) -> str:
-        """The spall in words, with its size."""
+        """Return a description of the spall, with its size."""
         return f"{self.sides[0]:.3g} x {self.sides[1]:.3g} mm spall"
 
     def _warning(self, gear: Gear) -> str:
-        """What to warn of when it meets its gear; empty if nothing."""
+        """Return a warning for the spall on its gear; empty if there is none."""
         return warning_of(gear, self, f"sides of {self.sides[0]:g} x {self.sides[1]:g}")
 
     def mirrored(self, b: float) -> Self:
@@ -143,7 +143,7 @@ class Spall:
         inner = 1 - self.corner / np.array(self.axes)
         out = []
         for p, q in CORNERS:
-            ends = np.array([[p, q * inner[1]], [p * inner[0], q]])[:: p * q]  # of the corner, counter-clockwise
+            ends = np.array([[p, q * inner[1]], [p * inner[0], q]])[:: p * q]  # ends of the corner, counter-clockwise
             following = [-p * inner[0], q] if p * q > 0 else [p, -q * inner[1]]
             if self.corner:
                 out.append(("arc", np.array([*ends, [p * inner[0], q * inner[1]]])))
@@ -152,7 +152,7 @@ class Spall:
         return [(kind, centre[:, None] + axes @ places.T) for kind, places in out]
 
     def _chord(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[Floats, Floats]:
-        """Where lines ``(p + t dp, q + t dq)``, in units of the half sides, are in it: from t to t, equal where nowhere."""
+        """Return the interval (t0, t1) of lines ``(p + t dp, q + t dq)``, scaled by half sides, inside; t0 == t1 outside."""
         rounded = self.corner / np.array(self.axes)
         p, q, dp, dq = np.broadcast_arrays(p, q, dp, dq)
         parts = [_in_box(p, q, dp, dq, 1 - rounded[0], 1.0), _in_box(p, q, dp, dq, 1.0, 1 - rounded[1])]
@@ -165,9 +165,9 @@ class Spall:
         return np.where(high > low, low, 0.0), np.where(high > low, high, 0.0)
 
     def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
-        """Ranges of t in which a straight contact line is in it, between places where it meets a side or a corner's circle.
+        """Return the ranges of t of a straight contact line inside the spall, between its sides and corner circles.
 
-        The line as of `gearfe.geometry.damage.hollow.on_line`.
+        `gearfe.geometry.damage.hollow.on_line` describes the line.
         """
         (u, ranges), reach, unit = on_line(gear, self, roll, z), self.axes[1], np.array([1.0, 0.0, 0.0])
         inner = [half - self.corner for half in self.axes]
@@ -204,7 +204,7 @@ def _roots(coefficients):
 
 
 def _in_box(p, q, dp, dq, wide, high):
-    """Where lines are in the box ``|p| < wide, |q| < high``: from t to t."""
+    """Return the interval (t0, t1) of lines in the box ``|p| < wide, |q| < high``."""
     low, up = np.full(p.shape, -np.inf), np.full(p.shape, np.inf)
     for at, step, half in ((p, dp, wide), (q, dq, high)):
         still = np.abs(step) < 1e-12

@@ -8,7 +8,7 @@ from ..tooth.profile import cartesian
 from .outline import around, doubled, half, held_circle, spaced, stations
 from .section_mesh import Section, fill
 
-GROWTH = 0.3  # of the edge length of the held circle per length, away from its marks
+GROWTH = 0.3  # growth of the edge length of the held circle per length, away from its marks
 SIDES = "loaded", "unloaded"  # the flanks 0 and 1 of a tooth, at its right and its left
 
 
@@ -21,10 +21,9 @@ def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size
     rolls : dict of (int, int) to ndarray
         Roll lengths of flank vertices from root to tip [mm], by tooth and side (0 right, 1 left).
     fillet_size, size, far_size : float
-        Edge lengths of the loaded teeth's fillets, of the teeth beside them and of all others [mm].
+        Edge lengths of the loaded teeth's fillets, of adjacent teeth and of all others [mm].
     marks : sequence of float
-        Angles on the held circle where there is to be a vertex [rad], with edges of `mark_size` there and of at most `held_size`
-        elsewhere [mm].
+        Angles on the held circle with a vertex [rad], with edges of `mark_size` there and of at most `held_size` elsewhere [mm].
 
     Returns
     -------
@@ -50,7 +49,7 @@ def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size
 
 
 def _marked(gear, marks, fine, longest):
-    """The held circle with vertices at `marks`, finer next to them; vertices at even places, edge middles at odd."""
+    """Return the held circle with vertices at `marks`, finer next to them; vertices at even indices, edge middles at odd."""
     at, out = np.unique(np.asarray(marks) % (2 * math.pi)), []
     size = min(0.35 * abs(gear.r_f - gear.held), 2 * math.pi * gear.held / 16, longest)
     for first, last in zip(at, np.append(at[1:], at[0] + 2 * math.pi), strict=True):

@@ -1,4 +1,4 @@
-"""Moving a section's vertices along its crack, so that one mesh carries a crack front that is not parallel to the teeth.
+"""Shifts of a section's vertices along its crack, so that one mesh contains a crack front of variable depth.
 
 The section of a crack open over the part f of its length is that of the whole crack with all points moved by ``(f - 1) shift``:
 those on the crack towards its mouth in proportion, its neighbours with them, everything from `REACH` crack lengths on not at all.
@@ -12,17 +12,17 @@ from ..damage.front import LEAST, Front, shallowest
 
 SPARE = 0.8  # a mesh must not fold at this part of the least depth that it follows
 REACH = 1.2, 0.8  # how far from the crack vertices move: in its lengths, and at least [m_n]
-STIFFER = 0.5  # small triangles resist as their area to minus this power: they keep their shape, the large ones give way
+STIFFER = 0.5  # stiffness of triangles by their area to minus this power: small ones keep their shape, large ones deform
 # How many times more triangles resist that a crack of no depth would turn over, and how often these are looked for.
 HARD, ROUNDS = 1000.0, 10
 
 
 def follow(gear, crack, width, points, triangles, fixed, line, folds):
-    """How a section follows the front of a crack: the shift ``(2, n)`` [mm] of its vertices, and the `Front` followed.
+    """Return the shift ``(2, n)`` [mm] of a section's vertices that follows the front of a crack, and the followed `Front`.
 
     A front that runs out is followed down to the first of `geometry.damage.front.LEAST` at which the mesh does not fold, any
-    other one all the way; RuntimeError if the mesh cannot. `width` is that of the face [mm], ``folds(points)`` says whether
-    the mesh folds with its vertices at points ``(2, n)``; all others as of `shifts`.
+    other one completely. RuntimeError if the mesh cannot follow. `width` is that of the face [mm]. ``folds(points)`` returns True
+    if the mesh folds with its vertices at points ``(2, n)``. `shifts` describes the other arguments.
     """
     length = math.dist(*points[:, np.atleast_2d(line)[0, [0, -1]]].T)
     shift = shifts(points, triangles, fixed, line, max(REACH[0] * length, REACH[1] * gear.m_n))
@@ -97,7 +97,7 @@ def _slopes(points, triangles):
 
 
 def _added(local, triangles, count):
-    """The sum ``(count, count)`` of matrices ``(m, 3, 3)`` of triangles."""
+    """Return the sum ``(count, count)`` of matrices ``(m, 3, 3)`` of triangles."""
     out = np.zeros((count, count))
     np.add.at(out, (triangles.T[:, :, None], triangles.T[:, None, :]), local)
     return out

@@ -1,9 +1,9 @@
-"""A sector of a gear in tets with pits cut out of one tooth as holes, and a crack as a seam of zero width.
+"""Sector of a gear in tets, with pits cut out of one tooth as holes, and a crack as a seam of zero width.
 
-The sector is drawn and cut in the frame that turns with the helix, where a tooth is a prism and its traces are straight; the
-finished nodes are then turned by ``w z``, which keeps volumes. A pit is what `gearfe.Pit` says: an elliptic cylinder
-pushed along the flank's normal at its centre, with a bottom `depth` below the flank there. The volume that was really cut is
-compared with an integral that knows nothing of the boundary representation, so no cut can fail in silence.
+The sector is drawn and cut in the frame of the helix, where a tooth is a prism and its traces are straight. The finished nodes
+are then rotated by ``w z``, which keeps volumes. A pit is an elliptic cylinder pushed along the flank's normal at its centre,
+with a bottom `depth` below the flank there (`gearfe.Pit`). The cut volume is compared with an integral that is independent of the
+boundary representation, so that no wrong cut goes unnoticed.
 """
 
 import math
@@ -22,7 +22,7 @@ from .holed_drawing import fine, numbers_of, on_outline, section, tool
 from .tetrahedra import UnmeshedError, tetrahedra
 
 # edge lengths in modules: largest, of the damaged tooth, its loaded flank, its fillets, at the crack; at the pits' rims in parts
-# of the smallest half axis
+# the smallest half axis
 SIZES = {"far": 1.6, "tooth": 0.5, "flank": 0.5, "fillet": 0.35, "tip": 0.12, "rim": 0.4}
 CUT = 2e-3  # largest relative error of the removed volume: that of the quadrature and of the splines is below 1e-3
 FINER = (1.0, 1.07, 1.15, 1.3, 1.5)  # attempts: flat tets may be turned inside out by the helix, walls between pits be too thin
@@ -57,17 +57,19 @@ class Holed:
     removed: tuple
 
 
-def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, strips=(), stretch=1.0):
-    """Mesh a sector of `gear`, or all of it, with holes.
+def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, sizes=None, strips=(), stretch=1.0):
+    """Mesh a sector of `gear`, or all of it, with pits as holes.
 
     Parameters
     ----------
     gear : Gear
-        Its beta with its sign: at height z the section is turned clockwise by ``tan(beta) / r z``.
+        Gear with signed helix angle: at height z the section is rotated clockwise by ``tan(beta) / r z``.
     pits : sequence of Pit
-        All on one tooth, which becomes tooth 0 of the sector. They may overlap and cross the tip edge and the end faces.
+        Pits of one tooth, which becomes tooth 0 of the sector. They may overlap and cross the tip edge and the end faces.
     crack : Crack, optional
-        Of the same tooth, through the whole width.
+        Crack of the same tooth, through the whole width.
+    broken : sequence of (MissingTooth or Chip)
+        Broken teeth, numbered from tooth 0 of the sector.
     teeth : int or None
         Odd number of teeth in the sector; None: the whole gear.
     refine : float
@@ -75,10 +77,9 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
     sizes : dict, optional
         Edge lengths instead of those of `SIZES`.
     strips : sequence of (ndarray (3, n), float, float)
-        Lines of points [mm] in the frame that turns with the helix, how far around them the mesh is finer, the edge length
-        there [mm].
+        Lines of points [mm] in the frame of the helix, the distance within which the mesh is finer, the edge length there [mm].
     stretch : float
-        Tets are so many times longer along the width than across it.
+        Ratio of tet sizes along and across the width.
 
     Returns
     -------
@@ -87,9 +88,9 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
     Raises
     ------
     ValueError
-        If a pit or the crack cannot be, or a pit reaches below the form circle.
+        If a pit or the crack is impossible, or a pit reaches below the form circle.
     RuntimeError
-        If what was cut is not what the pits take, or gmsh cannot mesh what is left.
+        If the cut volume is not that of the pits, or gmsh cannot mesh the rest.
     """
     if teeth is not None and not is_whole(teeth):
         raise ValueError(f"teeth = {teeth!r}, but give an odd whole number of teeth, or None for all")
@@ -105,7 +106,9 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
     size = {name: value * gear.m_n / refine for name, value in (SIZES | (sizes or {})).items()}
     for finer in FINER:
         try:
-            made = _attempt(gear, pits, crack, teeth, {name: value / finer for name, value in size.items()}, strips, stretch)
+            drawn = section(gear, crack, teeth, broken)
+            finer_sizes = {name: value / finer for name, value in size.items()}
+            made = _attempt(gear, pits, crack, drawn, teeth, finer_sizes, strips, stretch)
         except UnmeshedError:  # pits that touch leave thin walls
             if finer == FINER[-1]:
                 raise
@@ -116,10 +119,9 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
 
 
 def filled(sector, *, teeth=3):
-    """The same mesh with its pits full of material: what the holes do beside it is not of the mesh.
+    """Return the same mesh with its pits filled: the difference shows the effect of the holes without that of the mesh.
 
-    Its flanks are whole, and no tet is in a pit; its faces ``pits`` are the flank above them. `teeth` as given to
-    `holed_sector`.
+    Its flanks are whole, and no tet is in a pit; its faces ``pits`` are the flank above them. `teeth` is that of `holed_sector`.
     """
     plug = np.full_like(sector.plug, -1)
     flat = turned(sector.points, -sector.gear.twist_rate * sector.points[2])
@@ -130,11 +132,11 @@ def filled(sector, *, teeth=3):
     return replace(sector, plug=plug, faces=faces | {name: sector.faces[name] for name in sector.faces if "crack" in name})
 
 
-def _attempt(gear, pits, crack, teeth, size, strips, stretch):
+def _attempt(gear, pits, crack, drawn, teeth, size, strips, stretch):
     rim = min((min(pit.axes) for pit in pits), default=1.0) * size["rim"] / gear.m_n
     squeeze = np.array([[1.0], [1.0], [1 / stretch]])
     made = tetrahedra(
-        section(gear, crack, teeth), gear.b / stretch, [tool(gear, pit, squeeze) for pit in pits],
+        drawn, gear.b / stretch, [tool(gear, pit, squeeze) for pit in pits],
         fine=fine(gear, crack, size, teeth), rim=rim, far=size["far"], strips=[(squeeze * line, *rest) for line, *rest in strips],
     )  # fmt: skip
     made = replace(made, points=made.points / squeeze, volume={piece: stretch * v for piece, v in made.volume.items()})
@@ -157,7 +159,7 @@ def _check_place(gear, pits, crack):
         if least < arc_at(gear, gear.roll_f):
             raise ValueError(
                 f"{pit._nouns[0]} at radius = {pit.radius:.6g} mm reaches {arc_at(gear, gear.roll_f) - least:.3g} mm below the "
-                f"form circle ({gear.r_form:.6g} mm): holes are cut into the involute only; move it to the tip or make it smaller"
+                f"form circle ({gear.r_form:.6g} mm): holes must be on the involute; move it to the tip or make it smaller"
             )
 
 

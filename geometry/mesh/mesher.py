@@ -1,4 +1,4 @@
-"""gmsh: its session, and triangles and quads between lines; tets are in `geometry.mesh.tetrahedra`, nowhere else is it used.
+"""Gmsh session, and triangles and quads between lines; tets are in `geometry.mesh.tetrahedra`; no other module uses gmsh.
 
 gmsh has one model and one set of options for the whole process: threads that mesh at the same time take turns.
 """
@@ -12,8 +12,8 @@ import threading
 
 import numpy as np
 
-# Largest coordinate that gmsh sees, and the decimals of coordinates: its tolerances are absolute, and what it does with points on
-# one circle hangs on their last digits, so gears that differ in size alone have to look the same to it.
+# Largest coordinate that gmsh sees, and the decimals of coordinates: its tolerances are absolute, and its result
+# for points on one circle depends on their last digits. Gears of different size must have equal coordinates in it.
 SEEN, DECIMALS = 50.0, 8
 
 TOUCHED = [getattr(signal, name) for name in ("SIGILL", "SIGFPE", "SIGBUS", "SIGSEGV", "SIGPIPE") if hasattr(signal, name)]
@@ -23,10 +23,10 @@ _turn = threading.Lock()
 
 @contextlib.contextmanager
 def gmsh_session():
-    """A quiet gmsh session that is closed whatever happens; that of another thread waits until then.
+    """Open a quiet gmsh session, which is closed in any case; other threads wait until then.
 
-    RuntimeError if gmsh or one of the system libraries it loads is missing (the message says what to install), or if the
-    program that uses gearfe has a session of its own open.
+    RuntimeError if gmsh or one of its system libraries is missing (the message states the package), or if the program that uses
+    gearfe has an open gmsh session.
     """
     with _turn:
         try:
@@ -51,10 +51,10 @@ def gmsh_session():
 
 @contextlib.contextmanager
 def _handlers_kept():
-    """What the process does on signals, put back.
+    """Restore the signal handlers of the process.
 
-    gmsh loads PETSc, which sets some to the system's default: then a worker that dies ends the process that writes to it, by
-    SIGPIPE, and the faults of other libraries are no longer told. Python's own `signal` would serve the main thread alone.
+    gmsh loads PETSc, which resets some handlers to the system's default. A dead worker would then end the process that writes to
+    it by SIGPIPE, and faults of other libraries would not be reported. Python's `signal` only works in the main thread.
     """
     if os.name != "posix":
         yield
@@ -127,9 +127,9 @@ def triangulate(loops, chains, ring, free=()):
 
 
 def quadrangulate(points, lines, surfaces, algorithm):
-    """Quads between given nodes: every line keeps its three, in between gmsh adds what it needs.
+    """Mesh quads between given nodes: every line keeps its three nodes, and gmsh adds inner nodes.
 
-    `algorithm` is that of gmsh's triangles before they are joined. Raises RuntimeError if some are left.
+    `algorithm` is that of gmsh's triangles before they are joined. Raises RuntimeError if triangles remain.
 
     Parameters
     ----------

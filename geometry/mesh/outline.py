@@ -1,4 +1,4 @@
-"""Outline of a whole gear for meshing: vertices and edge middles, exactly on the profile, as fine as asked for."""
+"""Outline of a whole gear for meshing: vertices and edge middles exactly on the profile, with given edge lengths."""
 
 import math
 from dataclasses import dataclass
@@ -10,9 +10,9 @@ from ..damage.missing import missing_teeth
 from ..tooth.gear import shortened
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, lengths, roll_at_arc, root_curve, root_half_angle
 
-NEAR = 3  # teeth beside the loaded ones that get the edge length `size`; those beyond get `far_size`
+NEAR = 3  # number of teeth next to the loaded ones with edge length `size`; further ones have `far_size`
 MERGED = 1e-6  # a root arc between two fillets that is shorter than this is left out [m_n]
-GROWTH = 0.25  # of the edge length per length, away from fine places
+GROWTH = 0.25  # growth of the edge length per length, away from fine places
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +163,7 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None,
 
 
 def around(gear, choose):
-    """All teeth clockwise from the middle of tooth 0's tip, made of the `Half` that `choose` gives for a tooth and a side.
+    """Return all teeth clockwise from the middle of tooth 0's tip, made of the `Half` of `choose` for a tooth and a side.
 
     Returns the points ``(2, 2 n)`` [mm], vertices at even places and edge middles at odd, and by tooth and side the half, the
     vertex number of its tip middle, and the sense (1 or -1) in which vertices are numbered from there to the root.
@@ -181,7 +181,7 @@ def around(gear, choose):
 
 
 def held_circle(gear):
-    """The held circle, bore or outside of a ring: vertices at even places, edge middles at odd."""
+    """Return the held circle, bore or outside of a ring: vertices at even indices, edge middles at odd."""
     size = min(0.35 * abs(gear.r_f - gear.held), 2 * math.pi * gear.held / 16)
     count = max(12, math.ceil(2 * math.pi * gear.held / size))
     angle = np.linspace(0, 2 * math.pi, 2 * count, endpoint=False)

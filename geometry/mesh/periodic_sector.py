@@ -1,4 +1,4 @@
-"""One pitch sector of a gear in curved second-order triangles, its two sides alike, so that z of them make the gear exactly."""
+"""Pitch sector of a gear in curved second-order triangles with equal sides, so that z of them make the gear exactly."""
 
 import math
 from dataclasses import dataclass
@@ -16,16 +16,17 @@ from .section_mesh import CRACK_EDGE, fill
 FLANK, FILLET, COARSE, SIDE = 0.2, 0.12, 0.4, 0.4
 RIM = 24
 SIDES = ("loaded", "unloaded")  # right and left flank
-GROWTH = 0.5  # of the edge length per length, away from the rim of a ring
+GROWTH = 0.5  # growth of the edge length per length, away from the rim of a ring
 
 
 @dataclass(frozen=True, slots=True)
 class PeriodicSector:
-    """A sector from half a pitch before the tooth's centre-line to half a pitch after it.
+    """Sector from half a pitch before the tooth's centre-line to half a pitch after it.
 
-    `left`, `right` are the vertices of the sides from the held edge to the root, at the same radii; `held` those of the held
-    edge from left to right, both corners included; `flank` those of the two flanks, right and left, from root to tip, `roll`
-    their roll lengths [mm]. `seams` are the nodes of the faces of its cracks, as of `gearfe.geometry.mesh.section_mesh.Seam`.
+    `left` and `right` are the vertices of the sides from the held edge to the root, at the same radii. `held` are those of the
+    held edge from left to right, both corners included. `flank` are those of the two flanks, right and left, from root to tip,
+    `roll` their roll lengths [mm]. `seams` are the nodes of the faces of its cracks, see
+    `gearfe.geometry.mesh.section_mesh.Seam`.
     """
 
     gear: Gear
@@ -72,7 +73,7 @@ def periodic_sector(gear, cracks=(), *, refine=1.0):
 
 
 def _parts(gear, right, left, refine):
-    """The outline clockwise from the lower left corner: radii and angles, each part without its last point."""
+    """Return the outline clockwise from the lower left corner: radii and angles, each part without its last point."""
     unit, pitch = gear.m_n / refine, math.pi / gear.z
     thick = abs(gear.r_f - gear.held)
     cells = math.ceil((RIM if gear.internal else 2) * refine)

@@ -1,7 +1,7 @@
-"""The transverse section of a whole gear in curved eight-node quads, every boundary node exactly on the profile.
+"""Transverse section of a whole gear in curved eight-node quads, every boundary node exactly on the profile.
 
-A tooth with cracks is a surface of its own: a line runs from the mouth along the crack to its tip and on to the mirror image
-of the mouth (or to the tip of the crack on the other side). The crack is the part of that line that is opened later.
+A tooth with cracks is a separate surface. A line runs from the mouth along the crack to its tip and on to the mirror image of the
+mouth (or to the tip of the crack on the other side). The crack is the part of that line that is opened later.
 """
 
 import math
@@ -19,7 +19,7 @@ from .mesher import quadrangulate
 from .outline import spaced
 from .tooth_pieces import GROWTH, half_tooth, no_tooth, quarters
 
-# edge lengths in modules: loaded flanks, their tip corner, their fillets, other fillets, teeth beside them, all others,
+# Edge lengths in modules: loaded flanks, their tip corner, their fillets, other fillets, adjacent teeth, all others,
 # largest crack edge, crack tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
 ATTEMPTS = tuple((finer, algorithm) for own in ((5, 6), (8,)) for finer in (1.0, 1.07, 1.15, 1.24, 1.4, 1.6) for algorithm in own)
@@ -188,7 +188,7 @@ def _mouths(gear, size, found):
 
 
 def _rim(gear, draft, size, teeth, damage, patches):
-    """The toothed outline clockwise from the tip of tooth 0: line numbers, loaded flanks, fillets, nodes of cracks' ends."""
+    """Return the toothed outline clockwise from the tip of tooth 0: line numbers, loaded flanks, fillets, end nodes of cracks."""
     lines, flanks, fillets, marks, last, (mouths, broken) = [], {}, {}, {}, None, damage
     gone = missing_teeth(gear, broken)
     halves = [(tooth, side) for k in range(gear.z) for tooth, side in ((k, "loaded"), ((k + 1) % gear.z, "unloaded"))]

@@ -1,4 +1,4 @@
-"""A meshed gear section with modified flanks: the same mesh, bent."""
+"""Meshed gear section with modified flanks, by displaced nodes."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from .section_mesh import Section
 
 
 def relieved(body: Section, form: FlankForm, order: np.ndarray, sense: int) -> Section:
-    """The section with the loaded flanks of some teeth modified.
+    """Return the section with modified loaded flanks of some teeth.
 
     Every node of such a tooth turns about the gear's centre by ``C / r_b``, C the material removed at its radius: all of it on
     the loaded flank, nothing on the other (or as much with `both_sides`), linear in between, and fading from the form circle to

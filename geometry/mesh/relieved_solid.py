@@ -1,4 +1,4 @@
-"""A gear of finite width with modified flanks: nodes move about the gear's axis, as far as material is removed at their place."""
+"""Gear of finite width with modified flanks: nodes rotate about the gear's axis by the removed material."""
 
 from collections.abc import Iterable
 
@@ -11,20 +11,20 @@ from .relieved import bend
 
 
 def relieved_points(points: Floats, gear: Gear, form: FlankForm, teeth: Iterable[int]) -> Floats:
-    """Nodes of a gear in its own frame with the loaded flanks of some teeth modified.
+    """Return the nodes of a gear in its own frame with modified loaded flanks of some teeth.
 
-    As in `geometry.mesh.relieved.relieved`, section by section: each node of such a tooth turns by ``C / r_b``, C the material
-    removed at its radius and height, all of it on the loaded flank, nothing on the other.
+    Like `geometry.mesh.relieved.relieved`, section by section: each node of such a tooth rotates by ``C / r_b``. C is the
+    material removed at its radius and height, all of it on the loaded flank, nothing on the other.
 
     Parameters
     ----------
     points : ndarray, shape (3, n)
-        [mm]; z from the end face at 0.
+        Nodes [mm]; z from the end face at 0.
     gear : Gear
-        Its `beta` says how the sections turn with z.
+        Gear; its `beta` is the helix angle of the sections.
     form : FlankForm
     teeth : iterable of int
-        Their numbers in the gear's own frame.
+        Tooth numbers in the gear's own frame.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The transverse section of a whole gear as curved second-order triangles, with its cracks opened.
+"""Transverse section of a whole gear as curved second-order triangles, with opened cracks.
 
 gmsh only fills the inside. Every vertex of the outline is placed on the exact profile, and so is the middle of every
 boundary edge, by its own parameter (not by projection).

@@ -1,4 +1,4 @@
-"""One pitch sector of a gear, tooth and rim, in a few large curved triangles for high-order methods.
+"""Pitch sector of a gear, tooth and rim, in a few large curved triangles for high-order methods.
 
 The outline is exact: every boundary edge carries how its curve departs from its chord, by its own parameter.
 """
@@ -19,7 +19,7 @@ from .mesher import triangulate
 from .outline import MERGED, inside, spaced
 from .triangle import BULGE, ENDS, GAUSS, jacobians
 
-# edge lengths in modules: loaded flank, the other one, tip corner of the loaded flank, a form point with a kink, fillet,
+# Edge lengths in modules: loaded flank, the other one, tip corner of the loaded flank, a form point with a kink, fillet,
 # root arc, sides and tip, crack, crack tip
 SIZES = {
     "flank": 0.8,
@@ -35,7 +35,7 @@ SIZES = {
 FLAT = 1e-6  # least area of a triangle, in squares of its longest edge: three points of a straight crack make one without area
 ON_LINE = 0.05  # points of a ring closer to the line of a crack than this part of the ring's radius lie on it
 CHECKED = 6  # order at whose quadrature points the maps are checked
-GROWTH = 1.2  # of the edge length per length, away from fine places
+GROWTH = 1.2  # growth of the edge length per length, away from fine places
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +102,7 @@ def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None):
 
 
 def _attempt(gear, cracks, broken, sizes, refine, finer):
-    """A sector with all edges but those of the sides, which must fit other sectors, divided by `finer`; None if it folds."""
+    """Return a sector with all edges but those of the sides divided by `finer`; None if it folds."""
     size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
     size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
     pieces = _pieces(gear, size, cracks, broken)
@@ -141,7 +141,7 @@ def _attempt(gear, cracks, broken, sizes, refine, finer):
 
 
 def _apart(side, triangles, doubles):
-    """A side whose corner is a crack's mouth ends at that face of the two which is its own."""
+    """Return a side whose corner is a crack's mouth, ending at the crack face of that side."""
     before, corner = side[-2:]
     if corner in doubles and not ((triangles == before).any(axis=0) & (triangles == corner).any(axis=0)).any():
         return np.append(side[:-1], doubles[int(corner)])
@@ -156,7 +156,7 @@ def _twice_areas(points, triangles):
 
 
 def _pieces(gear, size, cracks, broken=None):
-    """The outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
+    """Return the outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
     pitch = math.pi / gear.z
     marks = {crack.side: start_arc(gear, crack) for crack in cracks}
     tips = [(meshed_path(gear, crack)[:, -1], crack.side) for crack in cracks]
@@ -305,7 +305,7 @@ def _rings(centre, radii, taken, lines):
 
 
 def _bulges(pieces, loop, doubles):
-    """How the boundary edges depart from their chords; edges at a crack's mouth under both numbers of the mouth."""
+    """Return the deviation of boundary edges from their chords; edges at a crack's mouth under both numbers of the mouth."""
     gauss, count = GAUSS[0], loop.shape[1]
     low, high = (np.concatenate([params[part] for _, params, _ in pieces]) for part in (slice(-1), slice(1, None)))
     inner = (high + low)[:, None] / 2 + (high - low)[:, None] / 2 * gauss

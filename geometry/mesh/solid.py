@@ -1,4 +1,4 @@
-"""A whole gear in twisted 20-node hexahedra: the section of `gearfe.geometry.mesh.quads`, extruded along the width.
+"""Whole gear in twisted 20-node hexahedra: the section of `gearfe.geometry.mesh.quads`, extruded along the width.
 
 The transverse section at z = 0 is that of `gearfe.geometry.tooth.profile`; at height z it is turned clockwise by ``w z``,
 ``w = tan(beta) / r``, with the sign of the gear's beta. Nodes, also those in the middle of edges, lie exactly on the helicoid. A
@@ -73,7 +73,7 @@ MOST = 5000  # layers of elements
 
 
 def layers(b, size, *, breaks=(), fine=()):
-    """Heights [mm] of element layers about `size` apart over 0..b, with borders at `breaks`, finer at `fine` (as of `spaced`)."""
+    """Return heights [mm] of element layers about `size` apart over 0..b, with borders at `breaks`, finer at `fine`."""
     if b > MOST * size:
         raise ValueError(f"layers of {size:.3g} mm in a gear of b = {b:g} mm: more than {MOST}; give higher ones, or less refine")
     ends = np.unique([0.0, b, *(z for z in breaks if 0 < z < b)])
@@ -123,7 +123,7 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), broken=(), patches=(), refine=
 
 
 def follow_front(section, number, crack):
-    """How the section follows the front of its crack: the shift ``(2, n)`` [mm] of all nodes, and the `Front`."""
+    """Return the shift ``(2, n)`` [mm] of a section's nodes that follows the front of its crack, and the `Front`."""
     quads, corners = section.quads, section.corners
     ends = np.array([quads[:4], np.roll(quads[:4], -1, axis=0)]).reshape(2, -1)
     middle = quads[4:].ravel()

@@ -13,8 +13,8 @@ from ..tooth.gear import Gear
 from ..tooth.profile import cartesian, fillet_length, flank, root_curve, root_half_angle
 from .mesher import gmsh_session
 
-POINTS = 24  # of a spline
-TURN = math.radians(2.0)  # of helical teeth between two sections that the solid passes through
+POINTS = 24  # points of a spline
+TURN = math.radians(2.0)  # rotation of helical teeth between two sections of the solid
 
 
 def write_step(path: StrPath, gear: Gear) -> float:
@@ -61,7 +61,7 @@ def _solid(occ, gear, heights):
 
 
 def _wire(occ, gear, z):
-    """Closed curve of all teeth at a height z [mm]."""
+    """Return the closed curve of all teeth at a height z [mm]."""
     pieces = list(_pieces(gear, gear.twist_rate * z))
     first = [occ.addPoint(*points[0], z) for points, _ in pieces]
     centre = occ.addPoint(0, 0, z)

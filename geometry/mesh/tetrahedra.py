@@ -1,4 +1,4 @@
-"""Tets between surfaces by gmsh: extruded sections with holes that are kept as pieces of their own."""
+"""Tets between surfaces by gmsh: extruded sections with holes that are kept as separate pieces."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from .mesher import gmsh_session
 
-GROWTH = 0.5  # of the edge length of tets per length, away from fine places
+GROWTH = 0.5  # growth of the edge length of tets per length, away from fine places
 
 
 class UnmeshedError(RuntimeError):
@@ -29,7 +29,7 @@ class Pieces:
 
 
 def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=()):
-    """Tets of an extruded section, with cylinders cut out and kept as pieces of their own.
+    """Mesh an extruded section in tets, with cylinders cut out and kept as separate pieces.
 
     Parameters
     ----------
@@ -38,11 +38,11 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
         between two of them or a ``spline`` through all; and of each face its loops, the outer first, as numbers of curves. Faces
         may share curves.
     height : float
-        [mm].
+        Height of the extrusion [mm].
     cylinders : sequence of (list, ndarray)
-        The outline, and by which vector (3,) it is pushed [mm]: one ``ellipse``, by its centre and its half axes (3, 3); or a
-        loop of ``line``, by its ends (3, 2), and ``arc``, a quarter of an ellipse, by its ends and its centre (3, 3). What lies
-        outside of the solid is dropped; where cylinders overlap the first one has it.
+        Outline, and the vector (3,) of its push [mm]: one ``ellipse``, by its centre and its half axes (3, 3); or a loop of
+        ``line``, by its ends (3, 2), and ``arc``, a quarter of an ellipse, by its ends and its centre (3, 3). Parts outside the
+        solid are dropped; in overlaps the first cylinder counts.
     fine : sequence of (float, float, float, float)
         Circles of the section: x, y, radius and the edge length within [mm].
     rim : float, optional
@@ -59,7 +59,7 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
     Raises
     ------
     UnmeshedError
-        If gmsh cannot.
+        If gmsh fails.
     """
     points, curves, faces = drawing
     with gmsh_session() as gmsh:

@@ -7,7 +7,7 @@ import numpy as np
 from ..tooth.profile import arc_at, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
 from .outline import spaced
 
-GROWTH = 0.4  # of the edge length per length, away from fine places
+GROWTH = 0.4  # growth of the edge length per length, away from fine places
 
 
 def quarters(values):

@@ -1,4 +1,4 @@
-"""A curved triangle of any polynomial order: nodes, quadrature and the blended map of its edges."""
+"""Curved triangle of any polynomial order: nodes, quadrature and the blended map of its edges."""
 
 from types import SimpleNamespace
 
@@ -53,7 +53,7 @@ def table(order):
     bulge_points = GAUSS[0]
     to_modes = np.linalg.inv(legendre.legvander(bulge_points, BULGE - 1))
     bulge, bulge_slope = [], []
-    gradient = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])  # of the barycentric coordinates
+    gradient = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])  # gradients of the barycentric coordinates
     for a, b in ENDS:
         s = corner[b] - corner[a]
         height = legendre.legvander(s, BULGE - 1) @ to_modes
@@ -91,9 +91,9 @@ def _modes(x, y, order):
 
 
 def jacobians(points, triangles, bulges, order):
-    """Derivatives of the curved maps at the quadrature points of `order`: ``(m, 2, 2, q)``, place by reference coordinate.
+    """Return derivatives of the curved maps at the quadrature points of `order`: ``(m, 2, 2, q)``, place by reference coordinate.
 
-    `points` are ``(2, n)``, `triangles` ``(3, m)``, `bulges` ``(3, 2, BULGE, m)`` as of `gearfe.geometry.mesh.sector.Sector`.
+    `points` are ``(2, n)``, `triangles` ``(3, m)``. `gearfe.geometry.mesh.sector.Sector` describes `bulges` ``(3, 2, BULGE, m)``.
     """
     basis, count = table(order), triangles.shape[1]
     linear = np.einsum("dce,ck->edk", points[:, triangles], basis.corner_slope)[:, :, :, None]

@@ -1,4 +1,4 @@
-"""Two gears that mesh: centre distance, path of contact, contact ratios, contact lines, interference, planetary sets.
+"""Meshing gears: centre distance, path of contact, contact ratios, contact lines, interference, planetary sets.
 
 Kinematics only: where flanks touch, never how hard.
 """

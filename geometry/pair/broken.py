@@ -13,13 +13,13 @@ from .gear_pair import GearPair, with_tips
 
 
 def broken_at(pair: GearPair, broken: Sequence[Any], order: int) -> tuple[MissingTooth | Chip | None, ...]:
-    """What has broken off of both teeth of a tooth pair."""
+    """Return the missing teeth or chips of both teeth of a tooth pair."""
     gears = zip((pair.gear_1, pair.gear_2), broken, (order, -order), strict=True)
     return tuple(next((one for one in own if (one.tooth - tooth) % gear.z == 0), None) for gear, own, tooth in gears)
 
 
 def pair_at(pair: GearPair, broken: Sequence[Any], order: int) -> GearPair | None:
-    """The pair with the tips of the teeth of a tooth pair; None if one of them is missing."""
+    """Return the pair with the tips of the teeth of a tooth pair; None if one of them is missing."""
     found = broken_at(pair, broken, order)
     if any(isinstance(one, MissingTooth) for one in found):
         return None

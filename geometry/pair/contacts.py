@@ -1,30 +1,30 @@
-"""Where the tooth pairs of a gear pair touch, and how far they are from touching: one function for every contact model.
+"""Contacts and gaps of the tooth pairs of a gear pair: one function for every contact model.
 
-**Pose.** An approach delta of the gears along the line of action is a turn of both: unless said otherwise the pinion turns
-forward by ``delta / (2 r_b1)`` and the wheel backward by ``delta / (2 r_b2)``, from the unloaded position that a phase names.
-In this *mean pose* no gear is preferred and, by symmetry, the contact of conjugate flanks stays where it is without load.
+**Pose.** An approach delta of the gears along the line of action is a rotation of both. Unless stated otherwise the pinion
+rotates forward by ``delta / (2 r_b1)`` and the wheel backward by ``delta / (2 r_b2)``, from the unloaded position of a phase. In
+this *mean pose* no gear is preferred. By symmetry, the contact of conjugate flanks stays where it is without load.
 
 **Gap.** Let the pinion's flank cross the line of action at the abscissa n1 and the wheel's at n2; unloaded conjugate flanks
 have ``n1 = n2 = n``, the nominal abscissa of their pair, and after an approach ``n1 = n + delta / 2``, ``n2 = n - delta / 2``.
-A point of the pinion (its tip corner, after the end of the path) lies D(n1) from the wheel's flank: the turn of the wheel that
-closes it, times r_b2. It touches when ``n1 - n2 = D(n1)``, so its gap is the approach that solves::
+A point of the pinion (its tip corner, after the end of the path) is at a distance D(n1) from the wheel's flank: the rotation of
+the wheel that closes it, times r_b2. It touches when ``n1 - n2 = D(n1)``, so its gap is the approach that solves::
 
     delta = D(n + delta / 2)
 
-and for a point of the wheel (its tip corner, before the start), which the pinion's turn E(n2) closes,
-``delta = E(n - delta / 2)``. With ``delta = D(n)`` the wheel would have turned alone, with ``delta = E(n)`` the pinion: two
-conventions, one at each end.
+For a point of the wheel (its tip corner, before the start), which the pinion's rotation E(n2) closes, it is ``delta = E(n - delta
+/ 2)``. With ``delta = D(n)`` only the wheel would rotate, with ``delta = E(n)`` only the pinion: two conventions, one at each
+end.
 
-**Force.** Off the line of action the contact normal is that of the side that is met: of a flank it passes its gear's centre at
-r_b, the centre of the gear whose corner touches at ``q r_b`` (q is 0.96 at a gap of 6 um). In general let it pass both centres at
-``q_1 r_b1`` and ``q_2 r_b2``. A normal force N then gives torques with ``T1 / r_b1 = q_1 N`` and ``T2 / r_b2 = q_2 N``, and a
-shared approach closes the pair by ``rate = (q_1 + q_2) / 2`` of itself. The work of the tooth forces in a shared approach is ``F
-d delta`` with ``F = (T1 / r_b1 + T2 / r_b2) / 2 = rate N``: this is the force meant. A tooth yields along and across its own
-involute normal to both parts of N (`gearfe.flexibility.plane.towards`); other teeth feel its torque, ``(q / rate)
-F``. All count by ``1 / rate`` as much more of an approach (`gearfe.contact.rows`; ``tests/contact/test_pose.py``).
+**Force.** Off the line of action the contact normal is that of the side that is met. The normal of a flank passes its gear's
+centre at r_b, and the centre of the gear whose corner touches at ``q r_b`` (q is 0.96 at a gap of 6 um). In general let it pass
+both centres at ``q_1 r_b1`` and ``q_2 r_b2``. A normal force N then gives torques with ``T1 / r_b1 = q_1 N`` and ``T2 / r_b2 =
+q_2 N``, and a shared approach closes the pair by ``rate = (q_1 + q_2) / 2`` of itself. The work of the tooth forces in a shared
+approach is ``F d delta`` with ``F = (T1 / r_b1 + T2 / r_b2) / 2 = rate N``: this is the force meant. A tooth deflects along and
+across its own involute normal under both parts of N (`gearfe.flexibility.plane.towards`). Other teeth deflect by its torque, ``(q
+/ rate) F``. All deflections count as an approach larger by ``1 / rate`` (`gearfe.contact.rows`; ``tests/contact/test_pose.py``).
 
-**Other poses.** Let the pinion alone turn, or the wheel: ``n1 = n + delta, n2 = n`` or ``n1 = n, n2 = n - delta``. That is the
-mean pose of the nominal abscissa ``n + delta / 2`` or ``n - delta / 2``: a shift of the phase by half the approach.
+**Other poses.** If only the pinion or only the wheel rotates: ``n1 = n + delta, n2 = n`` or ``n1 = n, n2 = n - delta``. That is
+the mean pose of the nominal abscissa ``n + delta / 2`` or ``n - delta / 2``: a shift of the phase by half the approach.
 """
 
 import math
@@ -41,7 +41,7 @@ from ..tooth.profile import cartesian
 from ..tooth.side import form_corner, place, side
 from .gear_pair import GearPair
 
-STEPS = 10  # of Newton's method at most: each doubles the correct digits, or adds three where a modified flank slopes
+STEPS = 10  # limit of Newton steps: each doubles the correct digits, or adds three if a modified flank has a slope
 SETTLED = 1e-7  # last step, in base pitches
 EXACT = 1e-13  # the same, where no further step is needed: light loads close by less than any larger
 SQUARED = 1e-9  # the same between unmodified flanks: the next step would be its square
@@ -53,17 +53,17 @@ TIP, FORM = (1, 2), (3, 4)  # numbers of the corners: tips of pinion and wheel, 
 
 @dataclass(frozen=True, slots=True)
 class Contacts:
-    """The tooth pairs that touch, or nearly do, at some phases (arrays of shape (phases, pairs)).
+    """Tooth pairs in contact, or nearly so, at some phases (arrays of shape (phases, pairs)).
 
-    `roll_1`, `roll_2` are the roll lengths [mm] of the touching points (in a fillet: names of places, `geometry.tooth.side`),
-    `gap` the approach of the gears along the line of action [mm], shared by both, at which the pair first touches (0 on the path
-    of contact, less where a tip cuts into its mate's fillet; inf: the teeth cannot meet), `radius` the relative radius of
-    curvature there [mm] (1 where flanks cannot meet), `order` (pairs,) the number of each pair: pair 0 enters at phase 0 and pair
-    k is k base pitches ahead of it, `nominal` the abscissa of the pair on the line of action [mm], `corner` what touches: 0 both
-    flanks, 1 or 2 the tip corner of pinion or wheel, 3 or 4 the form corner of an undercut pinion or wheel. `corner_gap`
-    (4, phases, pairs) is the approach at which each of these corners touches (inf: never), `corner_roll` (2, 4, phases, pairs)
-    the places of both gears there [mm]. Pair k is formed by the pinion's k-th tooth beside tooth 0 on the loaded side and the
-    wheel's k-th on the other.
+    `roll_1`, `roll_2` are the roll lengths [mm] of the touching points (in a fillet: names of places, `geometry.tooth.side`).
+    `gap` is the approach of the gears along the line of action [mm], shared by both, at which the pair first touches. It is 0 on
+    the path of contact, less where a tip cuts into its mate's fillet, and inf if the teeth cannot meet. `radius` is the relative
+    radius of curvature there [mm] (1 where flanks cannot meet). `order` (pairs,) is the number of each pair: pair 0 enters at
+    phase 0, and pair k is k base pitches ahead of it. `nominal` is the abscissa of the pair on the line of action [mm]. `corner`
+    is the touching element: 0 both flanks, 1 or 2 the tip corner of pinion or wheel, 3 or 4 the form corner of an undercut pinion
+    or wheel. `corner_gap` (4, phases, pairs) is the approach at which each of these corners touches (inf: never), `corner_roll`
+    (2, 4, phases, pairs) the places of both gears there [mm]. Pair k is formed by the pinion's k-th tooth after tooth 0 towards
+    the loaded side and the wheel's k-th towards the other side.
     """
 
     order: NDArray[np.int64]
@@ -78,7 +78,7 @@ class Contacts:
 
 
 class Touch(NamedTuple):
-    """Where sections first touch: roll lengths, gaps [mm], corners and relative radii of curvature [mm], as of `Contacts`."""
+    """First contact of sections: roll lengths, gaps [mm], corners and relative radii of curvature [mm] (see `Contacts`)."""
 
     roll_1: Floats
     roll_2: Floats
@@ -90,10 +90,10 @@ class Touch(NamedTuple):
 
 
 class Met(NamedTuple):
-    """Where points touch the other side: approach `gap` and place `roll` there [mm].
+    """Contact of points with the other side: approach `gap` and place `roll` there [mm].
 
-    `arm`, `met_arm`: at how many of their base radii the contact normal passes the centres of the point's own gear and the other.
-    `out`, `met_out`: what part of a unit force points away from these centres, on the gear it acts on.
+    `arm` and `met_arm` are the distances of the contact normal from the centres of the point's own gear and the other, in their
+    base radii. `out` and `met_out` are the parts of a unit force that point away from these centres, on the gear it acts on.
     """
 
     gap: Floats
@@ -105,7 +105,7 @@ class Met(NamedTuple):
 
 
 def contacts(pair: GearPair, phase: ArrayLike, *, extended: bool = True) -> Contacts:
-    """Contacts of all tooth pairs of a `GearPair`, flanks unmodified (others: `gearfe.geometry.pair.modified.flank_contacts`).
+    """Return the contacts of all tooth pairs of a `GearPair` with unmodified flanks (others: `modified.flank_contacts`).
 
     On the path of contact the gap is zero, unless a tip cuts into its mate's fillet at the same time. Off the path a corner of
     one tooth touches the other's whole outline: a tip corner on the flank, on the edge of the other tip or in the fillet, or
@@ -123,9 +123,9 @@ def contacts(pair: GearPair, phase: ArrayLike, *, extended: bool = True) -> Cont
 
 @lru_cache(maxsize=256)
 def near_pitches(pair: GearPair) -> tuple[int, int]:
-    """How many base pitches before the start and after the end of the path teeth may touch under load, at least 1.
+    """Return the base pitches before the start and after the end of the path within which teeth may touch, at least 1.
 
-    Teeth of external gears turn out of each other's reach; those of a ring with hardly more teeth than its pinion stay close.
+    Teeth of external gears move apart quickly. Those of a ring with hardly more teeth than its pinion stay close.
     """
     if not pair.gear_2.internal:
         return 1, 1
@@ -140,12 +140,12 @@ def near_pitches(pair: GearPair) -> tuple[int, int]:
 
 
 def neighbours_of(pair: GearPair) -> int:
-    """How many teeth after a tooth may be in contact with it, corners off the path of contact included."""
+    """Return how many teeth after a tooth may be in contact with it, corners off the path of contact included."""
     return math.ceil(pair.eps_alpha) + sum(near_pitches(pair)) - 2
 
 
 def touching(pair: GearPair, nominal: NDArray, *, extended: bool = True) -> Touch:
-    """Where sections of unmodified teeth first touch, as of `contacts`, at any abscissae `nominal` [mm]."""
+    """Return the first contact of sections of unmodified teeth, see `contacts`, at any abscissae `nominal` [mm]."""
     start, end = pair.path
     slack = 1e-9 * pair.p_bt
     path = (nominal >= start - slack) & (nominal < end + slack)
@@ -212,13 +212,13 @@ def approach(
     flanks: tuple[FlankForm, FlankForm] | None = None,
     order: ArrayLike = 0,
 ) -> Met:
-    """Approach, shared by both gears, at which a point of one side touches the other side (see the module).
+    """Return the approach, shared by both gears, at which a point of one side touches the other side (see the module).
 
     Parameters
     ----------
     pair : GearPair
     roll : float or ndarray
-        Place on the pinion's side (``driver=True``) or the wheel's, flank or fillet, as of `gearfe.geometry.tooth.side` [mm].
+        Place on the pinion's side (``driver=True``) or the wheel's, flank or fillet [mm], see `gearfe.geometry.tooth.side`.
     nominal : ndarray
         Abscissa of the pair's contact on the line of action [mm]; off the path of contact, where it would be.
     driver : bool
@@ -258,20 +258,20 @@ def approach(
 
 
 def opposite(pair: GearPair, roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True) -> tuple[NDArray, NDArray]:
-    """What a flank point faces when both gears stand as their contact at `nominal` has them; parameters as of `approach`.
+    """Return the distance of flank points to the other side along the line of action, for a contact at `nominal`.
 
-    Gives its distance to the other side along the line of action, i.e. the turn of the *other gear alone* that closes it times
-    its base radius [mm], and the roll length of the place met there [mm]; nan where it lies beyond the tip or root circle.
+    The distance [mm] is the rotation of the *other gear alone* that closes it times its base radius. The roll length of the place
+    met there [mm] is also returned; nan beyond the tip or root circle. `approach` describes the parameters.
     """
     return facing(pair, np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float), driver)(0.0)[:2]
 
 
 def facing(pair, roll, nominal, driver, turns=None):
-    """What points of a side face with both gears moved on from `nominal` by a length on the line of action [mm].
+    """Return the contact geometry of points of a side, with both gears moved from `nominal` along the line of action [mm].
 
-    Gives `opposite`, the arms at which the met normal passes the point's own centre and the other, over their base radii (1 on
-    the line of action), and the parts of a unit force on either gear that point away from its centre. `turns` is
-    ``pair.turn(nominal)``, if it is known.
+    The result is that of `opposite`, then the distances at which the normal passes the point's own centre and the other, over
+    their base radii (1 on the line of action), and the parts of a unit force on either gear that point away from its centre.
+    `turns` is ``pair.turn(nominal)``, if known.
     """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
     pushes = (1, -pair.outward)  # sense of a force along the line of action around the two centres
@@ -288,9 +288,9 @@ def facing(pair, roll, nominal, driver, turns=None):
         met = place(mate, away)
         behind = mirror[other] * (seen - turns[other] - pushes[other] * moved / base) - met.angle
         met_arm, lean = met.arm - slope * met.lean, met.lean + slope * met.arm  # a modified flank's normal is turned
-        across = pushes[other] * (met_arm * y + lean * x) / away**2  # of the met normal, across the centre line
+        across = pushes[other] * (met_arm * y + lean * x) / away**2  # component of the met normal across the centre line
         arm = pushes[host] * (pushes[other] * met_arm - apart * across) / r_b
-        up = pushes[other] * (lean * y - met_arm * x) / away**2  # and along the centre line
+        up = pushes[other] * (lean * y - met_arm * x) / away**2  # component along the centre line
         out = sense * (across * x + up * (y - apart)) / radius
         gap = base * ((behind + math.pi) % (2 * math.pi) - math.pi)
         return gap, met.roll, arm, met_arm / base, out, -sense * pushes[other] * lean / away

@@ -1,4 +1,4 @@
-"""The flanks of a pair on their gears, and axes that are not parallel: what every contact model asks for gaps."""
+"""Flanks of a pair on their gears, and misalignment of the axes, for the gaps of every contact model."""
 
 import math
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ STEEPEST = 0.01  # largest misalignment per width: with more the axes are not pa
 @renamed(F_beta="F_beta_x")
 @dataclass(frozen=True, slots=True)
 class Misalignment:
-    """Axes of a gear pair that are not parallel.
+    """Misalignment of the axes of a gear pair.
 
     Only what is left in the plane of action matters; over the common width b the flanks of a pair then open by::
 
@@ -69,7 +69,7 @@ class Misalignment:
 
 
 def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
-    """How much the flanks of a `GearPair` open by height because its axes are askew [mm/mm].
+    """Return the change of the flanks' gap per height by a misalignment of the axes of a `GearPair` [mm/mm].
 
     ValueError if it is no `Misalignment`, or larger than any gears can run with.
     """
@@ -83,7 +83,7 @@ def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
     )
     if abs(tilt) > STEEPEST:
         raise ValueError(
-            f"{1e3 * tilt:.4g} um of misalignment per mm of width, but gears with parallel axes bear no more than "
+            f"{1e3 * tilt:.4g} um of misalignment per mm of width, but gears with parallel axes allow at most "
             f"{1e3 * STEEPEST:g}: amounts are in mm (20 um are 0.02)"
         )
     return tilt

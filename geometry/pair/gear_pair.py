@@ -1,4 +1,4 @@
-"""`GearPair`: where two gears touch, and how far apart their flanks are where they do not."""
+"""`GearPair`: contact geometry of two gears, and gaps between their flanks."""
 
 import math
 import warnings
@@ -17,7 +17,7 @@ from ..tooth.involute import inv, inverse_inv
 from ..tooth.profile import flank
 from .interference import overlap, radial_assembly
 
-OVERLAP = 1e-3  # of a module: deeper cuts of one outline into the other are interference
+OVERLAP = 1e-3  # deeper cuts of one outline into the other are interference [m_n]
 
 
 @renamed(alpha_w="alpha_wt")
@@ -29,8 +29,8 @@ class GearPair:
     is the pinion's roll length. Phase 0 is a tooth pair entering at the start of the path of contact (lower end of the
     pinion's active flank); phase 1 is one transverse base pitch later.
 
-    A ring whose tip would reach below the pinion's form point is trimmed to it, with a warning; `notes` says how the contact
-    ratio changed.
+    A ring whose tip would reach below the pinion's form point is trimmed to it, with a warning; `notes` states the change of the
+    contact ratio.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ class GearPair:
 
     @property
     def backlash(self) -> float:
-        """Normal backlash: play along the line of action [mm] (negative: the teeth overlap)."""
+        """Normal backlash: distance of the back flanks along the line of action [mm] (negative: the teeth overlap)."""
         pinion, wheel = self.gear_1, self.gear_2
         tooth_1 = 2 * (pinion.base_half_angle - inv(self.alpha_wt))
         tooth_2 = 2 * (wheel.base_half_angle - wheel.outward * inv(self.alpha_wt))
@@ -194,7 +194,7 @@ class GearPair:
         return max(start, self.gear_1.roll_f), end
 
     def _overlap(self, tip_1, tip_2):
-        """Where flanks ending at these roll lengths [mm] meet, as roll lengths of the pinion, its fillet disregarded."""
+        """Return the ends of contact of flanks that end at these roll lengths [mm], without the pinion's fillet."""
         first, last = sorted((self.outward * (self.length - tip_2), self.outward * (self.length - self.gear_2.roll_f)))
         return first, min(last, tip_1)
 
@@ -252,7 +252,7 @@ class GearPair:
 
 
 def with_tips(pair: GearPair, rolls: Sequence[float | None]) -> GearPair:
-    """The pair of teeth whose flanks end at these roll lengths of pinion and wheel [mm], None where they are whole.
+    """Return the pair with flanks that end at these roll lengths of pinion and wheel [mm], None where they are whole.
 
     Its path may be shorter than a base pitch, because other teeth are whole.
     """

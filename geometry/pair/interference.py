@@ -1,4 +1,4 @@
-"""Interference: where the outlines of two meshing gears cut into each other."""
+"""Interference of the outlines of two meshing gears."""
 
 import math
 

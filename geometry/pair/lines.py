@@ -1,4 +1,4 @@
-"""Contact lines of spur, helical and herringbone pairs: where along the width the tooth pairs touch, exactly.
+"""Contact lines of spur, helical and herringbone pairs: exact positions along the width.
 
 All transverse sections of a helical pair are alike, only turned: the section at height z is turned with the pinion by
 ``tan(beta) / r`` per mm, so that the pinion's roll length of the touching points is linear in z::
@@ -46,11 +46,11 @@ class Lines:
     bands : tuple of Band
     phase : ndarray, shape (phases,)
     order : ndarray, shape (pairs,)
-        Numbers of the tooth pairs, as of `gearfe.geometry.pair.contacts.Contacts`.
+        Numbers of the tooth pairs, see `gearfe.geometry.pair.contacts.Contacts`.
     low, high : ndarray, shape (phases, pairs, bands)
-        Heights [mm] between which a pair touches; equal where it does not.
+        Heights [mm] of both ends of a contact line; equal without contact.
     roll_0 : ndarray, shape (phases, pairs, bands)
-        The pinion's roll length [mm] that the line, prolonged, has at z = 0.
+        The pinion's roll length [mm] of the line, extended to z = 0.
     """
 
     pair: GearPair
@@ -79,7 +79,7 @@ class Lines:
 
 @dataclass(frozen=True, slots=True)
 class Removed:
-    """Pieces of contact lines that pits take away, n of them; they may overlap.
+    """Pieces of contact lines inside pits, n of them; they may overlap.
 
     `phase`, `column`, `band` are indices into the arrays of `Lines`, `low` and `high` heights [mm], `gear` 0 for a pit of the
     pinion and 1 for one of the wheel.
@@ -129,10 +129,10 @@ def halves(pair, face, groove=0.0):
 
 
 def face_bands(pair, face="helical", groove=0.0):
-    """Bands of the face, as `Band`, of the `halves` of a pair.
+    """Return the bands of the face, as `Band`, of the `halves` of a pair.
 
-    The pinion's beta is that of the half at z = 0, and the phase is counted at z = 0, of a herringbone pair at both outer ends:
-    with beta > 0 the inner ends touch first, with beta < 0 the outer ones. Parameters as of `halves`; a helical pair of
+    The pinion's beta is that of the half at z = 0, and the phase is counted at z = 0, for a herringbone pair at both outer ends:
+    with beta > 0 the inner ends touch first, with beta < 0 the outer ones. `halves` describes the parameters. A helical pair of
     beta = 0 is a spur one.
 
     Returns
@@ -142,7 +142,7 @@ def face_bands(pair, face="helical", groove=0.0):
     Raises
     ------
     ValueError
-        As of `halves`, and if gears with a helix angle are called spur gears.
+        For the reasons of `halves`, and if gears with a helix angle are called spur gears.
     """
     slope = math.tan(pair.gear_1.beta_b)
     if face == "spur" and slope:
@@ -152,9 +152,9 @@ def face_bands(pair, face="helical", groove=0.0):
 
 
 def bands_of(pair, face, groove):
-    """Bands of the face as (end that touches first, other end) [mm], of a herringbone pair the outer ends first.
+    """Return the bands of the face as (end that touches first, other end) [mm], for a herringbone pair the outer ends first.
 
-    Parameters and errors as of `face_bands`.
+    Parameters and errors are those of `face_bands`.
     """
     bands = face_bands(pair, face, groove)
     if face != "herringbone" and pair.gear_1.beta > 0:
@@ -204,13 +204,13 @@ def _touching(band, roll_0, start, end, pitch):
 
 
 def removed(lines, pits):
-    """What pits take from contact lines.
+    """Return the pieces of contact lines inside pits.
 
     Parameters
     ----------
     lines : Lines
     pits : (sequence of Pit, sequence of Pit)
-        Of pinion and wheel, teeth numbered in each gear's own frame; those on unloaded flanks take nothing.
+        Pits of pinion and wheel with each gear's own tooth numbers; those on unloaded flanks are ignored.
 
     Returns
     -------
@@ -226,7 +226,7 @@ def removed(lines, pits):
 
 
 def covered(pair, pits, order, rolls, z):
-    """Where straight pieces of contact lines run through pits of their tooth pairs.
+    """Return the pieces of straight contact lines inside pits of their tooth pairs.
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ def covered(pair, pits, order, rolls, z):
         if not gear_pits or not order.size:
             continue
         tooth, near, far, bottom, top = _limits(gear, gear_pits)
-        height = z + (gear.b - common) / 2  # the gears lie centred on each other
+        height = z + (gear.b - common) / 2  # gears of different width lie centred on each other
         meets = (tooth - (1 - 2 * which) * order[:, None]) % gear.z == 0
         meets &= (rolls[which].min(axis=1)[:, None] <= far) & (rolls[which].max(axis=1)[:, None] >= near)
         meets &= (height.min(axis=1)[:, None] < top) & (height.max(axis=1)[:, None] > bottom)

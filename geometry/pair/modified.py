@@ -1,8 +1,9 @@
-"""Where tooth pairs with modified flanks touch, and how far they are from touching.
+"""Contacts and gaps of tooth pairs with modified flanks.
 
-Material C1 removed at a point of the pinion's flank makes it a point of the involute turned back by ``C1 / r_b1``; a pitch
-deviation turns the whole flank. In the terms of `geometry.pair.contacts` the involute through that point crosses the line of
-action at ``n1 = n + delta / 2 - C1`` and the wheel's at ``n2 = n - delta / 2 + C2``, so that a pinion point at roll length rho,
+With material C1 removed at a point of the pinion's flank, this point is on the involute rotated back by ``C1 / r_b1``. A pitch
+deviation rotates the whole flank. In the terms of `geometry.pair.contacts` the involute through that point crosses the line of
+action at ``n1 = n + delta / 2 - C1`` and the wheel's at ``n2 = n - delta / 2 + C2``. A pinion point at roll length rho, opposite
+the wheel's point at rho2, therefore touches at the approach::
 which faces the wheel's point at rho2, touches at the approach::
 
     delta(rho) = C1(rho) + C2(rho2) + D(n + delta / 2 - C1(rho))
@@ -35,9 +36,9 @@ FLATTER = 20.0  # largest relative radius, in those of the involutes: beyond it 
 def flank_contacts(
     pair: GearPair, phase: ArrayLike, *, extended: bool = True, flanks: tuple[FlankForm, FlankForm] | None = None
 ) -> Contacts:
-    """`contacts` of a pair whose flanks may be modified, as of `gearfe.geometry.pair.flanks.flank_forms`.
+    """Return the `contacts` of a pair with modified flanks, given as `gearfe.geometry.pair.flanks.flank_forms`.
 
-    Gaps can be negative where a tooth is ahead of its place. ValueError if flanks are so hollow that they would conform.
+    Gaps can be negative if a tooth is ahead of its nominal position. ValueError if flanks are so hollow that they would conform.
     """
     plain = contacts(pair, phase, extended=extended)
     if flanks is None:
@@ -61,20 +62,20 @@ def first_touch(
     start: Floats,
     z: Floats | None = None,
 ) -> Touch:
-    """Where the modified flanks of transverse sections first touch: the one gap function of all contact models.
+    """Return the first contact of the modified flanks of transverse sections: the gap function of all contact models.
 
     Parameters
     ----------
     pair : GearPair
     forms : (FlankForm, FlankForm)
-        Of pinion and wheel.
+        Flanks of pinion and wheel.
     nominal, order : ndarray, shape (n,)
         Abscissae of the sections' contacts on the line of action [mm], and numbers of their pairs.
     start : ndarray, shape (n,)
         Gaps of the unmodified flanks [mm]; inf where they cannot meet.
     z : ndarray, shape (n,), optional
-        Heights over the common width of both gears, which lie centred on each other [mm]; without them what changes along the
-        width is left out.
+        Heights over the common width of both gears, which lie centred on each other [mm]; without them modifications along the
+        width are ignored.
 
     Returns
     -------
@@ -165,7 +166,7 @@ def _inside(pair, forms, nominal, order, start):
 
 
 def _exact(pair, forms, nominal, order, near):
-    """Rolls of both gears and gaps of touching points, from arcs, rolls and gaps `near` them.
+    """Return rolls of both gears and gaps of touching points, from arcs, rolls and gaps `near` them.
 
     The search leaves 1e-6 mm of the place: nothing for the gap of smooth flanks but its last digits, which a parabola through
     three places gives, and 1e-9 mm at a ridge, which is looked at itself: close to a steep one the search may have met nothing.
@@ -191,7 +192,7 @@ def _exact(pair, forms, nominal, order, near):
 
 
 def _residual(pair, forms, arc, turns, order, pose):
-    """How far a further approach closes each place of the pinion's flank, with the gears at `pose` [mm]; inf off the flanks."""
+    """Return the distance of each place of the pinion's flank to the wheel, with the gears at `pose` [mm]; inf off the flanks."""
     roll = roll_at_arc(pair.gear_1, arc)
     forms = [form.of(order) for form in forms]
     back = forms[0].removed(roll) + forms[0].shift(order)

@@ -1,4 +1,4 @@
-"""Rows of pits as they lie on a flank: along the axis, along a contact line, or up the profile; in one half or in both."""
+"""Rows of pits on a flank: along the axis, along a contact line, or along the profile; in one half or in both."""
 
 import math
 from dataclasses import replace
@@ -17,32 +17,33 @@ ALONG = ("axis", "contact_line", "profile")
 def pit_line(
     pair, which, along, count, pitch, *, radius, middle, face="helical", groove=0.0, both=False, mirrored=False, **numbers
 ):
-    """`count` equal pits along a line of a flank, evenly to both sides of the point at `radius` and height `middle`.
+    """Return `count` equal pits along a line of a flank, evenly to both sides of the point at `radius` and height `middle`.
 
-    A contact line is straight, in the flank and in the plane of action: over a height dz the pinion's roll length falls by
-    ``tan(beta_b) dz`` away from the end that touches first, and the line is ``dz / cos(beta_b)`` long. So pits of radius r at a
-    pitch of 2 r touch each other, on a spur gear exactly. The outer ends of herringbone halves touch first, as in `bands_of`.
+    A contact line is straight, in the flank and in the plane of action. Over a height dz the pinion's roll length falls by
+    ``tan(beta_b) dz`` away from the end that touches first, and the line is ``dz / cos(beta_b)`` long. Pits of radius r at a
+    pitch of 2 r therefore touch each other, on a spur gear exactly. The outer ends of herringbone halves touch first, see
+    `bands_of`.
 
     Parameters
     ----------
     pair : GearPair
     which : {0, 1}
-        Whether they are on the flank of the pinion or of the wheel.
+        0: flank of the pinion, 1: flank of the wheel.
     along : {"axis", "contact_line", "profile"}
         ``axis``: at one radius; ``contact_line``: where one tooth pair touches at one phase; ``profile``: at one height.
     count : int
     pitch : float
         Distance of neighbouring centres along the line [mm]: of ``profile`` of the transverse profile's arc.
     radius, middle : float
-        Of the middle of the row: distance from the gear's axis and height [mm], as of a `Pit`.
+        Middle of the row: distance from the gear's axis and height [mm], see `Pit`.
     face, groove
-        How the teeth run, as in `gearfe.geometry.pair.lines.bands_of`. A contact line is that of the half that `middle` is in.
+        Type of teeth, see `gearfe.geometry.pair.lines.bands_of`. A contact line is that of the half with `middle`.
     both : bool
-        Whether its mirror image is in the other half of a herringbone gear too.
+        If True, its mirror image is in the other half of a herringbone gear too.
     mirrored : bool
-        Whether a row along a contact line is inclined the other way, as on teeth of the other hand: contact lines cross it.
+        If True, a row along a contact line is inclined the other way, so that contact lines cross it.
     **numbers
-        As of `Pit`: axes, depth, angle, tooth, side.
+        Arguments of `Pit`: axes, depth, angle, tooth, side.
 
     Returns
     -------
@@ -51,8 +52,8 @@ def pit_line(
     Raises
     ------
     ValueError
-        If what is asked for cannot be, or a row along a contact line leaves its half. Pits off their flank are refused when they
-        meet their gear, see `gearfe.geometry.damage.hollow.check_hollows`.
+        If the row is impossible, or a row along a contact line leaves its half. Pits off their flank are rejected when they are
+        used with their gear, see `gearfe.geometry.damage.hollow.check_hollows`.
 
     >>> from gearfe.geometry.tooth.gear import Gear
     >>> from gearfe.geometry.pair.gear_pair import GearPair
@@ -110,4 +111,4 @@ def _band(pair, gear, face, groove, middle):
         low, high = sorted((first + below, last + below))
         if low <= middle <= high:
             return Band(low, high, math.copysign(math.tan(pair.gear_1.beta_b), first - last), first + below)
-    raise ValueError(f"pits about middle = {middle:.6g} mm, but there the teeth of z = {gear.z} touch nothing")
+    raise ValueError(f"pits about middle = {middle:.6g} mm, but the teeth of z = {gear.z} have no contact there")

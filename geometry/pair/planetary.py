@@ -1,4 +1,4 @@
-"""`PlanetarySet`: a sun, its planets and a ring, and whether they go together."""
+"""`PlanetarySet`: sun, planets and ring with checked assembly conditions."""
 
 import math
 from dataclasses import dataclass

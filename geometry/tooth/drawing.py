@@ -1,4 +1,4 @@
-"""A coarse outline of a gear for drawings."""
+"""Coarse outline of a gear for drawings."""
 
 import math
 
@@ -8,7 +8,7 @@ from .profile import cartesian, fillet_length, flank, root_curve
 
 
 def outline_points(gear, *, points=5):
-    """Closed transverse outline of all teeth ``(2, n)`` [mm], of few points."""
+    """Return the closed transverse outline of all teeth ``(2, n)`` [mm], of few points."""
     rise = np.linspace(0.0, fillet_length(gear), points), np.linspace(gear.roll_f, gear.roll_a, points)
     radius, angle = (np.concatenate(pair) for pair in zip(root_curve(gear, rise[0]), flank(gear, rise[1]), strict=True))
     radius, angle = np.concatenate([radius, radius[::-1]]), np.concatenate([-angle, angle[::-1]])

@@ -16,14 +16,15 @@ from .tables import covering, each_tooth
 from .tip_edge import TipEdge
 
 LARGEST = 0.1  # most that may be removed [m_n]: the flexibility is that of the unmodified tooth and a beam's difference
+BENT = 0.1  # least jump of the curvature, as a part of that of the flank, that makes the start of a parabolic relief a kink
 STEP = 1e-6  # roll length over which a slope is taken [m_n]
 
 
 class FlankForm:
-    """A `Flank` on its gear: material removed by roll length; by height, too, in the form that `at` gives.
+    """Flank on its gear: removed material by roll length, and by height in the form of `at`.
 
     `kinks` are the roll lengths [mm] at which the flank bends suddenly, and by how much the material removed then rises by mm of
-    roll length: there, contact has no radius of curvature.
+    roll length: there, contact has no radius of curvature. A parabolic relief bends the flank at its start: its curvature jumps.
     """
 
     def __init__(self, flank: Any, gear: Gear) -> None:
@@ -37,7 +38,7 @@ class FlankForm:
         self.kinks = tuple(
             (start, amount / abs(end - start) if exponent == 1 else 0.0)
             for start, end, amount, exponent in self.reliefs
-            if exponent < 2
+            if exponent < 2 or (exponent == 2 and _bends(gear, start, 2 * amount / (end - start) ** 2))
         )
         self.edge = TipEdge(gear, flank.tip_rounding, flank.tip_chamfer) if flank.tip_rounding or flank.tip_chamfer else None
         if self.edge is not None:
@@ -56,7 +57,7 @@ class FlankForm:
 
     @property
     def wide(self) -> bool:
-        """Whether the flank changes along the width, or lies askew: `tilt`, how much further back it lies by height [mm/mm]."""
+        """True if the flank changes along the width or is inclined: `tilt` is its inclination [mm/mm]."""
         return self._lead is not None or bool(self.tilt)
 
     @property
@@ -65,7 +66,7 @@ class FlankForm:
         return bool(self.flank.eccentricity) or any(values.size and np.ptp(values) for values in (self._shifts, self._scales))
 
     def of(self, tooth: ArrayLike) -> "FlankForm":
-        """The same flank of teeth ``(...)``, which go with the leading axes of roll lengths."""
+        """Return the same flank for teeth ``(...)``, which go with the leading axes of roll lengths."""
         if not (self._scales.size or self.flank.eccentricity):
             return self
         out = copy(self)
@@ -73,19 +74,19 @@ class FlankForm:
         return out
 
     def turned(self, sense: int) -> "FlankForm":
-        """The same flank of a gear whose tooth k stands k pitches clockwise (1) or counter-clockwise (-1) of tooth 0."""
+        """Return the flank of a gear whose tooth k is k pitches clockwise (1) or counter-clockwise (-1) of tooth 0."""
         out = copy(self)
         out.sense = sense
         return out
 
     def at(self, z: ArrayLike | None) -> "FlankForm":
-        """The same flank at heights `z` [mm], which go with the leading axes of roll lengths; None: what changes is left out."""
+        """Return the flank at heights `z` [mm], for the leading axes of roll lengths; None: without changes along the width."""
         out = copy(self)
         out._z = None if z is None or not self.wide else np.asarray(z, dtype=float)
         return out
 
     def tilted(self, tilt: float) -> "FlankForm":
-        """The same flank, so much further back by height [mm/mm], none in the middle of the width."""
+        """Return the same flank with an inclination [mm/mm] about the middle of the width."""
         out = copy(self)
         out.tilt = tilt
         return out
@@ -110,7 +111,7 @@ class FlankForm:
                 )
 
     def removed(self, roll: ArrayLike, derivative: int = 0) -> Floats:
-        """Material removed at roll lengths [mm], or its derivative by the roll length; pitch deviations left out.
+        """Return the material removed at roll lengths [mm], or its derivative by the roll length, without pitch deviations.
 
         Derivatives are those of the flank without the edge of its tip (for that see `bend`).
         The fillet goes on with what is removed at the form point.
@@ -127,7 +128,7 @@ class FlankForm:
         return np.maximum(rolls, self.low) if self.high > self.low else np.minimum(rolls, self.low)
 
     def _formed(self, at: NDArray, n: int) -> Floats:
-        """What is removed by form, wear and the edge of the tip: all but what the whole gear is off its axis."""
+        """Return the material removed by form, wear and the edge of the tip, without eccentricity."""
         out = self._shaped(at, n)
         if self._scales.size:
             factor = self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], at)
@@ -139,12 +140,12 @@ class FlankForm:
         return out
 
     def thinned(self, roll: ArrayLike, tooth: int) -> Floats:
-        """Material removed from a tooth at roll lengths [mm], which leaves it thinner; its edge, place and pitch left out."""
+        """Return the removed material that makes a tooth thinner, at roll lengths [mm]; without its edge, position and pitch."""
         at = self.before_edge(self._on_flank(roll))
         return self.of(np.array([tooth]))._formed(at[None, :], 0)[0]
 
     def slope(self, roll: ArrayLike) -> Floats:
-        """How far the flank leans towards its gear's tip, the tip's edge included: what is removed by arc length [mm/mm].
+        """Return the slope of the flank towards the tip, its edge included: removed material by arc length [mm/mm].
 
         At a kink it is the mean of both sides.
         """
@@ -156,7 +157,7 @@ class FlankForm:
         return np.nan_to_num(self._worn(roll, derivative, extrapolate=False))  # type: ignore[misc]  # asked for only if there is any
 
     def _off_centre(self, roll: NDArray, derivative: int) -> Floats:
-        """What an eccentric gear lacks along the flank's normal, which turns with the roll length."""
+        """Return the distance of an eccentric gear's flank along the normal, which rotates with the roll length."""
         gear, flank = self.gear, self.flank
         teeth = self.sense * (_along(self._tooth, roll) - flank.eccentric_tooth)  # type: ignore[arg-type]  # there are some here
         turn = gear.base_half_angle - gear.outward * roll / gear.r_b + 2 * math.pi * teeth / gear.z
@@ -164,7 +165,7 @@ class FlankForm:
         return flank.eccentricity * (np.sin(turn), rate * np.cos(turn), -(rate**2) * np.sin(turn))[derivative]
 
     def _shaped(self, roll: NDArray, derivative: int) -> Floats:
-        """What is removed by design, alike on all teeth but for their scales."""
+        """Return the material removed by design, equal on all teeth but for their scales."""
         span, n = self.high - self.low, derivative
         out = np.zeros(roll.shape)
         for start, end, amount, exponent in self.reliefs:
@@ -205,7 +206,7 @@ class FlankForm:
         return float(low.min() + shifts.min()) - off, float(high.max() + shifts.max()) + off + edge
 
     def shift(self, tooth: ArrayLike) -> Floats:
-        """How far the flanks of teeth lie behind their places, along the line of action [mm]."""
+        """Return the position error of the flanks of teeth, behind their nominal position along the line of action [mm]."""
         tooth = np.asarray(tooth, dtype=int)
         behind = self._shifts[tooth % self.gear.z] if self._shifts.size else np.zeros(tooth.shape)
         if self.tilt and self._z is not None:
@@ -221,6 +222,11 @@ class FlankForm:
         on = self._on_flank(at)
         out = (self.gear.r_b / at) ** 2 * (self._formed(on, 2) - self._formed(on, 1) / at)
         return out if self.edge is None else np.where(self.edge.on(at), self.edge.bend(at), out)
+
+
+def _bends(gear: Gear, roll: float, jump: float) -> bool:
+    """Whether a `jump` of the second derivative of the material removed by roll length [1/mm] counts, see `BENT`."""
+    return jump * gear.r_b**2 / max(roll, 1e-3 * gear.r_b) > BENT
 
 
 def _along(z: NDArray, places: NDArray) -> NDArray:

@@ -1,4 +1,4 @@
-"""`Gear`: the numbers that define one gear, and the radii and angles that follow from them."""
+"""`Gear`: the basic data of one gear, and the derived radii and angles."""
 
 import math
 import warnings
@@ -9,19 +9,19 @@ from ..checks import is_number
 from ..renamed import renamed
 from .involute import inv
 
-LARGEST = 1e9  # of any number of a gear: a kilometre has 1e6 mm
+LARGEST = 1e9  # limit of all numbers of a gear: a kilometre has 1e6 mm
 
 
 @lru_cache(maxsize=256)
 def _base_radius(z: int, m_n: float, alpha_n: float, beta: float) -> float:
-    """``r cos(alpha_t)``, kept: everything on an involute asks for it."""
+    """Return ``r cos(alpha_t)``, cached, since all functions of an involute use it."""
     return z * (m_n / math.cos(beta)) / 2 * math.cos(math.atan(math.tan(alpha_n) / math.cos(beta)))
 
 
 @renamed(tip_radius="rack_tip_radius")
 @dataclass(frozen=True, slots=True)
 class Gear:
-    """An involute gear (symbols of ISO 21771; rack of ISO 53): external with `r_bore`, internal (a ring) with `r_rim`.
+    """Involute gear (symbols of ISO 21771; rack of ISO 53): external with `r_bore`, internal (a ring) with `r_rim`.
 
     Helical gears are described in the normal section and used in the transverse one.
 
@@ -34,7 +34,7 @@ class Gear:
     alpha_n : float
         Normal pressure angle [rad].
     beta : float
-        Helix angle at the reference circle [rad]; only its size matters in a transverse section.
+        Helix angle at the reference circle [rad]; only its magnitude matters in a transverse section.
     x : float
         Profile shift coefficient [m_n].
     b : float
@@ -50,16 +50,16 @@ class Gear:
         Normal tooth thickness allowance at the reference circle [mm] (DIN 3967); negative: a thinner tooth, cut with the profile
         shift `x_E`. Tip circle and centre distance without backlash stay those of `x`.
     z_cutter : int
-        Of a ring: number of teeth of the pinion-type cutter that generates its fillet. The cutter has no profile shift and the
+        For a ring: number of teeth of the pinion-type cutter that generates its fillet. The cutter has no profile shift and the
         same tip radius.
 
-    A ring's tooth space is the tooth of an external gear with the same z and x: x > 0 moves the ring's profile outwards, as
-    it does a gear's.
+    A ring's tooth space is the tooth of an external gear with the same z and x: x > 0 moves the ring's profile outwards, like
+    that of a gear.
 
     Raises
     ------
     ValueError
-        If no such gear exists; the message says which number to change.
+        If no such gear exists; the message states which number to change.
 
     Examples
     --------
@@ -108,9 +108,8 @@ class Gear:
 
     def _check_numbers(self):
         if (self.r_bore is None) == (self.r_rim is None):
-            raise ValueError(
-                f"r_bore = {self.r_bore}, r_rim = {self.r_rim}: give r_bore for an external gear or r_rim for a ring, not both"
-            )
+            found = "are both missing" if self.r_bore is None else f"= {self.r_bore} and {self.r_rim} are both given"
+            raise ValueError(f"r_bore and r_rim {found}: give r_bore for an external gear or r_rim for a ring, in mm")
         for field in fields(self):
             value = getattr(self, field.name)
             if value is None and field.name in ("r_bore", "r_rim"):
@@ -136,7 +135,7 @@ class Gear:
                 f"beta = {self.beta} rad, but helix angles of 60 degrees and more are not supported; angles are radians in Python"
             )
         if self.rack_tip_radius < 0:
-            raise ValueError(f"rack_tip_radius = {self.rack_tip_radius}, but it cannot be negative")
+            raise ValueError(f"rack_tip_radius = {self.rack_tip_radius}, but it must be at least 0")
 
     def _cap_tip_radius(self):
         from .profile import cutter_tip_radius
@@ -205,7 +204,7 @@ class Gear:
 
     @property
     def x_E(self) -> float:  # noqa: N802  # the symbol of ISO 21771
-        """Generating profile shift coefficient [m_n]: `x` plus what the tooth thickness allowance `E_sn` requires of the tool."""
+        """Generating profile shift coefficient [m_n]: `x` plus the shift of the tool for the tooth thickness allowance `E_sn`."""
         return self.x + self.outward * self.E_sn / (2 * self.m_n * math.tan(self.alpha_n))
 
     @property
@@ -268,7 +267,7 @@ class Gear:
 
 
 def shortened(gear: Gear, roll: float) -> Gear:
-    """The gear with tips at a roll length [mm]: its flanks end there."""
+    """Return the gear with tips at a roll length [mm], where its flanks end."""
     if roll == gear.roll_a:
         return gear
     lost = gear.outward * (gear.r_a - math.hypot(roll, gear.r_b))

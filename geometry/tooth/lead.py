@@ -1,4 +1,4 @@
-"""Modifications of flanks along the width: crowning, slope, end relief, twist, a measured grid."""
+"""Modifications of flanks along the width: helix crowning, helix slope, end relief, twist, a measured grid."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ from .gear import Gear
 
 
 class LeadForm:
-    """What a `Flank` of a gear changes along its width: material removed by roll length and height."""
+    """Modifications of a `Flank` along the width: material removed by roll length and height."""
 
     def __init__(self, flank: Any, gear: Gear, low: float, high: float) -> None:
         self.flank, self.b, self.low, self.high = flank, gear.b, low, high
@@ -33,7 +33,7 @@ class LeadForm:
             self._grid = RectBivariateSpline(rolls, heights, amounts, **degree)
 
     def removed(self, roll: NDArray, z: NDArray, derivative: int) -> Floats:
-        """Removed at roll lengths and heights [mm], or its derivative by the roll length."""
+        """Return the material removed at roll lengths and heights [mm], or its derivative by the roll length."""
         flank, n = self.flank, derivative
         span = self.high - self.low
         across, along = (2 * roll - self.low - self.high) / span, 2 * z / self.b - 1
@@ -67,7 +67,7 @@ def two_ends(flank: Any) -> list[tuple[float, float]]:
         out.append((float(values[0]), float(values[1])))
     for amount, length, exponent in zip(*out, strict=True):
         if amount and not length > 0:
-            raise ValueError(f"end_relief = {amount:g} mm with end_length = {length:g} mm: say over what length, > 0 [mm]")
+            raise ValueError(f"end_relief = {amount:g} mm with end_length = {length:g} mm: give a length > 0 [mm]")
         if exponent < 1:
             raise ValueError(f"end_exponent = {exponent:g}, but a relief needs an exponent >= 1")
     return out

@@ -1,4 +1,4 @@
-"""`Flank`: how the loaded flanks of a gear differ from involutes, and how far each tooth is from its place."""
+"""`Flank`: modifications and deviations of the loaded flanks of a gear, and position errors of its teeth."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -19,78 +19,79 @@ LISTS = ("table", "topography", "pitch", "wear", "tooth_scale")
 class Flank:
     """Modifications and deviations of a gear's loaded flanks, from tip to root and from tooth to tooth.
 
-    The unloaded flanks stay involutes unless `both_sides` is true, as of a tool that relieves both.
+    The unloaded flanks stay involutes unless `both_sides` is true, for a tool that relieves both.
 
     Amounts are in mm, normal to the involute in the transverse section (along the line of action), as ISO 1328-1 and ISO 21771
-    measure them; **positive: material is removed**. With L the roll length, `roll_f` at the form point and `roll_a` at the tip,
-    and t the part of the way from the start of a relief to the end of the flank, a place of the flank has less by::
+    measure them; **positive: material is removed**. L is the roll length, `roll_f` at the form point and `roll_a` at the tip. t
+    is the relative distance from the start of a relief to the end of the flank. The removed material is::
 
         tip_relief t**tip_exponent  (t > 0)  +  root_relief t**root_exponent  (t > 0)
         + profile_crowning p**2  +  profile_slope (1 + p) / 2  +  table(L)            p = 2 (L - middle) / (roll_a - roll_f)
         + helix_crowning q**2  +  helix_slope (1 + q) / 2  +  twist p q   q = 2 z / b - 1, at height z of the width b
         + end_relief (part of the way to its end face)**end_exponent  +  topography(L, z)
 
-    all of it times `tooth_scale` of the tooth, and besides
+    multiplied by `tooth_scale` of the tooth, plus
 
-        + wear(L)  +  the edge of the tip  +  what an eccentric gear lacks at this place of this tooth
+        + wear(L)  +  the edge of the tip  +  the eccentricity of the gear at this tooth
 
     Parameters
     ----------
     tip_relief, root_relief : float
         Amount at the tip (C_alpha a of ISO 21771) and at the form point (C_alpha f) [mm].
     tip_start_diameter, tip_start_roll, tip_start_angle : float, optional
-        One of them: where the tip relief starts, as a diameter [mm], a roll length [mm] or a roll angle [rad].
+        One of them: start of the tip relief, as a diameter [mm], a roll length [mm] or a roll angle [rad].
     tip_exponent : float
         1: linear, with a kink at its start; 2: parabolic; any number from 1 on.
     root_start_diameter, root_start_roll, root_start_angle, root_exponent
         The same for the root relief, which grows from its start down to the form point.
     profile_crowning : float
-        Profile crowning C_alpha: a parabola, zero in the middle of the flank's roll lengths, so much at tip and form point [mm].
+        Profile crowning C_alpha: a parabola, zero in the middle of the flank's roll lengths, with this amount at tip and form
+        point [mm].
     profile_slope : float
-        Removed at the tip if the rest is removed in proportion up from the form point [mm]: a profile slope deviation f_Halpha of
-        ISO 1328-1 with the opposite sign (there, material at the tip counts positive).
+        Amount at the tip of material removed in proportion up from the form point [mm]: a profile slope deviation f_Halpha of ISO
+        1328-1 with the opposite sign (there, material at the tip counts positive).
     table : (sequence, sequence), optional
         Measured deviation: rising roll lengths [mm] that cover the flank, and the material removed there [mm]; cubic between them
         without overshoot. Noise bends the flank: smooth it over less than a contact's width.
     helix_crowning : float
-        Flank line (helix) crowning C_beta: a parabola along the width, zero in the middle, so much at both end faces [mm].
+        Helix crowning C_beta: a parabola along the width, zero in the middle, with this amount at both end faces [mm].
     helix_slope : float
-        Removed at z = b if the rest is removed in proportion up from z = 0 [mm]: a helix slope deviation f_Hbeta. Heights z
-        are counted as those of a `Pit`.
+        Amount at z = b of material removed in proportion up from z = 0 [mm]: a helix slope deviation f_Hbeta. Heights z are
+        counted like those of a `Pit`.
     twist : float
-        Removed at (tip, z = b) and (form point, z = 0), added at the other two corners of the flank, bilinear between them [mm].
+        Amount removed at (tip, z = b) and (form point, z = 0), added at the other two corners of the flank, bilinear [mm].
     end_relief, end_length, end_exponent : float or (float, float)
-        Amount at the end faces [mm], over what length of the width [mm], and with what exponent; two numbers: at z = 0, at z = b.
+        Amount at the end faces [mm], its length along the width [mm], and its exponent; two numbers: at z = 0, at z = b.
     topography : (sequence, sequence, sequence of sequences), optional
         Measured flank: rising roll lengths [mm] and heights z [mm] that cover it, and the material removed, a row for each roll
         length [mm]; bicubic between them. `gearfe.read_topography` reads one from a file.
     wear : (sequence, sequence), optional
-        Rising roll lengths [mm] and the depths worn off there [mm], 0 outside of them; as `table` in between.
+        Rising roll lengths [mm] and the worn depths there [mm], 0 outside of them; interpolated like `table`.
     tip_rounding : float
         Radius of the arc, tangent to flank and tip circle, that replaces the tip's sharp corner in the transverse section [mm].
-        Contact on it is that of its own curvature.
+        Contact on it has the curvature of the arc.
     tip_chamfer : float
-        Instead: how far below the tip circle a straight cut begins, 45 degrees to the flank [mm].
+        Alternative: distance below the tip circle at which a straight cut begins, 45 degrees to the flank [mm].
     tooth_scale : sequence of float
-        For each of the z teeth the factor of its modification, profile and lead: teeth whose forms differ. Not of pitch, wear,
-        edge and eccentricity. Default 1. Teeth are counted as for `pitch`.
+        Factor of the modification (profile and helix) of each of the z teeth, for teeth with different forms. It does not apply
+        to pitch, wear, edge and eccentricity. Default 1. Teeth are counted as for `pitch`.
     eccentricity : float
-        Distance of the teeth's own centre from the axis it turns about [mm]: a radial runout of about twice as much, a
-        cumulative pitch deviation that goes round once, and no step from tooth to tooth.
+        Distance of the teeth's centre from the axis of rotation [mm]. It causes a radial runout of about twice as much, a
+        sinusoidal cumulative pitch deviation, and no step from tooth to tooth.
     eccentric_tooth : float
         Number of the tooth towards which the centre lies; numbers between teeth are allowed.
     pitch : sequence of float
-        For each of the z teeth, how far its loaded flank lies behind its place (as if material were removed), along the reference
-        circle [mm]: cumulative pitch deviations. Teeth are counted as those of a `Crack`: tooth k is in pair k.
+        Cumulative pitch deviation of each of the z teeth: distance of its loaded flank behind its nominal position (as if
+        material were removed), along the reference circle [mm]. Teeth are counted like those of a `Crack`: tooth k is in pair k.
 
     both_sides : bool
-        Whether the same profile is removed from the unloaded flanks. Teeth are then thinner and bend more; gaps do not change.
+        If True, the same profile is removed from the unloaded flanks. Teeth are then thinner and bend more; gaps do not change.
 
     Raises
     ------
     ValueError
-        If the description is contradictory, or, when it meets its gear, if a relief starts outside the flank or more is removed
-        than a tenth of the module.
+        If the description is contradictory. Also, with its gear, if a relief starts outside the flank or more than a tenth of the
+        module is removed.
 
     Examples
     --------
@@ -168,13 +169,13 @@ class Flank:
 
     @property
     def wide(self) -> bool:
-        """Whether anything changes along the width, so that no transverse section is the whole truth."""
+        """True if anything changes along the width, so that a transverse section is not sufficient."""
         return bool(self.helix_crowning or self.helix_slope or self.twist or any(self.end_relief) or self.topography is not None)
 
     def start_of(self, end: str) -> tuple[str, float]:
-        """How the start of a relief is given, one of `STARTS`, and its value."""
+        """Return the type of the start of a relief, one of `STARTS`, and its value."""
         return next((how, value) for how in STARTS if (value := getattr(self, f"{end}_start_{how}")) is not None)
 
     def on(self, gear: Gear) -> FlankForm:
-        """The modification of the flanks of `gear`."""
+        """Apply these modifications to `gear` and return the `FlankForm`."""
         return FlankForm(self, gear)

@@ -51,7 +51,7 @@ def roll_at_arc(gear, arc):
 
 
 def flank_normal(gear, roll):
-    """Unit vector ``(2, n)`` pointing out of the loaded flank, tangent to the base circle."""
+    """Return the unit vector ``(2, n)`` pointing out of the loaded flank, tangent to the base circle."""
     turn = gear.base_half_angle - gear.outward * np.asarray(roll) / gear.r_b
     return np.array([np.cos(turn), -np.sin(turn)])
 
@@ -130,7 +130,7 @@ def _shaped_fillet(gear, phi):
 
 @lru_cache(maxsize=256)
 def form_point(gear):
-    """Where fillet and involute meet: rack tip angle [rad] and roll length [mm].
+    """Return the point where fillet and involute meet: rack tip angle [rad] and roll length [mm].
 
     Without undercut they are tangent at ``phi = alpha_n``. When the straight rack flank reaches below the
     interference point, the trochoid cuts the involute and the crossing is found by bisection; at the limit itself

@@ -1,4 +1,4 @@
-"""Where the relief of a flank's tip or root starts."""
+"""Start of the relief of a flank's tip or root."""
 
 import math
 

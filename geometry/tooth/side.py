@@ -1,4 +1,4 @@
-"""One side of a tooth as one curve from the root circle to the tip circle, fillet and flank: by place, and by radius.
+"""One side of a tooth as one curve from the root circle to the tip circle, fillet and flank.
 
 A place of the flank is named by its roll length. In the fillet the name goes on so that `geometry.tooth.profile.arc_at` stays an
 arc length: a place so far down the fillet has the form point's arc less that far. Such a roll length is only a name; it may be
@@ -16,7 +16,7 @@ from ..aliases import Floats
 from .gear import Gear
 from .profile import arc_at, cartesian, fillet, fillet_length, flank, form_point, lengths, roll_at_arc, root_curve
 
-POINTS = 200  # of the fillet between root circle and form point
+POINTS = 200  # points of the fillet between root circle and form point
 SHARPEST = 1e-3  # a form point where the outline turns by less [rad] is no corner: the limit of undercut
 
 

@@ -8,7 +8,7 @@ from .gear import Gear
 
 
 def numbers(name: str, values: Any) -> list[float]:
-    """A row of finite numbers as a list; ValueError if something else is given."""
+    """Return a row of finite numbers as a list; ValueError if something else is given."""
     try:
         out = np.asarray(values, dtype=float)
     except (TypeError, ValueError) as error:
@@ -36,7 +36,7 @@ def worn(given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Wear over roll lengths: a `table` of depths; ValueError if material has grown."""
     rolls, depths = table("wear", given)
     if min(depths) < 0:
-        raise ValueError(f"wear: depth {min(depths):g} mm, but wear takes material away: give depths from 0 on")
+        raise ValueError(f"wear: depth {min(depths):g} mm, but wear removes material: give depths from 0")
     return rolls, depths
 
 
@@ -48,7 +48,7 @@ def each_tooth(name: str, values: tuple[float, ...], gear: Gear) -> np.ndarray:
 
 
 def covering(values: tuple, gear: Gear) -> np.ndarray:
-    """A table ``(2, n)`` of roll lengths and amounts [mm]; ValueError unless it covers the flank."""
+    """Return a table ``(2, n)`` of roll lengths and amounts [mm]; ValueError unless it covers the flank."""
     rows = np.array(values)
     rolls = rows[0]
     least, most = sorted((gear.roll_f, gear.roll_a))

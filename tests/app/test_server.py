@@ -267,7 +267,7 @@ def test_limits_of_a_course():
     limits = Limits(users=2, tasks=3)
     assert [bool(limits.refused("a", t)) for t in (0.0, 1.0, 2.0, 3.0, 61.0)] == [False, False, False, True, False]
     assert limits.refused("b", 62.0) == ""
-    assert "2 users are here" in limits.refused("c", 63.0)
+    assert "2 users are connected" in limits.refused("c", 63.0)
     assert limits.refused("c", 62.0 + AWAY + 1.0) == ""
     assert len(limits.seen) == 1
 

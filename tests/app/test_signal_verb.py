@@ -49,7 +49,7 @@ def test_the_speed_of_a_shaft_is_told_and_drawn_by_turns(runs, capsys):
     def told(*line):
         assert main(["signal", *line]) == 0
         out, err = capsys.readouterr()
-        shown = re.search(r"shaft ([\d.]+) to ([\d.]+) turns per second, ([\d.]+) turns; lines are smeared", out)
+        shown = re.search(r"shaft: ([\d.]+) to ([\d.]+) Hz, ([\d.]+) revolutions; lines are smeared", out)
         return [float(one) for one in shown.groups()], err
 
     record = [str(runs / "worn.mat"), "--unit", "m/s^2", "--column", "acc", "--tacho", "tacho"]
@@ -67,7 +67,7 @@ def test_the_speed_of_a_shaft_is_told_and_drawn_by_turns(runs, capsys):
     ("options", "message"),
     [
         (["--unit", "g"], "2 channels, 'run.acc', 'run.tacho': choose one by --column"),
-        (["--unit", "g", "--column", "acc", "--teeth", "20"], "--teeth needs the turns of that gear's shaft"),
+        (["--unit", "g", "--column", "acc", "--teeth", "20"], "--teeth needs the shaft frequency of that gear"),
         (["--unit", "g", "--column", "acc", "--tacho", "speed"], "no column 'speed'; it has 'run.acc', 'run.tacho'"),
         (["--unit", "g", "--column", "acc", "--header", "a"], "only text tables can lack names"),
         (["--unit", "g", "--column", "acc", "--mesh", "200", "--fault", "1"], "--fault 1 Hz, but new run.acc has bins of 0.33"),

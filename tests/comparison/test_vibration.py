@@ -122,7 +122,7 @@ def test_command_line(tmp_path, capsys):
     text = capsys.readouterr().out
     assert "mesh frequencies [Hz]: 168, 182" in text
     assert "| mean amplitude of the first sidebands " in text
-    assert "0.3 s are too short to part the lines of the fault from those beside them: record 2.86 s or longer" in text
+    assert "0.3 s cannot resolve the fault sidebands: record at least 2.86 s" in text
     assert "\nlonger: --duration 2.86\n" in text
     assert out.stat().st_size > 1000
     assert plot.stat().st_size > 10000
@@ -144,7 +144,7 @@ def test_a_short_record_says_how_long_it_should_be():
 
     short = found(0.2)
     assert short.standing() == ["f_m", "2 f_m"]
-    needed = float(re.search(r"0.2 s are too short .* record ([\d.]+) s or longer", short.hidden_lines())[1])
+    needed = float(re.search(r"0.2 s cannot resolve .* record at least ([\d.]+) s", short.hidden_lines())[1])
     enough = found(needed)
     assert {"f_fault", "f_m - f_fault", "f_m + f_fault"} <= set(enough.standing())
     assert enough.too_short == ""

@@ -37,7 +37,7 @@ def test_moving_pits_by_parts_of_a_cell():
 def test_pits_over_a_whole_line_are_refused():
     pit = gf.Pit(radius=18.7, z=6.0, axes=(8.0, 20.0), depth=0.1)
     pits = [replace(pit, tooth=k) for k in range(3)]
-    with pytest.warns(UserWarning, match="takes the whole flank"), pytest.raises(RuntimeError, match="no contact"):
+    with pytest.warns(UserWarning, match="removes the whole flank"), pytest.raises(RuntimeError, match="no contact"):
         solid_contact(pair_of(), 1500.0, STEEL, 4, pits=(pits, ()), order=2, axial=6)
 
 

@@ -72,7 +72,7 @@ def test_floors_of_both_gears_add_and_of_one_the_deepest_counts():
 def test_a_shallow_pit_over_a_whole_line_is_touched_at_its_floor(healthy):
     """All of the flank 4 um lower: the gears approach by just so much more."""
     lower = [pit(4e-3, axes=(8.0, 40.0), tooth=k) for k in range(-2, 3)]
-    with pytest.warns(UserWarning, match="takes the whole flank"):
+    with pytest.warns(UserWarning, match="removes the whole flank"):
         found = gf.mesh_stiffness(**RUN, damage={"pinion": lower}).deflection
     assert_allclose(found - 4e-6, RUN["force"] / healthy, rtol=2e-3)
     assert_array_equal(k_of(pit(4e-3, side="unloaded")), healthy)

@@ -159,7 +159,7 @@ def test_errors_name_the_kind(options, message):
 
 def test_a_spall_that_takes_the_whole_flank_is_warned_of():
     with (
-        pytest.warns(UserWarning, match="spall with sides of 30 x 90 mm takes the whole flank of z = 21"),
+        pytest.warns(UserWarning, match="spall with sides of 30 x 90 mm removes the whole flank of z = 21"),
         pytest.raises((ValueError, RuntimeError)),
     ):
         solved(replace(SPALL, sides=(30.0, 90.0), depth=1.0), phases=[0.8])
@@ -170,7 +170,7 @@ def test_two_spalls_that_together_take_the_whole_flank_are_warned_of():
         pair(),
         [replace(SPALL, sides=(30.0, 0.6 * pair().gear_1.b), z=part * pair().gear_1.b) for part in (0.25, 0.75)],
     )
-    with pytest.warns(UserWarning, match="2 hollows together take the whole flank of tooth 0 of z = 21"):
+    with pytest.warns(UserWarning, match="2 hollows together remove the whole flank of tooth 0 of z = 21"):
         gf.Case(chosen, 1200.0, STEEL, damage={"pinion": halves})
 
 

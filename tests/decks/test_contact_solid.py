@@ -147,7 +147,7 @@ def test_nodes_of_tets_lie_on_the_involute(damaged):
         ({"pose": "left"}, "must be one of"),
         ({"damage": {"ring": []}}, "'pinion' and 'wheel'"),
         ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "which has none"),
-        ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta_x=0.01)}, "knows no width"),
+        ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta_x=0.01)}, "is two-dimensional"),
         ({"damage": {"pinion": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}}, "through the whole width"),
         ({"pits": "filled", "damage": {"pinion": [gf.Crack(level=0.3)]}}, "no pit in damage"),
         ({"pits": "holes", "damage": {"pinion": [PIT]}}, "must be one of"),

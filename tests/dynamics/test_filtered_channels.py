@@ -36,7 +36,7 @@ MADE = {
     "load that jumps": lambda: two_masses(load=HISTORY),
     "load as a function": lambda: two_masses(load=lambda t: 1000 + 300 * np.sin(3000 * t)),
     "impacts": lambda: two_masses(backlash=1e-4, error=ERROR, **IMPACT),
-    "law of force": lambda: under_a_law(backlash=math.inf, error=ERROR),
+    "force law": lambda: under_a_law(backlash=math.inf, error=ERROR),
     "friction": lambda: two_masses(friction=(RUB,)),
     "changing speed": lambda: gf.with_speed(two_masses(error=ERROR), [0.0, 0.004], [1.0, 1.6]),
 }

@@ -1,4 +1,4 @@
-"""The law of force of a mesh: closed forms, contact solved anew at other loads and phases, and what is no law."""
+"""The force law of a mesh: closed forms, contact solved anew at other loads and phases, and what is no law."""
 
 import math
 
@@ -115,7 +115,7 @@ def test_what_is_no_law_is_refused():
     one, two = curve(100.0, 1e-6, 1e8), curve(200.0, 2e-6, 1e8)
     with pytest.raises(ValueError, match="two or more"):
         gf.ForceLaw.of([one])
-    with pytest.raises(ValueError, match="two or more, each once"):
+    with pytest.raises(ValueError, match="two or more, all different"):
         gf.ForceLaw.of([one, one])
     with pytest.raises(ValueError, match="does not press the mesh deeper"):
         gf.ForceLaw.of([curve(200.0, 1e-6, 1e8), curve(100.0, 2e-6, 1e8)])
@@ -128,7 +128,7 @@ def test_what_is_no_law_is_refused():
     law = gf.ForceLaw.of([one, two])
     with pytest.raises(ValueError, match="for the healthy mesh and for all its damage"):
         gf.single_mesh(1.0, law, 100.0, teeth=(21, 31), damage=(gf.ToothDamage(0, 0, one),))
-    with pytest.raises(ValueError, match="besides a law of force"):
+    with pytest.raises(ValueError, match="besides a force law"):
         gf.single_mesh(1.0, law, 100.0, power=1.5, backlash=math.inf)
     with pytest.raises(ValueError, match="not of one mesh cycle"):
         gf.single_mesh(1.0, gf.force_law(PAIR, LOADS[-2:], STEEL, phases=16, span="tooth"), 100.0)

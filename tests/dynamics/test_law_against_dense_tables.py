@@ -1,4 +1,4 @@
-"""A law of force against contact solved under 65 loads at 1024 phases, straight between, by an integrator of its own.
+"""A force law against contact solved under 65 loads at 1024 phases, straight between, by an integrator of its own.
 
 Both share the contact solver; what it is worth stands elsewhere. Twelve cases: three mesh frequencies by four loads.
 """

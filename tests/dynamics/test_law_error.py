@@ -1,4 +1,4 @@
-"""What a law of force says of its own error, against contacts solved between its loads and phases."""
+"""What a force law says of its own error, against contacts solved between its loads and phases."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Motion under a law of force: statics, contact solved at every step, energy, the reference, and loads outside the law.
+"""Motion under a force law: statics, contact solved at every step, energy, the reference, and loads outside the law.
 
 The law and what it is held against share the contact solver; a brute-force integration shares neither its table nor its
 integrator.
@@ -203,7 +203,7 @@ def test_steady_state_is_where_long_runs_end():
 
 def test_forces_above_the_loads_of_a_law_are_told():
     small = gf.force_law(PAIR, [100.0, 200.0, 400.0], STEEL, phases=16)
-    with pytest.warns(UserWarning, match=r"mesh .* N, its law of force up to 400 N"):
+    with pytest.warns(UserWarning, match=r"mesh .* N, its force law up to 400 N"):
         response = gf.simulate(mass(small, 100.0, 900.0), 0.002)
     assert "up to 400 N" in response.stats["loads"][0]
     assert "loads" not in gf.simulate(mass(small, 100.0, 300.0), 0.002).stats

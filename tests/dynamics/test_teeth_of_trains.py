@@ -83,7 +83,7 @@ def test_broken_teeth_are_in_the_meshes_of_their_body(kind, name):
     assert [(fault.gear, fault.tooth) for fault in machine.faults] == [(row.get("body", row["gear"]), row["tooth"])]
 
 
-@pytest.mark.parametrize(("contact", "message"), [("linear", "backlash_um"), ("impact", "has whole teeth only")])
+@pytest.mark.parametrize(("contact", "message"), [("linear", "backlash_um"), ("impact", "limited to unbroken teeth")])
 def test_a_contact_that_cannot_open_or_break_refuses_a_missing_tooth(contact, message):
     """Before anything is solved: `flat_machine` is what checks a scene."""
     given = read_tables("planetary_pitting")[1]["machine"] | {"contact": contact}

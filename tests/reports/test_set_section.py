@@ -45,8 +45,8 @@ def test_health_and_damage(tmp_path, monkeypatch):
     for part, found in ((first, healthy), (second, cracked)):
         for planet in range(3):
             assert f"<td>{found.k[0, :, planet].mean() / 1e6:.1f}</td>" in part
-    assert "the damage takes up to" not in first
-    assert f"the damage takes up to {100 * (1 - cracked.k / healthy.k).max():.1f} %" in second
+    assert "the damage reduces k by up to" not in first
+    assert f"the damage reduces k by up to {100 * (1 - cracked.k / healthy.k).max():.1f} %" in second
     pictures = re.findall('data:image/png;base64,([^"]*)', text)
     assert [base64.b64decode(one)[:4] for one in pictures] == [PNG] * 3
     assert "No picture of the bent set, cracked: modified flanks and cracks of a set are not meshed" in text

@@ -69,7 +69,7 @@ def test_assumptions_speak_of_a_set(tmp_path):
         ("n_planets = 3 ", "n_planets = 0 #", r"\[set\] n_planets = 0, but it must be at least 1"),
         ("n_planets = 3 ", "n_planets = 4 #", r"\[set\]: 4 planets cannot be spaced equally"),
         ("[set]\n", '[set]\nsun = "moon"\n', r"\[set\] sun = 'moon': no such gear; there is sun, planet, ring"),
-        ("[set]\n", '[set]\nsun = "planet"\n', r"\[set\]: no two pairs make it: give one with the sun as gear_1"),
+        ("[set]\n", '[set]\nsun = "planet"\n', r"\[set\]: two pairs are needed: give one with the sun as gear_1"),
         ("torque_Nm = 120", "torque_Nm = 120\nforce_N = 2000", r"\[set\]: force_N and torque_Nm exclude each other"),
         ("torque_Nm = 120", "torque_Nm = -1", r"\[set\] torque_Nm = -1, but it must be above 0 N m"),
         ("pin_N_per_um = 300", "pin_N_per_um = 0", r"\[set\] pin_N_per_um = 0, but it must be above 0 N/um"),

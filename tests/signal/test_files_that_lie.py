@@ -133,7 +133,7 @@ LIES = {
     "has the shape": array(6, (-1, 1), element(9, bytes(8))),
     "more than 50 deep": NESTED,
     "names of fields": array(2, (1, 1), element(5, struct.pack("<i", 0)), element(1, b"abc")),
-    "where an array should": array(1, (1, 1), element(9, bytes(8))),
+    "in the place of an array": array(1, (1, 1), element(9, bytes(8))),
     "are no numbers": array(6, (1, 1), element(9, bytes(7))),
     "are no text": array(4, (1, 1), element(9, bytes(8))),
     "letters for a text": array(4, (2, 9), element(16, b"abc")),
@@ -171,7 +171,7 @@ def test_an_archive_whose_header_asks_for_64_gb_is_refused(tmp_path, kind):
     path = tmp_path / "x.npz"
     with zipfile.ZipFile(path, "w", kind) as archive:
         archive.writestr("acc.npy", npy((8 * 2**30,)))
-    with pytest.raises(ValueError, match=r"x\.npz is not a numpy archive of plain arrays: acc\.npy says it is float64"):
+    with pytest.raises(ValueError, match=r"x\.npz is not a numpy archive of plain arrays: acc\.npy states float64"):
         channels(path)
     path.write_bytes(npy((8 * 2**30,)))
     with pytest.raises(ValueError, match="not a numpy archive"):
@@ -236,7 +236,7 @@ def test_hdf5_that_announces_64_gb_is_refused_and_packed_values_are_read(tmp_pat
     for chunks in (None, (1000,)):
         with h5py.File(path, "w") as file:
             file.create_dataset("acc", (8 * 2**30,), "f8", chunks=chunks)
-        with pytest.raises(ValueError, match="says it has 68719476736 bytes, but 0 are stored"):
+        with pytest.raises(ValueError, match="states 68719476736 bytes, but only 0 are stored"):
             channels(path)
     with h5py.File(path, "w") as file:
         file.create_dataset("acc", data=np.zeros(10**6), compression="gzip", compression_opts=9)

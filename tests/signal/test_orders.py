@@ -62,8 +62,8 @@ def test_spline_error_is_as_the_docstring_says(part):
     ("options", "message"),
     [
         ({}, "has no shaft"),
-        ({"shaft_frequency": 2.0}, r"covers 0\.\d+ turns"),
-        ({"angle": np.concatenate([np.arange(900.0), 899 + 1e-3 * np.arange(1, 125)])}, "slows down to .* where it stands"),
+        ({"shaft_frequency": 2.0}, r"covers 0\.\d+ revolutions"),
+        ({"angle": np.concatenate([np.arange(900.0), 899 + 1e-3 * np.arange(1, 125)])}, "slows down to .* cut out standstill"),
     ],
 )
 def test_orders_need_a_turning_shaft(options, message):

@@ -184,7 +184,7 @@ def test_matlab_matrices_structs_and_cells(tmp_path):
 def test_where_a_file_gives_two_rates_the_caller_says_which(tmp_path):
     """A public bearing set calls its sampling rate `sr` and the shaft's `rate`."""
     savemat(tmp_path / "b.mat", {"bearing": {"gs": X, "sr": RATE, "rate": 25.0, "load": 270.0}})
-    with pytest.raises(ValueError, match=r"and 25 Hz \(bearing.sr = 5120.0 and bearing.rate = 25.0\); say which holds by rate="):
+    with pytest.raises(ValueError, match=r"and 25 Hz \(bearing.sr = 5120.0 and bearing.rate = 25.0\); choose one by rate="):
         gf.read_signal(tmp_path / "b.mat", unit="g")
     assert gf.read_signal(tmp_path / "b.mat", unit="g", rate=RATE).rate == RATE
 

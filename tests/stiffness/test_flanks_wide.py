@@ -165,7 +165,7 @@ def test_a_herringbone_pair_takes_misalignment():
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"end_relief": 0.01}, "say over what length"),
+        ({"end_relief": 0.01}, "give a length > 0"),
         ({"end_relief": 0.01, "end_length": 20.0}, "is 15 mm wide"),
         ({"end_relief": (0.01, 0.02, 0.03), "end_length": 2.0}, "give one finite number, or two"),
         ({"helix_crowning": 10.0}, "more than a tenth of the module"),
@@ -197,7 +197,7 @@ def test_plain_sums_of_helical_pairs_close_the_gaps_of_their_slices(hand):
 
 def test_a_section_says_that_it_knows_no_width():
     for options in ({"flanks": {"pinion": gf.Flank(twist=0.01)}}, {"misalignment": gf.Misalignment(F_beta_x=0.01)}):
-        with pytest.raises(ValueError, match=r"knows no width: use method = 'ritz3d', 'fe3d' or"):
+        with pytest.raises(ValueError, match=r"is two-dimensional: use method = 'ritz3d', 'fe3d' or"):
             gf.mesh_stiffness(PAIR, 2000.0, STEEL, method="ritz", **options)
     with pytest.raises(ValueError, match=r"um of misalignment per mm"):
         solved(misalignment=gf.Misalignment(F_beta_x=20.0))

@@ -312,7 +312,7 @@ def test_what_is_no_flexibility(given, message):
         (lambda gear, material, radius, tooth: np.diag(radius) + np.triu(np.full((radius.size,) * 2, 0.1), 1), "not symmetric"),
         (lambda gear, material, radius, tooth: "stiff", "but give a matrix of real numbers"),
         (lambda gear, material, radius, tooth: np.diag(radius) * (1 + 1j), "complex128, but give a matrix of real numbers"),
-        (lambda gear, material, radius, tooth: [[1.0], [1.0, 2.0]], "but give a matrix of numbers"),
+        (lambda gear, material, radius, tooth: [[1.0], [1.0, 2.0]], "give a matrix of numbers"),
         (lambda gear, material, radius, tooth: {}["k"], "it failed with KeyError: 'k'"),
         (lambda gear, material, radius, tooth: 1 // 0, "it failed with ZeroDivisionError"),
         (lambda gear, material, radius: radius, "it failed with TypeError: .*positional"),

@@ -78,7 +78,7 @@ def test_what_does_not_model_it_refuses_it():
     for method in ("textbook", "herringbone_article", "coupled"):
         with pytest.raises(ValueError, match=r"missing tooth|damage with"):
             gf.solve(case(), gf.Solve(method, 4))
-    with pytest.raises(ValueError, match="at some phases no teeth"):
+    with pytest.raises(ValueError, match="at some phases only a missing tooth"):
         gf.solve(case(), gf.Solve("ritz", [0.84], extended=False))
     with pytest.raises(ValueError, match="of neighbours only one"):
         gf.Case(PAIR, FORCE, STEEL, damage={"pinion": [gf.MissingTooth(), gf.MissingTooth(tooth=16)]})

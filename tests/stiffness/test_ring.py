@@ -128,8 +128,9 @@ def test_energy_methods_have_no_ring(pair):
 def test_ring_crack(pair, start):
     """The crack makes the mesh softer, by the work up to each load.
 
-    Less stiff bodies store more work ``int(delta, dF)`` under the same load, gaps included. k itself may rise by 0.1 % where the
-    cracked tooth touches off the path: loads on its neighbour then press it less away from its mate, and it carries more.
+    ``int(delta, dF)`` is the complementary energy, the least of ``p' C p / 2 + gap . p`` over all shares p >= 0 of the load. It
+    cannot fall if C rises. The secant k has no such bound: it may rise by 0.1 % where the cracked tooth touches off the path,
+    since loads on its neighbour then press it less away from its mate, and it carries more.
     """
     nodes, weights = np.polynomial.legendre.leggauss(8)
     loads = [2000.0 * (1 + float(x)) / 2 for x in nodes]
@@ -173,7 +174,7 @@ def test_radial_assembly(pair):
     [
         (lambda: ring(72, r_rim=70.0), "r_rim = 70.0 mm"),
         (lambda: gf.Gear(z=72, **RACK), "give r_bore for an external gear or r_rim"),
-        (lambda: gf.Gear(z=72, r_rim=90.0, r_bore=3.0, **RACK), "not both"),
+        (lambda: gf.Gear(z=72, r_rim=90.0, r_bore=3.0, **RACK), "are both given"),
         (lambda: ring(30), "inside the base circle"),
         (lambda: ring(60, z_cutter=60), "z_cutter = 60"),
         (lambda: ring(60, dedendum=2.2, addendum=0.5), "pointed|fillets overlap|cutter"),

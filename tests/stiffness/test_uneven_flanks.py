@@ -216,7 +216,7 @@ def test_a_huge_hunting_period_is_refused_with_its_number():
         ({"tip_rounding": 0.1, "tip_chamfer": 0.1}, "a tip has one edge, give one"),
         ({"tip_rounding": 2.0}, "tip_rounding = 2 mm, but give one between 0 and 0.9 mm"),
         ({"tip_chamfer": -0.1}, "tip_chamfer = -0.1 mm, but give one between"),
-        ({"wear": ([1.0, 2.0], [0.0, -0.01])}, "wear takes material away"),
+        ({"wear": ([1.0, 2.0], [0.0, -0.01])}, "wear removes material"),
         ({"wear": ([2.0, 1.0], [0.0, 0.01])}, "the roll lengths rising"),
         ({"wear": ([2.0, 20.0], [0.0, 1.0])}, "mm of wear of z = 24: more than a tenth of the module"),
         ({"tooth_scale": [1.0, 2.0]}, "tooth_scale has 2 values, but z = 24"),

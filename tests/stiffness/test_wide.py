@@ -191,7 +191,7 @@ def test_steep_helices_are_refused(degrees):
 def test_pits_over_the_whole_contact_line_name_the_phase(steel):
     pits = [replace(PIT, axes=(8.0, 20.0), tooth=k) for k in range(-1, 4)]
     with (
-        pytest.warns(UserWarning, match=r"semi-axes 8 x 20 mm takes the whole flank of z = \d+: nothing of it is left to carry"),
+        pytest.warns(UserWarning, match=r"semi-axes 8 x 20 mm removes the whole flank of z = \d+: no flank is left to"),
         pytest.raises(RuntimeError, match=r"no contact at phase 0\.25: damage covers it all"),
     ):
         curve_of(steel, {"pinion": pits}, phases=np.array([0.25, 0.5]))

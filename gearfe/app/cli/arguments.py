@@ -25,21 +25,22 @@ def main(argv=None):
     """Run the command line; returns the exit code."""
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # before numpy loads: on small matrices more threads wait for each other
     parser = argparse.ArgumentParser(
-        prog="gearfe", description="Gear mesh stiffness with its error: finite elements beside energy methods."
+        prog="gearfe", description="Compute gear mesh stiffness, transmission error and gearbox vibration."
     )
-    parser.add_argument("--version", action=_Version, help="show the version and leave")
+    parser.add_argument("--version", action=_Version, help="print the version and exit")
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     verb = partial(_verb, verbs)
     methods = {"formatter_class": argparse.RawDescriptionHelpFormatter, "epilog": f"methods:\n{described()}"}
-    add = verb("stiffness", run.stiffness, "compute a stiffness curve; print it by zone, save it, draw it", **methods)
+    text = "compute the mesh stiffness over the mesh cycle; print it by zone, save it, plot it"
+    add = verb("stiffness", run.stiffness, text, **methods)
     _scene_arguments(add)
     known = ", ".join(name for name in NAMES if name != "auto")
     add("--method", f"{known} (see below; default: ritz or ritz3d)", default="auto")
-    add("--force N", "force along the line of action [N]; default: the scene's", type=float)
-    add("--no-extended", "no tip-corner contact outside the path of contact")
+    add("--force N", "force along the line of action [N] (default: the force of the scene)", type=float)
+    add("--no-extended", "neglect tip-corner contact outside the path of contact")
     add(
         "--pose",
-        "who turns under load: both gears alike, or one against the held other (default: mean)",
+        "gear that rotates under load: both by half, or only pinion or wheel (default: mean)",
         choices=("mean", "pinion", "wheel"),
         default="mean",
     )
@@ -55,11 +56,11 @@ def main(argv=None):
     add("--torques NM", "torques of the pinion instead of forces [N m]", nargs="+", type=float)
     add("--no-extended", "neglect tip-corner contact outside the path of contact")
     add("--plot FILE", "draw the transmission error: .png, .svg or .pdf")
-    add = verb("compare", run.compare, "table of every formulation's error against finite elements, by zone, with cost")
+    add = verb("compare", run.compare, "compare formulations with finite elements: table of errors by zone, with cost")
     _scene_arguments(add)
     add(
         "--model FILE",
-        "a stiffness model of your own, may be repeated: file.py:function, k [N/m] at an array of mesh phases from 0 to "
+        "user-defined stiffness model, may be repeated: file.py:function, k [N/m] at an array of mesh phases from 0 to "
         "1; or two columns, units in the header: first phase (0: a pair enters), angle [deg] or angle [rad] (of the "
         "pinion), or radius [mm] (one tooth pair, on the pinion); then k in N/m, N/mm, N/um (or kN, MN, GN), or per "
         "width in N/(mm um) or N/(m um); or a .csv written by gearfe",
@@ -71,20 +72,20 @@ def main(argv=None):
         "-o --output FILE",
         ".csv: k, errors, losses and seconds by pair, case, method and zone; .md or .tex: the table of errors as printed",
     )
-    add("--all-cases --cases", "all pairs in all cases of damage (default: those of a scene whose source prints their stiffness)")
+    add("--all-cases --cases", "compare every pair in every damage case (default if the scene lists published stiffness values)")
     add(
         "--reference METHOD",
-        "what errors are against: fe3d (default of the option), finite elements of whole gears, minutes and gigabytes "
-        "for each (fewer with a smaller --refine); or ritz3d",
+        "reference method for the errors: fe3d (three-dimensional finite elements, minutes and several GB; less with a "
+        "smaller --refine; default of the option) or ritz3d",
         nargs="?",
         const="fe3d",
     )
-    add = verb("render", run.render, "picture of the stress of the loaded teeth, or of their contact pattern, without a screen")
+    add = verb("render", run.render, "draw the tooth stress or the contact pattern to a file (works without a display)")
     _scene_arguments(add, count=False)
     add(
         "--phase X",
-        "mesh phase (default: where the damaged tooth carries most; of healthy gears: stress of spur gears at 0, others "
-        "and contact where pair 0 carries most)",
+        "mesh phase to draw (default: maximum load on the damaged tooth; healthy gears: 0 for the stress of spur gears, "
+        "otherwise maximum load on tooth pair 0)",
         type=float,
     )
     add(
@@ -98,31 +99,31 @@ def main(argv=None):
     add("-o --output FILE", "picture: .png; stress also as .vtu: mesh, displacement, stress", required=True)
     add = verb("mesh", run.mesh, "write the mesh of a damaged gear, whole or a few teeth, for other programs")
     _scene_arguments(add, count=False)
-    add("--gear", "which gear of the pair (default: pinion)", choices=("pinion", "wheel"), default="pinion")
-    add("--cells", "default: tetrahedra with pits or --teeth", choices=("hexahedra", "tetrahedra"))
+    add("--gear", "gear of the pair (default: pinion)", choices=("pinion", "wheel"), default="pinion")
+    add("--cells", "type of elements (default: hexahedra; tetrahedra with pits or --teeth)", choices=("hexahedra", "tetrahedra"))
     add("--teeth N", "odd number of teeth around the damaged one (default: all)", type=int)
     add("-o --output FILE", "the mesh: .msh, .vtu or .inp", required=True)
     add("--picture FILE", "draw it too: .png")
-    add("--close-up", "with --picture: only what is around the damage", choices=("crack", "pits"))
-    add = verb("dynamics", run.dynamics, "response of a scene's machine: spectrum lines and indicators, healthy and damaged")
+    add("--close-up", "with --picture: draw only the surroundings of the damage", choices=("crack", "pits"))
+    add = verb("dynamics", run.dynamics, "simulate the vibration of a gearbox; print spectral lines and condition indicators")
     add("scene SCENE", "a built-in scene with a machine, or a .toml file")
     add("--case NAME", "case of damage, compared with healthy (default: healthy alone)")
     add(
         "--duration S",
-        "seconds kept, from when free vibrations have fallen to a thousandth (at most 20 s are left out; default: 1)",
+        "duration of the record [s], after the start-up transient has decayed to 0.1 %% (at most 20 s; default: 1)",
         default=1.0,
     )
     add("--channel NAME", "channel to analyse, e.g. 'sun.theta acceleration' (default: first mesh's force)")
     add("--contact", "contact law (default: the scene's, else linear)", choices=("linear", "impact"))
     add(
         "--loads X",
-        "laws of force solved under these multiples of the meshes' own loads, e.g. 0.0625 0.25 0.5 1 2: for resonances "
-        "and loads that change (default: 1, a stiffness over the phase)",
+        "load-dependent mesh force, from static solutions at these multiples of the static mesh force, e.g. 0.0625 0.25 "
+        "0.5 1 2; use it near resonance or for varying loads (default: 1, a time-varying stiffness)",
         nargs="+",
         default=(1.0,),
         type=float,
     )
-    add("--method", "fast or a method of scipy's solve_ivp, e.g. DOP853 (default: fast)", default="fast")
+    add("--method", "integrator: fast, or a method of scipy's solve_ivp, e.g. DOP853 (default: fast)", default="fast")
     add("-o --output FILE", "save the response: .csv, .npz or .mat")
     _assumptions(add)
     _analysis_arguments(add)
@@ -134,67 +135,67 @@ def main(argv=None):
     )
     add("scene SCENE", "a .toml file with a [set] table")
     add("--case NAME", "case of cracks, compared with healthy (default: healthy alone)")
-    add("--positions N", "positions of the sun, at least (default: 32)", default=32)
+    add("--positions N", "minimum number of sun positions (default: 32)", default=32)
     add(
         "--cycles N",
-        "mesh cycles that they are spread over (default: 1; of a ring on pads a pitch of the pads; with --case 2, in "
-        "which tooth 0 goes through its mesh)",
+        "mesh cycles covered by the positions (default: 1; for a ring gear on pads: one pad pitch; 2 if --case is given, "
+        "in which tooth 0 is in mesh)",
         type=int,
     )
-    add("--refine X", "finite-element resolution: divides the edge lengths (default: 1)", default=1.0)
+    add("--refine X", "finite-element resolution: divisor of the edge lengths (default: 1)", default=1.0)
     add("-o --output FILE", "save loads, stiffness and transmission error: .csv, .npz, .mat or .json")
     add("--plot FILE", "draw them over the positions: .png, .svg or .pdf")
-    add("--picture FILE", "draw the set bent under its load, coloured by stress: .png, .svg or .pdf")
-    add("--animate FILE", "the same moving, over a mesh cycle or --cycles: .gif")
+    add("--picture FILE", "draw the deformed set, coloured by stress: .png, .svg or .pdf")
+    add("--animate FILE", "animate the deformed set over a mesh cycle or --cycles: .gif")
     _assumptions(add)
-    add = verb("signal", signals.signal, "a measured signal: spectrum lines, indicators, kurtogram and squared envelope")
+    add = verb("signal", signals.signal, "analyse measured signals: spectral lines, indicators, kurtogram, squared envelope")
     add("file FILE", f"signal as {', '.join(SIGNALS)}; several: cases, the first healthy", nargs="+")
     add("--list", "only list the channels of the files")
     add("--rate HZ", "sampling rate, if the file does not state it", type=float)
     add("--unit U", "unit, if the file does not state it")
-    add("--column NAME", "column, if there are several")
-    add("--header TEXT", "names of the columns of a table without, 'time [s], a [m/s^2]'")
-    add("--scale X", "factor on the values; --unit is then theirs", default=1.0)
-    add("--scene SCENE", "scene whose machine, at its speed, names the lines of the last spectrum")
-    add("--gear NAME", "gear of --scene: mesh, fault, carrier and shaft frequencies and teeth that are not given")
-    add("--mesh HZ", "mesh frequency", type=float)
-    add("--fault HZ", "how often the faulty tooth meshes", type=float)
-    add("--carrier HZ", "carrier frequency", type=float)
-    add("--teeth Z", "of a gear: FM0, FM4, NA4 and others from the mean of its turns", type=int)
-    add("--shaft HZ", "turns of that gear in a second", type=float)
-    add("--tacho NAME", "column with pulses of its shaft, or its speed in rpm, in place of --shaft")
+    add("--column NAME", "column (channel) to analyse, if there are several")
+    add("--header TEXT", "column names and units for a table that has no header line, e.g. 'time [s], a [m/s^2]'")
+    add("--scale X", "calibration factor; --unit is the unit after scaling (default: 1)", default=1.0)
+    add("--scene SCENE", "scene whose machine gives the line frequencies of the last spectrum")
+    add("--gear NAME", "gear of --scene; gives the frequencies and the number of teeth that are not stated")
+    add("--mesh HZ", "mesh frequency [Hz]", type=float)
+    add("--fault HZ", "fault frequency [Hz]", type=float)
+    add("--carrier HZ", "carrier frequency [Hz]", type=float)
+    add("--teeth Z", "number of teeth; computes FM0, FM4, NA4, ... from the synchronous average (TSA)", type=int)
+    add("--shaft HZ", "rotational frequency of that gear [Hz]", type=float)
+    add("--tacho NAME", "column with tachometer pulses or shaft speed [rpm], instead of --shaft")
     add("--pulses N", "pulses per revolution of the tachometer's shaft (default: 1)", default=1)
-    add("--tacho-ratio R", "speed of the gear's shaft over the tachometer's (29/95)", default=1, type=_ratio)
-    add("--level X", "height at which a pulse counts (default: half the highest)", type=float)
+    add("--tacho-ratio R", "ratio of the gear's shaft speed to the tachometer's, e.g. 29/95 (default: 1)", default=1, type=_ratio)
+    add("--level X", "trigger level of the tachometer pulses (default: half the highest)", type=float)
     _analysis_arguments(add)
     add("--cepstrum FILE", "draw the cepstrum of the last case: .png, .svg or .pdf")
-    add("--orders FILE", "draw the spectra by turns of the shaft: .png, .svg or .pdf")
+    add("--orders FILE", "draw the order spectra: .png, .svg or .pdf")
     add("--spectrogram FILE", "draw the spectrogram of the last case: .png, .svg or .pdf")
-    add = verb("report", tools.report, "one page of a scene, readable without a network: errors, curves, stress, vibration")
+    add = verb("report", tools.report, "write a self-contained HTML report: errors, curves, stress, vibration")
     add("scene SCENE", "a built-in scene (see 'gearfe scenes'), a .toml file, or the folder of a sweep")
-    add("--case NAME", "case of damage shown beside healthy (default: the scene's first)")
-    add("--duration S", "of the machine's vibration [s] (default: 0.2)", default=0.2)
-    add("-o --output FILE", "the page: .html", required=True)
-    add = verb("sweep", filling.sweep, "compute all cases of a study into a folder; stopped, it goes on where it was")
-    add("study STUDY", "a .toml file: a scene, and what varies in it")
-    add("-o --output FOLDER", "folder of the results: new, or of this study", required=True)
-    add("--workers N", "processes of this machine (default: one per core)", type=int)
+    add("--case NAME", "case of damage, compared with healthy (default: the scene's first)")
+    add("--duration S", "record length of the vibration [s] (default: 0.2)", default=0.2)
+    add("-o --output FILE", "report file: .html", required=True)
+    add = verb("sweep", filling.sweep, "run a parameter study; an interrupted study is resumed")
+    add("study STUDY", "a .toml file: a scene and its variables")
+    add("-o --output FOLDER", "output folder: new, or one of the same study", required=True)
+    add("--workers N", "number of parallel processes (default: one per core)", type=int)
     add("--scheduler ADDRESS", "compute on the workers of this Dask scheduler, tcp://host:8786")
-    add("--dry-run", "say how many cases, how long, how much memory and disk; write nothing")
-    add("--mixed", "go on although another version of gearfe began it")
-    add = verb("dataset", filling.dataset, "make labelled vibration windows for learning, split without leakage")
+    add("--dry-run", "print the number of cases, time, memory and disk space; write nothing")
+    add("--mixed", "resume a study that was started with another version")
+    add = verb("dataset", filling.dataset, "generate a labelled vibration data set for machine learning")
     add("plan DATASET", "a .toml file: machine, faults, operation, sensors, noise, split")
-    add("-o --output FOLDER", "folder of the data set: new, or of this one", required=True)
-    add("--also", "each side of the split as one file too", nargs="+", choices=("mat", "hdf5"), default=[])
-    add("--workers N", "processes of this machine (default: one per core)", type=int)
-    add("--dry-run", "say how many windows, how long and how much disk; write nothing")
-    add = verb("new", tools.new, "write a scene of your own to start from, with all it can say as comments")
+    add("-o --output FOLDER", "output folder: new, or one of the same data set", required=True)
+    add("--also", "also write one file per split (train, validation, test)", nargs="+", choices=("mat", "hdf5"), default=[])
+    add("--workers N", "number of parallel processes (default: one per core)", type=int)
+    add("--dry-run", "print the number of windows, time and disk space; write nothing")
+    add = verb("new", tools.new, "create a scene file; all further keys are included as comments")
     add("output FILE", "the new file, for instance my.toml")
-    add("--teeth Z", "of pinion and wheel (default: 21 31, of a ring 21 63)", nargs=2, type=int)
+    add("--teeth Z", "tooth numbers of pinion and wheel (default: 21 31; with a ring 21 63)", nargs=2, type=int)
     add("--module MM", "normal module [mm] (default: 2)", default=2.0)
     add("--helix DEG", "helix angle of the pinion [degrees] (default: 0)", default=0.0)
     add("--width MM", "face width [mm] (default: 20)", default=20.0)
-    add("--torque NM", "on the pinion [N m] (default: of 100 N per mm of width)", type=float)
+    add("--torque NM", "pinion torque [N m] (default: 100 N per mm of face width)", type=float)
     add(
         "--crack",
         "length [mm] and angle to the centre-line [degrees] of the pinion's root crack (default: level 0.3 at 45 degrees)",
@@ -204,14 +205,14 @@ def main(argv=None):
     )
     add(
         "--tip-relief",
-        "tip relief of both gears [um], linear over so much roll below the tip [mm]: --tip-relief 20 1.5 (default: none)",
+        "tip relief of both gears [um] and its roll length below the tip [mm], linear, e.g. --tip-relief 20 1.5 (default: none)",
         nargs=2,
         metavar=("UM", "MM"),
         type=float,
     )
     add("--ring", "the wheel is an internal gear")
     add = verb(
-        "import", exchange.import_file, "write a scene of a gear unit of another program, with what its file lacks as assumptions"
+        "import", exchange.import_file, "convert a gear unit of another program to a scene; missing values become assumptions"
     )
     add("kind", "format of the file: REXS 1.0 to 2.0.0, as XML, JSON or zip", choices=("rexs",))
     add("file FILE", "the file: .rexs, .rexsj or .zip")
@@ -221,8 +222,8 @@ def main(argv=None):
         "export", exchange.export_file, "write a pair or a gear for other programs: FMU, lookup table, REXS, outline, solid"
     )
     _scene_arguments(add, count=False)
-    add("--gear", "which gear an outline or a solid has (default: pinion)", choices=("pinion", "wheel"), default="pinion")
-    add("--method", "of the stiffness (default: ritz or ritz3d)", default="auto")
+    add("--gear", "gear of an outline or a solid (default: pinion)", choices=("pinion", "wheel"), default="pinion")
+    add("--method", "stiffness method (default: ritz or ritz3d)", default="auto")
     add("--phases N", "phases per mesh cycle (default: 64)", default=64)
     add(
         "-o --output FILE",
@@ -230,21 +231,21 @@ def main(argv=None):
         "gears of the scene; .dxf, .svg: outline of a gear; .step: its solid",
         required=True,
     )
-    add = verb("crack", exchange.grow, "growth of a crack of a scene: its path, and its life by Paris's law")
+    add = verb("crack", exchange.grow, "compute crack growth: the path, and the life by Paris's law")
     add("scene SCENE", "a built-in scene or a .toml file")
     add("--pair NAME", "pair of the scene (default: its first)")
-    add("--case NAME", "case of damage with one crack, where the growth starts", required=True)
-    add("--step MM", "growth in each step [mm] (default: 0.1 modules)", type=float)
-    add("--steps N", "at most so many steps (default: 60)", default=60)
+    add("--case NAME", "damage case with the initial crack, the only one", required=True)
+    add("--step MM", "growth increment [mm] (default: 0.1 modules)", type=float)
+    add("--steps N", "maximum number of steps (default: 60)", default=60)
     add("--paris", "constants C [mm/(MPa sqrt(mm))^m] and m of Paris's law", nargs=2, metavar=("C", "M"), type=float)
-    add("--threshold K", "least range of K that grows a crack [MPa sqrt(mm)] (default: 0)", default=0.0)
+    add("--threshold K", "threshold range of K [MPa sqrt(mm)] (default: 0)", default=0.0)
     add("--refine X", "finite-element resolution: divides the edge lengths (default: 1)", default=1.0)
     add("--plot FILE", "draw the grown crack in its tooth: .png, .svg or .pdf")
-    add = verb("check", tools.check, "say in words what a scene holds, and how each case would be solved")
+    add = verb("check", tools.check, "summarise a scene file and show which method each case would use")
     add("scene SCENE", "a .toml file, or a built-in scene (see 'gearfe scenes')")
     add("--picture FILE", "draw a pair with its damage to scale: .png, .svg or .pdf")
-    add("--pair NAME", "which pair is drawn (default: its first)")
-    add("--case NAME", "which case of damage is drawn (default: the first of the pair)")
+    add("--pair NAME", "pair to draw (default: its first)")
+    add("--case NAME", "case of damage to draw (default: the first of the pair)")
     add = verb("lines", tools.lines, "table of the frequencies of a scene's machine: meshes, shafts, teeth, planets, bearings")
     add("scene SCENE", "a .toml file, or a built-in scene with a machine (see 'gearfe scenes')")
     add("-o --output FILE", "save the table: .csv, .md or .tex")
@@ -263,22 +264,22 @@ def main(argv=None):
     )
     add("--plot FILE", "draw the Campbell diagram: .png, .svg or .pdf")
     add = verb("schema", tools.schema, "print the JSON schema of scenes, by which an editor completes and checks their keys")
-    add("--page", "instead a page of all keys of scenes, studies and data sets, as Markdown")
-    add = verb("app", tools.app, "a page in the browser: turn a slider, see mesh, stiffness and transmission error at once")
-    add("scene SCENE", "opened in it: a built-in scene or a .toml file (default: an example)", nargs="?")
+    add("--page", "print a page of all keys of scenes, studies and data sets instead, as Markdown")
+    add = verb("app", tools.app, "open the live page in the browser: sliders, mesh, stiffness and transmission error")
+    add("scene SCENE", "scene to open: a built-in scene or a .toml file (default: an example)", nargs="?")
     add("--pair NAME", "pair of the scene (default: its only one)")
     add("--case NAME", "case of damage (default: its only one)")
-    add("--port N", "of 127.0.0.1; 0: any that is free (default: 8033)", default=8033)
+    add("--port N", "TCP port on 127.0.0.1; 0 selects a free port (default: 8033)", default=8033)
     add("--no-browser", "only serve the page, do not open it")
     add("--workers N", "solver processes (default: one per core, at least 2)", type=int)
-    add("--public NAME", "also answer to this name, of a reverse proxy on this machine: for a course")
-    add("--users N", "with --public: addresses at a time (default: 40)", default=40)
-    add("--tasks N", "with --public: of an address in a minute (default: 600)", default=600)
-    add = verb("completion", tools.completion, "print what completes verbs, options and scenes at the press of a key")
+    add("--public NAME", "host name of a reverse proxy on this computer, to share the app with a class")
+    add("--users N", "maximum number of simultaneous client addresses, only with --public (default: 40)", default=40)
+    add("--tasks N", "maximum number of requests per address and minute, only with --public (default: 600)", default=600)
+    add = verb("completion", tools.completion, "print a shell completion script")
     add("shell", 'eval "$(gearfe completion bash)" in your shell\'s start file', choices=("bash", "zsh"))
     verbs.choices["completion"].set_defaults(verbs=verbs.choices)
     verb("scenes", run.scenes, "list the built-in scenes with their assumptions")
-    verb("info", tools.info, "versions, what this machine has, and what would make it faster")
+    verb("info", tools.info, "print versions, hardware and missing optional packages")
     arguments = parser.parse_args(argv)
     _refuse_nothing(verbs.choices[arguments.verb], arguments)
     return shell.run(lambda: arguments.run(arguments), [name for name in vars(arguments) if name not in ("verb", "run", "verbs")])
@@ -330,14 +331,14 @@ def _analysis_arguments(add):
 
 
 def _assumptions(add):
-    add("--assumptions", "all that the scene assumes, with the reasons")
+    add("--assumptions", "print all assumptions of the scene, with their reasons")
 
 
 def _scene_arguments(add, *, count=True):
     add("scene SCENE", "a built-in scene (see 'gearfe scenes') or a .toml file")
     add("--pair NAME", "pair of the scene (default: its first)")
     add("--case NAME", "case of damage (see 'gearfe scenes'; default: healthy)")
-    add("--refine X", "finite-element resolution: divides the edge lengths (default: 1)", default=1.0)
+    add("--refine X", "finite-element resolution: divisor of the edge lengths (default: 1)", default=1.0)
     if count:
         _assumptions(add)
         add("--phases N", "phases per mesh cycle (default: 64)", default=64)

@@ -1,4 +1,4 @@
-"""What this machine has, for ``gearfe info``: versions, threads, memory, solvers, renderer, cache; and what it lacks."""
+"""Report of ``gearfe info``: versions, threads, memory, solvers, renderer, cache, and missing packages."""
 
 import importlib.metadata
 import importlib.util
@@ -8,7 +8,7 @@ import shutil
 
 from ...core.extras import command, requirements
 
-OPTIONAL = {  # package: (module, what it is good for); of the project's extras
+OPTIONAL = {  # package: (module, its use); optional ones of the project's extras
     "pandas": ("pandas", "curve.to_pandas()"),
     "xarray": ("xarray", "curve.to_xarray()"),
     "h5py": ("h5py", "signals in HDF5 and MATLAB 7.3"),
@@ -26,7 +26,7 @@ OPTIONAL = {  # package: (module, what it is good for); of the project's extras
 
 
 def lines():
-    """Lines of text, one thing each."""
+    """Return the lines of the report."""
     from ...core.memory import free_memory
     from ...flexibility.finite_elements.solver import dissects
     from ...stiffness.cache import folder
@@ -65,7 +65,7 @@ def mesher():
 
 
 def renderer():
-    """What draws stress pictures."""
+    """Return the name of the renderer of stress pictures."""
     from ...strength.window import renderer_name
 
     try:
@@ -75,7 +75,7 @@ def renderer():
 
 
 def cache(place):
-    """Where solved gears are kept, and how much they take."""
+    """Return the folder of solved gears, and its size."""
     if place is None:
         return "cache of solved gears: switched off (GEARFE_CACHE is empty)"
     sizes = [file.stat().st_size for file in place.glob("*.gear")] if place.is_dir() else []
@@ -83,7 +83,7 @@ def cache(place):
 
 
 def advice():
-    """Lines on what would make gearfe faster on this machine, or what it cannot do yet."""
+    """Return advice on faster computation on this computer, and on missing abilities."""
     for name, (module, good) in OPTIONAL.items():
         if importlib.util.find_spec(module) is None:
             yield f"not installed: {name}, for {good}: {command(name)}"

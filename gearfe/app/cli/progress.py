@@ -1,4 +1,4 @@
-"""What is shown on a terminal while a verb works: a bar, the seconds gone and left; nothing but notes in a pipe."""
+"""Progress bar on a terminal while a verb works; only notes in a pipe."""
 
 import contextlib
 import sys
@@ -9,7 +9,7 @@ from .shell import harmless, tell
 
 @contextlib.contextmanager
 def working(text):
-    """A bar with the seconds gone and, once a step is done, left, on a terminal only; gives a function that prints a note."""
+    """Show a bar with elapsed and remaining seconds, on a terminal only; returns a function that prints a note."""
     if sys.stderr is None or not sys.stderr.isatty():
         yield tell
         return

@@ -1,9 +1,9 @@
-"""What the verb ``gearfe planetary`` does: a whole planetary set of a scene."""
+"""Verb ``gearfe planetary``: a whole planetary set of a scene."""
 
 from .progress import working
 from .verbs import _check_outputs, _print_assumptions
 
-FRAMES = 16  # of a moving picture, in each mesh cycle
+FRAMES = 16  # frames of an animation per mesh cycle
 
 
 def planetary_set(arguments):

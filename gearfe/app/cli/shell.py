@@ -1,9 +1,9 @@
-"""Between a verb and the shell: one line for each way it can end, and an exit code; no traceback reaches a user.
+"""Exit of a verb: one line on standard error for each kind of error, and an exit code, without traceback.
 
-Texts of files (titles, names of cases and columns, paths) are printed by every verb; all of it passes here, where characters
-that would steer the terminal are spelled out.
+Texts of files (titles, names of cases and columns, paths) are printed by every verb. All output passes here, where control
+characters of the terminal are escaped.
 
-0: done. 1: an input is impossible, or a file cannot be written; standard error says which. 2: wrong options (argparse). 130:
+Exit codes: 0: done. 1: an input is impossible, or a file cannot be written; see standard error. 2: wrong options (argparse). 130:
 interrupted. 143: terminated. 141: the program that read the output has ended (as after SIGPIPE).
 """
 
@@ -16,18 +16,19 @@ import signal
 import sys
 import warnings
 
-SPELLED = {"±": "+-", "µ": "u", "·": "*", "°": "deg", "→": "->", "–": "-", "…": "..."}  # for terminals that know only ASCII
+# replacements for terminals that have only ASCII
+SPELLED = {"±": "+-", "µ": "u", "·": "*", "°": "deg", "→": "->", "–": "-", "…": "..."}
 
 STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")  # controls, turns of direction
 
 
 def harmless(text):
-    """Text in which characters that steer a terminal are spelled out; line ends and tabs stay."""
+    """Return text with escaped control characters of terminals; line ends and tabs stay."""
     return STEERING.sub(lambda control: ascii(control[0])[1:-1], text)
 
 
 class Harmless:
-    """A stream to which only harmless text is written; all else is the stream's."""
+    """Stream whose written text is escaped; everything else is the stream's."""
 
     def __init__(self, stream):
         self._stream = stream
@@ -41,7 +42,7 @@ class Harmless:
 
 
 def spelled(error):
-    """Handler of characters that an output cannot show: spelled out, or a question mark."""
+    """Replace characters that an output cannot show by a spelling, or by a question mark."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     return "".join(SPELLED.get(letter, "?") for letter in error.object[error.start : error.end]), error.end
@@ -50,26 +51,27 @@ def spelled(error):
 def tell(text):
     """Print a line to standard error, if there is one."""
     if sys.stderr is not None:
-        with contextlib.suppress(OSError, ValueError):  # closed, or full: nowhere left to say it
+        with contextlib.suppress(OSError, ValueError):  # closed, or full: there is no other place for the message
             print(harmless(f"gearfe: {text}"), file=sys.stderr, flush=True)
 
 
 def as_options(error, options):
-    """Text of an error or a warning: arguments of Python, ``unit=``, as the verb calls its `options`, ``--unit``."""
+    """Return the text of an error or a warning with arguments of Python, ``unit=``, as `options` of the verb, ``--unit``."""
     text, names = str(error), "|".join(map(re.escape, options))
     if not names:
         return text
-    text = re.sub(rf"\b({names})_frequency = ", lambda match: f"--{match[1]} ", text)  # of the verb `signal`: --mesh, --fault
+    # options --mesh and --fault of the verb `signal`
+    text = re.sub(rf"\b({names})_frequency = ", lambda match: f"--{match[1]} ", text)
     return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda match: f"--{match[1]}", text)
 
 
 def _end_tidily(number, _):
-    """Leave by an exception, so that temporary files are removed."""
+    """Exit by an exception, so that temporary files are removed."""
     raise SystemExit(128 + number)
 
 
 def run(work, options=()):
-    """Do `work`, a function without arguments; returns the exit code. `options`: names of the verb's options."""
+    """Call `work`, a function without arguments, and return the exit code. `options`: names of the verb's options."""
     with contextlib.suppress(ValueError):  # not the main thread
         signal.signal(signal.SIGTERM, _end_tidily)
     codecs.register_error("spelled", spelled)
@@ -86,7 +88,8 @@ def run(work, options=()):
             if sys.stdout is not None:
                 sys.stdout.flush()
     except KeyboardInterrupt:
-        resumed = "; the same command goes on where it was" if "dry_run" in options else ""  # of verbs that fill a folder
+        # verbs that fill folders can be resumed
+        resumed = "; the same command goes on where it was" if "dry_run" in options else ""
         tell(f"interrupted; nothing half-written is left{resumed}")
         return 130
     except (ValueError, RuntimeError) as error:
@@ -106,7 +109,7 @@ def run(work, options=()):
 
 
 def _forget_output():
-    """Send what is still buffered nowhere, so that the interpreter does not try again to write it when it ends."""
+    """Discard buffered output, so that the interpreter does not try again to write it at exit."""
     if sys.stdout is not None:
         with contextlib.suppress(OSError, ValueError):
             nowhere = os.open(os.devnull, os.O_WRONLY)

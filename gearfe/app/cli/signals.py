@@ -1,4 +1,4 @@
-"""The verb ``gearfe signal``: channels of files, what they show by frequency, and what a gear shows by its turns."""
+"""Verb ``gearfe signal``: channels of files, their spectra, and the condition indicators of a gear."""
 
 from dataclasses import replace
 
@@ -17,9 +17,9 @@ def signal(arguments):
         return
     for option in ("teeth", "orders"):
         if getattr(arguments, option) is not None and arguments.shaft is None and arguments.tacho is None:
-            raise ValueError(f"--{option} needs the turns of that gear's shaft: give --shaft HZ or --tacho COLUMN")
+            raise ValueError(f"--{option} needs the shaft frequency of that gear: give --shaft HZ or --tacho COLUMN")
     if arguments.pulses < 1:
-        raise ValueError(f"--pulses {arguments.pulses}: a tachometer gives one or more in a turn")
+        raise ValueError(f"--pulses {arguments.pulses}: give 1 or more pulses per revolution")
     with working("reading"):
         with part("", 0.0, 0.5):
             signals = _read(arguments)
@@ -38,7 +38,7 @@ def signal(arguments):
         from ...signal.gear_indicators import gear_indicator_table, tabulate_gear_indicators
 
         table = gear_indicator_table(signals, arguments.teeth)
-        print(f"\ngear of {arguments.teeth} teeth, from the average of its turns\n\n{tabulate_gear_indicators(table)}")
+        print(f"\ngear of {arguments.teeth} teeth, from its synchronous average (TSA)\n\n{tabulate_gear_indicators(table)}")
     _draw(list(signals.values())[-1], arguments)
     if arguments.orders:
         _draw_orders(signals, arguments)
@@ -65,7 +65,7 @@ def _of_scene(arguments):
 
 
 def _told(one):
-    """One line on a record: samples, rate, length, and the turns of its shaft."""
+    """Return one line on a record: samples, rate, length, and revolutions of its shaft."""
     import numpy as np
 
     text = f"{one.name}: {one.values.size} samples at {one.rate:.7g} Hz, {one.duration:.4g} s"
@@ -73,16 +73,16 @@ def _told(one):
         return text
     turns = float(one.angle[-1] - one.angle[0]) / (2 * np.pi)
     if turns < 2:
-        return f"{text}; shaft {turns:.2g} turns"
+        return f"{text}; shaft: {turns:.2g} revolutions"
     whole = np.interp(one.angle[0] + 2 * np.pi * np.arange(int(turns) + 1), one.angle, one.time)
     speed = 1 / np.diff(whole)
-    text += f"; shaft {speed.min():.4g} to {speed.max():.4g} turns per second, {turns:.1f} turns"
+    text += f"; shaft: {speed.min():.4g} to {speed.max():.4g} Hz, {turns:.1f} revolutions"
     smeared = (speed.max() - speed.min()) * turns > speed.mean()  # the first order leaves its bin
-    return f"{text}; lines are smeared in Hz, not by turns (--orders)" if smeared else text
+    return f"{text}; lines are smeared over Hz, but sharp over orders (--orders)" if smeared else text
 
 
 def _print_channels(arguments):
-    """What each file holds."""
+    """Print the channels of each file."""
     from ...signal.found import ANGLES, TIMES
     from ...signal.signal_file import channels
 
@@ -102,7 +102,7 @@ def _print_channels(arguments):
 
 
 def _read(arguments):
-    """The chosen channel of every file by name, with the angle of the shaft or its frequency if they are known."""
+    """Read the chosen channel of every file by name, with the angle of the shaft or its frequency if known."""
     from ...core.steps import steps
     from ...signal.signal_file import read_signals
 
@@ -118,14 +118,14 @@ def _read(arguments):
             raise ValueError(f"{file}: {len(channels)} channels, {', '.join(map(repr, channels))}: choose one by --column")
         (channel,) = channels.values()
         if channel.name in out:
-            raise ValueError("two files have the same name: their cases could not be told apart; rename one")
+            raise ValueError("two files have the same name: their cases could not be distinguished; rename one")
         turns = {"shaft_frequency": arguments.shaft} if arguments.shaft is not None and channel.angle is None else {}
         out[channel.name] = replace(channel, **turns)
     return out
 
 
 def _draw(one, arguments):
-    """Cepstrum and spectrogram of the last case."""
+    """Draw cepstrum and spectrogram of the last case."""
     from ...figures.vibration_plots import plot_cepstrum, plot_spectrogram
     from ...signal.time_frequency import cepstrum, spectrogram
 
@@ -137,7 +137,7 @@ def _draw(one, arguments):
 
 
 def _draw_orders(signals, arguments):
-    """Spectra by turns of the shaft, with the lines of the gear's mesh if its teeth are given."""
+    """Draw order spectra of the shaft, with the lines of the gear's mesh if its teeth are given."""
     from ...figures.vibration_plots import plot_spectra
     from ...signal.orders import order_spectrum
     from ...signal.spectral_lines import expected_lines

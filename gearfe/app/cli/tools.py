@@ -1,10 +1,10 @@
-"""Verbs around the computing: a page of a scene, a scene to start from, completion, what this machine has."""
+"""Verbs around the computation: report of a scene, new scene, completion, computer."""
 
 import os
 
 from .progress import working
 
-SPEEDS = 121  # of a Campbell diagram
+SPEEDS = 121  # number of speeds of a Campbell diagram
 
 
 def report(arguments):

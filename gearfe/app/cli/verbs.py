@@ -1,4 +1,4 @@
-"""What the verbs of the ``gearfe`` command do: one function each, no logic of its own. Heavy imports are inside."""
+"""Verbs of the ``gearfe`` command: one function each, without computation. Heavy imports are inside."""
 
 from dataclasses import replace
 
@@ -6,18 +6,18 @@ from .progress import working
 
 
 def _check_outputs(arguments, **kinds):
-    """Raise ValueError if a file that an option names could not be written at the end; `kinds` says by option what it holds."""
+    """Raise ValueError if a file of an option could not be written at the end; `kinds` is its content by option."""
     from ...core.files import check_output
 
     given = {option: getattr(arguments, option) for option in kinds if getattr(arguments, option) is not None}
     for option, path in given.items():
         check_output(path, kinds[option])
     if len(set(given.values())) < len(given):
-        raise ValueError(f"{' and '.join(f'--{option}' for option in given)} name the same file: give each its own")
+        raise ValueError(f"{' and '.join(f'--{option}' for option in given)} name the same file: give a separate file for each")
 
 
 def _print_notes(scene):
-    """All assumptions of a scene, what was changed, and what is not modelled."""
+    """Print all assumptions of a scene, its changed values, and effects that are not modelled."""
     for note in scene.assumptions:
         print(f"  assumed: {note['what']}: {note['why']}" + (f" [depends: {note['depends']}]" if note["depends"] else ""))
     for text in scene.changed:
@@ -27,7 +27,7 @@ def _print_notes(scene):
 
 
 def _title(scene, arguments, *more):
-    """Of a picture: scene, pair, case and what else is said."""
+    """Return the title of a picture: scene, pair, case and more."""
     pair = arguments.pair or next(iter(scene.pairs))
     return ", ".join(text for text in (scene.name, pair, arguments.case or "healthy", *more) if text)
 
@@ -35,6 +35,7 @@ def _title(scene, arguments, *more):
 def stiffness(arguments):
     """``gearfe stiffness``."""
     from ...comparison.compare import beside_health
+    from ...comparison.returns import returns_of
     from ...comparison.told_scene import told_supports
     from ...scene.load import load_scene
     from ...stiffness.methods import fitted
@@ -61,7 +62,8 @@ def stiffness(arguments):
             arguments.method, arguments.phases, extended=not arguments.no_extended, refine=arguments.refine,
             error=arguments.error, tell=tell, pose=arguments.pose,
         )  # fmt: skip
-        found = beside_health(case, how)
+        name = arguments.pair or next(iter(scene.pairs))
+        found = beside_health(case, how, returns=returns_of(scene, name, arguments.case))
     curve, meta = found.reference, found.reference.meta
     print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:\n")
     for one in found.by_tooth() if case.damaged else ():
@@ -148,7 +150,7 @@ def compare(arguments):
     table = result.table(digits=5 if several else 4)
     print(table)
     if several and (text := printed_text(scene, result)):
-        print(f"\nas printed, and after the stated corrections, beside `herringbone_article` and {reference}\n\n{text}")
+        print(f"\nas printed, and after the stated corrections, compared with `herringbone_article` and {reference}\n\n{text}")
     for text in () if several else printed_stiffness(scene, *result.subject):
         print(text)
     print()
@@ -166,7 +168,7 @@ def compare(arguments):
 
 
 def _print_assumptions(scene, every, told=None):
-    """What a scene assumes without the reasons, `told` (default: what the stiffness depends on), or `every` note with them."""
+    """Print a scene's assumptions without the reasons, `told` (default: those of the stiffness), or with `every` note."""
     from ...scene.assumed import of_stiffness
 
     print()

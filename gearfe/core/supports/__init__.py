@@ -1,4 +1,5 @@
-"""What holds a gear: a hub on springs, or on a shaft between two bearings.
+"""Supports of a gear: a hub on springs, or a shaft on two bearings.
 
-Only statics of straight beams stands here; `gearfe.contact` asks it how far the flanks of a loaded gear give way with its hub.
+This package contains the statics of straight beams only. `gearfe.contact` uses it for the deflection of the flanks with their
+hub.
 """

@@ -15,12 +15,12 @@ class ShaftPiece(NamedTuple):
 
     @property
     def area(self) -> float:
-        """Of the cross section [mm**2]."""
+        """Area of the cross section [mm**2]."""
         return math.pi / 4 * (self.diameter**2 - self.bore**2)
 
     @property
     def second_moment(self) -> float:
-        """About a diameter [mm**4]; the polar one is twice as much."""
+        """Second moment about a diameter [mm**4]; the polar one is twice as large."""
         return math.pi / 64 * (self.diameter**4 - self.bore**4)
 
     def shear_factor(self, nu: float) -> float:

@@ -1,4 +1,4 @@
-"""What holds the hubs of a pair, checked: it must carry its gear, and not give way so far that the teeth leave each other."""
+"""Checked supports of the hubs of a pair: they must carry the gear and keep the teeth in mesh."""
 
 import math
 
@@ -8,16 +8,16 @@ from ...geometry.checks import by_gear
 from .shaft import Shaft
 from .support import UNITS, Support
 
-TWIST = 0.1  # largest twist [rad]: round steel at 300 N/mm2 twists so far over 13 diameters of its length
-REFUSE = 0.25  # largest approach, of the module, see `gearfe.stiffness.plausible`
-FITS = 0.01  # by this part of the bore a shaft may be thicker: a press fit, and rounded numbers
+TWIST = 0.1  # limit of the twist [rad]: round steel at 300 N/mm2 reaches it over 13 diameters of its length
+REFUSE = 0.25  # limit of the approach [modules], see `gearfe.stiffness.plausible`
+FITS = 0.01  # part of the bore by which a shaft may be thicker: a press fit, and rounded numbers
 
 
 def supports_of(pair, supports, forces=(), face=None):
-    """What holds the hubs of pinion and wheel, None where rigid; None if both are.
+    """Return the supports of the hubs of pinion and wheel, None where rigid; None if both are.
 
-    ValueError if something else is given, a shaft does not carry its gear, or a hub gives way so far under one of the `forces`
-    [N] that the teeth leave each other.
+    ValueError for other types, if a shaft does not carry its gear, or if the teeth lose contact by the deflection of a hub under
+    one of the `forces` [N].
     """
     if supports is None:
         return None
@@ -28,13 +28,13 @@ def supports_of(pair, supports, forces=(), face=None):
         if not isinstance(held, (Support, Shaft)):
             raise ValueError(f"supports of the {name}: {held!r} is neither a Support nor a Shaft")
         _check_fit(name, gear, held)
-        beta_b = 0.0 if face == "herringbone" else abs(gear.beta_b)  # its halves' axial forces cancel
+        beta_b = 0.0 if face == "herringbone" else abs(gear.beta_b)  # the axial forces of its halves cancel
         _check_way(name, gear, held, max(forces, default=0.0), beta_b)
     return both if any(both) else None
 
 
 def _check_fit(name, gear, held):
-    """ValueError for a shaft that its gear's bore does not take."""
+    """Raise ValueError for a shaft that does not fit its gear's bore."""
     if not isinstance(held, Shaft) or held.integral or gear.internal:
         return
     if gear.b > held.length * (1 + 1e-9):
@@ -52,9 +52,9 @@ def _check_fit(name, gear, held):
 
 
 def _check_way(name, gear, held, force, beta_b):
-    """ValueError for springs on which a hub gives way by more than a part of the module under a force on its teeth.
+    """Raise ValueError for springs on which a hub deflects by more than a part of the module under a force on its teeth.
 
-    As far as a force can be off the middle of the width: a quarter of it, and what the axial force of helical teeth adds.
+    The force is off the middle of the width by at most a quarter of it, plus the effect of the axial force of helical teeth.
     """
     hub, axial = held.hub(), force * math.tan(beta_b)
     arm = gear.b / 4 + gear.r_b * math.tan(beta_b)
@@ -67,7 +67,7 @@ def _check_way(name, gear, held, force, beta_b):
     worst, twist, limit = max(ways, key=lambda way: ways[way]), force * gear.r_b * hub.torsion, REFUSE * gear.m_n
     if ways["radial"] + ways["tilt"] > limit or ways["axial"] > limit:
         problem = (
-            f"its teeth give way by {ways[worst]:.3g} mm, but beyond {limit:g} mm, {100 * REFUSE:g} % of the module, they leave"
+            f"its teeth deflect by {ways[worst]:.3g} mm, but beyond {limit:g} mm, {100 * REFUSE:g} % of the module, they leave"
         )
         raise ValueError(
             f"the {name}'s {_springs(held, worst)}: under {force:g} N {problem} those of the other gear: {_units(held, worst)}"
@@ -78,7 +78,7 @@ def _check_way(name, gear, held, force, beta_b):
 
 
 def _springs(held, what):
-    """What of a support is too soft, as it was given."""
+    """Return the values of a support that are too soft, as given."""
     if isinstance(held, Support):
         return f"support has {what} = {getattr(held, what):g} {UNITS[what]}"
     thin, thick = (pick(segment.diameter for segment in held.segments) for pick in (min, max))
@@ -86,7 +86,7 @@ def _springs(held, what):
 
 
 def _units(held, what):
-    """What to do about it."""
+    """Return the remedy for a soft support."""
     if isinstance(held, Support):
         value, larger = getattr(held, what), "N/um" if what in ("radial", "axial") else "N m/rad"
         return f"give {what} in {UNITS[what]} ({value:g} {larger} are {1e3 * value:g} {UNITS[what]}), or a smaller force"

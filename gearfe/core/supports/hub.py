@@ -1,4 +1,4 @@
-"""`Hub`: how far the flanks of a gear give way because what holds its body gives way, by the place of the contact."""
+"""`Hub`: deflection of the flanks of a gear with its supports, by the place of the contact."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from ...geometry.aliases import Floats
 
 @dataclass(frozen=True, slots=True)
 class Hub:
-    """Flexibility of what holds a gear, seen from the middle of its width; the gear follows as a rigid body.
+    """Flexibility of the support of a gear, at the middle of its width; the gear follows as a rigid body.
 
     `bending` (2, 2) is displacement [mm] and slope [rad] by a force [N] and a moment [N mm], the same in every plane through
     the axis; `torsion` the twist [rad] by a torque [N mm]; `axial` the shift by an axial force [mm/N].
@@ -42,6 +42,6 @@ class Hub:
         """
         cos, pull = math.cos(beta_b), math.sin(beta_b) * hand
         plane = np.stack([np.full(z.size, cos), cos * z - pull * along], axis=1)  # the plane of axis and line of action
-        across = r_b * pull  # moment in the one at right angles to it
+        across = r_b * pull  # moment in the plane at right angles to it
         out = plane @ self.bending @ plane.T + self.bending[1, 1] * np.outer(across, across)
         return out + (cos * r_b) ** 2 * self.torsion + self.axial * np.outer(pull, pull)

@@ -1,4 +1,4 @@
-"""`Shaft`: a stepped shaft on two bearings, and the springs it puts under its gear."""
+"""`Shaft`: a stepped shaft on two bearings, and the equivalent springs under its gear."""
 
 import math
 from dataclasses import dataclass, replace
@@ -16,8 +16,8 @@ from .support import Support
 if TYPE_CHECKING:
     from ..material import Material
 
-THICKEST = 100  # largest diameter of a shaft over its smallest: more is a slip, and too much for the rounding of the solve
-NONE = 1e-10  # of the largest coupling possible: a smaller one is rounding
+THICKEST = 100  # limit of the ratio of diameters: more is an error of input and too much for the rounding of the solve
+NONE = 1e-10  # smaller couplings, relative to the largest possible, are rounding errors
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Shaft:
     """A round shaft on two bearings with one gear: Timoshenko's beam, and Saint-Venant's torsion.
 
     Positions are counted along the axis from the shaft's left end [mm]. The gear's end z = 0 looks to the left, z = b to the
-    right. The part of the shaft inside the gear counts with the diameter it is given.
+    right. The part of the shaft inside the gear counts with its stated diameter.
 
     Parameters
     ----------
@@ -37,10 +37,9 @@ class Shaft:
         Position of the middle of the gear [mm].
     material : Material
     torque : float, optional
-        Position at which the torque enters or leaves the shaft [mm]: the shaft twists between there and the gear. None: the twist
-        is left out.
+        Position at which the torque enters or leaves the shaft [mm]: the shaft twists between there and the gear. None: no twist.
     bearing_stiffness : float or (float, float)
-        Of each bearing across the axis [N/mm]; default rigid.
+        Stiffness of each bearing across the axis [N/mm]; default rigid.
     integral : bool
         The gear is one piece with its shaft, as small pinions are, in ``fe3d``: its body is solid but for the centre hole
         `r_bore`, which is free, and the shaft goes on at its end faces (`finite_elements.integral`). Needs `torque`; the first
@@ -49,7 +48,7 @@ class Shaft:
     Raises
     ------
     ValueError
-        If the shaft cannot be; the message says which number to change.
+        If the shaft is impossible; the message states which number to change.
 
     Examples
     --------
@@ -70,7 +69,7 @@ class Shaft:
     integral: bool = False
 
     def __post_init__(self) -> None:
-        """Bring all numbers into one form, and reject a shaft that cannot be."""
+        """Bring all numbers into one form, and reject an impossible shaft."""
         object.__setattr__(self, "segments", tuple(_segment(i, row) for i, row in enumerate(_rows(self.segments))))
         thick, thin = (pick(segment.diameter for segment in self.segments) for pick in (max, min))
         if thick > THICKEST * thin:
@@ -91,10 +90,10 @@ class Shaft:
             if not (is_number(value) and 0 <= float(value) <= self.length * (1 + 1e-12)):
                 raise ValueError(f"shaft: {name.strip()} = {value!r}, but the shaft reaches from 0 to {self.length:g} mm")
         if self.bearings[0] == self.bearings[1]:
-            raise ValueError(f"shaft: both bearings at {self.bearings[0]:g} mm do not hold it: give two positions")
+            raise ValueError(f"shaft: both bearings at {self.bearings[0]:g} mm do not support it: give two positions")
         if self.integral and self.torque is None:
             raise ValueError(
-                "shaft: integral without torque, but a gear cut from its shaft is held by it: give where torque leaves"
+                "shaft: integral without torque, but an integral gear is supported by its shaft: give the position of the torque"
             )
 
     @property
@@ -112,11 +111,11 @@ class Shaft:
 
     @property
     def tilts(self) -> bool:
-        """Whether a force in the middle of the gear tilts it, or bends it along its width."""
+        """True if a force in the middle of the gear tilts it, or bends it along its width."""
         return self.integral or self.support().tilts
 
     def turned(self) -> "Shaft":
-        """The same seen from its other end: right is left."""
+        """Return the same shaft seen from its other end."""
 
         def mirrored(place: float) -> float:
             return self.length - place
@@ -130,18 +129,18 @@ class Shaft:
         )
 
     def untilted(self) -> Support:
-        """Its springs without their coupling: a force moves the gear, but does not tilt it."""
+        """Return its springs without their coupling: a force moves the gear, but does not tilt it."""
         return self.support().untilted()
 
     def support(self) -> Support:
-        """The springs under the middle of the gear, as numbers."""
+        """Return the equivalent spring stiffnesses of the shaft at mid-width of the gear, as a `Support`."""
         (soft, coupling), (_, tilt) = self.bends().tolist()
         twist = self.twists()
         coupling = coupling if abs(coupling) > NONE * math.sqrt(soft * tilt) else 0.0
         return Support(1 / soft, 1 / tilt, 1 / twist if twist else math.inf, coupling=coupling)
 
     def hub(self) -> Hub:
-        """`Hub` of its gear."""
+        """Return the compliance of the shaft as a `Hub` (for the contact solver)."""
         return self.support().hub()
 
     def bends(self) -> Floats:

@@ -1,4 +1,4 @@
-"""What a shaft does at both end faces of a gear that is one piece with it: stiffness of the two stubs beside the gear."""
+"""Stiffness of the two shaft stubs at the end faces of a gear that is one piece with its shaft."""
 
 from typing import Any
 
@@ -7,12 +7,12 @@ import numpy as np
 from ...geometry.aliases import Floats
 from .beam import beam_element, pieces_between
 
-RIGID = 1e7  # of the largest stiffness: as good as rigid, and no trouble for the solve
-MOTIONS = 6  # of a face: displacements x, y, z [mm], turns about x, y, z [rad]
+RIGID = 1e7  # stiffness that counts as rigid, relative to the largest
+MOTIONS = 6  # motions of a face: displacements x, y, z [mm], rotations about x, y, z [rad]
 
 
 def stub_stiffness(shaft: Any, width: float) -> Floats:
-    """Forces and moments that the stubs put on both end faces of the gear, by the faces' motions.
+    """Return forces and moments of the stubs on both end faces of the gear, by the faces' motions.
 
     A stub that reaches no bearing moves along freely; one that ends at its face, likewise. The shaft's first bearing holds it
     along the axis, its `torque` about it; `width` is that of the gear [mm]. Shape (12, 12): six motions of the face z = 0,
@@ -53,13 +53,13 @@ def stub_stiffness(shaft: Any, width: float) -> Floats:
 def _condensed(stiffness, kept):
     """Stiffness of some unknowns, the others left to themselves."""
     rest = np.setdiff1d(np.arange(len(stiffness)), kept)
-    rest = rest[np.abs(stiffness[rest]).max(axis=1) > 0] if rest.size else rest  # places inside of the gear have none
+    rest = rest[np.abs(stiffness[rest]).max(axis=1) > 0] if rest.size else rest  # unknowns inside the gear have no stiffness
     cross = stiffness[np.ix_(rest, kept)]
     return stiffness[np.ix_(kept, kept)] - cross.T @ np.linalg.solve(stiffness[np.ix_(rest, rest)], cross)
 
 
 def face_radii(shaft: Any, width: float) -> tuple[float, float]:
-    """Radius of the shaft beside the faces z = 0 and z = b [mm], 0 where it ends there."""
+    """Return the radius of the shaft next to the faces z = 0 and z = b [mm], 0 where it ends there."""
     ends = np.cumsum([0.0, *(segment.length for segment in shaft.segments)])
     slack = 1e-9 * ends[-1]
 

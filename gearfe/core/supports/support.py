@@ -1,4 +1,4 @@
-"""`Support`: the springs on which the hub of a gear sits, as numbers."""
+"""`Support`: equivalent springs under the hub of a gear."""
 
 import math
 from dataclasses import dataclass, replace
@@ -13,9 +13,9 @@ UNITS = {"radial": "N/mm", "tilt": "N mm/rad", "torsion": "N mm/rad", "axial": "
 
 @dataclass(frozen=True, slots=True)
 class Support:
-    """Springs under the hub of a gear, seen from the middle of its width; what is not given is rigid.
+    """Springs under the hub of a gear, at the middle of its width; omitted stiffnesses are rigid.
 
-    The edge that is held otherwise (the bore, or the rim of a ring) moves as a rigid body; the springs hold it, alike in every
+    The edge that is otherwise held (the bore, or the rim of a ring) moves as a rigid body. The springs hold it, equally in every
     direction across the axis::
 
         displacement = force / radial + coupling moment          across the axis, at the middle of the gear
@@ -26,21 +26,21 @@ class Support:
     Parameters
     ----------
     radial : float
-        Force across the axis by its displacement, no moment acting [N/mm]; 1 N/um are 1000 N/mm.
+        Force across the axis per displacement, without a moment [N/mm]; 1 N/um are 1000 N/mm.
     tilt : float
-        Moment by the slope it gives, no force acting [N mm/rad].
+        Moment per slope, without a force [N mm/rad].
     torsion : float
-        [N mm/rad].
+        Torsional stiffness [N mm/rad].
     axial : float
-        [N/mm].
+        Axial stiffness [N/mm].
     coupling : float
-        Slope under a unit force [rad/N], the same as displacement under a unit moment: 0 for a gear in the middle of its
-        bearings, positive if the end z = b of the gear gives way more than z = 0. `Shaft` computes it.
+        Slope under a unit force [rad/N], equal to the displacement under a unit moment: 0 for a gear in the middle of its
+        bearings, positive if the end z = b of the gear deflects more than z = 0. `Shaft` computes it.
 
     Raises
     ------
     ValueError
-        If a stiffness is not positive, or the coupling is so large that the springs would give energy away.
+        If a stiffness is not positive, or the coupling is so large that the springs would generate energy.
 
     Examples
     --------
@@ -68,24 +68,24 @@ class Support:
         if not abs(self.coupling) <= (1 + 5e-10) * largest:
             raise ValueError(
                 f"support: coupling = {self.coupling:g} rad/N is more than 1 / sqrt(radial tilt) = "
-                f"{largest:g}: such springs would give energy away; take all three from a Shaft"
+                f"{largest:g}: the stiffness matrix is not positive definite; take all three from a Shaft"
             )
 
     @property
     def integral(self) -> bool:
-        """Whether the gear is one piece with what holds it: never on springs."""
+        """False: a gear on springs is not one piece with its support."""
         return False
 
     @property
     def tilts(self) -> bool:
-        """Whether a force in the middle of the gear tilts it."""
+        """True if a force in the middle of the gear tilts it."""
         return self.coupling != 0
 
     def untilted(self) -> "Support":
-        """The same springs without coupling: a force moves the gear, but does not tilt it."""
+        """Return the same springs without coupling: a force moves the gear, but does not tilt it."""
         return replace(self, coupling=0.0)
 
     def hub(self) -> Hub:
-        """`Hub` on these springs."""
+        """Return the compliance of these springs as a `Hub` (for the contact solver)."""
         bending = np.array([[1 / self.radial, self.coupling], [self.coupling, 1 / self.tilt]])
         return Hub(bending, 1 / self.torsion, 1 / self.axial)

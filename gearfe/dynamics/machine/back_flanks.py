@@ -1,8 +1,8 @@
-"""Back flanks with a stiffness of their own: a second mesh that pushes the other way, once the play is used up.
+"""Back flanks with a separate stiffness: a second mesh that pushes the other way after the backlash is used up.
 
-The back flanks of symmetrical teeth are the mirror images of the front ones, and meet in the mirrored order: from the tip of the
-pinion to its root where the front flanks go from root to tip. So they have the stiffness of the front flanks, run through
-backwards from another phase (`back_phase`); and a tooth that is damaged in front of its centre-line is not damaged there.
+The back flanks of symmetrical teeth are the mirror images of the front ones and meet in the mirrored order: from the tip of the
+pinion to its root, while the front flanks go from root to tip. They therefore have the stiffness of the front flanks, in reverse
+from another phase (`back_phase`). A tooth that is damaged in front of its centre-line is not damaged behind it.
 """
 
 import math
@@ -37,11 +37,11 @@ class BackFlanks:
 
 
 def back_phase(pair: GearPair) -> float:
-    """The phase of a mesh at which the back flanks of its pair are at phase 0 of theirs.
+    """Return the phase of a mesh at which the back flanks of its pair are at their phase 0.
 
-    At the pitch point a front flank and the back flank of the same tooth of the pinion lie a tooth's thickness s apart on the
-    pitch circle, so that with its pitch p and the phase c of the pitch point both are ``start = 2 c + s / p``. Without the play,
-    half of which moves it by half of its part of the base pitch.
+    At the pitch point a front flank and the back flank of the same pinion tooth are a tooth's thickness s apart on the pitch
+    circle. With its pitch p and the phase c of the pitch point, ``start = 2 c + s / p`` is the phase of both. Backlash is
+    neglected; half of it moves the phase by half of its part of the base pitch.
 
     Raises
     ------
@@ -65,10 +65,11 @@ def back_phase(pair: GearPair) -> float:
 
 
 def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machine:
-    """The machine with back flanks of their own in the meshes named: each becomes two, the second called ``NAME back``.
+    """Return the machine with separate back flanks in the meshes named; the second mesh is called ``NAME back``.
 
-    Each of the two only has flanks in front; the second lies a play behind, and has the errors of the first, which what opens the
-    front flanks brings closer: `with_errors` comes before. What a `film` damps between the flanks stays one damping.
+    Each of the two meshes has front flanks only. The second is one backlash behind. It has the errors of the first: an error that
+    opens the front flanks closes the back flanks. Call `with_errors` first. The damping of a `film` between the flanks stays one
+    damper.
 
     Parameters
     ----------
@@ -96,7 +97,7 @@ def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machin
         if not 0 < known[name].backlash < math.inf:
             raise ValueError(f"mesh {name}: backlash = {known[name].backlash} m, but back flanks need one above 0 and finite")
         if known[name].friction:
-            raise ValueError(f"mesh {name}: back flanks of their own are without friction, which this mesh has")
+            raise ValueError(f"mesh {name}: separate back flanks are frictionless, but this mesh has friction")
         if known[name].shifts:
             raise ValueError(
                 f"mesh {name}: its teeth are off their places (pitch deviations, eccentricity), and back flanks of their own "
@@ -112,8 +113,8 @@ def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machin
 
 
 def _behind(mesh: GearMesh, own: BackFlanks, damping: float) -> GearMesh:
-    """The back flanks of a mesh as one of its own: time, teeth and errors run the other way."""
-    rest = 1.0 if mesh.push else 1 - mesh.film  # the front flanks, being apart, go on damping with the film
+    """Return the back flanks of a mesh as a separate mesh: time, teeth and errors run the other way."""
+    rest = 1.0 if mesh.push else 1 - mesh.film  # open front flanks keep the damping of the film
     return replace(
         mesh,
         name=f"{mesh.name} back",

@@ -1,4 +1,4 @@
-"""Campbell diagram: natural frequencies and the orders of meshes and shafts over the speed, and where they cross."""
+"""Campbell diagram: natural frequencies and excitation orders of meshes and shafts over the speed, and their crossings."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -13,12 +13,12 @@ from ...geometry.aliases import Floats
 from .modes import natural_frequencies
 from .tables import Machine
 
-MOST_HARMONICS = 1000  # of a mesh
-FASTEST = 50.0  # times the speed of the machine: a larger number is probably meant in rpm
+MOST_HARMONICS = 1000  # limit of the harmonics of a mesh
+FASTEST = 50.0  # limit of the relative speed: a larger number is probably in rpm
 
 
 class Crossing(NamedTuple):
-    """An order meets a natural frequency: at `speed` over the nominal one, at `frequency` [Hz], mode number from 0."""
+    """Crossing of an order and a natural frequency: `speed` over the nominal one, `frequency` [Hz], mode number from 0."""
 
     speed: float
     frequency: float
@@ -49,10 +49,10 @@ class Campbell:
 
 
 def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders: Mapping[str, float] | None = None) -> Campbell:
-    """Campbell diagram of a machine.
+    """Compute the Campbell diagram of a machine.
 
-    The natural frequencies are those of the mean mesh stiffnesses; of a machine with a `spin`, that of its carrier, or with
-    `rotors` they depend on the speed. Straight lines are laid between the speeds given.
+    The natural frequencies are those of the mean mesh stiffnesses. With a `spin` (of the carrier) or with `rotors` they depend on
+    the speed. Between the given speeds lines are straight.
 
     Parameters
     ----------
@@ -60,10 +60,10 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     speeds : array_like, shape (s,)
         Speeds over that of the machine, rising, two or more.
     harmonics : int
-        Of the mesh frequencies.
+        Number of harmonics of the mesh frequencies.
     orders : dict of str to float, optional
-        Orders of your own, with their frequencies at the machine's speed [Hz]. Default: meshes with their harmonics, and by
-        stage the turns of the driving gear, of a damaged tooth and of the carrier.
+        Additional user-defined orders, with their frequencies at the machine's speed [Hz]. Default: meshes with their harmonics,
+        and by stage the shaft frequencies of the driving gear, of the gear with a damaged tooth and of the carrier.
 
     Returns
     -------
@@ -108,7 +108,7 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
 
 
 def _at_speed(machine, speed):
-    """The machine with the gyroscopic terms of a speed over its own."""
+    """Return the machine with the gyroscopic terms of a relative speed."""
     rotors = {name: speed * velocity for name, velocity in machine.rotors.items()}
     return replace(machine, spin=speed * machine.spin, rotors=rotors)
 

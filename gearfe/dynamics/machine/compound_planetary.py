@@ -1,4 +1,4 @@
-"""The two-stage compound planetary gearbox with meshed planets, shared ring and shared carrier, as a table."""
+"""Two-stage compound planetary gearbox with meshed planets, shared ring and shared carrier."""
 
 import math
 from collections.abc import Mapping
@@ -48,7 +48,7 @@ def scene_compound(scene, case, **options):
 
 
 class _Mesh(NamedTuple):
-    """A mesh of the gearbox: what meshes, its angle [rad] and sense as of `Layout.mesh`, phase at t = 0 and frequency [Hz]."""
+    """Mesh of the gearbox: gears, angle [rad] and sense of `Layout.mesh`, phase at t = 0 and frequency [Hz]."""
 
     of: Meshed
     angle: float
@@ -78,7 +78,7 @@ def branch(pairs):
     cosine = (inner**2 + outer**2 - between**2) / (2 * inner * outer)
     if not -1 < cosine < 1:
         raise ValueError(
-            f"centre distances {inner:.6g}, {between:.6g}, {outer:.6g} mm make no triangle: sun, inner and outer planet"
+            f"centre distances {inner:.6g}, {between:.6g}, {outer:.6g} mm do not form a triangle of sun, inner and outer planet"
         )
     return inner, outer, math.acos(cosine)
 
@@ -223,7 +223,7 @@ def _teeth(pair):
 
 
 def _returns(table, pairs):
-    """How often a tooth meshes [Hz], by body of both stages; a ring that both have is of the driven one."""
+    """Return the mesh frequency of a tooth [Hz] by body of both stages; a ring in both belongs to the driven one."""
     out = [{}, {}]
     for (kind, bodies, _), *_, rate in table.values():
         for body, z in zip(bodies, _teeth(pairs[kind]), strict=True):

@@ -1,4 +1,4 @@
-"""Over the mesh phase: coefficients of the impact law, contact lines of helical gears, what pits take away, weights of friction.
+"""Tables over the mesh phase: impact-law coefficient, contact lines of helical gears, losses by pits, friction weights.
 
 All are for gears whose damaged tooth is tooth 0 of the pinion, at the phases of `gearfe.GearPair`.
 """

@@ -1,20 +1,19 @@
 """Forces of a gear mesh: the table of contact laws, backlash, Coulomb friction; and Hertz's coefficient.
 
-Everything takes arrays. The compression `x` of a mesh is positive when the driving flanks press on each other; its backlash is
-the play behind them, so that the back flanks touch at ``x = -backlash``. A law says how flanks in touch push; the back flanks
-push as the front ones do.
+All functions take arrays. The compression `x` of a mesh is positive when the driving flanks press on each other. The back flanks
+touch at ``x = -backlash``. A law gives the force of flanks in touch, which is the same for back flanks.
 
 To add a law, write one file in ``laws/`` and one row in `LAWS`; a mesh takes it as ``GearMesh(..., law=...)``.
-A law is a frozen dataclass; its fields are the parameters, numbers by name. Two of them every law has: `power`, the exponent of
-the depth in the unit of k, ``N/m**power``, and `straight`, whether the force is a straight line over depth and rate. Two static
-methods say the rest::
+A law is a frozen dataclass; its fields are numeric parameters. Every law has two of them: `power`, the exponent of the depth in
+the unit of k, ``N/m**power``, and `straight`, true if the force is linear in depth and rate. Two static methods define the
+force::
 
     force(depth, rate, k, c, law)    the force [N]: of depth >= 0 [m] and its rate [m/s], in proportion to k and c together
     slopes(depth, rate, k, c, law)   its derivatives by depth and by rate
 
-`k` and ``c = damping + damping_per_stiffness k`` [N s/m] are those of the mesh at the moment, and ``law.name`` is the parameter
-of that name. The reference integrator calls them with arrays, and the fast path has numba compile them for numbers: write them
-with operators and functions of numpy, without ``if`` and without functions of your own.
+`k` and ``c = damping + damping_per_stiffness k`` [N s/m] are the present values of the mesh, and ``law.name`` is the parameter
+with that name. The reference integrator calls the methods with arrays. For the fast path numba compiles them for numbers. Write
+them with operators and functions of numpy, without ``if`` and without calls of other functions.
 """
 
 import math
@@ -89,7 +88,7 @@ def touch(x, v, backlash):
 
 
 def mesh_force(touch, pushed):
-    """Function of compression, its rate, k and parameters that gives the force of a mesh, from `touch` and the law's force.
+    """Return the force of a mesh as a function of compression, its rate, k and parameters, from `touch` and the law's force.
 
     Made of plain functions it takes arrays, made of compiled ones numbers.
     """
@@ -196,12 +195,12 @@ def force(x, v, k, law):
 
 
 def sides(x, law):
-    """On which flanks each mesh touches at compressions `x` ``(..., m)``: 1 the front ones, -1 the back ones, 0 none."""
+    """Return on which flanks each mesh touches at compressions `x` ``(..., m)``: 1 front, -1 back, 0 none."""
     return (x > 0).astype(np.int8) - (x < -law["backlash"])
 
 
 def sided_force(x, v, k, law, side):
-    """`force` of meshes that stay on the flanks `side` says, whatever x: smooth where `force` has its kinks.
+    """Return `force` of meshes that stay on the flanks of `side` for any x: smooth where `force` has its kinks.
 
     An integrator that steps up to the time at which a flank is left sees a smooth law on all its way. (Flanks that only push,
     `push`, keep the kink at which their force reaches zero.)
@@ -212,12 +211,12 @@ def sided_force(x, v, k, law, side):
 
 
 def depth(x, law):
-    """How far the flanks of each mesh are pressed, front or back ones, at compressions `x` ``(..., m)``; 0 where none touch."""
+    """Return the depth of the flanks in touch of each mesh, front or back, at compressions `x` ``(..., m)``; 0 for none."""
     return touch(x, 0.0, law["backlash"])[0]
 
 
 def slopes(x, v, k, law, bend=0.0):
-    """Derivatives of `force` by x and v, of the branch the state is on (shapes as there).
+    """Compute the derivatives of `force` by x and v, of the branch the state is on (shapes as there).
 
     `bend` is that of k by the depth, of a `gearfe.dynamics.machine.force_law.ForceLaw` [N/m2].
     """
@@ -231,5 +230,5 @@ def slopes(x, v, k, law, bend=0.0):
 
 
 def closed(law):
-    """Whether all meshes push with ``k x + c x'`` wherever they are: straight laws that never open."""
+    """Return True if all meshes push with ``k x + c x'`` at any compression: straight laws that never open."""
     return bool((law["straight"].astype(bool) & (law["backlash"] == 0) & (law["least"] < 0)).all())

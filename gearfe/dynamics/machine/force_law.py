@@ -22,8 +22,8 @@ from ...stiffness.curve import StiffnessCurve, joined
 from ...stiffness.solve import PairOptions, Solve, solve, split_arguments
 from .secant import Secant
 
-ROWS, COLUMNS = 1024, 64  # of a law as a table: rows in a mesh cycle, depths
-BETWEEN = 7  # extra phases solved between two, where a pair comes in or leaves between them at any of the loads
+ROWS, COLUMNS = 1024, 64  # size of a law's table: rows in a mesh cycle, depths
+BETWEEN = 7  # further phases solved between two if the number of pairs in contact changes there at any load
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +65,9 @@ class ForceLaw:
     def __post_init__(self) -> None:
         """Make the table; ValueError if loads, phases or depths do not rise."""
         if self.load.size < 2 or not (np.diff(self.load) > 0).all() or not self.load[0] > 0:
-            raise ValueError(f"loads {self.load} N: a law of force needs two or more, each once and above 0")
+            raise ValueError(f"loads {self.load} N: a force law needs two or more, all different and above 0")
         if self.phase.size < 2 or not (np.diff(self.phase) > 0).all():
-            raise ValueError("a law of force needs phases that rise, two or more")
+            raise ValueError("a force law needs phases that rise, two or more")
         closing = np.diff(self.depth, axis=1, prepend=0.0)
         if not (np.isfinite(closing).all() and (closing > 0).all() and (self.tangent > 0).all()):
             i, j = np.argwhere(~((closing > 0) & (self.tangent > 0)))[0]
@@ -100,11 +100,11 @@ class ForceLaw:
         """
         if not all(isinstance(curve, StiffnessCurve) and "force_N" in curve.meta for curve in curves):
             raise ValueError(
-                "a law of force needs a list of StiffnessCurve, each with its load: mesh_stiffness(pair, [F1, F2, ...])"
+                "a force law needs a list of StiffnessCurve, each with its load: mesh_stiffness(pair, [F1, F2, ...])"
             )
         curves = sorted(curves, key=lambda loaded: float(loaded.meta["force_N"]))
         if any(curve.phase.shape != curves[0].phase.shape or not np.allclose(curve.phase, curves[0].phase) for curve in curves):
-            raise ValueError("the curves of a law of force must have the same phases: solve all loads in one call")
+            raise ValueError("the curves of a force law must have the same phases: solve all loads in one call")
         order = np.argsort(curves[0].phase, kind="stable")
         load = np.array([curve.meta["force_N"] for curve in curves], dtype=float)
         depth, tangent, pairs = (
@@ -183,14 +183,14 @@ def force_law(
     span: str = "cycle",
     **options: Unpack[PairOptions],
 ) -> ForceLaw:
-    """Law of force of a gear pair, for machines: its contact solved under several loads, closer where pairs come in or leave.
+    """Compute the load-dependent force law of a gear pair for dynamic models: its contact solved under several loads.
 
     Parameters
     ----------
     pair : GearPair or Case
     forces : sequence of float
         Loads along the line of action [N], up to the largest that the mesh will see. Each 1.4 times the one before gives
-        accelerations within about 1 % of those of ever more loads, each twice the one before within 3 %.
+        is 1.4 times the one before for accelerations within about 1 % of those of more loads; a ratio of 2 gives 3 %.
     material : Material or (Material, Material)
     force : float, optional
         The load at which the mesh works on average, see `ForceLaw`; default: that in the middle.
@@ -200,7 +200,7 @@ def force_law(
     span : {"cycle", "tooth"}
         ``tooth`` for the law of a damaged tooth (`gearfe.dynamics.machine.tooth_damage.ToothDamage`).
     **options
-        As of `mesh_stiffness`: ``method``, ``damage``, ``flanks`` and so on.
+        Options of `mesh_stiffness`: ``method``, ``damage``, ``flanks`` and so on.
 
     Returns
     -------
@@ -209,7 +209,7 @@ def force_law(
     Raises
     ------
     ValueError
-        If an input is impossible; the message says which.
+        If an input is impossible; the message states which.
 
     Examples
     --------
@@ -227,7 +227,7 @@ def force_law(
 def law_of(case: Case, how: Solve, force: float | None = None) -> ForceLaw:
     """`ForceLaw` of a case under its loads, with further phases where the number of pairs in contact changes."""
     if how.span not in ("cycle", "tooth"):
-        raise ValueError(f"span = {how.span!r}, but a law of force is of a 'cycle', or of the engagement of a damaged 'tooth'")
+        raise ValueError(f"span = {how.span!r}, but a force law is of a 'cycle', or of the engagement of a damaged 'tooth'")
     curves = solve(case, how)
     law = ForceLaw.of([curve.without_supports() for curve in curves], force)
     counts = np.concatenate([law.pairs, law.pairs[:1]]) if how.span == "cycle" else law.pairs

@@ -1,18 +1,20 @@
-"""How a machine answers a harmonic force: receptance, mobility and accelerance between two of its coordinates."""
+"""Frequency response of a machine: receptance, mobility and accelerance between two of its coordinates."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...geometry.renamed import renamed
 from .tables import Machine
 
 KINDS = {"receptance": 0, "mobility": 1, "accelerance": 2}  # derivatives by time
 
 
+@renamed(heard="output", driven="input")
 def frequency_response(
     machine: Machine,
     frequencies: ArrayLike,
-    heard: str | ArrayLike,
-    driven: str | ArrayLike,
+    output: str | ArrayLike,
+    input: str | ArrayLike,
     *,
     kind: str = "receptance",
 ) -> NDArray[np.complex128]:
@@ -20,7 +22,7 @@ def frequency_response(
 
     ::
 
-        H(f) = (i w)**p  heard @ inv(K + i w C - w**2 M) @ driven,   w = 2 pi f,  p = 0, 1, 2
+        H(f) = (i w)**p  output @ inv(K + i w C - w**2 M) @ input,   w = 2 pi f,  p = 0, 1, 2
 
     The varying part of the stiffness, which couples frequencies a mesh frequency apart, is left out. Without the spin of a frame,
     rotors that tilt and friction it is the same with both coordinates exchanged.
@@ -30,7 +32,7 @@ def frequency_response(
     machine : Machine
     frequencies : array_like, shape (f,)
         [Hz]
-    heard, driven : str or array_like, shape (n,)
+    output, input : str or array_like, shape (n,)
         A degree of freedom, a mesh (its compression; its force on both bodies), or a row over the degrees of freedom.
     kind : str
         ``"receptance"`` [m/N, rad/(N m)...], ``"mobility"`` [times 1/s], ``"accelerance"`` [times 1/s2].
@@ -64,9 +66,9 @@ def frequency_response(
     f = np.atleast_1d(np.asarray(frequencies, dtype=float))
     if f.ndim != 1 or not (np.isfinite(f).all() and (f >= 0).all()):
         raise ValueError("frequencies: give a row of finite numbers of Hz, 0 or more")
-    out, at = _row(machine, heard), _row(machine, driven)
+    out, at = _row(machine, output), _row(machine, input)
     K, C, _, _ = machine.linear(machine.working())
-    scale = 1 / np.sqrt(machine.mass)  # so that 1 has one meaning for displacements and angles
+    scale = 1 / np.sqrt(machine.mass)  # scaled, so that displacements and angles have one magnitude
     K, C = (scale[:, None] * matrix * scale for matrix in (K, C))
     answer = np.empty(f.size, dtype=complex)
     for i, w in enumerate(2 * np.pi * f):

@@ -32,7 +32,7 @@ NOWHERE = 1e-12  # m: smaller shifts of a tooth are rounding
 @renamed(beta="damping_per_stiffness")
 @dataclass(frozen=True, slots=True)
 class GearMesh:
-    """A gear mesh: the force ``F`` of `gearfe.dynamics.machine.contact_law.force` acts on the degrees of freedom as ``-row F``.
+    """Gear mesh: its force F (`gearfe.dynamics.machine.contact_law.force`) acts on the degrees of freedom as ``-row F``.
 
     Parameters
     ----------
@@ -40,12 +40,12 @@ class GearMesh:
     row : ndarray, shape (n,)
         ``row @ q`` is the compression along the transverse line of action [m].
     stiffness : float, ndarray, StiffnessCurve, ForceLaw or Table
-        Stiffness over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced. Of a `ForceLaw` k is the secant
-        stiffness at the depth at which the flanks press, the same law on the back flanks; where one stiffness over the phase is
-        asked for, that under the law's `force`.
+        Stiffness over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced. With a `ForceLaw`, k is the secant
+        stiffness at the current deflection, for drive and coast flanks. Functions that need a single stiffness curve use the one
+        at `law.force`.
     frequency : float
-        Mesh frequency [Hz]. It is negative where the loaded flanks are those of gear 1 driving, but gear 2 drives: the contacts
-        then run backwards.
+        Mesh frequency [Hz]. It is negative if gear 2 drives on the flanks that are loaded when gear 1 drives: the contacts then
+        run backwards.
     phase : float
         Phase at t = 0; whole cycles count, because they number the teeth.
     teeth, first : (int, int)
@@ -54,22 +54,22 @@ class GearMesh:
     error : tuple of (float, float, float)
         Mesh error ``e(t)`` as sinusoids: amplitude [m], frequency [Hz], phase [rad] of a sine; it opens the mesh.
     damping, damping_per_stiffness, zeta : float
-        ``c = damping + damping_per_stiffness k(t)`` [N s/m], `damping_per_stiffness` in s; a `zeta` is turned into ``damping = 2
-        zeta sqrt(mean k / sum(row**2 / m))`` by `gearfe.dynamics.machine.tables.Machine`, summed over all degrees of freedom that
-        the row moves.
+        The damping is ``c = damping + damping_per_stiffness k(t)`` [N s/m], with `damping_per_stiffness` in s.
+        `gearfe.dynamics.machine.tables.Machine` converts a `zeta` to ``damping = 2 zeta sqrt(mean k / sum(row**2 / m))``, with
+        the sum over all degrees of freedom of the row.
     power, depth, push : float, float, bool
-        Of the impact law: the exponent, the penetration from which the damping is full [m] (0: it always is), and whether the
-        flanks only push and never pull.
+        Parameters of the impact law: the exponent, the depth from which the damping is full [m] (0: always), and whether contact
+        is unilateral (no tension).
     backlash : float
-        Play along the line of action [m]. With 0 the mesh never opens, with inf there is no back flank.
+        Backlash along the line of action [m]. With 0 the mesh never opens, with inf there is no back flank.
     film : float
-        Part of the damping that acts while no flank touches (1: all of it, as A. Kahraman, R. Singh, J. Sound Vib. 142 (1990)).
+        Part of the damping that acts in an open mesh (1: all of it, as A. Kahraman, R. Singh, J. Sound Vib. 142 (1990)).
     friction : tuple of (ndarray, Table)
         Rows and their weights over the phase: friction acts with ``-row weight(phase) F``.
     gap : float
-        How far the flanks are apart where ``row @ q - e`` is 0 [m]: the play before back flanks of their own touch.
+        Distance between the flanks where ``row @ q - e`` is 0 [m]: the backlash before separate back flanks touch.
     law : Law, optional
-        Another contact law than `power` and `depth` state, with its parameters (`gearfe.dynamics.machine.contact_law`).
+        Contact law to replace that of `power` and `depth`, with its parameters (`gearfe.dynamics.machine.contact_law`).
     """
 
     name: str
@@ -139,14 +139,14 @@ class GearMesh:
                 f"mesh {self.name}: law = {law!r} is not in LAWS of gearfe.dynamics.machine.contact_law: add its row there"
             )
         if self.law and (self.power != 1 or self.depth):
-            raise ValueError(f"mesh {self.name}: power and depth besides law = {law!r}, which has parameters of its own")
+            raise ValueError(f"mesh {self.name}: power and depth besides law = {law!r}, which has its own parameters")
         if power != 1 and self.backlash == 0:
             raise ValueError(f"mesh {self.name}: power = {power} needs a backlash > 0 (inf: no back flank)")
         if power != 1 and isinstance(self.stiffness, ForceLaw):
-            raise ValueError(f"mesh {self.name}: power = {power} besides a law of force, which says itself how force rises")
+            raise ValueError(f"mesh {self.name}: power = {power} besides a force law, which defines the force itself")
 
     def _changes(self, healthy: PhaseTable, name: str = "k") -> tuple[Change, ...]:
-        """Differences of `name` by damage from a `healthy` cycle; of curves with `every` also from the damage before them."""
+        """Return differences of `name` by damage from a `healthy` cycle; for curves with `every` also from damage before them."""
         out: list[Change] = []
         for hurt in self.damage:
             z = hurt.every or self.teeth[hurt.body]
@@ -158,7 +158,7 @@ class GearMesh:
         return tuple(out)
 
     def _shifts(self) -> tuple[Change, ...]:
-        """What teeth off their places change of the unloaded transmission error [m]; none if no curve has any."""
+        """Return the changes of the unloaded transmission error by tooth position errors [m]; none if no curve has any."""
         curves = [hurt.curve for hurt in self.damage]
         if all(getattr(curve, "unloaded", None) is None for curve in curves):
             return ()
@@ -173,11 +173,11 @@ class GearMesh:
         """`Secant` of the healthy cycle, then the change by each damage; none without a `ForceLaw`."""
         lawful = [isinstance(stiffness, ForceLaw) for stiffness in (self.stiffness, *(hurt.curve for hurt in self.damage))]
         if any(lawful) != all(lawful):
-            raise ValueError(f"mesh {self.name}: give laws of force for the healthy mesh and for all its damage, or for none")
+            raise ValueError(f"mesh {self.name}: give force laws for the healthy mesh and for all its damage, or for none")
         if not isinstance(self.stiffness, ForceLaw):
             return ()
         if not self.stiffness.periodic:
-            raise ValueError(f"mesh {self.name}: its law of force is not of one mesh cycle: make it with span='cycle'")
+            raise ValueError(f"mesh {self.name}: its force law is not of one mesh cycle: make it with span='cycle'")
         out = [self.stiffness.secant]
         for hurt, (_, first, _) in zip(self.damage, self.changes, strict=True):
             others = [(z, begin, less) for (z, begin, _), less in zip(self.changes, out[1:], strict=False)] if hurt.every else []
@@ -187,7 +187,7 @@ class GearMesh:
 
     @property
     def openings(self) -> tuple[tuple[float, float, float], ...]:
-        """Its errors, and its gap as one that stays."""
+        """Its errors, and its gap as a constant one."""
         return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
 
     def k(self, t: ArrayLike) -> Floats:
@@ -195,12 +195,12 @@ class GearMesh:
         return self.at_phase(self.phase + self.frequency * np.asarray(t, dtype=float))
 
     def at_phase(self, phase: Floats) -> Floats:
-        """Stiffness at running phases."""
+        """Return the stiffness at unwrapped phases (whole cycles count, because they number the teeth)."""
         out = self.cycle(phase - np.floor(phase)) + changed(self.changes, phase)
         return np.maximum(out, 0.0) if self.changes else out
 
     def pressed(self, phase: NDArray, deep: NDArray) -> tuple[NDArray, ArrayLike]:
-        """Stiffness at running phases and depths [m], and its derivative by the depth [N/m2], 0 without a `ForceLaw`."""
+        """Return stiffness at unwrapped phases and depths [m], and its derivative by the depth [N/m2], 0 without a `ForceLaw`."""
         if not self.secants:
             return self.at_phase(phase), 0.0
         k, bend = self.secants[0](phase % 1.0, deep)
@@ -229,7 +229,7 @@ class GearMesh:
         return math.lcm(1, *(int(z) for z, _, _ in self.changes))
 
     def entries(self, duration: float) -> list[Floats]:
-        """Times [s] up to `duration` at which each damaged tooth is at phase 0 of this mesh (list of arrays, one per damage)."""
+        """Return the times [s] up to `duration` at which each damaged tooth is at phase 0 of this mesh, one array per damage."""
         out = []
         for z, first, _ in self.changes:
             low, high = sorted((self.phase, self.phase + self.frequency * duration))

@@ -28,7 +28,7 @@ def gear_pair_machine(
     damage: tuple[ToothDamage, ...] = (),
     **mesh: Any,
 ) -> Machine:
-    """Two gears on elastic shafts: 6 degrees of freedom (x, y, theta each), more if the bodies have more.
+    """Build two gears on elastic shafts: 6 degrees of freedom (x, y, theta each), more if the bodies have more.
 
     Gear 1 drives counter-clockwise; gear 2 stands on the x axis.
 

@@ -159,7 +159,7 @@ def _ends(train):
     for name, end in train.ends.items():
         if end["torsion_Nm_per_mrad"] is not None:
             if not end["inertia_kgm2"] > 0:
-                raise ValueError(f"[{name}] inertia_kgm2 = 0, but what stands behind an elastic coupling has a moment of inertia")
+                raise ValueError(f"[{name}] inertia_kgm2 = 0, but a member behind an elastic coupling needs a moment of inertia")
             out.append(Body(name, 0.0, end["inertia_kgm2"], "theta"))
     return out
 

@@ -53,9 +53,9 @@ def pitted_helical(
     zeta: float = 0.02,
     backlash: float = 1e-4,
 ) -> Machine:
-    """The helical pair with pitted pinion teeth: impact law, load shared by the lengths of the contact lines.
+    """Build the helical pair with pitted pinion teeth: impact law, load shared by the lengths of the contact lines.
 
-    8 degrees of freedom: x, y, z and theta of both gears.
+    It has 8 degrees of freedom: x, y, z and theta of both gears.
 
     Parameters
     ----------
@@ -64,8 +64,8 @@ def pitted_helical(
     materials : (Material, Material)
         Materials of both gears, for the coefficient of the impact law at the pitch point.
     pits : sequence of (int, sequence of (float, float, float, float))
-        Pinion teeth and their pits, as `machine.contact_cycle.ellipse_loss` takes them, or instead of pits a function of
-        the phase (`gearfe.dynamics.machine.impact.pits_loss`); where the pits are is not in the article.
+        Pinion teeth and their pits (see `machine.contact_cycle.ellipse_loss`), or instead of pits a function of the phase
+        (`gearfe.dynamics.machine.impact.pits_loss`). The article does not state the positions of pits.
     speed, torque : float
         Speed [rad/s] and torque [N m] of the pinion: 2500 rpm; that 250 N m act on the pinion is assumed.
     damping, depth : float
@@ -75,12 +75,12 @@ def pitted_helical(
     drive : float
         Torsional stiffness of the shafts to motor and brake [N m/rad], assumed 1e4 at the pinion, none at the wheel.
     density, zeta, backlash : float
-        [kg/m3]; damping ratio of supports, assumed 0.02; play along the line of action [m], assumed 0.1 mm.
+        Density [kg/m3]; damping ratio of supports, assumed 0.02; backlash along the line of action [m], assumed 0.1 mm.
 
     Returns
     -------
     Machine
-        As `gear_pair_machine` makes it, of bodies ``pinion`` and ``wheel``: in SI units and a frame at rest.
+        Machine of `gear_pair_machine` with bodies ``pinion`` and ``wheel``, in SI units and a frame at rest.
 
     Raises
     ------

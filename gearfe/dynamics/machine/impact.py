@@ -37,7 +37,7 @@ def impact_planetary(scene, case):
     """Planetary stage of a scene under the impact law, healthy or with pits on a tooth of the sun."""
     chosen = {name: scene.pair(name) for name in ("sun_planet", "planet_ring")}
     if pits_of(chosen["planet_ring"].damage.get(case, {})):
-        raise ValueError("the impact law knows damage of the sun's flanks only: use contact = 'linear'")
+        raise ValueError("the impact law models damage of the sun's flanks only: use contact = 'linear'")
     tooth_pits = pits_of(chosen["sun_planet"].damage.get(case, {}))
     materials = {name: scene_pair.materials for name, scene_pair in chosen.items()}
     stage, machine = stage_of(scene), scene.machine
@@ -81,7 +81,7 @@ def impact_helical(scene, case):
 
 
 def pits_of(damage):
-    """Pits on one pinion tooth of a case of damage, which is all the impact law knows.
+    """Return the pits on one pinion tooth of a case of damage; the impact law models no other damage.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def pits_of(damage):
     """
     pits = list(damage.get("pinion", ()))
     if damage.get("wheel") or not all(pit._removes_contact for pit in pits) or len({pit.tooth for pit in pits}) > 1:
-        raise ValueError("the impact law knows damage of the flank of one tooth of the pinion (sun) only: use contact = 'linear'")
+        raise ValueError("the impact law models damage of one flank of the pinion (sun) only: use contact = 'linear'")
     return pits
 
 

@@ -1,4 +1,4 @@
-"""How far a law of force may be off between its loads and phases, as leaving some out tells, and one of as many as it needs."""
+"""Interpolation error of a mesh force law, and a law refined until this error is small."""
 
 from dataclasses import dataclass, replace
 from typing import Unpack
@@ -13,13 +13,13 @@ from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.solve import PairOptions, split_arguments
 from .force_law import ForceLaw, law_of
 
-FIRST = 5, 32  # loads and phases that `converged_force_law` begins with
-ROUNDS = 6  # times it takes more of them, at most
+FIRST = 5, 32  # initial loads and phases of `converged_force_law`
+ROUNDS = 6  # maximum number of refinements
 
 
 @dataclass(frozen=True, slots=True)
 class LawError:
-    """Errors of a law of force, over the force: largest ones, and root mean squares over phases and loads.
+    """Interpolation errors of a mesh force law, relative to the force: maximum and RMS over phases and loads.
 
     `loads` between the loads solved, `phases` between the phases, `loads_rms` and `phases_rms` likewise.
     """
@@ -31,7 +31,7 @@ class LawError:
 
 
 def law_error(law: ForceLaw) -> LawError:
-    """Errors of a law of force between its loads and between its phases, over the force.
+    """Errors of a force law between its loads and between its phases, over the force.
 
     Every second load is left out, and the law of the others asked for the force at the depths that those left out press to; the
     same with every second phase. That is the error of a law of half as many, more than that of the law itself, which has them
@@ -63,7 +63,7 @@ def law_error(law: ForceLaw) -> LawError:
     (True, True)
     """
     if law.load.size < 3 or law.phase.size < 4:
-        raise ValueError(f"{law!r}: its error is told from three loads and four phases or more; solve it for more")
+        raise ValueError(f"{law!r}: its error estimate needs three loads and four phases or more; solve it for more")
     loads, phases = np.arange(law.load.size), np.arange(law.phase.size)
     inner = loads[1:-1:2]
     fewer = _part(law, phases, np.setdiff1d(loads, inner))
@@ -83,7 +83,7 @@ def converged_force_law(
     force: float | None = None,
     **options: Unpack[PairOptions],
 ) -> ForceLaw:
-    """Law of force between two loads, solved under as many loads and at as many phases as its own error estimate asks for.
+    """Force law between two loads, solved under as many loads and at as many phases as its own error estimate asks for.
 
     Twice as many of what is worse than asked for, loads or phases, until the root mean squares of `law_error` are within
     `error`. Those are the errors of half as many: the law itself is two to five times better. With the default, accelerations of
@@ -128,7 +128,7 @@ def converged_force_law(
         phases = phases if found.phases_rms <= error else 2 * phases
     raise RuntimeError(
         f"{law!r} may be off by {found.loads_rms:.2g} between its loads and {found.phases_rms:.2g} between its phases, over "
-        f"the force; asked for were {error:g}: allow more, or make a law by gf.force_law"
+        f"the force; the limit was {error:g}: allow more, or make a law by gf.force_law"
     )
 
 
@@ -139,7 +139,7 @@ def _part(law, phases, loads):
 
 
 def _off(fewer: ForceLaw, law: ForceLaw, phases: NDArray[np.int64], loads: NDArray[np.int64]) -> Floats:
-    """How far the force of a law of fewer loads or phases is off at some of those of the whole one, over the force."""
+    """Return the relative force error of a law of fewer loads or phases at some of those of the whole one."""
     exact = law.load[loads]
     return np.asarray(np.abs(fewer(law.depth[np.ix_(phases, loads)], law.phase[phases, None]) / exact - 1))
 

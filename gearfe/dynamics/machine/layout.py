@@ -1,4 +1,4 @@
-"""Rows of springs and meshes from where bodies are and how they touch, and the phases of meshes along a train of gears.
+"""Rows of springs and meshes from positions of bodies and contacts, and phases of meshes along a train of gears.
 
 Axes: x and y in the plane of the gears, z along their axes; angles counter-clockwise about z. Planetary trains are seen from
 their carrier; what its rotation adds, centripetal and gyroscopic terms, a `Machine` has with a `spin`.
@@ -60,7 +60,7 @@ class Body:
 
 
 class Layout:
-    """The degrees of freedom of some bodies, and rows over them: start here to build a machine of your own.
+    """Degrees of freedom of bodies, and rows over them: the starting point of a user-defined machine.
 
     Examples
     --------
@@ -80,7 +80,7 @@ class Layout:
     def __init__(self, bodies: Sequence[Body]) -> None:
         self.bodies = {body.name: body for body in bodies}
         if len(self.bodies) < len(bodies):
-            raise ValueError(f"bodies {', '.join(body.name for body in bodies)}, but give each body a name of its own")
+            raise ValueError(f"bodies {', '.join(body.name for body in bodies)}, but give each body another name")
         self.dofs = tuple(f"{body.name}.{dof}" for body in bodies for dof in body.dofs.split())
         self.place = {name: i for i, name in enumerate(self.dofs)}
         sizes = {"theta": "inertia", "tilt_x": "across", "tilt_y": "across"}
@@ -189,7 +189,7 @@ class Layout:
 
 
 def _line_of_action(angle, alpha, sense):
-    """Unit vectors from the centre of the first body to the pitch point, and along the transverse line of action."""
+    """Return unit vectors from the centre of the first body to the pitch point, and along the transverse line of action."""
     angle = ranged("angle", angle, " rad")
     if not 0 < ranged("alpha", alpha, " rad") < math.pi / 2:
         raise ValueError(f"alpha = {alpha:g} rad, but a pressure angle lies between 0 and pi / 2: give it in rad")

@@ -13,12 +13,12 @@ from .of_scene import flat_machine
 from .tables import Machine
 
 DEEPEST = 10_000  # teeth at most by which a frequency is divided
-SAME = 1e-9  # relative difference of two values of one frequency
+SAME = 1e-9  # relative difference of frequencies of one line
 BEARING = {"cage": "FTF, cage", "outer": "BPFO, outer race", "inner": "BPFI, inner race", "roller": "BSF, rotation of a roller"}
 
 
 class Line(NamedTuple):
-    """A line: frequency [Hz], part of the machine, name, and origin of the number."""
+    """Spectral line: frequency [Hz], machine part, name, and origin."""
 
     frequency: float
     part: str
@@ -102,7 +102,7 @@ def _shafts(scene):
 
 
 def _stages(machine: Machine, alone: bool) -> Iterator[Line]:
-    """Lines of the stages; `alone`: the machine has no shafts, so that gears of pairs have shaft frequencies."""
+    """Return the lines of the stages; `alone`: the machine has no shafts, so that gears of pairs have shaft frequencies."""
     for stage in machine.stages:
         part, z = f"stage {stage.name}", round(stage.mesh / stage.turning)
         driver = stage.driver[0] if len(stage.driver) == 1 else stage.driver[0].rstrip("LR")

@@ -1,4 +1,4 @@
-"""`Load`: what acts on a machine from outside, constant or over time."""
+"""`Load`: external load of a machine, constant or over time."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from ...core.checks import numbers, whole
 from ...core.record import ranged, settle, settle_numbers, settle_row
 from ...geometry.aliases import Floats
 
-# of a load: a number, times and values, or a function of an array of times
+# value of a load: a number, times and values, or a function of an array of times
 History = float | tuple[ArrayLike, ArrayLike] | Callable[[Floats], ArrayLike]
 
 
@@ -65,7 +65,7 @@ class Load:
 
 
 def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
-    """Times [s] and values of a history; ValueError unless they are finite and as many, and the times rise.
+    """Return times [s] and values of a history; ValueError unless they are finite, equal in number, and the times rise.
 
     With `strict` False two times may be equal.
     """
@@ -75,7 +75,7 @@ def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
     if times.ndim != 1 or times.shape != values.shape or not times.size:
         raise ValueError(f"{what}: give as many times as values, got shapes {times.shape} and {values.shape}")
     if not (np.isfinite(times).all() and np.isfinite(values).all()):
-        raise ValueError(f"{what}: it has a time or a value that is not finite (nan or inf)")
+        raise ValueError(f"{what}: a time or a value is not finite (nan or inf)")
     wrong = np.diff(times) <= 0 if strict else np.diff(times) < 0
     if wrong.any():
         at = int(np.argmax(wrong)) + 1

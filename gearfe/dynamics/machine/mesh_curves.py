@@ -1,4 +1,4 @@
-"""Stiffness over the mesh phase as tables, and what damaged teeth change of it."""
+"""Stiffness over the mesh phase as tables, and its changes by damaged teeth."""
 
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
@@ -16,7 +16,7 @@ FINE = 1024  # samples per cycle that curves on uneven phases are brought to
 
 
 class Samples(NamedTuple):
-    """Stiffness `k` [N/m^power] at phases, of what is no `StiffnessCurve`: contact coefficients, or curves of other programs."""
+    """Stiffness `k` [N/m^power] at phases from other sources: contact coefficients, or curves of other programs."""
 
     phase: Floats
     k: Floats
@@ -25,9 +25,9 @@ class Samples(NamedTuple):
 Curve = StiffnessCurve | Samples  # stiffness over the phase
 
 
-Stiffness = float | Floats | Curve | ForceLaw | PhaseTable  # what `GearMesh` takes
-Change = tuple[float, float, PhaseTable]  # cycles until it returns, the first of them, and the change over the phase from there
-ALIKE = 1e-6  # of a mesh cycle, of a cell: how far samples of two curves are apart that count as the same
+Stiffness = float | Floats | Curve | ForceLaw | PhaseTable  # types of stiffness that `GearMesh` accepts
+Change = tuple[float, float, PhaseTable]  # cycles until it returns, the first of them, the change over the phase from there
+ALIKE = 1e-6  # tolerance of equal samples of two curves [mesh cycles, cells]
 
 
 def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[PhaseTable, Any], Any] = PhaseTable.__call__) -> Any:

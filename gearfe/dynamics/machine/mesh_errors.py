@@ -1,4 +1,4 @@
-"""Mesh errors of a whole machine: of the profiles, as a sinusoid or tabulated, of eccentric bodies, of misplaced ones."""
+"""Mesh errors of a machine: profile errors as sinusoids or tables, eccentric bodies, pin position errors."""
 
 import math
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ def with_errors(
     runout: Mapping[str, tuple[float, float, float]] | None = None,
     place: Mapping[str, tuple[float, float]] | None = None,
 ) -> Machine:
-    """The machine with errors in every mesh, the three kinds that the article on the herringbone stage lists.
+    """Return the machine with errors in every mesh, the three kinds that the article on the herringbone stage lists.
 
     A shift s of a body's teeth closes a mesh by ``row s`` with the translations of the mesh's row, so that ``e = -row s``.
 

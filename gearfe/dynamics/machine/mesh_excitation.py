@@ -1,14 +1,14 @@
-"""What excites a mesh besides its stiffness: the transmission error of modified flanks, tabulated over the mesh phase.
+"""Displacement excitation of a mesh: the transmission error of modified flanks, tabulated over the mesh phase.
 
-A mesh of a machine pushes with ``k(phase) (x - e(phase))``. Under a force F that changes slowly, flanks close by their
-transmission error ``te = unloaded + F / k_secant``. Three ways to say so, each counted once:
+A mesh of a machine pushes with ``k(phase) (x - e(phase))``. Under a slowly changing force F the flanks approach by their
+transmission error ``te = unloaded + F / k_secant``. There are three equivalent formulations:
 
-- about rest: the secant k of the curve's load and ``e = unloaded``. Exact at that load, whatever the phase; small vibrations
-  about it feel the secant, a few per cent too soft (the tangent is stiffer).
-- about the load: the tangent k and ``e = te - F / k_tangent``. Exact at that load, and for small vibrations about it; wrong far
-  from it, also where contact is lost.
-- a constant k and ``e = te - F / k``: exact at that load, with the changes of k left out of the vibration (forced, not
-  parametric). The *loaded* error beside a varying k counts the deflection twice.
+- about rest: the secant k at the curve's load and ``e = unloaded``. It is exact at that load for any phase. Small vibrations
+  about it have the secant stiffness, which is a few per cent too soft (the tangent is stiffer).
+- about the load: the tangent k and ``e = te - F / k_tangent``. It is exact at that load and for small vibrations about it, and
+  wrong far from it, also where contact is lost.
+- a constant k and ``e = te - F / k``: it is exact at that load and neglects the changes of k in the vibration (forced, not
+  parametric, excitation). The *loaded* error together with a varying k counts the deflection twice.
 """
 
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ ABOUT = ("rest", "load")
 
 
 def mesh_excitation(curve: StiffnessCurve, about: str = "rest") -> tuple[Samples, Samples]:
-    """Stiffness and displacement excitation of a mesh that together are a curve's transmission error under its load.
+    """Return mesh stiffness and displacement excitation that reproduce the transmission error of a curve at its load.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def mesh_excitation(curve: StiffnessCurve, about: str = "rest") -> tuple[Samples
 
 
 def harmonics(error: Any, frequency: float, phase: float) -> list[tuple[float, float, float]]:
-    """A tabulated error as the sinusoids (amplitude, frequency, phase of a sine) that run through all its samples.
+    """Return a tabulated error as sinusoids (amplitude, frequency, phase of a sine) through all its samples.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def harmonics(error: Any, frequency: float, phase: float) -> list[tuple[float, f
     parts[1 : (n + 1) // 2] *= 2
     out = []
     for m in np.flatnonzero(np.abs(parts) > SMALLEST * np.abs(parts).max(initial=0.0)).tolist():
-        angle = np.angle(parts[m]) + np.pi / 2 + 2 * np.pi * m * (phase - first) / cycles  # of a cosine as a sine
+        angle = np.angle(parts[m]) + np.pi / 2 + 2 * np.pi * m * (phase - first) / cycles  # phase of a cosine as a sine
         out.append((float(abs(parts[m])), m * frequency / cycles, float(angle % (2 * np.pi))))
     return out
 

@@ -1,4 +1,4 @@
-"""Where the energy of each mode is: in which springs and meshes, in which bodies."""
+"""Modal energy: shares of springs, meshes and bodies in the energy of each mode."""
 
 from dataclasses import dataclass
 
@@ -39,7 +39,7 @@ class ModalEnergy:
         return np.asarray(self.modes.T @ np.asarray(row, dtype=float))
 
     def largest(self, mode: int, count: int = 3) -> dict[str, float]:
-        """The springs and meshes that hold most of the elastic energy of a mode, with their parts of it."""
+        """Return the springs and meshes with most of the elastic energy of a mode, and their shares."""
         ranked = sorted(self.strain, key=lambda name: -self.strain[name][mode])
         return {name: float(self.strain[name][mode]) for name in ranked[:count]}
 

@@ -15,7 +15,7 @@ BOTH = 0.02  # part of the kinetic energy from which a body counts as moving aga
 
 
 def mode_words(machine: Machine, energy: ModalEnergy, mode: int) -> str:
-    """A mode in words: its kind, the bodies that move most, and where the strain energy is.
+    """Return a description of a mode: its kind, the bodies that move most, and the places of the strain energy.
 
     Parameters
     ----------
@@ -67,14 +67,14 @@ def _against(machine, energy, mode, first, moving):
 
 
 def modes_table(machine: Machine, top: float) -> Table:
-    """Natural frequencies of a machine up to `top` [Hz] in words, meshes at their mean stiffness."""
+    """Return the table of natural frequencies up to `top` [Hz] with mode shapes; meshes have their mean stiffness."""
     energy = modal_energy(machine)
     rows = [[i, f, mode_words(machine, energy, i)] for i, f in enumerate(energy.frequencies.tolist()) if f <= top]
     return Table(["mode", Column("natural frequency", "Hz", "{:.5g}"), "shape"], rows, "natural frequencies")
 
 
 def critical_speeds(machine: Machine, rpm: float, speeds: Sequence[float], harmonics: int = 3) -> tuple[Table, Campbell]:
-    """Speeds at which lines of the stages meet natural frequencies, as a table, and the Campbell diagram.
+    """Return the table of critical speeds, at which an excitation meets a natural frequency, and the Campbell diagram.
 
     Parameters
     ----------

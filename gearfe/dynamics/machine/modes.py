@@ -10,7 +10,7 @@ from ...geometry.aliases import Floats
 from .tables import Machine
 from .turning_frame import frame_terms
 
-RIGID = 1e-12  # of the largest squared frequency: below it a mode is a rigid-body mode
+RIGID = 1e-12  # modes below this part of the largest squared frequency are rigid-body modes
 
 
 def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tuple[Floats, Floats]:
@@ -37,12 +37,12 @@ def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tupl
 
 
 def _whirling(machine, K):
-    """Natural frequencies and complex modes of an undamped machine in a frame that turns, or with bodies that turn and tilt."""
+    """Return natural frequencies and complex modes of an undamped machine in a rotating frame, or with tilting rotors."""
     n, mass = len(machine.mass), machine.mass
     gyroscopic, centripetal, _ = frame_terms(machine.dofs, mass, machine.springs, machine.spin, machine.rotors)
     inner = np.block([[np.zeros((n, n)), np.eye(n)], [-(K + centripetal) / mass[:, None], -gyroscopic / mass[:, None]]])
     values, vectors = np.linalg.eig(inner)
-    order = np.argsort(values.imag)[n:]  # of each pair the one that turns forward
+    order = np.argsort(values.imag)[n:]  # the mode of each pair that whirls forward
     modes = vectors[:n, order]
     modes = modes / np.sqrt((mass[:, None] * np.abs(modes) ** 2).sum(axis=0))
     top = values.imag.max()

@@ -1,4 +1,4 @@
-"""From a scene to its machine: the table of models that `build_machine` reads, and the errors a scene states.
+"""Machine of a scene: the table of models that `build_machine` uses, and the errors of a scene.
 
 A model is one file that states its bodies, stages and springs and a function ``(scene, case, **options) -> Machine`` of it, and
 one row here.
@@ -23,6 +23,7 @@ from .mesh_curves import Samples
 from .mesh_errors import with_errors
 from .pitted_planetary import scene_planetary
 from .scene_curves import own_forces, pair_backlash
+from .stages import Fault
 from .tables import Machine
 
 MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it is built with either contact
@@ -55,7 +56,7 @@ def build_machine(
     loads : sequence of float
         Loads that the contact of each pair is solved under, as multiples of the largest force of its meshes at rest, which the
         load that the scene states for the pair need not be. One of them makes stiffnesses over the phase that are true of this
-        load alone, by default of the meshes' own. Several make laws of force (`machine.force_law.ForceLaw`), for loads
+        load alone, by default of the meshes' own. Several make force laws (`machine.force_law.ForceLaw`), for loads
         that change and for resonances: ``(1 / 16, 1 / 4, 1 / 2, 1, 2)``. Their mesh forces bend where pairs come in, with
         harmonics far above the mesh frequency: `gearfe.simulate` filters them out above half of its rate. Not under the impact
         law, which has a coefficient.
@@ -91,7 +92,7 @@ def build_machine(
 
 
 def flat_machine(scene: Scene, case: str | None = None) -> Machine:
-    """The machine of a scene with a constant mesh stiffness, for its frequencies and faults; nothing is solved.
+    """Return the machine of a scene with constant mesh stiffness, for its frequencies and faults; nothing is solved.
 
     ValueError if `build_machine` refuses it.
     """
@@ -99,8 +100,17 @@ def flat_machine(scene: Scene, case: str | None = None) -> Machine:
     return build(scene, case, **({} if contact == "impact" else {"phases": ROUGH, "method": None, "loads": None}))
 
 
+def damaged_teeth(scene: Scene, case: str | None) -> Sequence[Fault]:
+    """`Fault` of each tooth that differs in a case; none if the scene has no machine, or its machine is invalid."""
+    try:
+        build = MACHINES[scene.machine["model"]]["linear"]
+        return build(scene, case, phases=ROUGH, method=None, loads=None).faults
+    except (KeyError, ValueError):  # `build_machine` gives the reason
+        return ()
+
+
 def _builder(scene, case):
-    """Function that builds the machine of a scene, and its contact."""
+    """Return the function that builds the machine of a scene, and its contact."""
     if not scene.machine:
         raise ValueError(f"scene {scene.name} has no [machine] table: add one with model, speed_rpm and torque_Nm")
     if case is not None and not any(case in pair.damage for pair in scene.pairs.values()):
@@ -112,7 +122,7 @@ def _builder(scene, case):
     if contact not in MACHINES[model]:
         raise ValueError(f"[machine] contact = 'impact': the model {model!r} has linear contact only")
     if scene.machine.get("bodies") and model not in STATED:
-        raise ValueError(f"[machine.bodies]: the model {model!r} takes masses and inertias from its gears; leave the table out")
+        raise ValueError(f"[machine.bodies]: the model {model!r} computes masses and inertias from its gears: omit the table")
     _check_contact(scene, case, contact)
     return MACHINES[model][contact], contact
 
@@ -129,7 +139,7 @@ def _check_contact(scene, case, contact):
                 )
             if name in hurt and any(hurt[name].broken):
                 raise ValueError(
-                    f"[pair.{name}] has a broken tooth in case {case!r}, but the impact law has whole teeth only: use "
+                    f"[pair.{name}] has a broken tooth in case {case!r}, but the impact law is limited to unbroken teeth: use "
                     "contact = 'linear'"
                 )
     elif any(one.missing and not pair_backlash(scene, name) for name, one in hurt.items()):
@@ -140,7 +150,7 @@ def _check_contact(scene, case, contact):
 
 
 def with_flanks(machine):
-    """The machine with the unloaded transmission error of modified flanks in the meshes whose curves or laws have one."""
+    """Return the machine with the unloaded transmission error of modified flanks in the meshes that have one."""
     errors = {
         mesh.name: _unloaded(mesh.stiffness)
         for mesh in machine.meshes
@@ -160,7 +170,7 @@ def _unloaded(curve):
 
 
 def with_scene_errors(scene, machine):
-    """The machine with the errors that its scene states: of the driven stage, the last one."""
+    """Return the machine with the errors that its scene states: those of the driven stage, the last one."""
     keys = ("profile_error_um", "runout_um", "misplaced_um", "misplaced_y_um")
     profile, runout, *shift = (1e-6 * scene.machine.get(key, 0.0) for key in keys)
     if not (profile or runout or any(shift)):

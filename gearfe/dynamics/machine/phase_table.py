@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...geometry.aliases import Floats
 
-SMOOTH = 5  # samples of a period at least that slopes of fourth order are made of
+SMOOTH = 5  # minimum number of samples of a period for slopes of fourth order
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class PhaseTable:
         return (a + u * (b + u * (c + u * d))).T
 
     def slope(self, phase: ArrayLike) -> Floats:
-        """Derivative by the phase, at phases as of a call."""
+        """Return the derivative by the phase, at phases like those of a call."""
         (_, b, c, d), u = self._cubic(phase)
         return ((b + u * (2 * c + 3 * u * d)) / self.width).T
 
@@ -120,5 +120,5 @@ def smooth_slopes(values: Floats) -> Floats:
 
 
 def _smaller(one, two):
-    """The smaller of two numbers of one sign, 0 of two signs (minmod)."""
+    """Return the smaller of two numbers of one sign, 0 for different signs (minmod)."""
     return np.where(one * two > 0, np.sign(one) * np.minimum(np.abs(one), np.abs(two)), 0.0)

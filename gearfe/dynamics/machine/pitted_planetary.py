@@ -44,7 +44,7 @@ def pitted_planetary(
     gyroscopic: bool = False,
     **mesh: Any,
 ) -> Machine:
-    """The planetary gearbox with pitted sun teeth (articles on 21/31/84): sun drives, ring held, load on the carrier.
+    """Build the planetary gearbox with pitted sun teeth (articles on 21/31/84): sun drives, ring held, load on the carrier.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ def planetary(
     planet_angles: Sequence[float] | None = None,
     spin: float = 0.0,
 ) -> Machine:
-    """A planetary stage in its plane, 3 degrees of freedom per body, seen from the carrier.
+    """Build a planetary stage in its plane, 3 degrees of freedom per body, seen from the carrier.
 
     The model of J. Lin, R. G. Parker, J. Vib. Acoust. 121 (1999) 316-321, in coordinates that do not turn with the planets; for
     its frequencies see ``tests/dynamics/test_models.py``.
@@ -129,7 +129,7 @@ def angles_of_planets(n_planets: int, planet_angles: Sequence[float] | None = No
         raise ValueError(f"planet_angles = {planet_angles!r}, but give {n_planets} finite angles [rad], one for each planet")
     around = np.sort(angles % (2 * math.pi))
     if n_planets > 1 and np.diff(around, append=around[0] + 2 * math.pi).min() < 1e-9:
-        raise ValueError(f"planet_angles = {planet_angles!r}, but two planets cannot stand at one angle")
+        raise ValueError(f"planet_angles = {planet_angles!r}, but two planets have the same angle")
     return angles
 
 
@@ -142,7 +142,7 @@ def stage_phases(
     frequency: float = 1.0,
     planet_angles: Sequence[float] | None = None,
 ) -> dict[str, dict[str, Any]]:
-    """Running phases and first teeth of the meshes of a simple stage whose sun drives counter-clockwise.
+    """Return unwrapped phases and first teeth of the meshes of a simple stage whose sun drives counter-clockwise.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ def carrier_and_mesh(stage: PlanetarySet, speed: float) -> tuple[float, float]:
 
 
 def with_stage(machine: Machine, stage: PlanetarySet, speed: float, halves: Sequence[str] = ("",), **notes: Any) -> Machine:
-    """The machine with the `Stage` and the notes of a stage whose sun is driven at `speed` [rad/s], its ring held."""
+    """Return the machine with the `Stage` and the notes of a stage with the sun driven at `speed` [rad/s] and the ring held."""
     turn, frequency = carrier_and_mesh(stage, speed)
     n, carrier, turning = stage.n_planets, turn / (2 * math.pi), frequency / stage.sun.z
     returns = {"sun": n * turning, "planet": frequency / stage.planet.z, "ring": n * frequency / stage.ring.z}

@@ -1,4 +1,4 @@
-"""A machine whose speed changes."""
+"""Machines with variable speed."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -8,7 +8,7 @@ from .tables import Machine
 
 
 def with_speed(machine: Machine, times: Sequence[float], factors: Sequence[float]) -> Machine:
-    """The machine with a speed that changes: a run-up, a coast-down, a drive that wavers.
+    """Return the machine with variable speed: a run-up, a coast-down, or speed fluctuation.
 
     The phases of all meshes are integrated; damaged teeth, errors and the carrier follow them. Loads keep their own histories:
     give the torque that goes with the profile by ``(times, values)``, what speeds the rotors up included - the machine vibrates

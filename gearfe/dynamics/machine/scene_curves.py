@@ -1,4 +1,4 @@
-"""What the machines of scenes share: speed, stage, and stiffness curves or laws of force of the pairs, healthy and damaged."""
+"""Common parts of the machines of scenes: speed, stage, and stiffness curves or force laws, healthy and damaged."""
 
 import math
 from dataclasses import replace
@@ -18,7 +18,7 @@ from .force_law import law_of
 from .stages import Fault
 from .tooth_damage import ToothDamage
 
-IDLE = 1e-3  # of the load that a scene states for a pair: below it a mesh at rest counts as unloaded, and that load is taken
+IDLE = 1e-3  # meshes whose force at rest is below this part of the pair's stated load count as unloaded; the stated load is used
 
 
 def speed_of(scene):
@@ -33,7 +33,7 @@ def stage_of(scene):
 
 
 def own_forces(machine):
-    """Largest force at rest of the meshes of each pair of a scene [N], of a machine made of curves that `curves` named."""
+    """Return the largest force at rest of the meshes of each pair of a scene [N]; `curves` named the meshes of the machine."""
     x = machine.working()
     x = machine.G @ machine.rest() if x is None else x
     out = {}
@@ -85,7 +85,7 @@ def scene_curves(scene, case, options, meshes, homes):
     case : str or None
     options : dict
         As of `mesh_stiffness`, and ``loads``: by the pair's name the loads [N] it is solved under and the one it works at on
-        average. Several make laws of force, one makes curves; None: curves of teeth all alike under the load that the scene
+        average. Several make force laws, one makes curves; None: curves of teeth all alike under the load that the scene
         states. Method None makes flat curves of 1e8 N/m without solving anything, to check a machine.
     meshes : dict of str to Meshed
         By name.
@@ -178,9 +178,9 @@ def _teeth(case, bodies):
 
 
 def curves(name, case, options, same_pair=()):
-    """`MeshCycle` of a case of a scene's pair `name`, by the method that suits all cases of the `same_pair`.
+    """Return the `MeshCycle` of a case of a scene's pair `name`, by the method that suits all cases of `same_pair`.
 
-    `options` as of `scene_curves`. Without the part of shafts that hold its gears: a machine has bearings of its own.
+    `scene_curves` describes `options`. The deflection of shafts is not included, since a machine has separate bearings.
     """
     loads = options["loads"]
     if options["method"] is None:

@@ -1,4 +1,4 @@
-"""`Secant`: secant stiffness of a law of force in a table over phase and depth."""
+"""`Secant`: secant stiffness of a force law in a table over phase and depth."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -59,7 +59,7 @@ class Secant:
 
     @property
     def mean(self) -> "Secant":
-        """Its mean over the rows of one cycle: what the mesh is on average at each depth."""
+        """Mean over the rows of one cycle: average secant stiffness of the mesh at each depth."""
         return Secant(-1.0, 1.0, self.deepest, np.tile(self.k[1:-2].mean(axis=0), (3, 1)))
 
     @property

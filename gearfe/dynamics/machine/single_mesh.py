@@ -11,7 +11,7 @@ from .tables import Machine
 
 
 def single_mesh(mass: float, stiffness: Stiffness, frequency: float, *, force: History = 0.0, **mesh: Any) -> Machine:
-    """One mass on one mesh: a gear pair along its line of action, ``m x'' + c x' + k(t) f(x - e(t)) = F``.
+    """Build one mass on one mesh: a gear pair along its line of action, ``m x'' + c x' + k(t) f(x - e(t)) = F``.
 
     Parameters
     ----------

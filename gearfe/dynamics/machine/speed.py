@@ -1,4 +1,4 @@
-"""A speed that changes: the profile of a run-up, and how far the gears have turned at any time."""
+"""Variable speed: the speed profile of a run-up, and the angle of rotation at any time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ from .loads import rising
 
 @dataclass(frozen=True, slots=True)
 class Speed:
-    """Speed of all shafts over that for which a machine states its frequencies, straight between `times`.
+    """Speed of all shafts relative to the nominal speed of a machine, linear between `times`.
 
     Before the first and after the last time it stays. What depends on the angle of the gears - phases of the meshes, damaged
     teeth, errors, the carrier - is taken at the *turned* time, the integral of the speed: a phase is integrated and never the
@@ -58,7 +58,7 @@ class Speed:
         return np.interp(np.asarray(t, dtype=float), self.knots[:, 0], self.knots[:, 1])
 
     def turned(self, t: ArrayLike) -> Floats:
-        """Time in which the nominal speed turns the gears as far as they have turned at times `t` [s]."""
+        """Return the time in which the gears reach the same rotation at nominal speed as at times `t` [s]."""
         return turned(self.knots, np.asarray(t, dtype=float))
 
     @property
@@ -68,7 +68,7 @@ class Speed:
 
 
 def turned(knots, t):
-    """As `Speed.turned`, from its knots: the exact integral of straight pieces."""
+    """Return `Speed.turned` from its knots: the exact integral of linear pieces."""
     place = np.clip(np.searchsorted(knots[:, 0], t, side="right") - 1, 0, len(knots) - 1)
     start, first, angle = (knots[place, i] for i in range(3))
     return angle + (t - start) * (first + np.interp(t, knots[:, 0], knots[:, 1])) / 2

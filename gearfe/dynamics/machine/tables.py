@@ -18,7 +18,7 @@ from .springs import Spring
 from .stages import Fault, Stage
 from .turning_frame import frame_terms
 
-TOUCH = 1e-12  # compression at which the tangent of a law of force without load is taken [m]
+TOUCH = 1e-12  # compression at which the tangent of a force law without load is taken [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +123,7 @@ class Machine:
         )
 
     def row(self, name: str) -> Floats:
-        """Unit row of a degree of freedom.
+        """Return the unit row of a degree of freedom.
 
         Raises
         ------
@@ -135,7 +135,7 @@ class Machine:
         return np.eye(len(self.dofs))[self.dofs.index(name)]
 
     def turned(self, t: ArrayLike) -> Floats:
-        """Time in which the nominal speed turns the gears as far as they have turned at times `t` [s]: what angles follow."""
+        """Return the time in which the gears reach the same rotation at nominal speed as at times `t` [s], which sets phases."""
         return np.asarray(t, dtype=float) if self.speed is None else self.speed.turned(t)
 
     @property
@@ -144,12 +144,12 @@ class Machine:
         return 1.0 if self.speed is None else self.speed.fastest
 
     def stage_of(self, body: str) -> Stage:
-        """The stage in which a body's teeth return as `Stage.returns` says; the driven one, the last, if none has it."""
+        """Return the stage whose `Stage.returns` contains a body; the driven one, the last, if none does."""
         names = {body, body.rstrip("LR"), body.rstrip("LR0123456789")}
         return next((stage for stage in reversed(self.stages) if names & set(stage.returns)), self.stages[-1])
 
     def fault_frequencies(self) -> tuple[Stage, float, float]:
-        """Stage of the first fault, how often its tooth meshes and its gear turns [Hz]; without, those of the driving gear."""
+        """Return the stage of the first fault, its fault and shaft frequencies [Hz]; default: of the driving gear."""
         if self.faults:
             first = self.faults[0]
             return self.stage_of(first.gear), first.frequency, first.turning
@@ -187,7 +187,7 @@ class Machine:
 
     @property
     def curved(self) -> bool:
-        """Whether the force of a mesh is no straight line over its compression: a power, or a `ForceLaw`."""
+        """True if the force of a mesh is nonlinear in its compression: an exponent, or a `ForceLaw`."""
         return bool((self.law["power"] != 1).any()) or any(mesh.secants for mesh in self.meshes)
 
     def working(self) -> Floats | None:
@@ -238,7 +238,7 @@ class Machine:
         raise RuntimeError("no state of rest found: the loads do not press the meshes together, or leave a body free")
 
     def with_meshes(self, **changes: Any) -> "Machine":
-        """The same machine with fields of every mesh replaced, e.g. ``with_meshes(backlash=1e-4)``."""
+        """Return the same machine with fields of every mesh replaced, e.g. ``with_meshes(backlash=1e-4)``."""
         return replace(self, meshes=tuple(replace(m, **changes) for m in self.meshes))
 
 

@@ -1,4 +1,4 @@
-"""`ToothDamage`: a damaged tooth of a mesh, and the table of what it changes."""
+"""`ToothDamage`: a damaged tooth of a mesh, and the table of its stiffness change."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What turning adds to the equations of motion: of the frame, that of the carrier, and of bodies whose axes tilt."""
+"""Gyroscopic and centripetal terms in the equations of motion: of a rotating frame (carrier) and of tilting rotors."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from ...core.record import ranged
 
 
 def frame_terms(dofs, mass, springs, spin, rotors=None):
-    """Terms of bodies seen from a frame that turns at `spin` about z, and of bodies that turn themselves and tilt.
+    """Return the terms of bodies in a frame rotating at `spin` about z, and of rotating bodies that tilt.
 
     A velocity seen in the frame lacks ``spin J r``, J the turn by 90 degrees in the plane, so that a mass has
     ``m (a + 2 spin J v - spin**2 r)``; a damper to the ground feels ``c (v + spin J r)``. Springs to the ground seem to turn, and
@@ -68,7 +68,7 @@ def frame_terms(dofs, mass, springs, spin, rotors=None):
         if (uneven > 1e-9 * np.abs(held_by).max()).any():
             which = bodies[int(np.argmax(uneven))]
             raise ValueError(
-                f"spin = {spin} rad/s: {which} is held to the ground otherwise in x than in y, which would turn; leave it 0"
+                f"spin = {spin} rad/s: {which} has different supports in x and y, which would rotate with the frame; use spin = 0"
             )
     return gyroscopic, centripetal, spin * held_by @ turn
 

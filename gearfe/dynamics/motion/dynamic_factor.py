@@ -1,20 +1,20 @@
-"""Dynamic factor: the largest mesh force of a run over that of the load at rest."""
+"""Dynamic factor: the largest mesh force of a run divided by the force of the static load."""
 
 import numpy as np
 
 from ..machine.contact_law import force
 from .response import Response
 
-LOOKS = 200  # times at which loads that change are taken at rest
+LOOKS = 200  # times at which variable loads are evaluated
 
 
 def dynamic_factors(response: Response) -> dict[str, float]:
-    """Dynamic factor K_v of every mesh: its largest force in the run, over its largest force at rest under the run's loads.
+    """Compute the dynamic factor K_v of every mesh: its largest force divided by its largest static force under the loads.
 
-    ISO 6336-1 takes K_v for the largest force over the nominal one at constant load, K_A for what the loads do: under a load that
-    changes the static force here is the largest of the loads' course. Forces are those of the integrator (`Response.raw`), not
-    filtered: keep a rate that shows the peaks, and begin when the free vibrations of the start have died out
-    (``initial`` of a first run), or they count.
+    In ISO 6336-1, K_v is the largest force over the nominal one at constant load, and K_A is the effect of variable loads. With
+    variable loads, the static force here is the largest over time. Forces are those of the integrator (`Response.raw`), not
+    filtered. Choose a rate that resolves the peaks, and start after the transient (``initial`` of a first run); otherwise the
+    transient counts.
 
     Parameters
     ----------
@@ -23,12 +23,12 @@ def dynamic_factors(response: Response) -> dict[str, float]:
     Returns
     -------
     dict of str to float
-        By mesh, without unit; meshes that carry nothing at rest, as back flanks of their own do, have none.
+        Dynamic factor by mesh, without unit; meshes without static load, such as separate back flanks, have none.
 
     Raises
     ------
     ValueError
-        If no mesh carries anything at rest.
+        If no mesh has a static load.
 
     References
     ----------
@@ -57,7 +57,7 @@ def dynamic_factors(response: Response) -> dict[str, float]:
     factors = {name: dynamic / static for name, dynamic, static in loads if static > 1e-9 * max(most.max(), 1e-30)}
     if not factors:
         names = ", ".join(name for name, *_ in loads) or "of no machine"
-        raise ValueError(f"mesh {names} carries nothing at rest: it has no dynamic factor; give its load")
+        raise ValueError(f"mesh {names} is unloaded at rest and has no dynamic factor; give its load")
     return factors
 
 

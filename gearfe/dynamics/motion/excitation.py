@@ -1,4 +1,4 @@
-"""What acts on a machine over time: on arrays from its meshes and loads, and laid out flat for the fast path."""
+"""Excitation of a machine over time: by arrays from its meshes and loads, and as flat tables for the fast path."""
 
 import math
 from typing import NamedTuple
@@ -18,7 +18,7 @@ class Flat(NamedTuple):
     phase `angle`. Of each load: where its knots start and end.
     `twin` is the first mesh whose stiffness is always that of a mesh. `pace` are the knots of `machine.speed.Speed`, none
     at a constant speed.
-    `secant` holds the tables of all laws of force one after the other; `shape` is, of each mesh and then of each damaged tooth,
+    `secant` holds the tables of all force laws one after the other; `shape` is, of each mesh and then of each damaged tooth,
     the place, rows and columns of its table and one over its depth [1/m], no rows where it has no law.
     """
 
@@ -48,7 +48,7 @@ def records(**columns):
 
 
 def _columns(rows, **types):
-    """`records` of rows by the names and types of their columns."""
+    """Return `records` of rows by the names and types of their columns."""
     columns = list(zip(*rows, strict=True)) or [()] * len(types)
     return records(**{name: np.array(column, kind) for (name, kind), column in zip(types.items(), columns, strict=True)})
 
@@ -108,7 +108,7 @@ def _laid_out(laws):
 def _twins(one, two):
     """Whether two meshes have the same stiffness at all times, as those of both halves of a herringbone gear."""
     ahead = one.phase - two.phase
-    ahead = ahead if one.changes else ahead - round(ahead)  # only damaged teeth ask for whole cycles
+    ahead = ahead if one.changes else ahead - round(ahead)  # whole cycles matter only with damaged teeth
     if (one.frequency, len(one.changes)) != (two.frequency, len(two.changes)) or abs(ahead) > 1e-12:
         return False
     pairs = list(zip(one.changes, two.changes, strict=True))
@@ -136,7 +136,7 @@ def changing(machine, flat):
 
 
 def turned(machine, t):
-    """Turned times at times `t`, and the speed over the nominal one."""
+    """Return the times of equal rotation at nominal speed at times `t`, and the relative speed."""
     t = np.asarray(t, dtype=float)
     return (t, 1.0) if machine.speed is None else (machine.speed.turned(t), machine.speed(t))
 

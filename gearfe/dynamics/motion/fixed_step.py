@@ -92,7 +92,7 @@ def _filtered(run, machine, flat, plan, z, steps, start, counts):
 
 
 def _channels(machine, flat, plan):
-    """Function that makes `Response.filtered` of filtered states and what acts (`gearfe.dynamics.motion.loop.run`).
+    """Return the function that makes `Response.filtered` from filtered states and excitations (`gearfe.dynamics.motion.loop`).
 
     All channels are a linear part of these, so that fewer numbers are filtered than there are channels, and only such as the
     loop computes in any case.

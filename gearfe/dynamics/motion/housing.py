@@ -1,4 +1,4 @@
-"""What a sensor on the housing of a planetary stage receives: the forces of the planets, louder as they pass it."""
+"""Vibration at a sensor on the housing of a planetary stage: mesh forces with planet-pass modulation (transfer path)."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -25,37 +25,38 @@ def housing_signal(
     window: Callable[[Floats], ArrayLike] | None = None,
     modes: Sequence[tuple[float, float, float]] = (),
 ) -> Signal:
-    """Sum of the planets' mesh forces, weighted by how near each planet is to a sensor that stands still; or its acceleration.
+    """Compute the vibration at a fixed sensor: the planets' mesh forces, weighted by a transfer-path window.
 
-    Simulations are made in the frame of the carrier; a sensor on a fixed ring sees the planets go by. The path from a mesh to
-    it is taken as a window w over the planet's place, if none is given one that is largest at the sensor and zero opposite::
+    Simulations are in the frame of the carrier, and the planets pass a sensor on a fixed ring. The transfer path from a mesh to
+    the sensor is a window w over the planet's angle. The default is largest at the sensor and zero opposite::
 
         F(t) = sum over planets p of w(phi_p(t)) F_p(t),   phi_p(t) = planet_angles[p] + 2 pi carrier t - sensor,
         w = (1 + cos(phi)) / 2
 
-    It brings the lines a carrier turning at `carrier` Hz puts beside those of the forces (`gearfe.stage_lines` says where); their
-    sizes are those of the window. With `modes` the housing answers to that force, each mode as an oscillator of its own::
+    The window adds the sidebands of the carrier frequency `carrier` [Hz] to the lines of the forces (planet-pass modulation, see
+    `gearfe.stage_lines`). Their amplitudes are those of the window. With `modes` the housing responds to that force, each mode as
+    a separate oscillator::
 
         a(t) = sum over modes of x'',   x'' + 2 zeta (2 pi f) x' + (2 pi f)**2 x = F(t) / mass
 
-    from rest under the first force, exactly for forces that are straight between samples.
+    It starts from rest under the first force and is exact for forces that are linear between samples.
 
-    With n equal planets in phase, healthy gears keep only multiples of n `carrier` beside the mesh line.
+    With n equal planets in phase, healthy gears have sidebands at multiples of n `carrier` only.
 
     Parameters
     ----------
     response : gearfe.dynamics.motion.response.Response
         Response of a machine with one planetary stage.
     kind : str
-        Meshes whose forces are heard, one or more to a planet: those named ``kind`` and the number of the planet
+        Meshes whose forces reach the sensor, one or more per planet, named ``kind`` and the number of the planet
         (``planet_ring1``, ``planet_ring1L``...).
     sensor : float
         Angle of the sensor [rad].
     planet_angles : sequence of float, optional
         Angles of the planets at time 0 [rad]; default: equally spaced from 0, as all stages of `gearfe.dynamics.machine` are.
     carrier : float, optional
-        Turns of the carrier per second at the machine's nominal speed, counter-clockwise if positive; default: from the
-        machine's notes, ``"carrier frequency [Hz]"``.
+        Carrier frequency at nominal speed [Hz], counter-clockwise if positive; default: from the machine's notes, ``"carrier
+        frequency [Hz]"``.
     window : callable, optional
         Weights at an array of angles between planet and sensor [rad]: a measured one, or `gearfe.ring_window`.
     modes : sequence of (float, float, float)
@@ -64,7 +65,7 @@ def housing_signal(
     Returns
     -------
     Signal
-        [N], with modes [m/s^2].
+        Force [N], or acceleration [m/s^2] if there are modes.
 
     Raises
     ------
@@ -105,7 +106,7 @@ def _raised(angle):
 
 
 def ring_window(radius: float, bending: float, foundation: float) -> Callable[[Floats], Floats]:
-    """Window for `housing_signal`: how a thin ring on an elastic foundation gives at the sensor to a planet elsewhere.
+    """Window for `housing_signal`: deflection of a thin ring on an elastic foundation at the sensor.
 
     The radial displacement at an angle phi from a radial force, over that under the force, of a ring whose centre line keeps its
     length::

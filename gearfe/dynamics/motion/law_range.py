@@ -1,4 +1,4 @@
-"""Whether a motion stays within the loads that the force of its meshes was solved for, and how well their phases are known."""
+"""Range of loads of a force law or a stiffness curve in a run, and the interpolation error between its phases."""
 
 import math
 import warnings
@@ -12,15 +12,16 @@ from ..machine.mesh_curves import cycle_table
 from ..machine.phase_table import table
 
 LOOKS = 20_000  # times of a run at which its mesh forces are compared with the loads of their laws
-LEAST, PARTS = 40, 50  # of them in a stretch over which forces are averaged, one mesh cycle or more; most stretches
-OTHER = 0.1  # of the load of a stiffness curve: a mean force further off is told
-IDLE = 1e-3  # of that load: a mesh that carries less on average carries nothing
-FEWEST = 10  # samples of a stiffness whose error between them is told
-NEARLY = 0.01  # of the stiffness: loads that change it by as much are those within which a curve holds
+# least number of samples of a stretch over which forces are averaged (at least one mesh cycle), and most stretches
+LEAST, PARTS = 40, 50
+OTHER = 0.1  # a mean force that differs by more than this part of a curve's load is reported
+IDLE = 1e-3  # meshes with a mean force below this part of that load count as unloaded
+FEWEST = 10  # least number of samples of a stiffness whose interpolation error is reported
+NEARLY = 0.01  # loads that change the stiffness by less than this part are within the range of a curve
 
 
 def compared(response):
-    """The response, with ``stats["loads"]`` where mesh forces leave the loads they were solved for; warns of those above a law.
+    """Return the response, with ``stats["loads"]`` if mesh forces leave the loads of the law; warn of forces above a law.
 
     And with ``stats["error_phases"]`` (`between_phases`), where stiffnesses are over the phase.
 
@@ -39,12 +40,12 @@ def compared(response):
     for mesh, own in zip(machine.meshes, some.mesh().T, strict=True):
         given, most = mesh.stiffness, float(np.abs(own).max())
         if isinstance(given, ForceLaw) and most > given.load[-1]:
-            told["above"].append(f"{mesh.name} {most:.4g} N, its law of force up to {given.load[-1]:.4g} N")
+            told["above"].append(f"{mesh.name} {most:.4g} N, its force law up to {given.load[-1]:.4g} N")
         if isinstance(given, StiffnessCurve) and "force_N" in given.meta:
             told["other"] += _other(mesh, own, some.time[-1] - some.time[0])
     if told["above"]:
         warnings.warn(
-            f"forces above the loads solved: {'; '.join(told['above'])}. Beyond them a law goes on with its tangent: give it "
+            f"forces above the loads solved: {'; '.join(told['above'])}. Beyond them a law continues with its tangent: give it "
             "larger loads (gf.force_law, or loads= of gf.build_machine)",
             stacklevel=4,
         )
@@ -53,18 +54,18 @@ def compared(response):
 
 
 def _looks(count):
-    """Samples that are looked at: all of few, else one by chance in each of `LOOKS` equal parts."""
+    """Return the samples that are evaluated: all of few, else a random one in each of `LOOKS` equal parts."""
     if count <= LOOKS:
         return slice(None)
     return ((np.arange(LOOKS) + np.random.default_rng(0).random(LOOKS)) * (count / LOOKS)).astype(np.int64)
 
 
 def between_phases(machine):
-    """How far stiffnesses over the phase may be off between their samples: RMS over their spread, of the worst mesh; or None.
+    """Return the RMS interpolation error of stiffnesses over the phase, relative to their spread, of the worst mesh; or None.
 
-    Every second sample is left out, and the cubics through the others are asked for it. That is the error of half as many: of a
-    smooth curve eight to sixteen times that of all, of one bent where pairs come in two to ten times. Laws of force have
-    `gearfe.law_error`.
+    The cubics through every second sample are evaluated at the omitted samples. This is the error of half as many samples. For a
+    smooth curve it is eight to sixteen times the error of all samples, for a curve with kinks where pairs come in, two to ten
+    times. `gearfe.law_error` is the same for force laws.
     """
     curves = {id(m.stiffness): m for m in machine.meshes if not isinstance(m.stiffness, ForceLaw)}
     found = [_left_out(mesh) for mesh in curves.values() if len(mesh.cycle.cells) >= FEWEST and len(mesh.cycle.cells) % 2 == 0]
@@ -81,21 +82,21 @@ def _left_out(mesh):
 
 
 def _other(mesh, own, seconds):
-    """What is told of a mesh whose forces, at equal times of a run, are not those of its stiffness curve: one line or none."""
+    """Return a line on a mesh whose forces, at equal times of a run, differ from those of its stiffness curve, or None."""
     stated = mesh.stiffness.meta["force_N"]
     count = min(own.size // LEAST, PARTS, math.floor(seconds * abs(mesh.frequency)))
     means = np.abs([part.mean() for part in np.array_split(own, max(count, 1))])
     low, high, mean = float(means.min()), float(means.max()), abs(float(own.mean()))
     if mean < IDLE * stated or max(high / stated - 1, 1 - low / stated) <= OTHER:
         return []
-    swing = f", {low:.4g} to {high:.4g} N by turns" if high - low > OTHER * stated else ""
+    swing = f", {low:.4g} to {high:.4g} N alternately" if high - low > OTHER * stated else ""
     return [
         f"{mesh.name} {mean:.4g} N on average{swing}, its stiffness is that of {stated:.4g} N{_holds(mesh.stiffness, stated)}"
     ]
 
 
 def _holds(curve, stated):
-    """Loads within which the mean stiffness of a curve changes by `NEARLY`, from how far its tangent lies above it, in words.
+    """Return in words the loads within which the mean stiffness of a curve changes by `NEARLY`, from its tangent.
 
     ``k = F / x`` gives ``d ln k / d ln F = 1 - k / (dF / dx)``.
     """

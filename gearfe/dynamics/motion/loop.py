@@ -17,15 +17,16 @@ from .loop_parts import compiled, kept, lookup, stage
 from .propagator import UNSTABLE
 
 GROW = 0.05  # part of the allowed estimate below which the next step is twice as long (the estimate grows as its fourth power)
-TINY = 1e-300  # N: least scale of the estimate, for meshes that never carry anything
-CHUNK = 64  # steps whose stiffnesses are looked up at once
+TINY = 1e-300  # least scale of the estimate [N], for unloaded meshes
+CHUNK = 64  # number of steps whose stiffnesses are interpolated together
 
 
 class Matrices(NamedTuple):
-    """Those of the step by level, columns one after the other so that the loops over them run along memory.
+    """Matrices of the step by level, stored by columns, so that loops run along memory.
 
-    `PF` is ``P F`` below F: what the forces add to z, and to x at the end of the step. `add` and `push` are what constant loads
-    add to y and w, and to z and P z, level after level in one row. `W` is of `motion.propagator.RunMatrices.told`.
+    `PF` is ``P F`` below F: the contribution of the forces to z, and to x at the end of the step. `add` and `push` are the
+    contributions of constant loads to y and w, and to z and P z, level after level in one row. `W` is described in
+    `gearfe.dynamics.motion.propagator.RunMatrices.told`.
     """
 
     E: np.ndarray
@@ -104,7 +105,7 @@ def _largest(out, none, W, level, apart, size):
 
 @compiled
 def _turned(apart, now, row, laws, scale):
-    """How far stiffnesses turn off their straight lines within a step, part of them, times the forces; the largest force."""
+    """Return the deviation of stiffnesses from straight lines in a step times the forces, and the largest force."""
     for i in range(apart.size):
         apart[i] = 0.0
     for i in range(laws.size):
@@ -143,14 +144,14 @@ def _write(states, row, z):  # written out: numba takes 2 s to compile its messa
 
 @compiled
 def _add(g, first, second):
-    """Forces of one stage to those of another, a fifth of `g` each."""
+    """Add the forces of one stage to those of another, a fifth of `g` each."""
     for i in range(g.size // 5):
         g[first + i] += g[second + i]
 
 
 @compiled
 def _aligned(at, whole, level):
-    """The level of a part that begins at `at` of `whole`: such parts begin at multiples of their length."""
+    """Return the level of a part that begins at `at` of `whole`: such parts begin at multiples of their length."""
     while at & ((whole >> level) - 1):
         level += 1
     return level
@@ -158,14 +159,14 @@ def _aligned(at, whole, level):
 
 @compiled
 def _ended(end, new, y, add, at):
-    """What the forces depend on at the end of a step: the loads in y are those of the stage before, in `new` those of the end."""
+    """Return the inputs of the forces at the end of a step: the loads in y are of the stage before, in `new` of the end."""
     for i in range(end.size):
         end[i] = new[new.size - end.size + i] + y[end.size + i] - add[at + end.size + i]
 
 
 @compiled
 def _less(apart, g):
-    """Forces at the end of a step less those of its last stage."""
+    """Return the forces at the end of a step less those of its last stage."""
     f = apart.size
     for i in range(f):
         apart[i] = g[4 * f + i] - g[2 * f + i]
@@ -173,7 +174,7 @@ def _less(apart, g):
 
 @compiled
 def _edge(edges, edge, t):
-    """The first edge after time `t`, from `edge` on."""
+    """Return the first edge after time `t`, from `edge` on."""
     while edges[edge] <= t:
         edge += 1
     return edge
@@ -207,7 +208,7 @@ def _run(given, z, clock, states, counts, acting):
     none, doubt, fresh = np.zeros(m), np.zeros(m), False  # `fresh`: the first forces are those of the end before
     y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
     side, edge, level = np.zeros(m), 0, 0
-    nil, one = np.int64(0), np.int64(1)  # numba compiles a function anew for every number written out
+    nil, one = np.int64(0), np.int64(1)  # typed constants: numba compiles a function again for every literal
     lookup(flat, now, nil, one, start, h, 0.0, 0.0)
     losses(side, x0, now, nil, laws)
     _write(states, nil, z)

@@ -5,7 +5,7 @@ from .loop_parts import compiled, secant
 
 
 def _chain(first):
-    """Function of the force by the law that ``law.kind`` names: a row of `LAWS`, from row `first` on."""
+    """Return the function of the force by the law of number ``law.kind``: a row of `LAWS`, from row `first` on."""
     force = compiled(LAWS[first].force)
     if first + 1 == len(LAWS):
         return force
@@ -24,7 +24,7 @@ _force = compiled(mesh_force(compiled(touch), _chain(0)))
 
 @compiled
 def forces(g, first, x, now, row, laws, parts, table):
-    """Forces of the meshes and friction rows beyond the linear part, and loads that change, into ``g[first:]``, a fifth of it.
+    """Write a fifth of the forces of meshes and friction beyond the linear part, and variable loads, into ``g[first:]``.
 
     Whole forces and stiffnesses of the meshes go into their records (the former where they are needed). `parts` are those of the
     `table` of laws of several loads: of the meshes, with the meshes of friction rows after them, and of damaged teeth.
@@ -32,7 +32,7 @@ def forces(g, first, x, now, row, laws, parts, table):
     m, rubs = laws.size, laws[0].rubs if laws.size > 0 else 0
     for j in range(m + rubs, g.size // 5):
         g[first + j] = now[row, 2 * m + j]
-    if m > 0 and laws[0].affine:  # every mesh stays closed: the same, without asking where it is
+    if m > 0 and laws[0].affine:  # every mesh stays closed: the same, without a search for its side
         for i in range(m):
             law, k, e, rate = laws[i], now[row, i], now[row, m + i], now[row, 2 * m + i]
             g[first + i] = (k - law.k_linear) * x[i] - k * e - (law.damping + law.damping_per_stiffness * k) * rate
@@ -98,6 +98,6 @@ def losses(side, x, now, row, laws):
 
 @compiled
 def loads(g, now, row, m, rubs):
-    """Loads that change into the first forces of a step, which otherwise stand there: a load may jump."""
+    """Write variable loads into the first forces of a step: a load may jump."""
     for j in range(m + rubs, g.size // 5):
         g[j] = now[row, 2 * m + j]

@@ -14,9 +14,9 @@ compiled = njit(error_model="numpy")  # at the first call
 
 
 def kept(function):
-    """Compile at the first call; the result is kept on the disk where numba finds a folder in which it may write.
+    """Compile at the first call; the result is kept on disk where numba finds a writable folder.
 
-    The result contains the functions it calls, in other files and contact laws too: any edit of these files compiles it anew.
+    The result contains the functions it calls, in other files and contact laws too. Any edit of these files compiles it again.
     """
     try:
         dispatcher = njit(cache=True, error_model="numpy")(function)
@@ -41,7 +41,7 @@ def _stamp():
 
 
 class _Announcer(event.Listener):
-    """Reports once that something is being compiled."""
+    """Reports the compilation once."""
 
     def __init__(self, tell):
         self.tell = tell
@@ -49,7 +49,7 @@ class _Announcer(event.Listener):
     def on_start(self, event):
         if self.tell:
             tell, self.tell = self.tell, None
-            tell("compiling the integrator of vibration, which takes about 10 s once; the result is kept on the disk")
+            tell("compiling the integrator, about 10 s once; the result is stored on disk")
 
     def on_end(self, event):
         pass
@@ -78,7 +78,7 @@ def _cubic(cells, table, at):
 
 @compiled
 def _slope(cells, table, at):
-    """Derivative of `_cubic` by the phase."""
+    """Return the derivative of `_cubic` by the phase."""
     cell = min(int(at), table.size - 1)
     u, row = at - cell, table.place + cell
     return (cells[row, 1] + u * (2 * cells[row, 2] + 3 * u * cells[row, 3])) / table.width
@@ -102,7 +102,7 @@ def _load(knots, low, high, t):
 
 @compiled
 def _paced(pace, t):
-    """Turned time at time `t`, and the speed over the nominal one; both from the knots of `machine.speed.Speed`."""
+    """Return the rotated time at time `t`, and the relative speed; both from the knots of `machine.speed.Speed`."""
     last = pace.shape[0] - 1
     if t <= pace[0, 0] or last == 0:
         return pace[0, 2] + pace[0, 1] * (t - pace[0, 0]), pace[0, 1]
@@ -132,11 +132,11 @@ def _row(now, row, at, shape, which, place, inside):
 
 @compiled
 def secant(table, one, place, u, depth):
-    """Stiffness from a part of the tables at a place that `_row` gives, and a depth [m]; as `machine.secant.Secant`.
+    """Return the stiffness from a part of the tables at a place from `_row`, and a depth [m]; see `machine.secant.Secant`.
 
-    The rows of a column lie one after the other, so that what the next step asks for is near at hand.
+    The rows of a column are contiguous in memory, so that the data of the next step are near.
     """
-    last, over = one.columns - 1, depth * one.per_depth  # of the deepest
+    last, over = one.columns - 1, depth * one.per_depth  # index of the deepest column
     at = last * np.sqrt(over)
     j = int(min(at, last - 1))
     here = int(place + j * one.rows)
@@ -173,7 +173,7 @@ def lookup(flat, now, first, last, origin, h, low, share):
     """Fill in rows ``first <= i < last`` of `now`: what acts at the times ``origin + h (low + share (i - first))``.
 
     A row holds the stiffnesses, errors and rates of the errors of the meshes, then the weights of the friction rows, then the
-    loads, then, of machines with laws of force, the places in the meshes' and damaged teeth's tables by `_row`, -1 where there is
+    loads, then, of machines with force laws, the places in the meshes' and damaged teeth's tables by `_row`, -1 where there is
     none or the tooth is out of mesh. Many times at once, for a compiled function takes its time to find the tables.
     """
     cells, frequency, phases, cycle, change, rub = flat.cells, flat.frequency, flat.phase, flat.cycle, flat.change, flat.rub

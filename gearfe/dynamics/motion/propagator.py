@@ -1,9 +1,9 @@
-"""The exact linear part of a machine and the matrices of the exponential step of order four that the fast path takes.
+"""Exact linear part of a machine and matrices of the exponential step of order four of the fast path.
 
-``u = (q, v)`` is brought to coordinates z in which the linear part - springs, and meshes at their mean stiffness - is exact,
-``z' = A z + B f(t, P z)``: f are the deviations of the mesh forces from the linear part and the loads, P z what they depend on,
-the compressions of the meshes. The step is that of Cox and Matthews; its stages are only needed as P z, so that small matrices
-carry them:
+``u = (q, v)`` is transformed to coordinates z in which the linear part (springs, and meshes at their mean stiffness) is exact:
+``z' = A z + B f(t, P z)``. Here f are the deviations of the mesh forces from the linear part, and the loads. P z are the inputs
+of the forces, the compressions of the meshes. The step is that of Cox and Matthews. Its stages are only needed as P z, so that
+small matrices suffice:
 
     y = P exp(A h/2) z,  w = P exp(A h) z
     f1 = f(t, P z), f2 = f(t + h/2, y + S f1), f3 = f(t + h/2, y + S f2), f4 = f(t + h, w + R f1 + S (2 f3 - f1))
@@ -30,25 +30,25 @@ UNSTABLE = "the machine is unstable (a parametric resonance without enough dampi
 LEVELS, DEEPER = 6, 8  # most halvings of a step: about changes of contact; where the step is adapted
 LOCAL = 1e-5  # `Plan.allowed` at the default step, as a part of the largest mesh force
 STEPS = 80  # per mesh cycle, at first
-SHARE = 0.35  # of the period of the stiffest mesh, at first
-CONDITION = 1e8  # of the eigenvectors: above it the linear part is kept full
+SHARE = 0.35  # initial step, as a part of the period of the stiffest mesh
+CONDITION = 1e8  # condition number of the eigenvectors above which the linear part is a full matrix
 
 
 @dataclass(frozen=True, slots=True)
 class RunMatrices:
-    """What a run needs: coordinates, linear part, and the matrices of each level of step.
+    """Data of a run: coordinates, linear part, and the matrices of each level of step.
 
     Attributes
     ----------
     basis, inverse : ndarray, shape (2n, 2n)
         ``(q, v) = basis @ z``.
     P : ndarray, shape (m or 2m, 2n)
-        What the forces depend on: compressions (without errors), and their rates where the law needs them; where all forces are
-        affine ``x + damping_per_stiffness v`` alone.
+        Inputs of the forces: compressions (without errors), and their rates if the law needs them. If all forces are affine, ``x
+        + damping_per_stiffness v`` alone.
     affine : bool
-        Whether they are: ``f = (k - plan.k) P z + shift(t)``.
+        True if all forces are affine: ``f = (k - plan.k) P z + shift(t)``.
     rows : ndarray, shape (width, n)
-        Of what acts: meshes and friction rows, both against it, then loads.
+        Rows of the forces: meshes and friction rows, both negative, then loads.
     k, c : ndarray, shape (m,)
         Mesh stiffness and damping in the linear part.
     h : float
@@ -57,10 +57,10 @@ class RunMatrices:
         Of each step ``h / 2**level``: E in blocks ``(blocks, size, size)``; Y = (P exp(A h/2); P exp(A h)); S; T = (R - S, 2 S),
         for f1 and f3; F = (F1, F2, F3), for f1, f2 + f3 and f4. Columns are those of the meshes, friction rows, and loads.
     told : list of ndarray, shape (m, width)
-        By level: what forces at the end of a step do to the mesh forces of the linear part there. Of the difference of the forces
-        at its end from those of its last stage it makes the difference to a step of lower order; of how far the stiffnesses turn
-        off their straight lines within the step, times the forces, that of Simpson's rule to the trapezoidal one. The larger of
-        both is the estimate of the step.
+        By level: effect of forces at the end of a step on the mesh forces of the linear part there. The difference of the forces
+        at its end from those of its last stage gives the difference to a step of lower order. The deviation of the stiffnesses
+        from straight lines within the step, times the forces, gives the difference of Simpson's rule and the trapezoidal rule.
+        The larger of both is the estimated error of the step.
     allowed : float
         Largest estimate of a step that is taken, as a part of the largest mesh force so far; inf: none is made.
     scale : float
@@ -92,7 +92,7 @@ def plan(machine, h, x=None, adapt=False):
     K, C, k, c = machine.linear(x)
     squared, modes = modal(K - machine.frame, machine.mass)
     n = len(squared)
-    unit = math.sqrt(squared[-1]) or 1.0  # so that displacements and velocities are of one size
+    unit = math.sqrt(squared[-1]) or 1.0  # scaled, so that displacements and velocities have one magnitude
     D = modes.T @ C @ modes
     A = np.block([[np.zeros((n, n)), unit * np.eye(n)], [-(np.diag(squared) + modes.T @ machine.frame @ modes) / unit, -D]])
     turn, size = _blocks(A, squared, D)
@@ -128,14 +128,14 @@ def _told(P, end, k, c):
 
 
 def is_bent(machine):
-    """Whether a mesh force is no straight line of compression and rate: an exponent, or damping that grows with the depth."""
+    """Return True if a mesh force is nonlinear in compression or rate: an exponent, or damping that grows with the depth."""
     return bool((machine.law["straight"] == 0).any())
 
 
 def default_step(machine):
-    """Step that resolves mesh cycles (`STEPS` per cycle) and what the meshes excite (`SHARE` of a period) [s].
+    """Return the step that resolves mesh cycles (`STEPS` per cycle) and mesh vibration (`SHARE` of a period) [s].
 
-    A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``; supports, however stiff, are in the exact linear part.
+    A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``. Supports of any stiffness are in the exact linear part.
     """
     highest = machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0)
     x = machine.working()

@@ -1,4 +1,4 @@
-"""The reference: methods of `scipy.integrate.solve_ivp` between located changes of contact and bends of the loads."""
+"""Reference integrator: methods of `scipy.integrate.solve_ivp` between located contact changes and kinks of the loads."""
 
 import math
 import time
@@ -12,16 +12,16 @@ from . import excitation
 from .response import Response, acceleration
 
 SOLVERS = ("RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA")
-EVENTS = 100_000  # most changes of contact in one run
+EVENTS = 100_000  # limit of contact changes in one run
 LOOKS = np.concatenate([[0.0], 2.0 ** np.arange(-20, -4), np.arange(2, 17) / 16])  # parts of a step: a flight may be as short
-TOGETHER = 1e-12  # of a run: changes of contact closer in time than this are one
+TOGETHER = 1e-12  # contact changes closer in time than this part of a run are one
 
 
 def reference(machine, duration, count, state, method, rtol, start=0.0):
-    """Response of a machine by a method of scipy at `count` equal intervals.
+    """Integrate a machine by a method of scipy at `count` equal intervals.
 
-    Every mesh is held on the flanks it touches, so that all is smooth, up to the time at which it leaves or reaches a flank;
-    there, at a root of the method's dense output, the integration begins anew with the flanks it then touches.
+    Every mesh is held on the flanks in contact, so that the motion is smooth, up to the time at which it leaves or reaches a
+    flank. This time is a root of the method's dense output. There the integration restarts with the new flanks in contact.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ class _Run:
         return first
 
     def _looks(self, path, low, high, meshes):
-        """Times in a step, and the compressions there: a step may be longer than a flight, or than a short loss of contact.
+        """Return times in a step, and the compressions there: a step may be longer than a flight or a short loss of contact.
 
         `LOOKS`, and between them where parabolas through three of them turn back.
         """
@@ -173,7 +173,7 @@ class _Run:
             self.side[i] = after
 
     def _exits(self, i):
-        """Where the contact a mesh is in ends: compression, direction, and the flank it then touches."""
+        """Return where the present contact of a mesh ends: compression, direction, and the next flank in contact."""
         side, slack = self.side[i], self.law["backlash"][i]
         if side == 0:
             return (0.0, 1, 1), (-slack, -1, -1)

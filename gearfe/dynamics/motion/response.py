@@ -1,4 +1,4 @@
-"""`Response`: what a machine did, by named channels with units."""
+"""`Response`: simulated motion of a machine, by named channels with units."""
 
 import os
 from collections.abc import Sequence
@@ -62,11 +62,11 @@ class Response:
 
     @property
     def raw(self) -> "Response":
-        """The same, its channels those of the integrator at these times, not filtered."""
+        """The same response with the unfiltered channels of the integrator at these times."""
         return replace(self, filtered=None)
 
     def part(self, kept: slice | NDArray[np.int64]) -> "Response":
-        """Some of the samples, as a slice of them or by their numbers."""
+        """Return some of the samples, as a slice of them or by their numbers."""
         filtered = None if self.filtered is None else self.filtered[kept]
         return replace(self, time=self.time[kept], states=self.states[kept], filtered=filtered)
 
@@ -84,7 +84,7 @@ class Response:
         return [*motions, *(f"{kind} {mesh.name}" for kind in MESH for mesh in self.machine.meshes)]
 
     def unit(self, name: str) -> str:
-        """Unit of a channel."""
+        """Return the unit of a channel."""
         head, _, tail = name.partition(" ")
         if head in MESH and tail in self._meshes:
             power = self.machine.meshes[self._meshes.index(tail)].contact.power

@@ -1,4 +1,4 @@
-"""Checks of what `simulate` is given, before anything is computed."""
+"""Checks of the arguments of `simulate`, before anything is computed."""
 
 import numpy as np
 
@@ -6,12 +6,12 @@ from ...core.memory import free_memory
 from ..machine.tables import Machine
 from .reference import SOLVERS
 
-DEEPEST, FASTEST = 1.0, 1e3  # of flanks along a line of action [m], [m/s]: no tooth is so high, no gear so fast
+DEEPEST, FASTEST = 1.0, 1e3  # limits of compressions [m] and their rates [m/s]: beyond the size and speed of any gear
 LONGEST, LATEST = 1e11, 1e9  # steps of a run; its start [s]
 
 
 def check_initial(machine, state):
-    """Refuse initial states in which flanks lie in each other by more than teeth are high, or move as fast as no gear does."""
+    """Reject initial states in which flanks overlap by more than a tooth's height, or move faster than any gear."""
     n = len(machine.dofs)
     deep, fast = (float(np.abs(machine.G @ part).max(initial=0.0)) for part in (state[:n], state[n:]))
     if deep > DEEPEST or fast > FASTEST:
@@ -22,8 +22,8 @@ def check_initial(machine, state):
 
 
 def check_memory(machine, duration, count, filtered):
-    """Refuse more outputs than memory holds, before they are computed."""
-    size = 4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0)  # and a copy
+    """Reject more outputs than memory holds, before they are computed."""
+    size = 4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0)  # twice, with a copy
     memory, free = 8.0 * count * size, free_memory()
     if memory > free:
         raise ValueError(

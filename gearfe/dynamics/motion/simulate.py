@@ -33,13 +33,13 @@ from .step_control import (
 )
 from .thinned import stages, thinned
 
-FINE = 4  # steps of the reference that the filter sees in each `default_step`
-FINER = 3  # times the step of a whole run is halved where contact is lost
-ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
-WHOLE = 1e-3  # of the range, of a whole run whose error is asked for
-COARSE = 0.1  # of the range: an estimate of a given step above which is warned of
-SLOW, ENDLESS = 5.0, 7200.0  # s of computing expected of a whole run: above these it is told, and refused
-NUDGE, GROWN = 1e-9, 1e-2  # a disturbance of the start, of the state; what it may grow to, of the range
+FINE = 4  # steps of the reference per `default_step`, before the filter
+FINER = 3  # number of times that the step of a whole run is halved if contact is lost
+ALLOWED = 2 * WANTED_OPEN  # allowed difference with contact loss, as a part of the range
+WHOLE = 1e-3  # allowed difference of a whole run with requested error, as a part of the range
+COARSE = 0.1  # estimate of a given step above which a warning is issued, as a part of the range
+SLOW, ENDLESS = 5.0, 7200.0  # expected computing time of a whole run [s]: above these it is reported, and rejected
+NUDGE, GROWN = 1e-9, 1e-2  # disturbance of the initial state, and the size that it may reach, as parts of the range
 
 
 @single
@@ -59,13 +59,13 @@ def simulate(
     filtered: bool | None = None,
     progress: Callable[[str], object] | None = None,
 ) -> Response:
-    """Response of a machine.
+    """Simulate the response of a machine.
 
-    What is kept and how it is integrated are two things: `rate` is the first, `step` the second. Channels are filtered before
-    they are thinned (`motion.thinned`): amplitudes below 0.4 of the rate kept stay, and nothing above half of it folds
-    into a spectrum. The states (`Response.q`, `Response.v`) are those of the integrator, exact to its error, at the times kept,
-    and so are the channels of `Response.raw`. The first and the last sample of a channel are not filtered, as nothing is
-    known beyond them; the 26 next to them pass from one to the other.
+    `rate` is the output sampling rate, `step` the integration step. Channels pass an anti-aliasing filter before decimation
+    (`motion.thinned`): amplitudes below 0.4 of the rate stay, and nothing above half of it is folded into the spectrum. The
+    states (`Response.q`, `Response.v`) and the channels of `Response.raw` are those of the integrator at the output times. The
+    first and the last sample of a channel are not filtered, since the response beyond them is unknown. The next 26 samples change
+    over gradually.
 
     Parameters
     ----------
@@ -73,56 +73,55 @@ def simulate(
     duration : float
         [s]
     method : str
-        ``"fast"``: `motion.propagator`, fixed steps that are halved about changes of contact, and under a law of contact
-        that is not linear also where flanks come into contact. Or a method of
-        `scipy.integrate.solve_ivp`, the reference (``"DOP853"`` with ``rtol=1e-10``), between located changes of contact.
+        ``"fast"``: `motion.propagator`, with fixed steps that are halved about changes of contact. With a nonlinear contact law,
+        steps are also halved where flanks come into contact. Or a method of `scipy.integrate.solve_ivp` as the reference
+        (``"DOP853"`` with ``rtol=1e-10``), between located changes of contact.
     rate : float, optional
         Samples per second kept [Hz], at the times ``start + i / rate`` up to the duration. Default: one each `default_step`.
     step : float, optional
-        Step of the fast path [s], halved about changes of contact alone; rounded down to divide the interval of the output (of
-        what is filtered, by two or more). Its error is estimated. Default: a
-        step whose error on a short stretch is at most 7e-4 of the range (`motion.step_control.chosen_step`); where
-        contact is lost the whole run is repeated at half the step until both agree within 1e-2. If they never do, a state
-        disturbed by 1e-9 tells why: where that grows to as much, no integration can follow the motion, which
-        ``stats["chaotic"]`` says; otherwise the reference takes over, which ``stats["switched"]`` says.
+        Step of the fast path [s], halved only about changes of contact. It is rounded down to divide the output interval (in two
+        or more steps, if filtered). Its error is estimated. Default: a step whose error on a short stretch is at most 7e-4 of the
+        range (`motion.step_control.chosen_step`). If contact is lost, the whole run is repeated at half the step until both agree
+        within 1e-2. If they never agree, a run with a state disturbed by 1e-9 shows the cause. If the disturbance grows as much,
+        no integration can follow the motion, and ``stats["chaotic"]`` is true. Otherwise the reference integrator is used, and
+        ``stats["switched"]`` is true.
     dt : float, optional
-        Step and interval of the output in one [s]; rounded down to divide `duration`.
+        Step and output interval in one [s]; rounded down to divide `duration`.
     initial : (ndarray, ndarray), optional
         Displacements and velocities ``(n,)``; default: at rest under the loads at the start (`Machine.rest`).
     start : float
         Time of the first state [s].
     every : int
-        Keep every n-th output. Without `dt` the outputs counted are `default_step` apart, whatever the step. Not with `rate`.
+        Keep every n-th output. Without `dt` the outputs are `default_step` apart for any step. Not with `rate`.
     rtol : float
-        Of the reference; its atol is a thousandth of that of the largest value at rest.
+        Relative tolerance of the reference; its atol is a thousandth of that of the largest value at rest.
     error : bool, optional
-        Fast path: True integrates the whole run again with half the step, until two runs agree within 1e-3 where the step is
-        chosen; ``stats["error"]`` is then of the whole run. False leaves a given step unestimated.
+        Fast path: True repeats the whole run with half the step, until two runs agree within 1e-3 if the step is chosen
+        automatically. ``stats["error"]`` is then of the whole run. False disables the estimate for a given step.
     filtered : bool, optional
-        False: channels are those of the integrator at the times kept. Default: filtered, unless `dt` makes each step an output.
-        There are then two steps or more for each output.
+        If False, channels are those of the integrator at the output times. Default: filtered, unless `dt` makes each step an
+        output. Filtering needs two steps or more for each output.
     progress : callable, optional
-        Gets a line before the loop is compiled, which the first run on a machine does in about 10 s, and one with the seconds
-        expected where a run takes long.
+        Function that receives a line before compilation (about 10 s on the first run on a computer), and one with the expected
+        seconds of a long run.
 
     Returns
     -------
     Response
-        Its ``stats["error"]`` estimates the error: the largest difference of displacements and mesh forces to a run of half the
-        step (under a law of contact that is not linear, of a third), over their ranges
-        (`motion.step_control.difference`), on ``stats["error_seconds"]`` of the run, about the worst damaged tooth or
-        where the speed is highest, or on the whole run; ``stats["error_acceleration"]`` is that of the accelerations. Without
-        damping the error goes on growing after such a stretch: ask for the whole run (``error=True``). These are of the
-        integration; ``stats["error_phases"]`` is how far stiffnesses over the phase may be off between their samples, over their
-        spread (`motion.law_range.between_phases`): where it is the larger, solve more phases. ``stats["loads"]`` says
-        which mesh forces leave the loads that their law of force or stiffness curve was solved for, if any do.
+        ``stats["error"]`` is the estimated error: the largest difference of displacements and mesh forces to a run of half the
+        step (with a nonlinear contact law, a third), relative to their ranges (`motion.step_control.differences`). It is
+        evaluated on ``stats["error_seconds"]`` of the run, about the worst damaged tooth or at the highest speed, or on the whole
+        run. ``stats["error_acceleration"]`` is that of the accelerations. Without damping the error grows after such a stretch;
+        then use ``error=True``. These are integration errors. ``stats["error_phases"]`` is the interpolation error of stiffnesses
+        between their phases, relative to their spread (`motion.law_range.between_phases`). If it is larger, solve more phases.
+        ``stats["loads"]`` lists the mesh forces outside the loads of their force law or stiffness curve.
 
     Raises
     ------
     ValueError
-        If an input is impossible, or a run whose step is left open would take hours (`ENDLESS`).
+        If an input is impossible, or a run with automatic step would take hours (`ENDLESS`).
     RuntimeError
-        If the response grows beyond all bounds, or the reference gives up.
+        If the response grows beyond all bounds, or the reference integrator fails.
 
     Warns
     -----
@@ -138,7 +137,7 @@ def simulate(
     >>> wave = 1e8 * (1 + 0.1 * np.cos(2 * np.pi * np.arange(64) / 64))  # N/m, over the mesh cycle
     >>> machine = gf.single_mesh(1.0, wave, frequency=1000.0, force=1000.0, zeta=0.05)
     >>> run = gf.simulate(machine, 0.2, rate=20000.0)
-    >>> force = run["force mesh"][2000:]  # without what the start sets off
+    >>> force = run["force mesh"][2000:]  # without the transient
     >>> print(f"{force.min():.0f} to {force.max():.0f} N are carried, {force.mean():.0f} N on average")
     913 to 1052 N are carried, 1000 N on average
     """
@@ -185,7 +184,7 @@ def simulate(
 
 
 def _reference(machine, duration, count, state, method, rtol, start, filtered):
-    """`reference`, its channels filtered if asked for."""
+    """Return `reference`, its channels filtered if requested."""
     if not filtered:
         return reference(machine, duration, count, state, method, rtol, start)
     counts = stages(FINE * math.ceil(duration / count / default_step(machine) * (1 - 1e-9)))
@@ -203,7 +202,7 @@ class _Runs:
         self.tell = progress or (lambda line: None)
 
     def _watch(self, cost):
-        """Tell how long the whole run takes, from the seconds that one simulated second takes; refuse one that takes hours."""
+        """Report how long the whole run takes, from the seconds that one simulated second takes; refuse one that takes hours."""
         seconds = cost * self.duration
         if seconds > ENDLESS:
             raise ValueError(
@@ -214,7 +213,7 @@ class _Runs:
             self.tell(f"{self.duration:.3g} s of motion at this step: about {seconds:.2g} s")
 
     def steps(self, every):
-        """Steps for each output: `every`, or some more where channels are filtered."""
+        """Return the number of steps for each output: `every`, or some more if channels are filtered."""
         return math.prod(stages(every)) if self.filtered else every
 
     def __call__(self, every, state=None, adapt=False):

@@ -15,7 +15,7 @@ from . import excitation, propagator
 from .response import Response
 from .step_control import chosen_step
 
-DISTURBED = 1e-5  # of the size of the motion: disturbances of its start, where it is not linear
+DISTURBED = 1e-5  # size of disturbances of the initial state of a nonlinear motion, as a part of the size of the motion
 STABLE = 1e-6  # above 1: a multiplier this large still counts as 1 (rigid-body motion, no damping)
 
 
@@ -155,7 +155,7 @@ class _Flow:
             return run(self.plan, self.machine, self.flat, z, self.times.size - 1, 1, self.breaks)
 
     def monodromy(self, states):
-        """Derivative of the state after the period by that before: differences of motions, exact where the motion is linear."""
+        """Return the derivative of the state after the period by that before: differences of motions, exact if linear."""
         part = 1.0 if self.linear else DISTURBED
         size = part * (np.abs(states).max() or 1.0)
         columns = []

@@ -1,4 +1,4 @@
-"""The step of the fast path: what two runs of different steps differ by, and a step for which that is small.
+"""Step control of the fast path: differences of runs with two steps, and a step for which they are small.
 
 The error of a step is set by the mesh cycles, by the modes the meshes excite, by how steep the stiffness curves are and by the
 damaged tooth: no frequency alone determines it. So a short stretch of the motion is run at a step and at half of it, and the
@@ -15,25 +15,25 @@ from .propagator import default_step, is_bent, plan
 from .response import acceleration, mesh_channels
 
 WANTED, WANTED_OPEN = 7e-4, 5e-3  # largest error, as a part of the range, while the meshes stay closed and where contact is lost
-CYCLES = 3.5  # of the slowest mesh, in a stretch
-SPREAD = 4  # stretches on which a run under a law of contact that is not linear is repeated; all of it if it is no longer
+CYCLES = 3.5  # length of a stretch [cycles of the slowest mesh]
+SPREAD = 4  # segments repeated to estimate the error of a run with nonlinear contact; a shorter run is repeated completely
 HALVINGS = 6
-SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to a shorter step: of order four, and where local halving rules
-SEEN = 3e-3  # of the spread of a load that is a function: how well it must be known between the samples of a run
-SAMPLES = 1000  # of a stretch, at which two runs are compared
-PROBES = 50_000  # times at which that is looked at
+SMOOTH, ROUGH = 1.2, 2.0  # ratio of the error to the difference to a shorter step: order four, and with local halving
+SEEN = 3e-3  # allowed interpolation error of loads given as functions between the steps of a run, relative to their spread
+SAMPLES = 1000  # samples of a stretch at which two runs are compared
+PROBES = 50_000  # number of times at which this is evaluated
 TURNS = ("theta", "tilt_x", "tilt_y")
 
 
 class Seen(NamedTuple):
-    """What two runs are compared by, at the times kept and as the integrator has it.
+    """Quantities by which two runs are compared, at the output times and unfiltered.
 
     Attributes
     ----------
     q : ndarray, shape (t, n)
         Displacements.
     force : ndarray, shape (t, m)
-        Of the meshes.
+        Mesh forces.
     acceleration : ndarray, shape (t, n)
     """
 
@@ -83,10 +83,10 @@ def _by_kind(one, two, machine):
 
 
 def unseen(machine, start, duration, h):
-    """How far loads that are functions are from what steps of `h` seconds see of them, over their spread; the worst.
+    """Return the largest deviation of loads given as functions from their interpolation in steps of `h` s, over their spread.
 
-    A run knows them at quarters of its steps and draws straight lines between. Asked at times by chance over the whole run, not
-    on a stretch: a burst, or a tone far above the meshes, shows.
+    A run evaluates them at quarters of its steps and interpolates linearly. The deviation is evaluated at random times over the
+    whole run, not on a stretch, so that a burst or a tone far above the meshes is detected.
     """
     functions = [applied for applied in machine.loads if callable(applied.value)]
     if not functions:
@@ -104,7 +104,7 @@ def unseen(machine, start, duration, h):
 
 
 def longest_seen(machine, start, duration):
-    """Longest step that sees the loads to `SEEN` [s]; at most `default_step`, and that over ``2**12`` if none does."""
+    """Longest step that resolves the loads within `SEEN` [s]; at most `default_step`, and that over ``2**12`` if none does."""
     h = default_step(machine)
     for _ in range(12):
         if unseen(machine, start, duration, h) <= SEEN:
@@ -223,7 +223,7 @@ class Estimate(NamedTuple):
 
 
 def is_rough(machine):
-    """Whether the error of a step hangs on where the steps lie: flanks meet under a law that is not straight, or one of force."""
+    """Return True if the error of a step depends on step positions: flanks meet under a nonlinear law or a force law."""
     return is_bent(machine) or any(mesh.secants for mesh in machine.meshes)
 
 
@@ -261,17 +261,17 @@ def estimate(machine, h, length, places, *, adapt=False, tried=False):
 
 
 def estimate_along(response, found):
-    """`Estimate` of a run under laws for which `is_rough`, from what it went through.
+    """Return the `Estimate` of a run under laws for which `is_rough`, from its own states.
 
-    Its error depends on where its own steps happen to lie when pairs come in, so that one stretch says too little: the whole of
-    a run as short as `SPREAD` stretches is run again, of a longer one `SPREAD` stretches spread over it, each from the state
-    that the run had there. What those cannot know is what was wrong before: errors of stretches one after the other add up
-    as independent ones do, until the least damped vibration forgets them.
+    The error depends on the positions of steps at the entry of pairs, so that one stretch is not sufficient. A run as short as
+    `SPREAD` stretches is repeated completely. For a longer one, `SPREAD` stretches distributed over it are repeated, each from
+    the state of the run there. These do not contain earlier errors. Errors of consecutive stretches add like independent ones,
+    until the least damped vibration has decayed.
 
     Parameters
     ----------
     response : Response
-        Of `gearfe.dynamics.motion.fixed_step.fixed_steps`, ``adapt=True``.
+        Result of `gearfe.dynamics.motion.fixed_step.fixed_steps`, ``adapt=True``.
     found : Estimate
         Of its step on one stretch.
     """
@@ -281,7 +281,8 @@ def estimate_along(response, found):
         index = np.searchsorted(time, begin + np.linspace(0.0, duration - length, SPREAD) * (1 - 1e-12)) - 1
         index = np.unique(np.maximum(index, 0))
         values = np.linalg.eigvals(plan(machine, h, machine.working()).levels[0][0])
-        left = np.abs(values[values.imag > 0]).max(initial=0.0) ** (2 * length / h)  # of a squared error, after a stretch
+        # remaining part of a squared error after a stretch
+        left = np.abs(values[values.imag > 0]).max(initial=0.0) ** (2 * length / h)
         grown = math.sqrt(sum(left**i for i in range(math.ceil(duration / length))))
     else:
         length = duration

@@ -1,7 +1,7 @@
-"""What a run keeps at its rate: its channels, filtered before they are thinned, so that nothing above half the rate folds down.
+"""Anti-aliasing filter and decimation of the channels of a run.
 
-Forces and accelerations are products of the motion and of stiffnesses that turn with the gears: they have harmonics that the
-motion has not, so that channels are filtered and not the states alone.
+Forces and accelerations are products of the motion and of stiffnesses that vary with the rotation. They have harmonics that the
+motion does not have. Therefore the channels are filtered, and not only the states.
 """
 
 import math
@@ -10,17 +10,18 @@ from functools import cache
 import numpy as np
 from scipy.signal import firwin
 
-PASSED = 0.4  # of the rate: amplitudes below it stay, of those above half the rate a ten-thousandth (80 dB) is left
-SHORT_PASSED = 1 / 14  # of the lower rate of filters before the last one, which see no less than nine times the rate kept
-REACH, SHORT = 26, 3  # samples a filter looks at on either side, at its own lower rate: of the last filter, of those before
-LEAST, MOST = 2, 16  # steps for each sample kept, at least; samples that one filter makes one of at most
-WIDTH = 7.857  # of Kaiser's window, for 80 dB
-TOGETHER = 16  # samples kept that one product makes
-STEEP = 2.509  # samples on either side times the width from what stays to what is left out, of the rate; for 80 dB
+PASSED = 0.4  # pass band, as a part of the rate; amplitudes above half the rate are reduced by 80 dB
+# pass band of filters before the last one, as a part of their output rate, at least nine times the final rate
+SHORT_PASSED = 1 / 14
+REACH, SHORT = 26, 3  # samples on either side of a filter, at its output rate: of the last filter, of those before
+LEAST, MOST = 2, 16  # least number of steps per output sample; largest decimation of one filter
+WIDTH = 7.857  # shape parameter of Kaiser's window for 80 dB
+TOGETHER = 16  # output samples computed per matrix product
+STEEP = 2.509  # samples on either side times the transition width, as a part of the rate; for 80 dB
 
 
 def stages(every):
-    """Of how many samples each filter makes one, the last at least nine unless it is alone; their product is `every` or more.
+    """Return the decimation of each filter, the last at least nine unless it is alone; their product is `every` or more.
 
     >>> stages(1), stages(7), stages(40), stages(1000)
     ((2,), (7,), (3, 14), (4, 16, 16))
@@ -55,7 +56,7 @@ def thinned(pieces, counts):
 
 
 def thinned_pieces(pieces, counts):
-    """As `thinned`, piece by piece."""
+    """Return the result of `thinned` in pieces."""
     for count in counts[:-1]:
         pieces = _filtered(pieces, count, SHORT, SHORT_PASSED)
     return _filtered(pieces, counts[-1], REACH, PASSED)
@@ -63,7 +64,7 @@ def thinned_pieces(pieces, counts):
 
 @cache
 def _weights(count, reach, passed):
-    """Of ``2 reach count + 1`` samples in the one kept of `count`, of which amplitudes below `passed` of its rate stay.
+    """Return ``2 reach count + 1`` filter weights for a decimation by `count`, pass band `passed` of its rate.
 
     J. F. Kaiser, Proc. IEEE Int. Symp. Circuits Syst. (1974) 20-23; `scipy.signal.firwin`.
     """
@@ -85,7 +86,8 @@ def _matrix(count, reach, passed):
 
 def _filtered(pieces, count, reach, passed):
     """One filter: every `count`-th row, in pieces."""
-    waiting, at, whole = None, 0, reach * count  # `at`: the next row kept; on each side of it are `whole`, or all there are
+    # `at` is the next output row; `whole` rows are on each side of it, or all there are
+    waiting, at, whole = None, 0, reach * count
 
     def ended(rows):
         """Rows near the beginning or the end."""

@@ -11,7 +11,7 @@ from ...signal.series import Signal
 
 
 def through_modes(force: Signal, modes: Sequence[tuple[float, float, float]]) -> Signal:
-    """Acceleration by a force through a set of second-order modes.
+    """Return the acceleration that a force excites in a set of second-order modes.
 
     ::
 
@@ -41,7 +41,7 @@ def through_modes(force: Signal, modes: Sequence[tuple[float, float, float]]) ->
 
 
 def through_frf(force: Signal, frequency: ArrayLike, response: ArrayLike, unit: str = "m/s^2") -> Signal:
-    """Signal by a force through a measured frequency response function, as if the record repeated itself.
+    """Return the response to a force by a measured frequency response function, for a periodic record.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
 """Flexibility by finite elements: whole sections (`fe`), whole gears of hexahedra (`fe3d`); meshes, elements, solvers.
 
-Brute force on purpose: it is what the energy methods are judged by.
+It uses brute force on purpose, as the reference of the energy methods.
 """

@@ -1,7 +1,7 @@
-"""Zones of a crack's faces in hexahedra, and forces that push them apart: so contact keeps faces from passing through each other.
+"""Zones of a crack's faces in hexahedra and forces that push them apart, for contact of crack faces.
 
-Faces that touch each other push by an even pressure on zones, and the mean opening of a zone is not negative: what a zone does is
-what it reads, so that the influence matrix stays symmetric.
+Faces in contact press with an even pressure on zones, and the mean opening of a zone is not negative. The same mean is used for
+pressure and opening, so that the influence matrix stays symmetric.
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from .hexahedron import face_shapes
 
 ACROSS, ALONG = 4, 8  # zones of a crack from mouth to tip, and along the width, at most
-NEAR_TIP = 0.1  # faces closer to a crack's tip than this part of its length cannot be seen to touch
+NEAR_TIP = 0.1  # no contact is possible closer to a crack's tip than this part of its length
 
 
 def zone_forces(mesh):
@@ -35,7 +35,7 @@ def _pressures(points, faces):
     """Nodal forces ``(8, 3, m)`` of unit pressure along the normals of faces [N], and their middles ``(3, m)``."""
     at, weight = np.polynomial.legendre.leggauss(3)
     x, y = (v.ravel() for v in np.meshgrid(at, at, indexing="ij"))
-    step, nodes = 1e-4, points[:, faces]  # of shape functions that are polynomials of second degree in x and in y
+    step, nodes = 1e-4, points[:, faces]  # step for the derivative of shape functions of second degree in x and y
     first, second = (
         np.einsum("dnm,nq->dmq", nodes, (face_shapes(x + h, y + v) - face_shapes(x - h, y - v)) / (2 * step))
         for h, v in ((step, 0.0), (0.0, step))
@@ -71,7 +71,7 @@ def _to_tooth(mesh, face, normal):
 
 
 def _apart(count, faces, forces):
-    """A column ``(3 count,)`` that pushes the body's side against the `forces` and the tooth's along them, of unit resultant."""
+    """Return a column ``(3 count,)`` that pushes the body's side against `forces`, the tooth's along them, of unit size."""
     out = np.zeros((count, 3))
     forces = forces.transpose(0, 2, 1) / np.linalg.norm(forces.sum(axis=(0, 2)))
     for side, sign in zip(faces, (-1.0, 1.0), strict=True):

@@ -161,7 +161,7 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
 
 
 def _tilted(mesh, tooth):
-    """The hats of `_leans` of a flank, tilted either way."""
+    """Return the hats of `_leans` of a flank, tilted either way."""
     return [hats(mesh, tooth, corner=True, tilt=tilt) for tilt in (TILT, -TILT)]
 
 
@@ -174,7 +174,7 @@ def _leans(gear, knots):
 
 
 def _leaning(gear, on, influence, plain, tilted, coefficient):
-    """What `leaning` gives of a tooth with hats `on`, from the influence of all loads and where these and the tilted ones are."""
+    """Return `leaning` of a tooth with hats `on`, from the influence of all loads and their places."""
     numbers = _leans(gear, on.knots)
     local, diagonal = coefficient * np.diag(hat_logarithm(on.knots[:, numbers], on.knots[:, numbers])), np.diag(influence)
     return leaning(on.arc[numbers], diagonal[plain][numbers] - local, *(diagonal[part] - local for part in tilted))
@@ -189,10 +189,10 @@ def _between(body, loads):
 def damaged_flexibility(
     gear, material, cracks, healthy, *, broken=(), neighbours=1, state="plane strain", refine=1.0, teeth=None
 ):
-    """`Flexibility` of a gear with root cracks and `broken` teeth: every tooth of `reached_teeth` is loaded and read.
+    """Return the `Flexibility` of a gear with root cracks and `broken` teeth: each tooth of `reached_teeth` is loaded and read.
 
-    Their `tooth` counts to the loaded side of this gear; `healthy` is that of the same gear without cracks, for the teeth further
-    away. The other arguments are as of `flexibility`.
+    Tooth numbers of `broken` refer to the loaded side of this gear. `healthy` is that of the same gear without cracks, for teeth
+    further away. `flexibility` describes the other arguments.
     """
     gone = missing_teeth(gear, broken)
     solved = [tooth for tooth in reached_teeth(gear, (*cracks, *broken), neighbours) if tooth not in gone]
@@ -233,7 +233,7 @@ def damaged_flexibility(
 
 
 def _face_columns(mesh):
-    """Columns of unit forces that push the facing nodes of all cracks apart, tips and the quarter points beside them left out."""
+    """Return columns of unit forces that push facing nodes of all cracks apart, without tips and their quarter points."""
     columns = []
     for seam in mesh.seams:
         ahead = np.gradient(mesh.mesh.doflocs[:, seam.faces[0]], axis=1)[:, :-2]
@@ -248,15 +248,15 @@ def _face_columns(mesh):
 
 
 def basis(on):
-    """Spline from values at hats to those at an arc: what S(s, s') of a tooth is carried by."""
+    """Return the spline basis that represents S(s, s') of a tooth: from values at hats to values at an arc."""
     return CubicSpline(on.arc, np.eye(on.arc.size))
 
 
 def own_tooth(on, influence, coefficient):
-    """Spline S(s, s) of one tooth, and S(s, s') between its hats, from their influence matrix.
+    """Return the spline S(s, s) of one tooth, and S(s, s') between its hats, from their influence matrix.
 
-    S(s, s) comes from hats twice as wide, see the module; at both ends of the flank, where none has room, from the single hat
-    plus what the wide one next to it finds more than its own.
+    S(s, s) comes from hats twice as wide (see the module). At both ends of the flank these have no room. There it is the value of
+    the single hat plus the difference between both at the next wide one.
     """
     smooth = influence - coefficient * hat_logarithm(on.knots, on.knots)
     arc, wide, single = on.arc[:-1], wider(on.knots[:, :-1]), np.diag(smooth)[:-1]  # without the corner's

@@ -33,7 +33,7 @@ class Patches:
     ----------
     teeth : tuple of int
     knots : ndarray, shape (3, arcs)
-        Start, top and end of each hat along the flank, as of `gearfe.geometry.tooth.profile.arc_at` [mm].
+        Start, top and end of each hat along the flank [mm], see `gearfe.geometry.tooth.profile.arc_at`.
     modes : int
         Number of functions along the width: the Legendre polynomials ``P_a(2 z / b - 1) / b``, of which the first is a uniform
         line load of unit resultant.
@@ -168,7 +168,7 @@ def points_between(ends, cuts, count):
 
 
 def planned(mesh, patches, more=0):
-    """`finite_elements.solver.SolveCost` of the influence between patches, with `more` right-hand sides beside theirs."""
+    """Return the `finite_elements.solver.SolveCost` of the influence between patches, with `more` additional right-hand sides."""
     free = mesh.points.shape[1] - np.unique(mesh.held).size
     return plan(3 * free, columns=math.prod(patches.shape) + more)
 

@@ -17,8 +17,8 @@ from .crack_zones import zone_forces
 from .fe3d import Patches, influence, mesh_patches, planned
 from .integral import integral_influence, on_stubs
 
-LOST = 2  # of the highest axial degrees may be dropped if the layers do not carry them
-RESOLVED = 0.05  # of the half-space's displacement: below, the mesh is stiffer than the contact's own part by so much
+LOST = 2  # number of the highest axial degrees that may be dropped if the layers do not resolve them
+RESOLVED = 0.05  # limit of the error of a mesh that is too stiff, as a part of the half-space's displacement
 PER_HAT = 4  # edges across a hat
 LAYER = 2.0  # height of the element layers [m_n], at most a sixth of the width
 END = 0.25  # height of the layers at the end faces, where loads and modes change most, against that

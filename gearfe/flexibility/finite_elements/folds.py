@@ -8,8 +8,8 @@ from .hexahedron import TWENTY, gauss, shapes
 from .tetrahedron import EDGES, INNER, OUTER
 
 LEFT = 0.05  # least Jacobian of a bent tet over that of the straight one
-NEAR = 0.975  # of the way to a hexahedron's corner: quads with a straight angle there are no fault
-HALVINGS = 5  # of a bend, before the edge is left straight
+NEAR = 0.975  # position of the point near a hexahedron's corner, since quads with a straight angle there are no fault
+HALVINGS = 5  # halvings of a bend before the edge is left straight
 
 
 @keeping(2)

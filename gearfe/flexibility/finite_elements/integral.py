@@ -1,13 +1,13 @@
-"""A gear that is one piece with its shaft: held at its end faces, which move with the stubs beside them.
+"""Gear in one piece with its shaft: held at its end faces, which move with the adjoining shaft stubs.
 
-The body is solid (but for a free hole at its centre) and elastic throughout, no beam inside of the gear. Where a stub of the
-shaft goes on, the end face inside of the stub's radius stays plane and moves as a rigid disc, as the cross section of a beam
-does. With C the influence between loads f with both discs held, and g the forces that a unit motion q of the discs puts on the
+The body is solid (except for a free hole at its centre) and elastic throughout, without a beam inside the gear. Where a stub
+adjoins, the end face inside the stub's radius stays plane and moves as a rigid disc, like the cross section of a beam. With C the
+influence between loads f with both discs held, and g the forces that a unit motion q of the discs causes at the free nodes,
 free nodes,
 
     C_total = C_ff + C_fg (K_body + K_stubs)**-1 C_gf,    K_body = r' K r - g' K_free**-1 g
 
-r being the discs' rigid motions: exact, by one factorisation and twelve more columns.
+where r are the discs' rigid motions. This is exact and needs one factorisation and twelve more columns.
 """
 
 import math
@@ -37,7 +37,7 @@ def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None)
     if tell:
         tell(cost)
     whole = assemble(mesh.points, mesh.cells, material, np.arange(mesh.points.shape[1]))
-    moved = whole @ discs + whole.T @ discs - whole.diagonal()[:, None] * discs  # of which the lower triangle is kept
+    moved = whole @ discs + whole.T @ discs - whole.diagonal()[:, None] * discs  # only the lower triangle of `whole` is stored
     gram = factor(whole[rows][:, rows].tocsc(), cost).gram(hstack([load[rows], -moved[rows]]))
     direct, cross, back = gram[:columns, :columns], gram[:columns, columns:], gram[columns:, columns:]
     used = np.flatnonzero(np.abs(discs).max(axis=0))
@@ -47,7 +47,7 @@ def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None)
 
 
 def on_stubs(mesh, shaft):
-    """The mesh held at the discs of its end faces, and the discs' motions at all nodes ``(3 nodes, 12)``."""
+    """Return the mesh held at the discs of its end faces, and the discs' motions at all nodes ``(3 nodes, 12)``."""
     gear, points = mesh.gear, mesh.points
     first, last = shaft.gear - gear.b / 2, shaft.gear + gear.b / 2
     if first < -1e-9 * gear.b or last > shaft.length + 1e-9 * gear.b:
@@ -56,7 +56,7 @@ def on_stubs(mesh, shaft):
         )
     if first < shaft.torque < last:
         raise ValueError(
-            f"shaft: torque = {shaft.torque:g} mm is inside of the gear, {first:g} to {last:g} mm: it leaves by a stub"
+            f"shaft: torque = {shaft.torque:g} mm is inside of the gear, {first:g} to {last:g} mm: it must leave through a stub"
         )
     radius, held, motions = np.hypot(points[0], points[1]), [], np.zeros((points.shape[1], 3, 2 * MOTIONS))
     for k, (z, stub) in enumerate(zip((0.0, gear.b), face_radii(shaft, gear.b), strict=True)):

@@ -1,4 +1,4 @@
-"""A load on a line across the flank of tooth 0 of a gear in hexahedra, and what it moves."""
+"""Line load across the flank of tooth 0 of a gear in hexahedra, and its displacements."""
 
 import math
 

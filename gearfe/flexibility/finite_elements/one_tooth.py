@@ -1,4 +1,4 @@
-"""What functions of one gear and one loaded tooth are given: checked before any work, placed, and as nodal forces."""
+"""Inputs of functions of one gear and one loaded tooth: checked before any work, placed, and as nodal forces."""
 
 import math
 
@@ -58,7 +58,7 @@ def check_load_along(line_load, gear, material):
         raise ValueError(f"line_load at {SAMPLES} heights z: {error}; give a function of an array of heights [mm]") from error
     if values.dtype.kind not in "iuf" or not np.isfinite(load).all() or load.min() < 0 or not load.max() > 0:
         raise ValueError(
-            f"line_load from z = 0 to {b:g} mm gives {load[0]!s} to {load[-1]!s}, but a tooth is pushed: give numbers >= 0 "
+            f"line_load from z = 0 to {b:g} mm gives {load[0]!s} to {load[-1]!s}, but loads are compressive: give numbers >= 0 "
             "[N/mm], somewhere > 0"
         )
     check_line_load(float(load.max()), gear, material)

@@ -1,8 +1,8 @@
-"""How much the quads of a gear's section are too stiff, from the same section in plane strain at a multiple of its resolution.
+"""Error of the quads of a gear's section, from the same section in plane strain at a higher resolution.
 
-A section costs a hundredth of the gear. It is one layer of hexahedra whose displacement does not change with the height and has
-no axial part; what its patches lack against the finer one is what those of the gear lack at every height, whatever the load
-along the width, since it comes from places much closer than the width.
+A section costs a hundredth of the gear. It is one layer of hexahedra whose displacement is constant along the height, without an
+axial part. The missing flexibility of its patches relative to the finer section is also missing in the gear at every height, for
+any load along the width, since it originates much closer than the width.
 """
 
 from dataclasses import replace
@@ -22,21 +22,21 @@ from .fe3d import Patches, mesh_patches, patch_loads
 from .fe_gear3d import PER_HAT, SIZES
 from .solid_assembly import assemble
 
-FINER = 4.0  # resolution of the section that is taken for exact, against that of the gear
+FINER = 4.0  # resolution of the reference section, relative to the gear
 THIN = 1e-2  # height of the layer [m_n]: so thin that a helix does not turn it
 
 
 def finer_section(found, material, damage=(), *, refine, cache=True):
-    """A gear's `Flexibility3D` with what a section of `FINER` resolution adds to every tooth.
+    """Return a gear's `Flexibility3D`, corrected for every tooth by a section of `FINER` resolution.
 
-    `found` is of hexahedra whose section has resolution `refine`. Cracks of part of the width or of a depth that changes count
-    with their whole section.
+    `found` is the result of hexahedra whose section has resolution `refine`. Cracks of part of the width or of changing depth
+    count with their whole section.
     """
     gear, kept = found.gear, solved_gears(cache)
     even = np.eye(found.degree + 1)
 
     def lacking(tooth):
-        """Displacement ``(PLACES, PLACES)`` of the hats under a unit force per width that the section lacks [mm**2/N]."""
+        """Return the missing displacement ``(PLACES, PLACES)`` of the hats under a unit force per width [mm**2/N]."""
         own = [one for one in damage if one.tooth % gear.z == tooth]
         case = gear, material, tuple(replace(whole(one) if isinstance(one, Crack) else one, tooth=0) for one in own)
         return kept.get(("section error", *case, refine), lambda: plane_hats(*case, FINER * refine) - plane_hats(*case, refine))

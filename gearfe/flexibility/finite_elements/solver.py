@@ -1,7 +1,7 @@
-"""Sparse symmetric positive definite systems of bodies: factor once, solve often; what does not fit is refused beforehand.
+"""Sparse symmetric positive definite systems of bodies: factor once, solve often, check the memory beforehand.
 
-CHOLMOD (of cvxopt) factors by dense blocks, in the order that METIS (of pymetis) finds for the nodes of the mesh by nested
-dissection. Where pymetis cannot be had (Windows) CHOLMOD's own order of least degree takes its place.
+CHOLMOD (of cvxopt) factors by dense blocks. METIS (of pymetis) finds the order by nested dissection of the mesh's nodes. Without
+pymetis (Windows), CHOLMOD's minimum degree order is used.
 """
 
 import importlib.util
@@ -13,19 +13,20 @@ from scipy.sparse import coo_array, csc_array, hstack, issparse, tril
 from ...core.memory import free_memory
 from ...core.steps import reached
 
-A, L, P = 0, 4, 7  # what CHOLMOD solves with: all of it, the lower factor, the permutation
-# of right-hand sides given to cvxopt at once [bytes]: it counts the bytes to a column in 32 bits, so that from 2**31 on it reads
+A, L, P = 0, 4, 7  # systems that CHOLMOD solves: the whole matrix, the lower factor, the permutation
+# Size of right-hand sides given to cvxopt at once [bytes]. It counts the bytes of a column in 32 bits: from 2**31 on it reads
 # and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
 BLOCK = 2**27
-MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] of n and n**(4/3), with and without METIS, see `plan`
-ROWS = 8192  # of a half solution that are multiplied at a time
+MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] factors of n and n**(4/3), with and without METIS, see `plan`
+ROWS = 8192  # rows of a half solution that are multiplied at a time
 PLANE = 8000.0  # bytes for each unknown of a plane body that is factored, 7300 measured
-SECONDS = {True: (5e-5, 1.9e-10, 5e-9), False: (5e-5, 3.2e-10, 6e-9)}  # of n, n**2 and n**(4/3) for each right-hand side
+# factors of n, n**2, and n**(4/3) per right-hand side, with and without METIS
+SECONDS = {True: (5e-5, 1.9e-10, 5e-9), False: (5e-5, 3.2e-10, 6e-9)}
 
 
 @dataclass(frozen=True, slots=True)
 class SolveCost:
-    """What a factorisation will take.
+    """Expected cost of a factorisation.
 
     `unknowns` is their number, `memory` the expected and `free` the available memory [bytes], `seconds` the expected time.
     """
@@ -41,7 +42,7 @@ class SolveCost:
 
 
 def dissects():
-    """Whether METIS is there to order unknowns."""
+    """Return True if METIS is installed to order unknowns."""
     return importlib.util.find_spec("pymetis") is not None
 
 

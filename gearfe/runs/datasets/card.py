@@ -1,4 +1,4 @@
-"""The data card: what a data set holds, how it was made and split, how wrong it may be, and what it does not model."""
+"""Data card of a data set: contents, generation, split, estimated errors and neglected effects."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -14,7 +14,7 @@ from .windows import samples_of
 if TYPE_CHECKING:
     from .opened import Dataset
 
-SILENT = 1e-4  # of the level of a fault: below, a healthy machine is silent
+SILENT = 1e-4  # a healthy machine below this part of a fault's level counts as silent
 FILTERED = """\
 filter: simulated at a whole multiple of this rate, as fine as the machine asks for, then brought down by a linear-phase filter
   without delay, half of the amplitude at {half:g} Hz, 53 dB less from 1.16 times that on; where the rate itself is as fine, one
@@ -100,7 +100,7 @@ def _split(plan):
         return f"{shares}. By operation: no two sides share a combination of speed and torque, and none a condition."
     return (
         f"{shares}. By condition: all windows of one simulated machine, with all sensors and noise, lie on one side. Sides share "
-        "combinations of speed and torque; what is asked of a classifier is another machine at a known operation."
+        "combinations of speed and torque; a classifier should be tested with another machine at a known operation."
     )
 
 
@@ -116,7 +116,7 @@ def _errors(labels):
 
 
 def _levels(labels):
-    """Levels by class and sensor; says so where a healthy machine is silent, as a perfectly equal one is."""
+    """Return the table of levels by class and sensor, with a note if a healthy machine is silent because all teeth are equal."""
     if labels is None:
         return ""
     sensors = list(dict.fromkeys(labels["sensor"]))
@@ -136,7 +136,7 @@ def _levels(labels):
     out = f"Median rms before noise, without the mean.\n\n{table}"
     if silent:
         out += f"\n\n**Of the healthy machine {', '.join(silent)} hears nothing**: it is perfectly equal all round, so that any "
-        out += "fault is told by its mere presence. Let `[scatter]` make machines differ, for instance in `machine.runout_um`."
+        out += "fault is detected by its presence. Let `[scatter]` make machines differ, for instance in `machine.runout_um`."
     return out
 
 

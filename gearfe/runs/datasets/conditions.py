@@ -38,12 +38,12 @@ class Condition:
 
     @property
     def name(self) -> str:
-        """Of its file."""
+        """Name of its file."""
         return f"condition-{self.number:06d}"
 
     @property
     def values(self) -> dict[str, Any]:
-        """What it sets in the scene, by key."""
+        """Values that it sets in the scene, by key."""
         return self.scatter | {"machine.speed_rpm": self.speed, "machine.torque_Nm": self.torque}
 
 
@@ -89,7 +89,7 @@ def _sides(plan, rows):
 
 
 def _dealt(count: int, shares: Floats, rng: np.random.Generator, told: str) -> NDArray[np.int64]:
-    """Number of the side of each of `count`, in random order: the shares rounded, one at least for each side that has a share."""
+    """Return random side numbers of `count` conditions: the shares rounded, one at least for each side with a share."""
     has_share = shares > 0
     if count < has_share.sum():
         raise ValueError(f"[split] {told} for {has_share.sum()} sides: give more repeats or operations, or fewer sides")

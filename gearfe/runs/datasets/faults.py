@@ -1,4 +1,4 @@
-"""Kinds of fault a data set can hold: a row says which key of a scene its severity is."""
+"""Fault types of a data set: for each, the key of the scene that is its severity."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 from ...scene.schema import LISTS, scene_schema
 
 HEALTHY = "healthy"
-CASE = "fault"  # the case of damage that a fault is in its scene
+CASE = "fault"  # name of the case of damage in the scene of a fault
 
 
 class FaultKind(NamedTuple):
-    """A kind of fault: the key of a scene that its severity is, and the unit of that.
+    """Fault type: the key of a scene that is its severity, and its unit.
 
     A key without a name after the point has no severity. Its table has the keys of ``KIND_fault`` in ``gearfe/runs/keys.toml``.
     """

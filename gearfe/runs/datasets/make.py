@@ -1,4 +1,4 @@
-"""`dataset`: all conditions of a data set into a folder, going on where it was stopped; `plan_dataset`: what that will take."""
+"""`dataset`: generate or resume a data set in a folder; `plan_dataset`: estimate its cost."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -28,11 +28,11 @@ def dataset(
     workers: int | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> Dataset:
-    """Make a data set of labelled vibration windows; called again after it was stopped, it goes on where it was.
+    """Generate a labelled vibration data set; an interrupted data set is resumed by the same call.
 
-    Every condition (a fault, a severity, a speed, a torque, a machine of its own scatter) is simulated once, heard by all sensors
-    with all levels of noise, cut into windows and written as one Parquet file in ``windows/``, which is whole or not there.
-    ``card.md`` describes the whole.
+    Every condition (a fault, a severity, a speed, a torque, random parameters of the machine) is simulated once. The signals of
+    all sensors with all levels of noise are cut into windows and written as one Parquet file in ``windows/``. A file is complete
+    or absent. ``card.md`` describes the data set.
 
     Parameters
     ----------
@@ -43,19 +43,18 @@ def dataset(
     also : sequence of {"mat", "hdf5"}
         Write every side of the split as one file of these formats too (``train.mat``, ``train.h5`` ...), at the end.
     workers : int, optional
-        Processes of this machine, one thread each; default one per core. 1: in this process.
+        Number of processes, one thread each; default one per core. 1: in this process.
     progress : callable, optional
-        Called with (conditions done, conditions in all).
+        Called with (finished conditions, number of conditions).
 
     Raises
     ------
     ValueError
-        If the plan cannot be: an unknown kind of fault, a severity outside its bounds, a rate too low for the mesh harmonics, a
-        window too short to hold the fault, too few conditions for the split...; or the folder holds anything else, was begun by
-        another version, or cannot be written.
+        If the plan is invalid: an unknown fault type, a severity outside its bounds, a rate too low for the mesh harmonics, a
+        window too short for the fault, or too few conditions for the split. Also if the folder contains anything else, was begun
+        by another version, or cannot be written.
     RuntimeError
-        If pyarrow is missing, or a process ended with a condition, also when it was tried again alone: what is finished stays,
-        call it again.
+        If pyarrow is missing, or a condition ended its process twice. Finished conditions stay, and the same call resumes.
     """
     check_workers(workers)
     unknown = [export for export in also if export not in EXPORTS]
@@ -124,14 +123,14 @@ def simulate_condition(plan: Plan, condition: Condition) -> tuple[str, bytes, st
 
 
 def plan_dataset(plan: StrPath | Mapping[str, Any], folder: StrPath = ".", workers: int | None = None) -> Cost:
-    """Say what a data set will take, without writing anything: its last condition is simulated.
+    """Estimate the cost of a data set without writing anything; its last condition is simulated.
 
-    ValueError if the plan cannot be, as `gearfe.dataset`.
+    ValueError if the plan is invalid, like `gearfe.dataset`.
     """
     checked = read_plan(plan)
     every = conditions(checked)
     check_machine(checked)
-    made = rows_of(checked, every[-1])  # imports, compiled loops and gears that are made once
+    made = rows_of(checked, every[-1])  # loads imports, compiled loops and gears once
 
     def trial():
         return encoded(table_of(checked, rows_of(checked, every[-1]))), 1, []

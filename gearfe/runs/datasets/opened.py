@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FORMAT = "gearfe data set 1"
 WINDOWS = "windows"  # folder of the files
-SHAPE = {"title": str, "conditions": int, "plan": dict, "units": dict, "made": dict}  # of its note
+SHAPE = {"title": str, "conditions": int, "plan": dict, "units": dict, "made": dict}  # types of the entries of its note
 FAILED = "failed"  # folder of the errors of conditions that could not be simulated
 MOST_MAT = 2**31 - 2**20  # bytes of an array in a MATLAB 5 file
 
@@ -37,7 +37,7 @@ class Dataset:
         return f"<Dataset {self.about['title']!r}: {len(self)} windows in {self.folder}>"
 
     def __len__(self) -> int:
-        """Number of windows."""
+        """Return the number of windows."""
         return opened(self.folder / WINDOWS).count_rows() if shard_names(self.folder / WINDOWS) else 0
 
     def labels(self, where: Mapping[str, Any] | None = None) -> "pandas.DataFrame":

@@ -1,23 +1,23 @@
-"""What a data set is made of: a strict TOML file, or the same as a dictionary.
+"""Definition of a data set: a strict TOML file, or a dictionary of the same structure.
 
 ::
 
     title = "cracks of the sun"
     scene = "planetary_pitting"          # or a file with a [machine]
     seed = 1
-    repeats = 4                          # conditions of each combination, each with its own start, scatter and noise
-    healthy = 4                          # healthy conditions for each combination of speed and torque; default: repeats
+    repeats = 4                          # conditions per combination, with different start, scatter and noise
+    healthy = 4                          # healthy conditions per combination of speed and torque; default: repeats
 
     [window]
     seconds = 0.2
     count = 4                            # one after the other, of each condition and sensor
     rate_Hz = 12800.0
-    harmonics = 5                        # of the mesh that must lie below half the rate
+    harmonics = 5                        # mesh harmonics that must lie below half the rate
 
     [operation]                          # every combination
     speed_rpm = [800.0, 1000.0]
     torque_Nm = [50.0, 100.0]
-    spread = 0.01                        # of each: uniform within this part above and below, drawn for each condition
+    spread = 0.01                        # relative half width of the uniform scatter of speed and torque per condition
 
     [[fault]]                            # kinds and their keys: ``gearfe/runs/keys.toml``
     kind = "crack"
@@ -26,10 +26,10 @@
 
     [[sensor]]
     name = "sun"
-    channel = "sun.x acceleration"       # of the response; or housing = "planet_ring", heard by a sensor that stands still
+    channel = "sun.x acceleration"       # of the response; or housing = "planet_ring", at a fixed sensor
     noise = [0.0, 1.0]                   # rms of white noise [unit of the channel], each a copy of every window
 
-    [scatter]                            # what differs from machine to machine, drawn for each condition, healthy ones too
+    [scatter]                            # parameters that vary between machines, per condition, also healthy ones
     "machine.profile_error_um" = { uniform = [0.2, 1.0] }
 
     [split]
@@ -63,7 +63,7 @@ MOST = 1_000_000  # conditions
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A data set as it is asked for, checked: the tables of its file with defaults filled in, and those of its scene."""
+    """Checked definition of a data set: the tables of its file with defaults, and those of its scene."""
 
     title: str
     seed: int
@@ -99,7 +99,7 @@ class Plan:
 
 
 def read_plan(given: StrPath | Mapping[str, Any]) -> Plan:
-    """Check what is asked for, and build the scene of every fault once: gears and damage that cannot be are found now.
+    """Check a definition and build the scene of every fault once, so that impossible gears and damage are found first.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def read_plan(given: StrPath | Mapping[str, Any]) -> Plan:
     top["fault"] = tuple(_fault(file, f"fault {i + 1}", entry) for i, entry in enumerate(top["fault"]))
     top["sensor"] = tuple(top["sensor"])
     scene, tables = tables_near(place, top.pop("scene"))
-    tables = {kind: entry for kind, entry in tables.items() if kind not in DAMAGE}  # of its own it has none
+    tables = {kind: entry for kind, entry in tables.items() if kind not in DAMAGE}  # damage of the scene is not used
     top["healthy"] = top["repeats"] if top["healthy"] is None else top["healthy"]
     top["curves"] = top["curves"] or ("ritz3d" if any(entry["kind"] == "pits" for entry in top["fault"]) else "auto")
     plan = Plan(**top, scene=scene, tables=tables)
@@ -139,7 +139,7 @@ def _check(plan):
         raise ValueError("no fault, so that there is nothing to learn: give one [[fault]] or more")
     names = [sensor["name"] for sensor in plan.sensor]
     if not names or len(set(names)) < len(names):
-        raise ValueError(f"[[sensor]] names {names!r}: give one sensor or more, each with a name of its own")
+        raise ValueError(f"[[sensor]] names {names!r}: give one sensor or more, each with another name")
     _check_split(plan.split)
     _check_scatter(plan)
     _check_scenes(plan)
@@ -188,5 +188,5 @@ def operations(plan: Plan) -> list[tuple[float, float]]:
 
 
 def count_of(plan: Plan) -> int:
-    """Number of conditions."""
+    """Return the number of conditions."""
     return len(operations(plan)) * sum(repeats for *_, repeats in combinations(plan))

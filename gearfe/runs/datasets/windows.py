@@ -1,4 +1,4 @@
-"""One condition of a data set: its machine simulated, heard by the sensors, cut into windows with their labels."""
+"""One condition of a data set: simulation, sensor signals, and windows with their labels."""
 
 import math
 from typing import Any
@@ -18,7 +18,7 @@ from .conditions import Condition
 from .faults import CASE, FAULTS
 from .plan import Plan
 
-EDGE = 64  # samples simulated before and after what is kept: the filter of `decimate` sees no end
+EDGE = 64  # samples simulated before and after the windows, for the filter of `decimate`
 
 
 def columns_of(plan: Plan) -> dict[str, ShardColumn]:
@@ -27,7 +27,7 @@ def columns_of(plan: Plan) -> dict[str, ShardColumn]:
 
 
 def samples_of(plan: Plan) -> int:
-    """Samples of a window."""
+    """Return the number of samples of a window."""
     return round(plan.window["seconds"] * plan.window["rate_Hz"])
 
 
@@ -40,12 +40,13 @@ def simulated(plan: Plan, condition: Condition) -> tuple[Machine, Response, int]
     rate = plan.window["rate_Hz"]
     finer = max(1, math.ceil(1 / (default_step(machine) * rate)))
     count = samples_of(plan) * plan.window["count"] + 2 * EDGE
-    start = condition.start * max(mesh.teeth[0] / abs(mesh.frequency) for mesh in machine.meshes)  # of the slowest turn
+    # revolutions of the slowest gear
+    start = condition.start * max(mesh.teeth[0] / abs(mesh.frequency) for mesh in machine.meshes)
     return machine, recorded(machine, count / rate, rate * finer, start=start), finer
 
 
 def heard(sensor: dict[str, Any], response: Response) -> Signal:
-    """What a sensor makes of a response, at the rate of the response."""
+    """Return the signal of a sensor, at the rate of the response."""
     if sensor["housing"] is not None:
         return housing_signal(response, kind=sensor["housing"], sensor=math.radians(sensor["angle_deg"]))
     name = sensor["channel"]
@@ -54,7 +55,7 @@ def heard(sensor: dict[str, Any], response: Response) -> Signal:
 
 
 def losses(machine: Machine) -> tuple[float, float]:
-    """Largest and mean part of the stiffness that damage takes over the engagement of the damaged tooth, of the worst mesh."""
+    """Return the maximum and mean relative stiffness loss over the engagement of the damaged tooth, of the worst mesh."""
     worst = (0.0, 0.0)
     for mesh in machine.meshes:
         for _, _, change in mesh.changes:
@@ -88,7 +89,7 @@ def rows_of(plan: Plan, condition: Condition) -> list[dict[str, Any]]:
 
 
 def _labels(plan, condition, machine, response):
-    """What all windows of a condition have in common."""
+    """Return the labels that all windows of a condition share."""
     fault = None if condition.fault is None else plan.fault[condition.fault]
     stage, frequency, turning = machine.fault_frequencies()
     tooth = next(iter(machine.faults), None)

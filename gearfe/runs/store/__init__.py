@@ -1,1 +1,1 @@
-"""Folders of results that survive a process killed at any moment: what they are (`folder`), rows in them (`shards`)."""
+"""Folders of results that survive a killed process: notes and locks (`folder`), rows in Parquet files (`shards`)."""

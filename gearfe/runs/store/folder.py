@@ -58,10 +58,10 @@ def locked(folder: StrPath) -> Iterator[None]:
 
 
 def begin(folder: StrPath, about: Mapping[str, Any], shape: Mapping[str, Any]) -> dict[str, Any]:
-    """The note of an existing folder, to be compared with `about`; a new or empty folder is made and gets `about` as its note.
+    """Return the note of an existing folder, to be compared with `about`; a new or empty folder gets `about` as its note.
 
-    `about` is JSON, and its ``"format"`` a name such as ``"gearfe sweep 1"``; `shape` is as of `read_about`. ValueError if the
-    folder cannot be made or written, or holds anything else.
+    `about` is JSON, and its ``"format"`` a name such as ``"gearfe sweep 1"``. `read_about` describes `shape`. ValueError if the
+    folder cannot be made or written, or contains anything else.
     """
     check_path("folder", folder)
     if not os.fspath(folder):
@@ -81,7 +81,7 @@ def _inside(folder):
 
 
 def read_about(folder: StrPath, form: str, shape: Mapping[str, Any]) -> dict[str, Any]:
-    """The note of a folder of shards, of the format `form`.
+    """Return the note of a folder of shards, of the format `form`.
 
     `shape` has by key the type of its value, or the shape of a table in it. ValueError if it is no such folder, or its note
     lacks a key or has one of another type; nothing in it is touched.
@@ -116,7 +116,7 @@ def _check_shape(note, shape, place=""):
 
 
 def check_same(folder: Any, stored: Mapping[str, Any], about: Mapping[str, Any], what: str, *, mixed: bool | None = None) -> None:
-    """Refuse to go on with a folder that was begun with other inputs, or by another version of the program (unless `mixed`).
+    """Reject a folder that was begun with other inputs, or by another version of the program (unless `mixed`).
 
     `stored` stands in the folder, `about` would be written now; ``[what]``, such as ``["study"]``, are their inputs, ``["made"]``
     their versions. `mixed` is None where it cannot be asked for. ValueError with the values that differ.
@@ -130,14 +130,14 @@ def check_same(folder: Any, stored: Mapping[str, Any], about: Mapping[str, Any],
         )
     versions = list(_differences(stored["made"], about["made"]))
     if versions and not mixed:
-        hint = "" if mixed is None else ", or go on with mixed = True (--mixed): each row says which made it"
+        hint = "" if mixed is None else ", or continue with mixed = True (--mixed): each row states its version"
         raise ValueError(
             f"{folder} was begun by another program, with {'; '.join(versions)}: finish it with that, or give a new folder{hint}"
         )
 
 
 def _differences(there, here, path=""):
-    """Texts that say which values differ."""
+    """Return texts on the values that differ."""
     if isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
         there, here = dict(enumerate(there)), dict(enumerate(here))
     if isinstance(there, dict) and isinstance(here, dict):

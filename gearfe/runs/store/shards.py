@@ -31,15 +31,15 @@ class ShardColumn(NamedTuple):
     unit: str = "-"
 
 
-KINDS = {  # what a column holds; list: of any length, json: as JSON text
+KINDS = {  # types of columns; list: any length, json: as JSON text
     "number": "numbers", "whole": "whole numbers of 64 bits", "truth": "True and False", "text": "texts",
-    "list": "lists of numbers", "json": "what JSON can say",
+    "list": "lists of numbers", "json": "values of JSON",
 }  # fmt: skip
 
 
 @cache
 def columns(name: str) -> dict[str, tuple[ShardColumn, str]]:
-    """Columns of results, of a table of ``gearfe/runs/columns.toml``, with what they are in words."""
+    """Return columns of results, of a table of ``gearfe/runs/columns.toml``, with their descriptions."""
     text = (resources.files("gearfe.runs") / "columns.toml").read_text(encoding="utf-8")
     rows = tomllib.loads(text)[name].items()
     return {key: (ShardColumn(row.get("kind", "number"), row.get("unit", "-")), row.get("text", "")) for key, row in rows}
@@ -89,10 +89,9 @@ def where_of(where: Any, names: Sequence[str]) -> Any:
 
 
 def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, ShardColumn]) -> "pyarrow.Table":
-    """Rows as a table with exactly the columns `fields`; what a row lacks is null.
+    """Return rows as a table with exactly the columns `fields`; missing values are null.
 
-    ValueError if a row has a value that `fields` does not name, or that its column cannot hold: text among numbers, 1.5 among
-    whole numbers.
+    ValueError if a row has a value that `fields` does not name, or of a wrong type: text among numbers, 1.5 among whole numbers.
     """
     pa = arrow()
     extra = sorted({name for row in rows for name in row} - set(fields))
@@ -118,7 +117,7 @@ def _column(name, kind, values, schema):
 
 
 def schema_of(fields: Mapping[str, ShardColumn]) -> "pyarrow.Schema":
-    """Schema of `table`, with kind and unit of each column in its metadata."""
+    """Return the schema of `table`, with kind and unit of each column in its metadata."""
     pa = arrow()
     types = {"number": pa.float64(), "whole": pa.int64(), "truth": pa.bool_(), "text": pa.string(), "json": pa.string()}
     types["list"] = pa.list_(pa.float64())
@@ -182,9 +181,9 @@ def check_shards(folder: StrPath) -> None:
 
 
 def unfinished(folder: StrPath, names: Sequence[str], what: str, failed: Sequence[str] = ()) -> list[str]:
-    """Names, of all that the shards of a folder are to have, that are neither there nor among the `failed`.
+    """Return the expected names that are neither shards of the folder nor among the `failed`.
 
-    ValueError if a shard is damaged, or there is one that is none of this `what`.
+    ValueError if a shard is damaged, or one does not belong to this `what`.
     """
     check_shards(folder)
     present = {*shard_names(folder), *failed}
@@ -196,7 +195,7 @@ def unfinished(folder: StrPath, names: Sequence[str], what: str, failed: Sequenc
 
 
 def _end(file):
-    """Size of a shard, and what it says at its end of what it holds: columns, places and extremes of its parts."""
+    """Return the size of a shard and its footer: columns, places and extremes of its parts."""
     with open(file, "rb") as data:
         size = data.seek(0, os.SEEK_END)
         data.seek(max(size - 8, 0))
@@ -224,9 +223,9 @@ def opened(folder: StrPath) -> "dataset.Dataset":
 
 
 def read(folder: StrPath, columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":
-    """Columns (None: all) of the rows of all shards that fulfil `where`, as of `where_of`.
+    """Return columns (None: all) of the rows of all shards that fulfil `where`, see `where_of`.
 
-    ValueError if a shard is damaged or a copy, there is no such column, or `where` compares numbers with text or asks for a text
+    ValueError if a shard is damaged or a copy, a column does not exist, or `where` compares numbers with text or requests a text
     that no row has.
     """
     pa = arrow()
@@ -238,7 +237,7 @@ def read(folder: StrPath, columns: Sequence[str] | None = None, where: Any = Non
     try:
         found = shards.to_table(columns=list(columns) if columns is not None else None, filter=condition)
     except (pa.ArrowNotImplementedError, pa.ArrowTypeError) as error:
-        raise ValueError(f"where = {condition}: {_line(error)}; a column is compared with values of its own kind") from error
+        raise ValueError(f"where = {condition}: {_line(error)}; compare a column with values of its type") from error
     except (OSError, pa.ArrowInvalid) as error:
         raise _damaged(_first_damaged(folder), error) from error
     for name, value in where.items() if isinstance(where, Mapping) and not found.num_rows else ():
@@ -249,7 +248,7 @@ def read(folder: StrPath, columns: Sequence[str] | None = None, where: Any = Non
 
 
 def frame(found: "pyarrow.Table", fields: Mapping[str, ShardColumn], index: str | None = None) -> "pandas.DataFrame":
-    """A table that was read as pandas has it, by `index`; ``attrs["units"]`` has the units by column. Needs pandas."""
+    """Return a table as a pandas table, by `index`; ``attrs["units"]`` has the units by column. Needs pandas."""
     with needing("pandas"):
         data = found.to_pandas()
     data = data if index is None else data.set_index(index).sort_index()
@@ -263,7 +262,7 @@ def _line(error):
 
 
 def _damaged(file, error):
-    return ValueError(f"{file} is damaged: {_line(error)}; delete it, and what it held is computed anew")
+    return ValueError(f"{file} is damaged: {_line(error)}; delete it, and its contents are computed again")
 
 
 def _first_damaged(folder):

@@ -1,4 +1,4 @@
-"""A fitted stand-in for `ritz` over a stated range of gears and cracks: k in microseconds, its error held against fresh cases.
+"""Surrogate of `ritz` over a range of gears and cracks: k in microseconds, with its error on held-back cases.
 
-`space` names what may vary, `zoned` writes a curve by the zones of the mesh cycle, `fit` fits, `surrogate` answers.
+`space` defines the inputs, `zoned` represents a curve by the zones of the mesh cycle, `fit` fits, `surrogate` evaluates.
 """

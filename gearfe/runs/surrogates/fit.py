@@ -1,4 +1,4 @@
-"""`fit_surrogate`: polynomials by least squares on a Sobol sample of `ritz`, judged on cases that had no part in the fit."""
+"""`fit_surrogate`: polynomials by least squares on a Sobol sample of `ritz`, tested on held-back cases."""
 
 import itertools
 import time
@@ -37,17 +37,18 @@ def fit_surrogate(
     workers: int | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> Surrogate:
-    """Fit a stand-in for `mesh_stiffness` by ``ritz`` over ranges of gears, cracks and loads.
+    """Fit a surrogate of `mesh_stiffness` by ``ritz`` over ranges of gears, cracks and loads.
 
-    The ranges are sampled (scrambled Sobol sequences) and every case is solved; the breaks of the mesh cycle and, between them,
-    ln k are fitted by products of Legendre polynomials of the inputs by least squares. Which products is decided on the fitted
-    cases by leaving each out; the error stated afterwards is that on `held_back` further cases, at phases that were not fitted.
+    The ranges are sampled (scrambled Sobol sequences) and every case is solved. Products of Legendre polynomials of the inputs
+    are fitted by least squares to the breaks of the mesh cycle and, between them, to ln k. The products are chosen by
+    leave-one-out errors of the fitted cases. The stated error is that on `held_back` further cases, at phases that were not
+    fitted.
 
     Parameters
     ----------
     pair : GearPair
-        Spur gears; what `inputs` do not give is taken from it, but the centre distance is that without backlash where teeth or
-        profile shifts vary.
+        Spur gears with the values that `inputs` do not contain. If teeth or profile shifts vary, the centre distance is that
+        without backlash.
     material : Material or (Material, Material)
     inputs : dict
         Ranges ``(low, high)``, or single numbers to hold, of `gearfe.runs.surrogates.space.INPUTS`: ``force`` [N], crack
@@ -55,16 +56,16 @@ def fit_surrogate(
         radii. Without a level the gears are healthy.
     cases, held_back : int
         Cases fitted, and cases kept to judge the fit.
-    seed : int
+    Seed of the samples.
         Of the samples.
     workers, progress
-        As of `gearfe.batch`.
+        See `gearfe.batch`.
 
     Raises
     ------
     ValueError
-        If an input cannot be, or anywhere in the ranges, their corners included, gears or cracks cannot be or the zones of the
-        mesh cycle change their number: a surrogate has no gaps. The message says where.
+        If an input is invalid. Also if a gear or crack is geometrically impossible, or the number of contact zones changes,
+        anywhere in the ranges. The message states where.
 
     References
     ----------
@@ -150,7 +151,7 @@ def _sample(space, count, seed):
 
 
 def _check_corners(space, materials):
-    """Build the gears at all ends of the ranges: what is wrong there is said before anything is solved."""
+    """Build the gears at all ends of the ranges, so that errors appear before anything is solved."""
     for ends in itertools.product(*space.ranges.values()):
         point = dict(zip(space.ranges, ends, strict=True))
         try:
@@ -164,7 +165,7 @@ def _told(point):
 
 
 def _regression(points, values, breaks):
-    """Products of Legendre polynomials and their weights: of `SETS` the one that predicts cases left out best."""
+    """Return products of Legendre polynomials and their weights: those of `SETS` with the least leave-one-out error."""
     best = None
     for degree, power in SETS:
         powers = _products(points.shape[1], degree, power, BUSY * len(points))

@@ -1,4 +1,4 @@
-"""What a surrogate's gears and cracks may vary in: names, ranges, and the case of `mesh_stiffness` at a point of them."""
+"""Inputs of a surrogate: names, ranges, and the case of `mesh_stiffness` at a point of them."""
 
 import math
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ from ...geometry.aliases import Floats
 from ...geometry.damage.crack import Crack
 from ...geometry.pair.gear_pair import GearPair, free_centre_distance
 
-INPUTS = {  # name: what it is
+INPUTS = {  # descriptions by name of the input
     "force": "force along the line of action over the whole width [N], on a logarithmic scale",
     "level": "level of a root crack of a pinion tooth, see Crack",
     "angle": "its angle to the centre-line [rad]",
@@ -33,9 +33,9 @@ SHAPE = ("z_1", "z_2", "x_1", "x_2")  # they move the contact ratio and the cent
 class Space:
     """Ranges of some `INPUTS` about a pair of spur gears; the others are held."""
 
-    pair: GearPair  # what is not given is taken from it
+    pair: GearPair  # source of all other values
     ranges: dict[str, tuple[float, float]]  # ends of what varies
-    held: dict[str, float]  # what is given as one number
+    held: dict[str, float]  # inputs with a single value
 
     @cached_property
     def _scale(self):
@@ -61,13 +61,13 @@ class Space:
         if given.keys() != self.ranges.keys():
             unknown, missing = set(given) - set(self.ranges), [name for name in self.ranges if name not in given]
             wrong = f"{sorted(unknown)[0]!r} is none of its inputs" if unknown else f"no value of {missing[0]!r}"
-            raise ValueError(f"{wrong}: this surrogate is asked by {', '.join(f'{name} = ...' for name in self.ranges)}")
+            raise ValueError(f"{wrong}: this surrogate needs {', '.join(f'{name} = ...' for name in self.ranges)}")
         out = []
         for name, (low, high) in self.ranges.items():
             value = given[name]
             if not is_number(value) or not low <= value <= high:
                 raise ValueError(
-                    f"{name} = {value!r}, but this surrogate was fitted from {low:g} to {high:g} and knows nothing outside: give "
+                    f"{name} = {value!r}, but this surrogate was fitted from {low:g} to {high:g} and is invalid outside: give "
                     "a value within, fit another, or ask mesh_stiffness"
                 )
             if name in WHOLE and value != int(value):
@@ -93,9 +93,9 @@ class Space:
         return out
 
     def case(self, point: Mapping[str, float], material: Any) -> Case:
-        """`Case` at a point of the ranges, of this material (or pair of them).
+        """Return the `Case` at a point of the ranges, of this material (or pair of them).
 
-        ValueError if such gears or such a crack cannot be.
+        ValueError if such gears or such a crack are impossible.
         """
         values: dict[str, Any] = self.held | dict(point)
         gears = []
@@ -146,7 +146,7 @@ def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
 
 
 def _numbers(name, value):
-    """Ends of a range, or a single number, of an input."""
+    """Return the ends of a range, or a single number, of an input."""
     ends = (value,) if is_number(value) else value
     if not (isinstance(ends, (tuple, list)) and (ends == (value,) or len(ends) == 2) and all(map(is_number, ends))):
         raise ValueError(f"inputs: {name} = {value!r}, but give a range (low, high) or one number")

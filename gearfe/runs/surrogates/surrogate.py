@@ -1,4 +1,4 @@
-"""`Surrogate`: the stiffness curve of `ritz` from polynomials, within stated ranges, with the error it was found to have."""
+"""`Surrogate`: stiffness curves of `ritz` by polynomials, within stated ranges, with the error found in a test."""
 
 import json
 from dataclasses import asdict, dataclass, field
@@ -22,7 +22,7 @@ TITLE = "gearfe surrogate, version 1"
 
 @dataclass(frozen=True, slots=True)
 class Surrogate:
-    """Fitted stand-in for `mesh_stiffness` by ``ritz``, made by `fit_surrogate`.
+    """Fitted surrogate of `mesh_stiffness` by ``ritz``, made by `fit_surrogate`.
 
     ::
 
@@ -83,7 +83,7 @@ class Surrogate:
         return np.exp(at(self._within(phase, breaks), breaks, series))
 
     def curve(self, phases: int | ArrayLike = 64, **point: float) -> StiffnessCurve:
-        """The same as a `StiffnessCurve`, for machines, tables and files.
+        """Return the surrogate's curve at a point as a `StiffnessCurve`, for machines, tables and files.
 
         Parameters
         ----------
@@ -117,7 +117,7 @@ class Surrogate:
         )  # fmt: skip
 
     def _parts(self, values):
-        """Breaks and coefficients at a point."""
+        """Return breaks and coefficients at a point."""
         basis = legendre.legvander(self.space.scaled(values), int(self.powers.max()))
         terms = basis[np.arange(len(values)), self.powers].prod(axis=1)
         out = terms @ self.weights

@@ -1,8 +1,8 @@
-"""A stiffness curve by the zones of the mesh cycle, whose ends move with the contact ratio and with the load.
+"""Stiffness curve by the zones of the mesh cycle, whose ends move with the contact ratio and with the load.
 
-A pair enters at a whole phase n and leaves at ``n + eps_alpha``; under load its tip corner touches somewhat earlier and lets go
-somewhat later. There k bends sharply, and polynomials over the phase, or over the gears at a fixed phase, meet it badly. Between
-these *breaks* k is smooth: each piece is a polynomial in its own coordinate, and the breaks are numbers of their own.
+A pair enters at a whole phase n and leaves at ``n + eps_alpha``. Under load its tip corner touches somewhat earlier and loses
+contact somewhat later. There k has kinks. Polynomials over the phase, or over the gears at a fixed phase, represent them badly.
+Between these *breaks* k is smooth. Each piece is a polynomial in a separate coordinate, and the breaks are separate numbers.
 """
 
 import math
@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from ...geometry.aliases import Floats
 from ...stiffness.curve import StiffnessCurve
 
-DEGREE = 8  # of the polynomial of a piece: written so, curves of 21/31 pairs are off by 0.005 % on average
-ROUND = 0.05  # part of the zone of more pairs at each of its ends in which k still bends: a piece of its own
-SHORTEST = 0.1  # of a cycle: shorter zones of more or fewer pairs are not parted
+DEGREE = 8  # degree of the polynomial of a piece: curves of 21/31 pairs are then off by 0.005 % on average
+ROUND = 0.05  # part of the zone of more pairs at each of its ends that is a separate piece, since k bends there
+SHORTEST = 0.1  # shorter zones are not divided [mesh cycles]
 SEARCH = 8  # phases a round in the search for a break
 ROUNDS = 3
 LESS = "give less load or another contact ratio"
@@ -74,7 +74,7 @@ def _outermost(events, half, solve):
 
 
 def _vanishing(touching, open_, before, force, force_before):
-    """Where the force would vanish on a straight line through its last two values, between the last touch and the first gap."""
+    """Return the zero of the force, extrapolated through its last two values, between the last touch and the first gap."""
     if not force_before > force > 0:
         return touching
     place = touching + (touching - before) * force / (force_before - force)
@@ -101,5 +101,5 @@ def at(phase: Floats, breaks: Floats, series: Floats) -> Floats:
 
 
 def piece_of(phase: Floats, breaks: Floats) -> NDArray[np.int64]:
-    """Number of the piece each phase lies in."""
+    """Return the number of the piece of each phase."""
     return np.clip(np.searchsorted(breaks, phase, side="right") - 1, 0, breaks.size - 2)

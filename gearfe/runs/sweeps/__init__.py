@@ -1,4 +1,4 @@
-"""Studies of many cases: what varies (`study`, `samples`), one case (`kinds`), all of them over one machine or many (`run`).
+"""Parameter studies: variables (`study`, `samples`), one case (`kinds`), parallel runs (`run`).
 
-Results stand in a folder of shards (`gearfe.runs.store`) and are read by `runs`; `effects` says what they show.
+Results are in a folder of shards (`gearfe.runs.store`) and are read by `runs`. `effects` evaluates them.
 """

@@ -1,4 +1,4 @@
-"""Tables of a study that say what varies: ``[vary]`` and ``[[along]]`` the axes of a grid, ``[sample]`` what is drawn."""
+"""Variables of a study: ``[vary]`` and ``[[along]]`` are the axes of a grid, ``[sample]`` are random variables."""
 
 import math
 
@@ -25,7 +25,7 @@ def flat(tables, path=()):
 
 
 def _says_values(table):
-    """Whether a table says values of one key: `SPEC` keys only, of which ``count`` may be a key of a scene that varies itself."""
+    """Return True if a table defines values of one key: `SPEC` keys only; ``count`` may also be a varied key of a scene."""
     return bool(table) and set(table) <= SPEC and not isinstance(table.get("count"), (list, dict))
 
 
@@ -81,7 +81,7 @@ def check_values(where, values):
 
 
 def checked_sample(file, given):
-    """Checked ``[sample]``; empty if none is given."""
+    """Return the checked table ``[sample]``; empty if none is given."""
     if not given:
         return {}
     out = checked(RUNS, "sample", file, "sample", given)

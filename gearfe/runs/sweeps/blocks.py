@@ -38,10 +38,10 @@ class Block:
 
 
 def blocks(study: Study) -> tuple[list[Block], dict[str, ShardColumn]]:
-    """All cases of a study in blocks, always the same ones, and the columns of its results.
+    """Return all cases of a study in blocks, always the same ones, and the columns of its results.
 
-    Cases are sorted by what the healthy gears depend on, then by damage, then by the rest, which shares both. A block holds whole
-    groups of the same gears and damage where they are not larger than it.
+    Cases are sorted by the inputs of the healthy gears, then by damage, then by the rest, which shares both. A block holds whole
+    groups of the same gears and damage, unless they are larger.
     """
     columns, point, draw = values(study)
     order, group = _sorted(columns, point.size)
@@ -91,25 +91,25 @@ def _kind(column):
 
 
 def compute(study: Study, fields: Mapping[str, ShardColumn], block: Block) -> tuple[bytes, str]:
-    """Encoded shard of a block, and the source code that made it."""
+    """Return the encoded shard of a block and the source code that made it."""
     return shard(fields, rows(study, block))
 
 
 def shard(fields: Mapping[str, ShardColumn], made: Sequence[Mapping[str, Any]]) -> tuple[bytes, str]:
-    """Encoded shard, from the rows of a block, and the source code that made them."""
+    """Return the encoded shard of the rows of a block and the source code that made them."""
     return encoded(table(made, fields)), _program()["source"]
 
 
 def rows(study: Study, block: Block) -> list[dict[str, Any]]:
-    """Rows of a block's cases; a case that cannot be has its error in its row.
+    """Return rows of a block's cases; a case that fails has its error in its row.
 
-    Cases that differ in their load only are computed together. If one of them fails or has something to note, each is computed
-    alone, so that error and note stand in the row they belong to.
+    Cases that differ in their load only are computed together. If one of them fails or has a note, each is computed alone, so
+    that error and note are in the right row.
     """
     cases, out = block.cases, []
     built: dict[str, Scene] = {}
     keys = [_key(study, case) for case in cases]
-    with _ONE, listening(lambda text, share: None):  # how far one case is says nothing here
+    with _ONE, listening(lambda text, share: None):  # progress of single cases is not reported here
         for _, same in groupby(range(len(cases)), keys.__getitem__):
             numbers = list(same)
             computed = _tried(study, [cases[i] for i in numbers], built)
@@ -147,7 +147,7 @@ def _told(block, i):
 
 @cache
 def _program():
-    """What each row says of the program that made it."""
+    """Return the columns of each row on the program that made it."""
     versions = program()
     return {"version": versions["gearfe"], "source": versions["source"]}
 
@@ -168,7 +168,7 @@ def _computed(study, cases, built):
 
 
 def _key(study, case):
-    """What decides the scene of a case but, where that is one pair, its load."""
+    """Return the inputs that define the scene of a case without the load, if that is one pair."""
     return repr([(name, value) for name, value in case.items() if KINDS[study.kind].whole or not _is_force(name)])
 
 

@@ -1,4 +1,4 @@
-"""What a sweep shows: effect of each input, Sobol indices, percentile bands of curves, and how sure two states are told apart."""
+"""Evaluation of a sweep: main effects, Sobol indices, percentile bands of curves, and ROC AUC of two states."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-BINS = 8  # of a value that is drawn
-RESAMPLES = 200  # of the bootstrap
+BINS = 8  # bins of a random variable
+RESAMPLES = 200  # number of bootstrap resamples
 
 
 def main_effects(runs: Runs, output: str, where: Any = None) -> "pandas.DataFrame":
@@ -133,9 +133,10 @@ def curve_bands(
 
 
 def roc_auc(healthy: Any, damaged: Any) -> float:
-    """Chance that a damaged gear drawn at random has the larger value than a healthy one: the area under the ROC curve.
+    """Compute the area under the ROC curve for separating healthy and damaged values (Mann-Whitney U).
 
-    0.5: not at all told apart, 1: always; below 0.5 damage makes the value smaller. Mann and Whitney's U over all pairs.
+    It is the probability that a random damaged gear has a larger value than a random healthy one. 0.5: no separation. 1: all
+    damaged values are larger. Below 0.5: damage reduces the value.
 
     Parameters
     ----------
@@ -166,7 +167,7 @@ def roc_auc(healthy: Any, damaged: Any) -> float:
 
 
 def _numbers(runs, output, where):
-    """Inputs, draw and a numeric output of the cases that are done."""
+    """Return inputs, draw and a numeric output of the finished cases."""
     if output not in runs.fields or runs.fields[output].kind not in ("number", "whole"):
         known = [name for name, field in runs.fields.items() if field.kind == "number" and name not in runs.inputs]
         raise ValueError(f"{output!r} is no column of numbers; there is {', '.join(known)}")

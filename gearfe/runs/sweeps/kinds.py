@@ -1,4 +1,4 @@
-"""What is computed of a case: a kind of study is a row of `KINDS`, its options, its columns and one function."""
+"""Types of study: a row of `KINDS` with its options, its columns and one function that computes a case."""
 
 import math
 from collections.abc import Callable
@@ -19,7 +19,7 @@ from ...signal.series import Signal
 from ...stiffness.curve import StiffnessCurve
 from ...stiffness.solve import Solve, solve
 
-KEPT = SolvedGears(64 * 2**20)  # gears of the cases before, in this process
+KEPT = SolvedGears(64 * 2**20)  # solved gears of earlier cases in this process
 HARMONICS = 3
 INDICATORS = ("crest factor", "kurtosis", "shape factor", "impulse factor", "sideband index")
 
@@ -74,7 +74,7 @@ def _te_row(curve, whole):
 
 
 def vibration(scene: Scene, case: str | None, options: dict[str, Any]) -> list[dict[str, Any]]:
-    """Row of a machine's vibration: indicators of one channel (default: force of the driven mesh), and the signal if asked for.
+    """Return the row of a machine's vibration: indicators of a channel (default: driven mesh force), the signal on request.
 
     Method and resolution of the curves are the same for all cases only if ``curves`` names one: ``"auto"`` takes three dimensions
     for pits.

@@ -1,4 +1,4 @@
-"""`sweep`: all cases of a study into a folder, going on where it was stopped; `plan_sweep`: what that will take."""
+"""`sweep`: compute or resume all cases of a study in a folder; `plan_sweep`: estimate its cost."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -25,11 +25,11 @@ def sweep(
     mixed: bool = False,
     progress: Callable[[int, int], object] | None = None,
 ) -> Runs:
-    """Compute all cases of a study into a folder; called again after it was stopped, it goes on where it was.
+    """Compute all cases of a study and store them in a folder; an interrupted sweep is resumed by the same call.
 
-    Cases are computed in blocks of seconds, each written as one file that is whole or not there: a process that is killed at any
-    moment, or a disk that runs full, costs the blocks under way. A case that cannot be has its error in its row, and the others
-    go on.
+    Cases are computed in blocks of some seconds, each written as one file that is complete or absent. If a process is killed or a
+    disk is full, only the blocks under way are lost. A case that fails is stored with its error message, and the other cases are
+    computed.
 
     Parameters
     ----------
@@ -38,19 +38,19 @@ def sweep(
     folder : str or path
         New, empty, or of the same study.
     workers : int, optional
-        Processes of this machine, one thread each; default one per core. 1: in this process.
+        Number of processes, one thread each; default one per core. 1: in this process.
     scheduler : str, optional
         Address of a Dask scheduler, ``"tcp://host:8786"``: its workers compute instead.
     mixed : bool
-        Go on although the folder was begun by another version of gearfe or of its libraries; each row says by which it was made.
+        Resume a folder that another version of gearfe or its libraries began; each row states its version.
     progress : callable, optional
-        Called with (cases done, cases in all).
+        Called with (finished cases, number of cases).
 
     Raises
     ------
     ValueError
-        If the study cannot be; the folder holds another study or anything else, is damaged, cannot be written or is being written
-        by another process; its results were made by another version; or no scheduler answers. What is in the folder stays.
+        If the study is invalid, or the folder holds another study or anything else, is damaged, cannot be written or is written
+        by another process. Also if its results are of another version, or no scheduler answers. The content of the folder stays.
     RuntimeError
         If pyarrow or, for a scheduler, distributed is missing; the message names what to install.
     """
@@ -63,7 +63,7 @@ def sweep(
     every, fields = blocks(checked)
     stored = begin(folder, _about(checked, sum(len(block.cases) for block in every)), SHAPE)
     with locked(folder):
-        if stored["study"]["block"] != checked.block:  # how it is cut is no other study
+        if stored["study"]["block"] != checked.block:  # the block size does not define the study
             checked = replace(checked, block=stored["study"]["block"])
             every, fields = blocks(checked)
         about = _about(checked, stored["cases"])
@@ -100,21 +100,21 @@ def _about(study: Study, cases: int) -> dict[str, Any]:
 
 
 def plan_sweep(study: StrPath | Mapping[str, Any], folder: StrPath = ".", *, workers: int | None = None) -> Cost:
-    """Say what a sweep will take, without writing anything: one block from the middle of it is computed.
+    """Estimate the cost of a sweep without writing anything: one block from its middle is computed.
 
     Parameters
     ----------
     study : str or path or dict
-        As of `gearfe.sweep`.
+        See `gearfe.sweep`.
     folder : str or path
-        Where it would be written: how much is free there.
+        Folder in which the free space is read.
     workers : int, optional
         Processes; default one per core.
 
     Raises
     ------
     ValueError
-        If the study cannot be.
+        If the study is invalid.
     RuntimeError
         If pyarrow is missing.
 
@@ -127,7 +127,7 @@ def plan_sweep(study: StrPath | Mapping[str, Any], folder: StrPath = ".", *, wor
     checked = read_study(study)
     every, fields = blocks(checked)
     small, chosen = slim(checked), every[len(every) // 2]
-    rows(small, chosen.single(0))  # imports and tables that are made once
+    rows(small, chosen.single(0))  # loads imports and tables once
 
     def trial():
         made = rows(small, chosen)

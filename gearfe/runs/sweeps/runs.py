@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 FORMAT = "gearfe sweep 1"
 STUDY = {"kind": str, "pair": str, "case": str, "options": dict, "axes": list, "sample": dict, "seed": int, "block": int}
-SHAPE = {"title": str, "cases": int, "study": STUDY, "made": dict}  # of its note
+SHAPE = {"title": str, "cases": int, "study": STUDY, "made": dict}  # types of the entries of its note
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,11 +36,11 @@ class Runs:
     fields: dict[str, ShardColumn]
 
     def __repr__(self):
-        """One line: what it is, and how far."""
+        """Return one line: the study and the number of finished cases."""
         return f"<Runs of {self.about['title']!r}: {len(self)} of {self.about['cases']} cases in {self.folder}>"
 
     def __len__(self) -> int:
-        """Number of cases that are in the folder."""
+        """Return the number of cases in the folder."""
         return opened(self.folder).count_rows() if shard_names(self.folder) else 0
 
     @property
@@ -130,7 +130,7 @@ class Runs:
 
 
 def padded(column: Any) -> np.ndarray:
-    """Lists of a column as an array ``(n, longest)``, filled up with nan; a null is all nan."""
+    """Return lists of a column as an array ``(n, longest)``, filled up with nan; a null is all nan."""
     lists = [() if values is None else values for values in column.to_numpy(zero_copy_only=False)]
     return np.array(list(zip_longest(*lists, fillvalue=math.nan)), dtype=float).T.reshape(len(lists), -1)
 

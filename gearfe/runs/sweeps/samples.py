@@ -17,7 +17,7 @@ METHODS = ("sobol", "random", "latin", "saltelli")
 
 
 class Distribution(NamedTuple):
-    """A distribution: what its parameters are, how it is made of them, and what they must be, as a rule and in words."""
+    """Distribution: names of its parameters, its constructor, and the rule for them as a function and in words."""
 
     size: int
     meaning: str

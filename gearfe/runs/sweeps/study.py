@@ -1,4 +1,4 @@
-"""A study: a scene, what varies in it and how, what is computed of every case. A strict TOML file, or the same as a dictionary.
+"""Study: a scene, its variables, and the results of every case; a strict TOML file or an equal dictionary.
 
 ::
 
@@ -63,12 +63,12 @@ class Study:
     kind: str
     pair: str
     case: str  # "healthy" where there is no damage
-    name: str  # of the scene's file
-    tables: dict[str, Any]  # of the scene, with those the study adds
-    options: dict[str, Any]  # of the kind, defaults filled in
+    name: str  # name of the scene's file
+    tables: dict[str, Any]  # tables of the scene with those that the study adds
+    options: dict[str, Any]  # options of the type of study with defaults
     axes: tuple[dict[str, list], ...]  # each holds lists of the same length by key: one axis of the grid
     sample: dict[str, Any]  # as ``[sample]``; empty: none
-    seed: int  # of the sample
+    seed: int  # seed of the sample
     block: int  # cases in a shard
     keys: tuple[str, ...] = ()  # all that vary
 
@@ -181,7 +181,7 @@ def of_case(study: Study, case: Mapping[str, Any]) -> tuple[str, str, dict[str, 
 
 
 def slim(study: Study) -> Study:
-    """The study with the tables that its cases need, to be sent to other processes; a pair of a gearbox needs all of them."""
+    """Return the study with the tables that its cases need, for other processes; a pair of a gearbox needs all of them."""
     if KINDS[study.kind].whole or {"pair", "case"} & set(study.keys) or is_gearbox(study.tables):
         return replace(study, axes=(), sample={})
     return replace(study, axes=(), sample={}, tables=trimmed(study.tables, study.pair, study.case))

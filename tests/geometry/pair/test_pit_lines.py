@@ -74,7 +74,7 @@ def test_rows_along_the_axis_and_up_the_profile():
         ({"along": "contact_line", "pitch": 11.0}, "a row of 3 pits over 22 mm along the contact line leaves the flank"),
         ({"along": "contact_line", "middle": 21.0, "face": "herringbone"}, "or its half of the width"),
         ({"along": "contact_line", "radius": 10.0}, "contact lines of z = 18 lie beyond"),
-        ({"along": "contact_line", "middle": 47.0}, "there the teeth of z = 18 touch nothing"),
+        ({"along": "contact_line", "middle": 47.0}, "the teeth of z = 18 have no contact there"),
     ],
 )
 def test_rows_that_cannot_be_are_refused(change, message):

@@ -162,7 +162,7 @@ def test_shards_of_one_size_with_other_numbers_are_no_copies(folder):
         ("k", "a" * 500, r"k = 'aaa.*\.\.\., but the column holds lists of numbers"),
         ("text", 5, "text = 5, but the column holds texts"),
         ("text", "\ud800", "holds texts"),
-        ("any", object, "holds what JSON can say"),
+        ("any", object, "holds values of JSON"),
     ],
 )
 def test_a_value_that_its_column_cannot_hold_is_refused(name, value, told):
@@ -181,8 +181,8 @@ def test_text_in_a_number_column_of_a_shard_is_refused_even_where_it_reads_as_a_
 @pytest.mark.parametrize(
     ("where", "told"),
     [
-        ({"mean": "abc"}, "a column is compared with values of its own kind"),
-        ({"case": ("a", "b")}, "a column is compared with values of its own kind"),
+        ({"mean": "abc"}, "compare a column with values of its type"),
+        ({"case": ("a", "b")}, "compare a column with values of its type"),
         ({"case": [1, "b"]}, "where: case = .* give a value, a range"),
         ({"case": (1, 2, 3)}, "where: case = .* a range as a tuple of two"),
         ({"case": object()}, "where: case = "),

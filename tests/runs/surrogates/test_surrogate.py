@@ -70,7 +70,7 @@ def test_curve_is_that_of_ritz(fitted, pair, steel):
 
 def test_outside_its_ranges_it_says_nothing(fitted):
     for force in (599.0, 3001.0, float("nan"), "1000"):
-        with pytest.raises(ValueError, match="knows nothing outside"):
+        with pytest.raises(ValueError, match="is invalid outside"):
             fitted.k(0.3, force=force)
     with pytest.raises(ValueError, match="no value of 'force'"):
         fitted.curve()

@@ -1,4 +1,4 @@
-"""Contact laws of gear meshes, one file for each: how hard flanks push when they are pressed into each other.
+"""Contact laws of gear meshes, one file for each: force of flanks over their penetration.
 
-The table of them, and what a new one needs, is in `gearfe.dynamics.machine.contact_law`.
+`gearfe.dynamics.machine.contact_law` contains the table of laws and describes how to add one.
 """

@@ -21,7 +21,7 @@ class Impact:
     power: float
     full: float = 0.0
     straight: bool = field(default=False, init=False)
-    per_full: float = field(init=False)  # one over it, or 0
+    per_full: float = field(init=False)  # reciprocal of `full`, or 0
 
     def __post_init__(self) -> None:
         """Compute 1 / `full` once, for all steps."""

@@ -1,4 +1,4 @@
-"""A spring and a damper: the law of a mesh whose stiffness over the phase, or law of several loads, says all."""
+"""Spring and damper: the law of a mesh with a stiffness over the phase or a force law."""
 
 from dataclasses import dataclass, field
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 TURNS = 60.0  # harmonics reach n = TURNS / half angle of the arc; 3 times as many change no flexibility by more than 3e-4
-GAUSS = leggauss(128)  # resolves the last harmonic over the arc
+GAUSS = leggauss(128)  # points that resolve the highest harmonic over the arc
 
 
 def harmonic_flexibility(orders, ratio, nu, state="plane strain"):
@@ -59,7 +59,7 @@ def harmonic_flexibility(orders, ratio, nu, state="plane strain"):
 
 
 def arc_tractions(r, half_angle):
-    """Unit section forces of a tooth as forces on the arc ``+-half_angle`` of the circle it stands on.
+    """Return unit section forces of a tooth as forces on the arc ``+-half_angle`` of the circle it stands on.
 
     The stresses of a beam's rectangular section of half width ``h = r sin(half_angle)``, projected along the tooth onto the
     arc: parabolic shear ``3 (1 - x**2 / h**2) / (4 h)`` along x, uniform ``1 / (2 h)`` and linear ``3 x / (2 h**3)`` along y.

@@ -1,4 +1,4 @@
-"""What the closed forms share: an itemised tooth flexibility, and Sainsot's gear-body polynomials."""
+"""Common parts of the closed forms: an itemised tooth flexibility, and Sainsot's gear-body polynomials."""
 
 import math
 from dataclasses import dataclass
@@ -78,9 +78,7 @@ def body_ratio(gear, foundation):
         return gear.r_f / gear.r_bore
     if foundation == "printed":
         return RING_H
-    raise ValueError(
-        f"the foundation of Sainsot does not hold for a ring (z = {gear.z}): use foundation = 'none', or method = 'fe'"
-    )
+    raise ValueError(f"Sainsot's foundation is invalid for a ring (z = {gear.z}): use foundation = 'none', or method = 'fe'")
 
 
 def sainsot_outside(gear, h, theta):

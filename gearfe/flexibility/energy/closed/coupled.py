@@ -1,4 +1,4 @@
-"""The coupled closed form: the textbook's tooth repaired by known means, nothing fitted, teeth joined by their common body.
+"""Coupled closed form: the potential energy method with known corrections, and teeth coupled by their common body.
 
 A tooth of an external, undamaged gear (transverse section) is
 
@@ -62,7 +62,9 @@ def section_loads(gear, roll, height):
 
 
 def shear_parts(half, slope, shear, normal, moment):
-    """Shear stress ``tau = A (h**2 - x**2) + B + C x`` across a beam whose half thickness h changes by `slope` = h' per height.
+    """Return A, B, C of the shear stress ``A (h**2 - x**2) + B + C x`` across a beam of half thickness h.
+
+    The faces have the slope h'.
 
     With ``sigma = M x / I + N / (2 h)``, equilibrium along the beam, ``d sigma / dy + d tau / dx = 0``, and faces free of load,
     ``tau = +-h' sigma`` at ``x = +-h``, leave::
@@ -132,7 +134,7 @@ def components(gear, material, roll, *, state="plane strain", cache=True):
 
 
 def local_remainder(gear, material, roll, *, state="plane strain"):
-    """What the near spline must hold beside the bulk, so that `sharing.line_contact` adds up to Weber's local deflection.
+    """Return the load-independent part of the local deflection, in addition to the bulk and `sharing.line_contact`.
 
     The middle of an elliptic pressure of half width a approaches the half-plane's point at depth d by the integral of
     ``eps_z = (sigma_z - nu / (1 - nu) sigma_x) (1 - nu**2) / E`` over the depth. With the stresses on the axis (Johnson, eqs.
@@ -141,11 +143,11 @@ def local_remainder(gear, material, roll, *, state="plane strain"):
         c P [ln(2 d / a) - nu / (2 (1 - nu))],    c = 2 (1 - nu**2) / (pi E),   d = h_L = x_F / cos(beta)
 
     h_L reaches along the load line to the tooth's centre-line. `sharing.line_contact` adds ``c P (ln(2 / a) + 1/2)`` per body
-    (the mean of ``-c P ln|s|`` over the same pressure), so what remains, independent of load, is::
+    (the mean of ``-c P ln|s|`` over the same pressure). The remainder, independent of the load, is::
 
         c [ln h_L - 1/2 - nu / (2 (1 - nu))]
 
-    In plane stress nu / (1 - nu) is nu. ``(n,)`` [mm per N/mm]; lengths inside logarithms are in mm, here as there.
+    In plane stress nu / (1 - nu) is nu. Returns ``(n,)`` [mm per N/mm]. Lengths inside logarithms are in mm.
 
     References
     ----------
@@ -159,7 +161,7 @@ def local_remainder(gear, material, roll, *, state="plane strain"):
 
 
 def isolated(gear, material, formula, *, state="plane strain"):
-    """Flexibility of a gear whose teeth do not feel each other: bulk of one tooth by `formula`, and `local_remainder`.
+    """Return the flexibility of a gear with uncoupled teeth: bulk of one tooth by `formula`, and `local_remainder`.
 
     `formula` maps ``(gear, material, roll)`` to `Components`.
     """

@@ -16,14 +16,14 @@ from .section import DamagedTooth, limits, section
 
 ROOTS = ("fillet", "base", "line", "prism")
 FLANK, FOOT = leggauss(24), leggauss(64)
-NODES = 40  # of a part of a damaged tooth
+NODES = 40  # Chebyshev nodes per segment of a damaged tooth
 HEALTHY = DamagedTooth()
 
 
 def beam_parts(gear, material, roll, root="fillet", damage=HEALTHY):
-    """Bending, shear and axial flexibility ``(3, n)`` [mm per N/mm] of a tooth as a beam, with the sections that damage leaves.
+    """Return bending, shear and axial flexibility ``(3, n)`` [mm per N/mm] of a tooth as a beam with damaged sections.
 
-    The integrals of `gearfe.flexibility.energy.closed.textbook.components`, `root` and `damage` as of `integrals`.
+    See `gearfe.flexibility.energy.closed.textbook.components` for the integrals, `integrals` for `root` and `damage`.
     """
     beta = load_angle(gear, roll)
     cos, sin = np.cos(beta), np.sin(beta)
@@ -105,7 +105,7 @@ def _edges(curve, found, pits, ends):
 
 
 def _panel(gear, curve, start, stop, rule):
-    """The five integrals of the healthy tooth from `start` (number or array) to `stop` (array) of the curve's parameter."""
+    """Return the integrals of the healthy tooth from `start` (number or array) to `stop` (array) of the curve's parameter."""
     points, weights = rule
     span = (np.asarray(stop) - start)[:, None]
     at = np.reshape(start, (-1, 1)) + span / 2 * (1 + points)
@@ -113,7 +113,7 @@ def _panel(gear, curve, start, stop, rule):
 
 
 def _integrands(gear, curve, at, found, pits):
-    """The five integrands ``(5, *at.shape)`` of `integrals` by the curve's parameter."""
+    """Return the integrands ``(5, *at.shape)`` of `integrals` by the curve's parameter."""
     h, y, slope, arc = curve(at)
     flat = [np.broadcast_to(v, at.shape).ravel() for v in (h, y, arc)]
     area, inertia, uncracked = (v.reshape(at.shape) for v in section(gear, *flat, found, pits))
@@ -121,7 +121,7 @@ def _integrands(gear, curve, at, found, pits):
 
 
 def _running(gear, curve, edges, found, pits):
-    """The five integrals of a damaged tooth from the first of `edges` to any place, as a function of places ``(n,)``.
+    """Return the integrals of a damaged tooth from the first of `edges` to any place, as a function of places ``(n,)``.
 
     No load changes a section, so that one polynomial for each part between edges serves all of them. Damaged sections end
     like square roots at the ends of pits: in the angle t of ``place = edge + span sin(t)**2`` they are smooth.

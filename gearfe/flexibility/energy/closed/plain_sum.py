@@ -1,4 +1,4 @@
-"""The plain sum: tooth pairs that ignore each other, each a chain of two teeth and a contact, side by side."""
+"""Plain sum of tooth pairs: uncoupled pairs in parallel, each a chain of two teeth and a contact."""
 
 from functools import partial
 
@@ -19,11 +19,11 @@ CONTACTS = ("linear", "herringbone_article", "weber", "palmgren")
 
 
 def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lost="hertz", **variants):
-    """Sum of the pairs on the path of contact, with one approach common to all.
+    """Return a solver for the sum of the pairs on the path of contact, which have one common approach.
 
-    Every slice of every pair carries the line load w with ``w (s_1 + s_2 + c(w / f) / f) = approach``: s the flexibilities of
-    its teeth, c that of the contact, f the part of its contact that pits have left; the loads of all slices add up to the
-    load. Teeth and slices do not support each other. Damage belongs to teeth: the others are healthy.
+    Every slice of every pair carries the line load w with ``w (s_1 + s_2 + c(w / f) / f) = approach``. Here s are the
+    flexibilities of its teeth, c is that of the contact, and f is the part of its contact that pits have left. The loads of all
+    slices add up to the load. Teeth and slices do not support each other. Damage belongs to teeth: the others are healthy.
 
     Parameters
     ----------
@@ -40,11 +40,11 @@ def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lo
     crack_model : {"constant", "straight", "parabola"}
         Limit line of the material a crack leaves alive, see `gearfe.flexibility.energy.closed.section`.
     lost : {"hertz", "slices", "summed"}
-        What pits take from their pair: ``hertz``, of the contact's stiffness the part of its line that lies in them (Liang et al.
-        2016); ``slices``, the slices in them with all they carry (slices that know nothing of each other);
-        ``summed``, the widths of all pits of the tooth, wherever along its flank the line is: article S4's ``k_h = E (L - sum dL)
-        / 2 (1 - mu**2)``, "For multiple pits, I sum the reductions", dL the largest 2 p_d, L the width of the half they lie in.
-        The material they take weakens the section of the whole tooth (the mean over all of b), not of single slices, in all.
+        Reduction of the contact by pits. ``hertz``: the contact stiffness falls by the part of its line inside pits (Liang et al.
+        2016). ``slices``: slices inside pits carry no load (uncoupled slices). ``summed``: the widths of all pits of the tooth
+        are subtracted, wherever they are along the flank. This is article S4's ``k_h = E (L - sum dL) / 2 (1 - mu**2)``, "For
+        multiple pits, I sum the reductions", with dL the largest 2 p_d and L the width of the half they lie in. In all cases the
+        lost material weakens the section of the whole tooth (mean over all of b), not of single slices.
     **variants
         Passed on to ``formulas.components``.
 
@@ -75,7 +75,7 @@ def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lo
     at = stations(case, phase, lost=lost, edges=edges)
     empty = np.setdiff1d(np.arange(phase.size), at.phase)
     if empty.size:
-        raise ValueError(f"no contact is left at phase {phase[empty[0]]:.6g}: damage takes the whole width; make it smaller")
+        raise ValueError(f"no contact is left at phase {phase[empty[0]]:.6g}: damage covers the whole width; make it smaller")
     teeth, outside = np.zeros(at.roll_1.shape), {}
     order = at.order[at.column]
     places = zip(gears, materials, (at.roll_1, at.roll_2), (order, -order), damage, strict=True)
@@ -142,7 +142,7 @@ def _solver(at, count, teeth, law):
     if at.gap is not None:
         unloaded = np.full(count, np.inf)
         np.minimum.at(unloaded, at.phase, at.gap)
-        gap = at.gap - unloaded[at.phase]  # beyond the first touch, so that light loads keep their digits
+        gap = at.gap - unloaded[at.phase]  # distances beyond the first touch, so that light loads keep their digits
 
     def solve(line_load):
         line = line_load / total(np.ones(teeth.shape))[at.phase]

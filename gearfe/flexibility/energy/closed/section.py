@@ -1,24 +1,24 @@
-"""Area and inertia of a damaged tooth section: what root cracks and pits leave of the rectangle ``2 h x b``.
+"""Area and inertia of a tooth section ``2 h x b`` damaged by root cracks and pits.
 
 Heights y are along the tooth centre-line and rise from root to tip (of a ring: minus its y). All areas and inertias are means
 over the face width, so that a healthy section has ``2 h`` and ``2 h**3 / 3``.
 
 Choices where the literature is ambiguous, or its words do not define a section:
 
-1. A crack affects the sections from the height of its mouth upwards, as in beams that begin at the crack; those below are
-   whole. Foundation and axial stiffness do not see it: its faces still carry compression (F. Chaari, T. Fakhfakh, M. Haddar,
-   Eur. J. Mech. A/Solids 28 (2009) 461-468; Z. Chen, Y. Shao, Eng. Fail. Anal. 18 (2011) 2149-2164). A crack on the unloaded
-   side weakens the section as much as one on the loaded side: section models know no closing faces.
+1. A crack affects the sections from the height of its mouth upwards, as in beams that begin at the crack. Sections below are
+   whole. Foundation and axial stiffness neglect the crack, since its faces still carry compression (F. Chaari, T. Fakhfakh, M.
+   Haddar, Eur. J. Mech. A/Solids 28 (2009) 461-468; Z. Chen, Y. Shao, Eng. Fail. Anal. 18 (2011) 2149-2164). A crack on the
+   unloaded side weakens the section as much as one on the loaded side, since section models neglect crack closure.
 2. On the true fillet the crack has the corners of `geometry.damage.crack.crack_path`. Other models of the root have another
-   thickness there; as in their sources the crack starts at the foot of their beam, with the same angle and `length`, or with
-   its `level` of their own half thickness.
+   thickness there. As in their sources the crack starts at the foot of their beam, with the same angle and `length`, or with its
+   `level` as a part of the half thickness of that model.
 3. Material counts as dead between the crack and a limit line from its tip (x_t, y_t):
    ``constant``: ``x = x_t`` (the h_c of Chen and Shao 2011; X. Liang, M. J. Zuo, M. Pandey, Mech. Mach. Theory 76 (2014) 20-38);
    ``straight``: to the tip corner (x_a, y_a) of the cracked side; ``parabola``: ``x = x_t + (x_a - x_t) sqrt((y - y_t) /
    (y_a - y_t))``, with its vertex in the crack's tip and through the corner (after O. D. Mohammed, M. Rantatalo, J.-O.
-   Aidanpaa, Eng. Fail. Anal. 34 (2013) 235-251, who describe it in words; the axis along the tooth is our reading). What
-   the flank bulges beyond the same line drawn from the crack's mouth is kept alive, or a crack of no length would weaken the
-   tooth (on a true fillet ``constant`` has no bulge).
+   Aidanpaa, Eng. Fail. Anal. 34 (2013) 235-251, who describe it in words; the axis along the tooth is our reading). The bulge of
+   the flank beyond the same line drawn from the crack's mouth stays alive. Otherwise a crack of no length would weaken the tooth
+   (on a true fillet ``constant`` has no bulge).
 4. A pit takes its depth off the half thickness (the literature's convention; the true chord is ``depth / cos(load angle)``)
    over the width of its chord there. Material that a crack has made dead is not taken twice. The inertia is about the
    centroid of what is left, so it is positive; the bending moment stays about the tooth centre-line, as in the literature.
@@ -39,7 +39,7 @@ CRACK_MODELS = ("constant", "straight", "parabola")
 
 @dataclass(frozen=True, slots=True)
 class DamagedTooth:
-    """Damage of one tooth, whatever the numbers in it say, and `crack_model`, the limit line of what a crack leaves alive."""
+    """Damage of one tooth (tooth numbers are ignored), and `crack_model`, the limit line of the living material."""
 
     cracks: tuple[Any, ...] = ()
     pits: tuple[Any, ...] = ()
@@ -60,7 +60,7 @@ class Limit:
     corner: tuple
 
     def edge(self, h, y):
-        """Where the living section ends on the cracked side [mm], half thickness `h` at height `y`."""
+        """Return the edge of the living section on the cracked side [mm] for half thickness `h` at height `y`."""
         return np.where(y >= self.mouth[1], np.minimum(h, self._line(h, y)), h)
 
     def switches(self, h, y, depths):
@@ -69,7 +69,7 @@ class Limit:
         return np.array([y - self.mouth[1], h - self._from(self.mouth, y), *(h - depth - line for depth in (0.0, *depths))])
 
     def _line(self, h, y):
-        """Limit line from the tip, with what the flank bulges beyond the one from the mouth."""
+        """Return the limit line from the tip, with the bulge of the flank beyond the line from the mouth."""
         return self._from(self.tip, y) + np.maximum(h - self._from(self.mouth, y), 0.0)
 
     def _from(self, start, y):
@@ -169,7 +169,7 @@ def _positive(gear, thickness, y):
     if (thickness <= 0).any():
         height = abs(y[thickness <= 0].flat[0])
         raise ValueError(
-            f"cracks and what is missing of flanks leave nothing of the tooth of z = {gear.z} at height {height:.5g} mm from the "
+            f"cracks and other damage leave no section of the tooth of z = {gear.z} at height {height:.5g} mm from the "
             "gear's axis: make them smaller, or past the centre-line use crack_model = 'straight' or 'parabola'"
         )
     return thickness

@@ -17,11 +17,11 @@ SHORT = leggauss(10)  # for panels shorter than a quarter of a base pitch
 
 @dataclass(frozen=True, slots=True)
 class Stations:
-    """Slices of the tooth pairs that carry load, as flat arrays of n stations; `order` (pairs,) as of `Contacts` of a pair.
+    """Slices of the tooth pairs that carry load, as flat arrays of n stations.
 
-    `phase` and `column` are indices of the phase and of the pair in `order`, `roll_1` and `roll_2` the roll lengths [mm],
-    `weight` the part of the face width a station stands for, `touching` the part of its contact that pits have left, `gap` the
-    approach at which it first touches [mm], None for involutes.
+    `phase` and `column` are indices of the phase and of the pair in `order` (pairs,), see `Contacts` of a pair. `roll_1` and
+    `roll_2` are the roll lengths [mm]. `weight` is the part of the face width of a station, `touching` the part of its contact
+    that pits have left. `gap` is the approach at which it first touches [mm], None for involutes.
     """
 
     order: np.ndarray
@@ -90,7 +90,7 @@ def stations(case, phase, *, lost="hertz", edges=None):
     (i, j), (roll, weight, touching) = table[:, :2].astype(int).T, table[:, 2:5].T
     roll_2, gap = pair.mate_roll(roll), None
     if flanks is not None:
-        backwards = len(bands) == 1 and lag > 0 and pair.gear_1.beta > 0  # there, the end z = b touches first
+        backwards = len(bands) == 1 and lag > 0 and pair.gear_1.beta > 0  # in this case the end z = b touches first
         z = bands[0][1] - table[:, 5] if backwards else table[:, 5]
         met = first_touch(pair, flanks, roll, order[j], np.zeros(roll.size), z)
         roll, roll_2, gap = met.roll_1, met.roll_2, met.gap

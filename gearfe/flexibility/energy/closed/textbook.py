@@ -1,4 +1,4 @@
-"""The textbook: a cantilever of the true profile, Sainsot's foundation, plain sum of tooth pairs."""
+"""Potential energy method (PEM): cantilever of the true profile, Sainsot's fillet foundation, plain sum of tooth pairs."""
 
 import numpy as np
 

@@ -20,7 +20,7 @@ OPEN = 6, 1.6  # degree of the opening along a part of the width: the least, and
 # hexahedra of one gear, 12 mm wide with a crack over half of that; judged on finer layers and on 8 mm of the same gear only.
 ENDS = 1.0, 0.2
 MOVED = 3  # polynomials that the depth of a front is multiplied by
-FRONT = 8  # so many more Gauss points where the section follows a crack's front
+FRONT = 8  # additional Gauss points where the section follows a crack's front
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,7 +194,7 @@ def _short(z, places, end, inwards):
 
 
 def _depth(z, weight, front, whole, rise):
-    """The depth of a crack's front times the first `MOVED` polynomials and its slopes ``(n, k)``, without what polynomials carry.
+    """Return a crack's depth times the first `MOVED` polynomials and slopes ``(n, k)``, minus their part in polynomials.
 
     What is smooth in space is not smooth at points that move with the front by f(z): it goes like ``a(z) + f(z) b(z)``.
     """
@@ -204,7 +204,7 @@ def _depth(z, weight, front, whole, rise):
     carried = whole.T @ (weight * value)
     value, slope = value - whole @ carried, slope - rise @ carried
     size, turn = np.linalg.eigh(value.T @ (weight * value))
-    kept = size > 1e-12  # of functions that have about unit size before
+    kept = size > 1e-12  # all functions had about unit size before
     turn = turn[:, kept] / np.sqrt(size[kept])
     return value @ turn, slope @ turn
 

@@ -6,7 +6,7 @@ from ....geometry.mesh.triangle import lagrange, lobatto
 
 
 def face_forces(sector, chain, count, order, at):
-    """Unit forces ``(count, 3, k)`` that push facing points of the cracks apart, and the crack of each point.
+    """Return unit forces ``(count, 3, k)`` that push facing points of the cracks apart, and the crack of each point.
 
     `chain` is of `panel.numbering` with polynomials of an `order`. The points are the nodes that polynomials of order `at` have
     on the faces, tips left out.

@@ -1,7 +1,7 @@
-"""How much of the degree along the width a place in the section needs: the less, the deeper it lies below the loaded flanks.
+"""Degree along the width that each place of the section needs: it falls with the depth below the loaded flanks.
 
-What a load on the surface does along the width decays like ``exp(-k pi d / b)`` at depth d, k the number of half waves in the
-width b. Polynomials of low degree suffice in the body, the high ones are needed next to the contact.
+The variation along the width of a surface load decays like ``exp(-k pi d / b)`` at depth d, with k half waves in the width b.
+Polynomials of low degree suffice in the body. High degrees are needed next to the contact.
 """
 
 import math
@@ -11,8 +11,8 @@ import numpy as np
 from ....geometry.mesh.triangle import table
 from ....geometry.tooth.profile import cartesian, flank
 
-LEAST, DECAY = 5, 2.0  # degree of what does not decay; half waves that decay by less than exp(-`DECAY`) are kept
-SAMPLES = 60  # of a loaded flank
+LEAST, DECAY = 5, 2.0  # degree of parts that do not decay; half waves that decay by less than exp(-`DECAY`) are kept
+SAMPLES = 60  # points of a loaded flank at which distances are measured
 SAME = 1e-6  # distances that differ by less have one degree [m_n]
 
 

@@ -12,11 +12,11 @@ ON_EDGE, INSIDE = 2, 1  # nodes of cubic triangles
 
 
 def dissect(sector):
-    """Nested halves of the triangles: ``(triangles, first half, second half)``, the halves empty where few are left.
+    """Return nested halves of the triangles: ``(triangles, first half, second half)``, the halves empty for small sets.
 
-    Every set is divided where that promises the least work: what both parts share is eliminated with the set, and costs
-    ``g**3 / 3 + g**2 r + g r**2`` products if g nodes go and r stay; the insides of a part, i nodes, will cost ``i b**2`` at
-    least, b what the part shares with anything else. Both sides of the sector stay.
+    Every set is divided where the least work is expected. Nodes shared by both parts are eliminated with the set: ``g**3 / 3 +
+    g**2 r + g r**2`` products if g nodes are eliminated and r stay. The i inner nodes of a part cost at least ``i b**2``, with b
+    nodes that the part shares with others. Both sides of the sector stay.
     """
     triangles, vertices = sector.triangles, sector.points.shape[1]
     ends = np.sort(np.array([triangles[list(pair)] for pair in ENDS]), axis=1)

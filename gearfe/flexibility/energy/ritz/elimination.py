@@ -92,9 +92,9 @@ class LoadedSection(NamedTuple):
 
 
 def body_of(section, axial, *, seams=(), kinds=None, bent=None):
-    """`SectorBody` of a `LoadedSection` and the functions along its width.
+    """Return the `SectorBody` of a `LoadedSection` and the functions along its width.
 
-    `seams` and `bent` are as of `SectorBody`, and `kinds` is its `kind`, by default that all have the polynomials over the width.
+    `SectorBody` describes `seams` and `bent`. `kinds` is its `kind`; by default all nodes have the polynomials over the width.
     """
     numbers, load = section.numbers, section.load
     nodes, loads = max(load.shape[0], int(numbers.max()) + 1), load.shape[2]
@@ -133,19 +133,18 @@ def _factors(axial, one, other):
 
 
 def front(body, tree):
-    """What a set of triangles is to the rest: numbers of the nodes and loads still coupled, and the matrix between them.
+    """Return the front of a set of triangles: numbers of the coupled nodes and loads, and the matrix between them.
 
-    Triangles are divided until few are left; what only the set touches is eliminated. The loads are carried along as
-    unknowns that stay: at the end their block is minus the displacements under each other. Unknowns of a set are in the order in
-    which they go, so that lower triangles add up to lower triangles; those to be eliminated, the coupling and the rest are arrays
-    of their own, in which everything happens in place. A set's arrays are made when its halves are done, and all but the rest
-    lie in the same memory, one set after the other.
+    Triangles are divided until few are left. Nodes of one set only are eliminated. Loads are unknowns that stay: at the end their
+    block is minus the displacements under each other. Unknowns of a set are in the order of elimination, so that lower triangles
+    add up to lower triangles. Unknowns to be eliminated, the coupling and the rest are separate arrays, which are changed in
+    place. A set's arrays are made when its halves are done. All but the rest use the same memory, one set after the other.
     """
     return carried_out(body, *planned(body, tree))
 
 
 def planned(body, tree):
-    """Which numbers go with which set of triangles, and when each of them goes: the same whatever they stand for."""
+    """Return which numbers are eliminated with which set of triangles, and when; independent of their meaning."""
     turn = np.full(body.size.size, body.size.size)
     return _planned(body, tree, turn, [0]), turn
 
@@ -157,16 +156,16 @@ def carried_out(body, plan, turn):
 
 
 def _room(body, plan):
-    """Largest size of what a set eliminates and its coupling."""
+    """Return the largest size of the eliminated part of a set and of its coupling."""
     _, gone, rest, parts = plan
     first, left = int(body.size[gone].sum()), int(body.size[rest].sum())
     return max(first**2 + first * left, *(_room(body, part) for part in parts), 0)
 
 
 def _planned(body, tree, turn, count):
-    """Triangles, numbers that go, numbers that stay, and the same of both halves; `turn` is when each number goes.
+    """Return triangles, numbers to eliminate, numbers that stay, and the same of both halves.
 
-    The larger half is first: what the other one needs comes on top of what is left of it.
+    `turn` is when each number is eliminated. The larger half is first, since the memory of the other half adds to its rest.
     """
     triangles, halves = tree[0], sorted(filter(None, tree[1:]), key=lambda half: -half[0].size)
     parts = [_planned(body, half, turn, count) for half in halves]

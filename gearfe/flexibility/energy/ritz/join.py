@@ -1,4 +1,4 @@
-"""Sectors joined to a whole gear, exactly: whether of the section or of a gear of finite width.
+"""Sectors joined exactly to a whole gear, for transverse sections and for gears of finite width.
 
 A row of sectors is one matrix between its outer sides, first and last, and its loads; that of the loads is minus their
 displacements under each other. Rows that are alike are made once, so that sectors without loads are joined by doubling.
@@ -38,7 +38,7 @@ def join(gear, panels, healthy):
 
 
 def _loaded(panel):
-    """The row of one sector, with its loads and what pushes the faces of its cracks apart; the lower triangle."""
+    """Return the row of one sector, with its loads and the forces on the faces of its cracks; the lower triangle."""
     loads = np.hstack([panel.push, panel.open_push])
     m, n = loads.shape
     out = np.zeros((m + n,) * 2, order="F")
@@ -95,5 +95,5 @@ def _without(stiffness, across, out):
 
 
 def _full(lower):
-    """The symmetric matrix of which `lower` has the lower triangle."""
+    """Return the symmetric matrix with the given lower triangle."""
     return np.where(np.tri(*lower.shape, dtype=bool), lower, lower.T)

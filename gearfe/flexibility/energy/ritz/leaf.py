@@ -39,7 +39,7 @@ def leaf(body, own, gone, rest, blocks):
 
 
 def _by_component(plane):
-    """The four matrices between components in the section and axial ones apart ``(8, n, n)``; left out is what a twist adds."""
+    """Return the matrices between section components and axial ones, separately ``(8, n, n)``; without the part of a twist."""
     axial = np.arange(plane.shape[1]) % 3 == 2
     rows = np.array([~axial, axial])[:, :, None]
     alike, apart = rows & (axial[:, None] == axial), rows & (axial[:, None] != axial)
@@ -60,7 +60,7 @@ def _seamed(body, raw, nodes):
 
 
 def _times(body, plane, here, ids, gone, blocks):
-    """The section's matrices ``(t, n, n)`` and loads multiplied by those of the functions along the width; see `leaf`.
+    """Multiply the section's matrices ``(t, n, n)`` and loads by those of the functions along the width; see `leaf`.
 
     Numbers in a row with the same functions are taken together. `blocks` are transposed: upper triangles are written, in rows.
     """
@@ -71,7 +71,7 @@ def _times(body, plane, here, ids, gone, blocks):
     runs = [(slice(a, b), int(kind[a]), slice(place[a], place[a] + size[a:b].sum())) for a, b in pairwise(cuts.tolist())]
     for k, (nodes_i, kind_i, rows) in enumerate(runs):
         if nodes_i.start >= nodes:
-            break  # loads have nothing to do with each other
+            break  # loads are not coupled directly
         for nodes_j, kind_j, columns in runs[k:]:
             factors, coupled = body.factors[kind_i, kind_j], plane[:, _three(nodes_i), _three(nodes_j)]
             if nodes_j.start >= nodes:

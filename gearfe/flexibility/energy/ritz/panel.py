@@ -67,7 +67,7 @@ def check_order(order):
 
 
 def panel(model, sector, roll, tilt=0.0):
-    """The `Panel` of a `gearfe.geometry.mesh.sector.Sector` of a `SectionModel`.
+    """Return the `Panel` of a `gearfe.geometry.mesh.sector.Sector` of a `SectionModel`.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def _local(sector, bulges, order, modulus, ratio):
     kept = 2 * (basis.count - basis.inside)
     if not basis.inside:
         return local
-    inside = np.linalg.inv(local[:, kept:, kept:])  # of so few unknowns sooner than a solve
+    inside = np.linalg.inv(local[:, kept:, kept:])  # for so few unknowns faster than a solve
     return local[:, :kept, :kept] - local[:, :kept, kept:] @ (inside @ local[:, kept:, :kept])
 
 
@@ -186,7 +186,7 @@ def _matched(gear, sector, order):
 
 
 def _apart(sector, chain, first):
-    """Unit forces that push the facing nodes of the cracks apart, tips left out: unknowns, columns from `first` on, forces."""
+    """Return unit forces that push facing nodes of the cracks apart, without tips: unknowns, columns from `first` on, forces."""
     out, at = [np.zeros((3, 0))], first
     for left, right in sector.faces:
         ahead = np.diff(sector.points[:, left], axis=1)
@@ -201,9 +201,9 @@ def _apart(sector, chain, first):
 
 
 def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
-    """Forces of the singular fields' tractions and reads of the flank, and what the fields add to the reads ``(n, n)``.
+    """Return forces of the singular fields' tractions, reads of the flank, and the reads of the fields ``(n, n)``.
 
-    Of the first two unknowns, columns (loads 0 to n, then reads) and values.
+    Forces and reads are unknowns, columns (loads 0 to n, then reads) and values.
     """
     n = roll.size
     if n == 0:
@@ -229,7 +229,7 @@ def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
     with np.errstate(divide="ignore", invalid="ignore"):  # a load at itself, which is taken as zero
         moved = flamant.displacement(where, where, inward, tip_side, *elastic)
         field = np.einsum("dji,di->ij", moved, inward) + 2 / (math.pi * elastic[0]) * np.log(np.abs(arc[:, None] - arc))
-    field[~np.isfinite(field)] = 0.0  # loads at one place that lean differently are not read by each other
+    field[~np.isfinite(field)] = 0.0  # loads at one place with different directions do not read each other
     leans = (1 + elastic[1]) / (math.pi * elastic[0]) * np.sin(tilt) ** 2  # the surface then is not at right angles to the load
     np.fill_diagonal(field, leans)
     return [(rows, columns, force.ravel()), (read_rows, read_columns, read.ravel())], field

@@ -121,17 +121,17 @@ def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
 
 
 def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
-    """The `LoadedSection` of a sector, short edges bound.
+    """Return the `LoadedSection` of a sector with bound short edges.
 
     Parameters
     ----------
     plane : bool
-        As if it were a spur gear's.
+        If True, the section of a spur gear.
     bent : BentTriangles, optional
         The triangles that move with a front: left out of the stiffness.
     cubic : bool
-        Leave short edges cubic. Of a front that slopes they would lack up to a hundredth of what it adds: what cubics give at
-        its tip is not known from plane strain, as it is of cracks that are straight.
+        Leave short edges cubic. With a sloping front, quadratic edges would lack up to a hundredth of its contribution: the
+        correction of cubics at its tip is not known from plane strain, unlike for straight cracks.
     """
     gear, order = model.gear, model.order
     numbers, count, chain = numbering(sector, order)
@@ -148,7 +148,7 @@ def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
 
 
 def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
-    """Which set of `axial.Axial` each node has: by its degree, but near and on cracks that change along the width."""
+    """Return the set of `axial.Axial` of each node: by its degree, but different near cracks that change along the width."""
     whole = 1 + 4 * len(parts) + degree
     out, right = whole.copy(), iter(right)
     for i, (bands, bend) in enumerate(zip(parts, bends, strict=True)):
@@ -235,10 +235,10 @@ def _energies(gram, between):
 
 
 def _between(material, twist):
-    """Energies ``(6, 3, 3, 5, 5)`` between components, in products of the functions of `_gram`.
+    """Return energies ``(6, 3, 3, 5, 5)`` between components, in products of the functions of `_gram`.
 
-    Of strains of v, of v_z and of what a front's slope carries along: those of v, of v and v_z (K01), of v_z; of v with what is
-    carried and of that with v, of what is carried, and of that with v_z.
+    Strains are those of v, of v_z, and of the part c that a front's slope adds. The energies are v-v, v-v_z (K01), v_z-v_z, v-c
+    with c-v, c-c, and c-v_z.
     """
     dx, dy, around, value, carries = np.eye(5)
     flat, along, carried = np.zeros((3, 6, 3, 5))  # strains xx, yy, zz, xy, xz, yz

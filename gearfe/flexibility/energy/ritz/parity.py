@@ -1,8 +1,8 @@
-"""Spur gears: what moves alike on both sides of the middle plane is eliminated apart from what moves oppositely.
+"""Spur gears: symmetric and antisymmetric motions about the middle plane are eliminated separately.
 
-If all sections of a gear are the same, polynomials along the width couple by parity only. Motions in the section of one parity go
-with axial motions of the other, since ``d/dz`` turns one into the other, and with loads of their own parity. So there are two
-problems of half the unknowns, each of which takes an eighth of the work of both together.
+If all sections of a gear are equal, polynomials along the width couple by parity only. Motions in the section of one parity
+couple with axial motions of the other, since ``d/dz`` changes the parity, and with loads of their parity. This gives two problems
+with half the unknowns. Each takes an eighth of the work of the coupled problem.
 """
 
 from dataclasses import replace
@@ -13,7 +13,7 @@ from .elimination import carried_out, planned
 
 
 def front_by_parity(body, tree):
-    """What `elimination.front` gives, of a body whose functions along the width are all Legendre polynomials, without a twist."""
+    """Return `elimination.front` of a body without twist whose functions along the width are Legendre polynomials."""
     plan, turn = planned(body, tree)
     ids = np.flatnonzero(body.stays & body.there)
     total = np.zeros((int(body.size[ids].sum()),) * 2)
@@ -34,7 +34,7 @@ def _functions(count, parity):
 
 
 def _half(body, parity):
-    """The part of a body that has one parity in the section.
+    """Return the part of a body that has one parity in the section.
 
     So that all components have equally many functions, one of them may get one more: of unit mass, orthogonal to all others and
     not coupled to anything.

@@ -25,7 +25,7 @@ from .panel import SectionModel, check_order, panel
 PLACES = 16  # loads on each flank
 FOOT = 20 * NEAREST  # distance from the first of them to the form point; from the last to the tip corner it is `NEAREST` [m_n]
 HATS = 2  # how many times shorter the hats at corners are than those of `fe`
-KNOTS = 48  # of the splines that carry their polynomial
+KNOTS = 48  # knots of the splines that represent their polynomial
 
 
 def flexibility(gear, material, cracks=(), *, broken=(), neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
@@ -127,14 +127,14 @@ def _limits(gear):
 
 
 def _leans(gear):
-    """Arcs of the tilted loads, as of `leaning`."""
+    """Return the arcs of the tilted loads (see `leaning`)."""
     low, high = _limits(gear)
     below = max(high - BELOW * gear.m_n, (low + high) / 2)
     return np.array([low, (low + below) / 2, below, high])
 
 
 def _scale(gear):
-    """The variable of the flank: its roll length at the tip, an offset, and both ends of the logarithm between the limits.
+    """Return the scale of the flank's variable: roll length at the tip, an offset, and both ends of the logarithm.
 
     The flexibility is smooth in the roll length, not in the arc, near the base circle, and logarithmic towards the tip corner.
     """
@@ -196,12 +196,12 @@ def _opening(gear, opening):
 
 @keeping(64)
 def _basis(gear):
-    """Spline from values at the loads to those at an arc: what a tooth's S(s, s') is carried by."""
+    """Return the spline basis that represents a tooth's S(s, s'): from values at the loads to values at an arc."""
     return CubicSpline(*_knots(gear))
 
 
 def _own_tooth(gear, influence):
-    """Spline S(s, s), S(s, s') between the loads along the normal, and what `leaning` gives, from the influence of all loads."""
+    """Return splines S(s, s) and S(s, s') between the loads along the normal, and `leaning`, from the influence of all loads."""
     (arcs, matrix), between = _knots(gear), influence[:PLACES, :PLACES]
     near = CubicSpline(arcs, ((matrix @ between) * matrix).sum(axis=1))
     at, tilted = _leans(gear), np.diag(influence)[PLACES:]

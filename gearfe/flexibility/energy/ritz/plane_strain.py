@@ -1,7 +1,7 @@
-"""What the polynomials of a sector's section miss near the tip corner and at the tips of cracks, known in plane strain.
+"""Plane-strain correction of the coarse section mesh of `ritz3d` near tip corners and crack tips.
 
-The section's triangles of `panel3d` are coarser than those of `ritz`, which takes the singular fields of loads out. In plane
-strain both are cheap, and their difference is what `solid` adds.
+The section's triangles of `panel3d` are coarser than those of `ritz`, which removes the singular fields of loads. In plane strain
+both are cheap, and `solid` adds their difference.
 """
 
 from dataclasses import replace
@@ -26,9 +26,9 @@ FURTHER, HIGHEST = 3, 8  # orders more of the polynomials compared with at crack
 
 
 def missing(model, section, healthy, *, chip=None, cubic=False, cache=True):
-    """What the polynomials of a `section` without cracks miss between the hats ``(PLACES, PLACES)`` [mm per N/mm].
+    """Return the flexibility that a `section` without cracks lacks between the hats ``(PLACES, PLACES)`` [mm per N/mm].
 
-    The section may have a `chip`; `healthy` is the one without. `cubic` is as of `panel3d.section_of`.
+    The section may have a `chip`; `healthy` is the one without. `panel3d.section_of` describes `cubic`.
     """
     gear, material, knots = model.gear, model.material, hats(end_of(model.gear, chip))
     others = plane_panel(model, healthy, cubic)
@@ -39,12 +39,12 @@ def missing(model, section, healthy, *, chip=None, cubic=False, cache=True):
 
 
 def end_of(gear, chip):
-    """The gear whose loaded flanks end where that of a tooth with a `chip`, which may be None, ends."""
+    """Return the gear whose loaded flanks end where that of a tooth with a `chip`, which may be None, ends."""
     return gear if chip is None else loaded_side(gear, [chip], chip.tooth)
 
 
 def missing_at_cracks(model, sections, *, points=None, cubic=False):
-    """What the polynomials of a section with cracks miss more than those of the healthy one [mm per N/mm].
+    """Return the flexibility that a section with cracks lacks beyond that of the healthy section [mm per N/mm].
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def missing_at_cracks(model, sections, *, points=None, cubic=False):
     points : ndarray, optional
         Vertices of the section with the cracks, if they are elsewhere; its faces keep their directions.
     cubic : bool
-        Of `panel3d.section_of`.
+        See `panel3d.section_of`.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def missing_at_cracks(model, sections, *, points=None, cubic=False):
 
 
 def completed(missed, cracks):
-    """Opening ``(k, k)`` of the points of the faces under unit forces on them that belongs to `missing_at_cracks`.
+    """Return the opening ``(k, k)`` of points of the faces under unit forces on them that belongs to `missing_at_cracks`.
 
     The hats reach what is missed at a crack's tip by bending the tooth: by one field for each of the `cracks`. The least opening
     that goes with these fields is added. Faces that are pressed shut then lose what was added to the hats. The logarithm of a

@@ -1,22 +1,22 @@
-"""Cubic triangles whose short edges are quadratic: small triangles resolve what a few large ones need cubics for.
+"""Cubic triangles with quadratic short edges: small triangles need no cubics.
 
-Along a short edge the two inner nodes are bound to a parabola: with the ends' values a and b, ``u = (1 - s) a + s b + q`` at
-both, q the height of the parabola there. The first inner node stands for q, the second is left out. All triangles at an edge
-agree on it, so that displacements stay continuous. Edges that touch the curved outline, where stress changes most, and those on
-the sides and on crack faces stay cubic.
+Along a short edge the two inner nodes are bound to a parabola. With the ends' values a and b, ``u = (1 - s) a + s b + q`` at
+both, and q is the height of the parabola there. The first inner node becomes q, the second is removed. All triangles at an
+edge use the same rule, so that displacements stay continuous. Edges on the curved outline, where stress changes most, and
+those on the sides and on crack faces stay cubic.
 """
 
 import numpy as np
 
 from ....geometry.mesh.triangle import ENDS, lobatto
 
-ORDER = 3  # of the triangles this is for
+ORDER = 3  # order of the triangles for which this is made
 SHORT = 0.8  # edges shorter than this are quadratic [m_n]
 TIP = 0.2  # edges closer than this to the tip of a crack stay cubic [m_n]
 
 
 def quadratic_edges(gear, sector):
-    """Which local edges ``(3, m)`` of the triangles are quadratic."""
+    """Return the local edges ``(3, m)`` of the triangles that are quadratic."""
     corners = sector.points[:, sector.triangles]
     outline = np.unique(np.array(list(sector.bulge)))
     lines = [sector.left, sector.right, *(face for pair in sector.faces for face in pair)]
@@ -33,9 +33,9 @@ def quadratic_edges(gear, sector):
 
 
 def bind(section, load, numbers, edges):
-    """Bind the inner nodes of the `edges` of `quadratic_edges`, in place, and return the nodes that are left out.
+    """Bind the inner nodes of the `edges` of `quadratic_edges`, in place, and return the removed nodes.
 
-    `section` ``(3, m, 3 n, 3 n)``, `load` and `numbers` are as of `elimination.Section`.
+    `elimination.Section` describes `section` ``(3, m, 3 n, 3 n)``, `load` and `numbers`.
     """
     s = (1 + lobatto(ORDER)[1]) / 2
     bound = np.tile(np.eye(numbers.shape[0]), (edges.shape[1], 1, 1))

@@ -90,7 +90,7 @@ def axial_degree(width, m_n):
 
 
 def _mirrored(model, damage, neighbours, cache):
-    """The gear of the other hand, seen from its other end: odd polynomials along the width change their sign."""
+    """Return the gear of the other hand, seen from its other end: odd polynomials along the width change their sign."""
     gear = model.gear
     damage = tuple(crack_in_band(one, gear.b, gear.b, 0.0) for one in damage)
     other = _flexibility(replace(model, gear=replace(gear, beta=-gear.beta)), damage, neighbours, cache)
@@ -122,10 +122,10 @@ def _solved(model, damage, neighbours, cache):
 
 
 def _complete(model, damage, influence, opening, between, cache):
-    """Add what the section's polynomials miss of a tooth with `damage`, in place.
+    """Add the missing flexibility of the section's polynomials of a tooth with `damage`, in place.
 
-    To the `influence` between its hats, to the `opening` of the points of its cracks by these, and `between` these points. What
-    is missed at a crack belongs to its opening: it has to vanish where the faces are pressed shut.
+    It is added to the `influence` between hats, to the `opening` of the points of cracks by these, and `between` these points.
+    The part at a crack belongs to its opening: it vanishes where the faces are pressed shut.
     """
     cracks, broken = _parts(damage)
     slopes, degree = not all(crack.even for crack in cracks), len(influence) // PLACES - 1
@@ -144,7 +144,7 @@ def _complete(model, damage, influence, opening, between, cache):
 
 
 def _seams(cracks):
-    """Cracks of one tooth as the section has them, where along the width each is open (None: everywhere), and their fronts.
+    """Return the cracks of one tooth in the section, their open parts along the width (None: everywhere), and their fronts.
 
     A front is a crack whose depth changes along the width, or None.
 
@@ -200,7 +200,7 @@ def solid_sector(model, damage, cache=True):
 
 
 def _sector(gear, cracks, broken, refine, cache):
-    """The section's triangles and their nested halves."""
+    """Return the section's triangles and their nested halves."""
 
     def solve():
         made = sector(gear, cracks, broken=broken, refine=refine, sizes=SIZES)
