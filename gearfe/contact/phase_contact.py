@@ -10,7 +10,7 @@ import numpy as np
 from ..core.steps import steps
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
 from ..geometry.pair.broken import broken_at, pair_at
-from ..geometry.pair.contacts import TIP
+from ..geometry.pair.contacts import TIP, neighbours_of
 from ..geometry.pair.lines import bands_of
 from .bodies import between, faces_of, mirrors_of
 from .cell_sharing import SharedLines
@@ -21,7 +21,7 @@ from .joined_lines import System
 from .kink_law import KinkLaw
 from .pair_contact import OVERLAP
 from .pieces import beyond, gaps, pieces_of
-from .sliding import MOST, off_path, slid
+from .sliding import MOST, cracks_beyond_lines, off_path, slid
 
 FINEST = 1.5  # length of the shortest cell [Hertz half widths]
 ALIKE = 1e-9  # tolerance for equal halves, of which one is solved [base pitches]
@@ -111,15 +111,20 @@ class PhaseContact:
         if case.missing:  # distance of the last adjacent teeth from their path
             further = [max(away, (2 - pair.eps_alpha) * pair.p_bt) for away in further]
         self._laws, self._make_law = {}, partial(CornerLaw, pair, materials, load, further, cache=cache)
+        self.least_neighbours = neighbours_of(pair) if any(case.cracks) or any(case.broken) else 1
         self._broken_at = partial(broken_at, pair, case.broken)
         kinked = flanks is not None and any(form.kinks for form in flanks)
         self.kinks = KinkLaw(pair, materials, load, flanks, cache=cache) if kinked else None
 
     @property
     def neighbours(self):
-        """Largest difference of the orders of pairs in contact at the same phase, by the first guess of the approach."""
+        """Largest difference of the orders of pairs in contact at the same phase, by the first guess of the approach.
+
+        With damage it is at least as large as in sections, so that cracks count as many teeth away.
+        """
         ratio = self.pair.eps_beta_of(self.width / len(self.bands)) if self.beta_b else 0.0
-        return max(1, math.floor(self.pair.eps_alpha + ratio + sum(self._further(self.least + self.reach)) / self.pair.p_bt))
+        further = sum(self._further(self.least + self.reach)) / self.pair.p_bt
+        return max(self.least_neighbours, math.floor(self.pair.eps_alpha + ratio + further))
 
     def _further(self, reach):
         """Return the distance beyond the path [mm] up to which gaps are below `reach`, plus the least material removed."""
@@ -288,6 +293,7 @@ class PhaseContact:
         way = np.zeros(n) if yields is None else yields @ load / cos
         given = float(load @ way / load.sum()), float(way.min())
         slide, unsure = self._slid(solved, bodies, load, shared.approach, closed)
+        unsure += cracks_beyond_lines(solved, bodies, load, shared.approach)
         tangent = 1 / (1 / shared.tangent - 2 * slide / load.sum())
         beyond_it = off_path(self, solved, load, radius, shared.approach)
         return Carried(loaded, (shared.approach - slide) / cos, times * tangent * cos**2, closed, *given, unsure, beyond_it)

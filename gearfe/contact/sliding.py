@@ -122,6 +122,16 @@ def off_path(contact, cells, load, radius, approach):
     return float(stiff @ _changed(contact, radius[on], gap, closed, closing) / stiff.sum() / closing)
 
 
+def cracks_beyond_lines(cells, bodies, load, approach):
+    """Part of the `approach` [mm] that cracks further away than their solved teeth may add; arguments as of `slid`."""
+    out = 0.0
+    for half in np.unique(cells.half).tolist():
+        on = cells.half == half
+        for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
+            out += body.cracks_beyond(sense * cells.order[on], roll[on], cells.depth[on] + offset, load[on])
+    return out / load.sum() / approach
+
+
 def _cracks_beyond(contact, line):
     """Deflection ``(phases, pairs)`` [mm] that cracks further away than their solved teeth may add to contacts."""
     out, order = np.zeros(line.shape), contact.found.order

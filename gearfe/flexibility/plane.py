@@ -195,6 +195,12 @@ class Flexibility:
         return out
 
 
+def outermost(solved: Iterable[int], z: int) -> list[int]:
+    """Those of the `solved` teeth of a gear with `z` teeth that have a neighbour which was not solved."""
+    teeth = set(solved)
+    return [tooth for tooth in teeth if not {(tooth + 1) % z, (tooth - 1) % z} <= teeth]
+
+
 def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.bool_], float]:
     """Return which `teeth` ``(n,)`` of a cracked gear were solved without its cracks, and the error bound there [mm per N/mm].
 
@@ -204,7 +210,7 @@ def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.b
     if flexible.seam is None:
         return none
     z, faces = flexible.gear.z, flexible.seam
-    ends = [tooth for tooth in faces.opening if not {(tooth + 1) % z, (tooth - 1) % z} <= faces.opening.keys()]
+    ends = outermost(faces.opening, z)
     if not ends:
         return none
     opening = np.concatenate([faces.opening[tooth](np.array(flexible.limits)) for tooth in ends])

@@ -18,6 +18,7 @@ from ..geometry.tooth.gear import Gear, shortened
 from ..geometry.tooth.profile import arc_at, roll_at_arc
 from .end_faces import edge_factor, mirrored_patches
 from .halfspace import half_space, hat_points, modes, patch_kernel
+from .plane import outermost, reached_teeth
 from .solved import solved_gears
 
 PLACES = 8  # hats on each flank
@@ -105,6 +106,16 @@ class Flexibility3D:
                 out[:, on_tooth] = self.seam.opening[number] @ rows[on_tooth].T
         return out
 
+    def cracks_beyond(self, tooth, roll, z, load):
+        """Sum of load times deflection [N mm] that open cracks may add for `load` [N] on teeth they were not solved for.
+
+        It is zero if every loaded tooth was solved. The bound is that of the whole load on an outermost solved tooth.
+        """
+        if self.seam is None or not (load[~np.isin(tooth % self.gear.z, list(self.seam.opening))] > 0).any():
+            return 0.0
+        opens = [self.opening(np.full(load.size, end), roll, z) @ load for end in outermost(self.seam.opening, self.gear.z)]
+        return max((float(one @ np.linalg.lstsq(self.seam.influence, one)[0]) for one in opens), default=0.0)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Faces:
@@ -123,11 +134,10 @@ class Faces:
 
 
 def solved_teeth(gear, damage, neighbours):
-    """Teeth to load: tooth 0 and `neighbours` following, or those around each damaged tooth, but missing ones."""
+    """Teeth to load: tooth 0 and `neighbours` following, or `reached_teeth` of the damage, but missing ones."""
     if not damage:
         return list(range(min(neighbours, gear.z - 1) + 1))
-    reach, gone = max(1, neighbours), missing_teeth(gear, damage)
-    return sorted({(one.tooth + k) % gear.z for one in damage for k in range(-reach, reach + 1)} - set(gone))
+    return sorted(set(reached_teeth(gear, damage, max(1, neighbours))) - set(missing_teeth(gear, damage)))
 
 
 def parted(gear, material, degree, influence, unknowns, healthy=None, *, damage=(), cache=True):

@@ -16,6 +16,7 @@ from .tables import covering, each_tooth
 from .tip_edge import TipEdge
 
 LARGEST = 0.1  # most that may be removed [m_n]: the flexibility is that of the unmodified tooth and a beam's difference
+BENT = 0.1  # least jump of the curvature, as a part of that of the flank, that makes the start of a parabolic relief a kink
 STEP = 1e-6  # roll length over which a slope is taken [m_n]
 
 
@@ -23,7 +24,7 @@ class FlankForm:
     """Flank on its gear: removed material by roll length, and by height in the form of `at`.
 
     `kinks` are the roll lengths [mm] at which the flank bends suddenly, and by how much the material removed then rises by mm of
-    roll length: there, contact has no radius of curvature.
+    roll length: there, contact has no radius of curvature. A parabolic relief bends the flank at its start: its curvature jumps.
     """
 
     def __init__(self, flank: Any, gear: Gear) -> None:
@@ -37,7 +38,7 @@ class FlankForm:
         self.kinks = tuple(
             (start, amount / abs(end - start) if exponent == 1 else 0.0)
             for start, end, amount, exponent in self.reliefs
-            if exponent < 2
+            if exponent < 2 or (exponent == 2 and _bends(gear, start, 2 * amount / (end - start) ** 2))
         )
         self.edge = TipEdge(gear, flank.tip_rounding, flank.tip_chamfer) if flank.tip_rounding or flank.tip_chamfer else None
         if self.edge is not None:
@@ -221,6 +222,11 @@ class FlankForm:
         on = self._on_flank(at)
         out = (self.gear.r_b / at) ** 2 * (self._formed(on, 2) - self._formed(on, 1) / at)
         return out if self.edge is None else np.where(self.edge.on(at), self.edge.bend(at), out)
+
+
+def _bends(gear: Gear, roll: float, jump: float) -> bool:
+    """Whether a `jump` of the second derivative of the material removed by roll length [1/mm] counts, see `BENT`."""
+    return jump * gear.r_b**2 / max(roll, 1e-3 * gear.r_b) > BENT
 
 
 def _along(z: NDArray, places: NDArray) -> NDArray:

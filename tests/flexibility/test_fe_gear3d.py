@@ -26,8 +26,8 @@ SMALL = replace(GEAR, z=9, x=0.5, b=2.0, r_bore=4.0)
 def test_only_the_teeth_that_share_load_are_solved():
     assert solved_teeth(GEAR, (), 2) == [0, 1, 2]
     assert solved_teeth(GEAR, (), 30) == list(range(12))
-    assert solved_teeth(GEAR, (gf.Crack(level=0.3, tooth=3),), 1) == [2, 3, 4]
-    assert solved_teeth(GEAR, (gf.Crack(level=0.3),), 1) == [0, 1, 11]
+    assert solved_teeth(GEAR, (gf.Crack(level=0.3, tooth=3),), 1) == [1, 2, 3, 4, 5]
+    assert solved_teeth(GEAR, (gf.Crack(level=0.3),), 1) == [0, 1, 2, 10, 11]
 
 
 def pair_of(b=4.0, beta=0.2):

@@ -50,3 +50,15 @@ def test_a_mesh_cycle_has_all_of_it():
     assert last > PAIR.eps_alpha + 3
     healthy = gf.mesh_stiffness(PAIR, 2000.0, gf.Material(), method="ritz", phases=part.curve.phase).k
     assert (np.abs(1 - part.curve.k / healthy)[[0, -1]] < (part.curve.error / healthy)[[0, -1]]).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", [0.5, 0.9])
+def test_three_dimensions_count_a_crack_as_far_as_sections(level):
+    """Without lateral contraction a spur pair is its section, up to five teeth away, within the estimate."""
+    rack = RACK | {"b": 4.0}
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
+    run = {"phases": CYCLES[::2], "cache": False, "damage": {"pinion": [gf.Crack(level=level)]}, "error": True}
+    plane, solid = (gf.mesh_stiffness(pair, 400.0, gf.Material(nu=0.0), method=name, **run) for name in ("ritz", "ritz3d"))
+    assert (np.abs(solid.k - plane.k) < solid.error).all()
+    assert np.abs(solid.k / plane.k - 1)[1:-1].max() < 1e-3

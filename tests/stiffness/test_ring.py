@@ -128,8 +128,9 @@ def test_energy_methods_have_no_ring(pair):
 def test_ring_crack(pair, start):
     """The crack makes the mesh softer, by the work up to each load.
 
-    Less stiff bodies store more work ``int(delta, dF)`` under the same load, gaps included. k itself may rise by 0.1 % where the
-    cracked tooth touches off the path: loads on its neighbour then press it less away from its mate, and it carries more.
+    ``int(delta, dF)`` is the complementary energy, the least of ``p' C p / 2 + gap . p`` over all shares p >= 0 of the load. It
+    cannot fall if C rises. The secant k has no such bound: it may rise by 0.1 % where the cracked tooth touches off the path,
+    since loads on its neighbour then press it less away from its mate, and it carries more.
     """
     nodes, weights = np.polynomial.legendre.leggauss(8)
     loads = [2000.0 * (1 + float(x)) / 2 for x in nodes]

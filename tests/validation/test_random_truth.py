@@ -43,10 +43,11 @@ def drawn(seed):
     return pair, flanks, load, [float(rng.uniform(0, pair.eps_alpha))], damage
 
 
-def off_and_estimated(seed):
+def off_and_estimated(seed, cracked=True):
     """Relative difference of k from that of whole bodies, and both estimates together; None if the seed gives no case."""
     try:
         pair, flanks, load, phase, damage = drawn(seed)
+        damage = damage if cracked else None
         options = {"method": "ritz", "phases": phase, "flanks": flanks or None, "damage": damage, "error": True}
         curve = gf.mesh_stiffness(pair, load, gf.Material(E=207e3, nu=0.3), cache=False, **options)
         cracks = [(damage or {}).get(name, ()) for name in SIDES]
@@ -58,12 +59,17 @@ def off_and_estimated(seed):
 
 
 @pytest.mark.slow
-def test_a_crack_in_a_tooth_thinned_on_both_sides():
-    """38/66 with 49 um of root relief on a module of 1 mm: 1.07 % too stiff, of which the crack in the thin tooth is 0.3 %."""
+@pytest.mark.parametrize("cracked", [True, False])
+def test_a_contact_at_the_start_of_a_steep_parabolic_relief(cracked):
+    """38/66 with 49 um of root relief on a module of 1 mm: the relative radius falls from 4.8 to 2.1 mm within the contact.
+
+    Hertz's law with one radius is 0.76 % too stiff, and 1.07 % with the crack, of which its thin tooth is 0.3 %.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        off, told = off_and_estimated(35)
-    assert 5e-3 < off < told < 3e-2
+        off, told = off_and_estimated(35, cracked)
+    assert off < told < 2e-2
+    assert off < (6e-3 if cracked else 2e-3)
 
 
 @pytest.mark.slow

@@ -76,7 +76,7 @@ three dimensions.
 
 def reference():
     """Compute the rows in three dimensions, each of which takes minutes."""
-    sample_three.rows(again=True)
+    sample_three.compute()
 
 
 def run(again=True):
@@ -92,7 +92,17 @@ def run(again=True):
             rows.append(found)
             write_table(TABLE, FIELDS, [row.values() for row in rows])
     solid = sample_three.rows()
-    page.write("sample", answer(rows, solid), HOW, section(rows), sample_three.section(solid))
+    page.write("sample", answer(rows, solid), HOW, coverage(rows, solid), section(rows), sample_three.section(solid))
+
+
+def coverage(rows, solid):
+    """Table of what the estimate of each method covers and how large it is."""
+    out = ["| method | pairs covered at every phase | median estimate over median error |", "|---|---|---|"]
+    out += [f"| `{name}` | {_count(rows, f'{name}_covered')} | {_ratio(rows, name):.1f} |" for name in ("fe", "ritz")]
+    pairs, count = sample_three.covered(solid)
+    ratios = (sample_three.ratio(solid, name) for name in ("ritz3d", "fe3d"))
+    known = zip(("ritz3d", "fe3d"), pairs, ratios, strict=True)
+    return out + [f"| `{name}` | {covered} of {count} | {ratio:.1f} |" for name, covered, ratio in known]
 
 
 def answer(rows, solid):

@@ -11,7 +11,7 @@ import numpy as np
 from gearfe.geometry.damage.seam import open_seam
 from gearfe.geometry.mesh.mesher import triangulate
 
-from .cracks import crack_length, crack_line, crack_start
+from .cracks import crack_corners, crack_start
 from .elements import gradients, solver, stiffness
 
 GROWTH = 0.3  # of edge lengths by distance along the outline
@@ -95,14 +95,16 @@ class MeshedBody:
         return np.hstack(out)
 
     def _faces(self, points, chain, double):
-        """Nodes left and right of a crack, tip left out, and the normal from left to right."""
-        along = points[:, chain[-1]] - points[:, chain[0]]
-        normal = np.array([along[1], -along[0]]) / math.hypot(*along)
+        """Nodes left and right of a crack, tip left out, and the normals ``(2, n)`` from left to right."""
+        along = np.diff(points[:, chain], axis=1)
+        along /= np.hypot(*along)
+        at_ends = along + np.hstack([along[:, :1], along[:, :-1]])
+        along = np.hstack([at_ends / np.hypot(*at_ends), along])
         sides = [
             np.concatenate([nodes[:-1], [self._middle(*ends) for ends in zip(nodes[:-1], nodes[1:], strict=True)]])
             for nodes in (chain.tolist(), double.tolist())
         ]
-        return (*(np.array(side, dtype=int) for side in sides), normal)
+        return (*(np.array(side, dtype=int) for side in sides), np.array([along[1], -along[0]]))
 
     def _middle(self, a, b):
         return self._edges[min(a, b), max(a, b)]
@@ -165,7 +167,7 @@ class MeshedBody:
                     base = fillet if number == 0 else flank
                     if crack is not None and number == 0:
                         begin = crack_start(side, crack)
-                        base = min(base, crack_length(side, crack) / 4)
+                        base = min(base, math.dist(*crack_corners(side, crack)[:, :2].T) / 4)
                         lists += [self._divided(tooth, place, first, begin, base, known)[:-1]]
                         starts[crack] = sum(map(len, lists))
                         first = begin
@@ -229,16 +231,18 @@ class MeshedBody:
         return radius * np.array([np.sin(angle), np.cos(angle)])
 
     def _crack_path(self, crack, m):
-        """Vertices of a straight crack after its mouth, finer towards its tip."""
-        start, direction = crack_line(self.side, crack)
-        length = crack_length(self.side, crack)
-        fine, coarse, at, steps = length / 40, FILLET * m, length, [length]
-        while at > 0:
-            at -= min(max(fine, 0.35 * (length - at)), coarse, max(length / 4, fine))
-            steps.append(at)
-        steps = np.array([x for x in steps if x > 0.3 * min(coarse, length / 4)])[::-1]
+        """Vertices of a crack after its mouth, finer towards its tip and bend."""
+        corners = crack_corners(self.side, crack)
+        along = np.append(0.0, np.cumsum(np.hypot(*np.diff(corners, axis=1))))
+        length, coarse, steps = along[-1], FILLET * m, []
+        for last, end in zip(along[:-1], along[1:], strict=True):
+            fine, at, part = min(length, end - last) / 40, end, [end]
+            while at > last:
+                at -= min(max(fine, 0.35 * (end - at)), coarse, max((end - last) / 4, fine))
+                part.append(at)
+            steps += [x for x in part if x - last > 0.3 * min(coarse, (end - last) / 4)][::-1]
         turn = self.angle(crack.tooth)
-        x, y = start[:, None] + direction[:, None] * steps
+        x, y = (np.interp(steps, along, row) for row in corners)
         return np.array([x * math.cos(turn) + y * math.sin(turn), y * math.cos(turn) - x * math.sin(turn)])
 
     def _mesh(self, rim, held, chains):

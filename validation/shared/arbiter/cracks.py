@@ -1,4 +1,4 @@
-"""Straight cracks on the outlines of the arbiter: where they start, and where they run."""
+"""Cracks on the outlines of the arbiter: where they start, and where they run."""
 
 import math
 
@@ -17,17 +17,18 @@ def crack_start(side, crack):
     return float(s[np.flatnonzero(steep <= math.radians(float(crack.start.removesuffix("deg"))))[0]])
 
 
-def crack_line(side, crack):
-    """Start (x, y) and direction of a straight crack, tooth along +y."""
+def crack_corners(side, crack):
+    """Corners ``(2, 2 or 3)`` [mm] of a crack from its mouth to its tip, tooth along +y.
+
+    At level 0.5 the crack reaches the centre-line. A turning crack goes on from there towards the mirror image of its mouth.
+    """
     radius, angle = (float(v[0]) for v in side.place(np.array([crack_start(side, crack)])))
-    x = 1.0 if crack.side == "loaded" else -1.0
-    start = np.array([x * radius * math.sin(angle), radius * math.cos(angle)])
-    return start, np.array([-x * math.sin(crack.angle), -side.sign * math.cos(crack.angle)])
-
-
-def crack_length(side, crack):
-    """Length [mm]: at level 0.5 the crack reaches the centre-line."""
-    if crack.length is not None:
-        return crack.length
-    start, direction = crack_line(side, crack)
-    return crack.level / 0.5 * abs(start[0] / direction[0])
+    mouth = np.array([radius * math.sin(angle), radius * math.cos(angle)])
+    direction = np.array([-math.sin(crack.angle), -side.sign * math.cos(crack.angle)])
+    half = mouth[0] / math.sin(crack.angle)
+    turns = crack.turning and crack.level > 0.5
+    length = crack.length if crack.length is not None else 2 * half * (0.5 if turns else crack.level)
+    corners = [mouth, mouth + length * direction]
+    if turns:
+        corners.append(corners[1] + (2 * crack.level - 1) * (mouth * [-1, 1] - corners[1]))
+    return np.array(corners).T * [[1.0 if crack.side == "loaded" else -1.0], [1.0]]
