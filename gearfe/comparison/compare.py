@@ -25,6 +25,7 @@ from ..stiffness.solve import Solve, solve
 from .comparison import Comparison, Key
 from .losses import damage_phases, engaged_phases, kind_of, loss_errors, told_damage, told_teeth, within
 from .own_model import OwnModel, own_curve, own_models
+from .returns import returns_of
 
 REFERENCE, REFERENCE_SOLID = "fe", "ritz3d"  # reference methods of sections, and of gears that need three dimensions
 REFERENCES = (REFERENCE, REFERENCE_SOLID, "fe3d")
@@ -93,7 +94,8 @@ def compare(
     chosen, key = _chosen(scene, pair, case, given)
     methods, left_out = _methods(chosen, reference)
     named = own_models(models, taken=(REFERENCE, *FORMULATIONS))
-    plan, cycles = _beside(key, chosen, phases)
+    returns = {} if isinstance(scene, (Case, GearPair, type(None))) else returns_of(_loaded(scene), *key)
+    plan, cycles = _beside(key, chosen, phases, returns)
     for method in methods:  # loading of libraries does not count
         METHODS[method].load()
     with gmsh_session():
@@ -146,25 +148,26 @@ def compare_cases(
     return _compared(plan, asked, methods, Solve(), known=known)
 
 
-def beside_health(case: Case, how: Solve, pair: str = "pair") -> Comparison:
+def beside_health(case: Case, how: Solve, pair: str = "pair", *, returns: Mapping[int, str] | None = None) -> Comparison:
     """Compare a damaged pair with itself without damage by one method; of a healthy pair its curve alone.
 
-    Of a damaged pair a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth.
+    Of a damaged pair a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth. `returns` is as
+    of `told_teeth`.
     """
     key = (pair, kind_of(case.damage) if case.damaged else None)
-    (plan, cycles), (row, why) = _beside(key, case, how.phases), how.chosen(case)
+    (plan, cycles), (row, why) = _beside(key, case, how.phases, returns), how.chosen(case)
     found = _compared(plan, (key,), (row.name,), how, cycles)
     for curve in found.solved.values():
         curve.meta["why"] = why
     return replace(found, times={})
 
 
-def _beside(key, case, phases):
+def _beside(key, case, phases, returns=None):
     """Case and phases by key, those of the healthy pair too; and the phases that zones are over by damaged tooth in words."""
     cycles = {}
     if case.damaged and np.ndim(phases) == 0:
         count = check_count(phases)
-        cycles = {words: damage_phases(case, count, number) for number, words in told_teeth(case).items()}
+        cycles = {words: damage_phases(case, count, number) for number, words in told_teeth(case, returns).items()}
         phases = engaged_phases(case, count)
     return {key: (case, phases)} | ({(key[0], None): (case.healthy, phases)} if case.damaged else {}), cycles
 
@@ -245,13 +248,16 @@ def _chosen(scene, pair, case, given):
     stated = [name for name, value in given.items() if value not in (None, 0.0)]
     if stated:
         raise ValueError(f"{stated[0]} is stated by the scene: leave it out, or give pair=GearPair(...) instead of a scene")
-    if isinstance(scene, (str, os.PathLike)):
-        scene = load_scene(scene)
+    scene = _loaded(scene)
     if not isinstance(scene, Scene):
         raise ValueError(
             f"scene = {scene!r}, but give a Scene, the name or file of one, or pair=GearPair(...) with force= and material="
         )
     return scene.case(pair, case), (pair or next(iter(scene.pairs)), case)
+
+
+def _loaded(scene):
+    return load_scene(scene) if isinstance(scene, (str, os.PathLike)) else scene
 
 
 def _own(pair, given):

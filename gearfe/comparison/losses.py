@@ -62,8 +62,10 @@ def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
     return out
 
 
-def told_teeth(case: Case) -> dict[int, str]:
+def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int, str]:
     """Damage in words by number of the tooth pair; teeth are named unless the only one is tooth 0 of the pinion.
+
+    `returns` is how often they mesh, in words (`gearfe.comparison.returns.returns_of`).
 
     Examples
     --------
@@ -75,10 +77,11 @@ def told_teeth(case: Case) -> dict[int, str]:
     ['tooth 0 of the wheel: 2 mm crack at 60.2 degrees', 'tooth 5 of the wheel: 1.5 mm crack at 60.2 degrees']
     """
     found = damaged_pairs(case)
+    often = {pair: f" ({words})" for pair, words in (returns or {}).items()}
+    named = {pair: " and ".join(f"tooth {pair} of the {side}" for side in sides) + ": " for pair, sides in found.items()}
     if [list(sides) for sides in found.values()] == [["pinion"]] and 0 in found:
-        return {0: told_damage(case.pair, found[0])}
-    named = {pair: " and ".join(f"tooth {pair} of the {side}" for side in sides) for pair, sides in found.items()}
-    return {pair: f"{name}: {told_damage(case.pair, found[pair])}" for pair, name in named.items()}
+        named[0] = ""
+    return {pair: f"{name}{told_damage(case.pair, found[pair])}{often.get(pair, '')}" for pair, name in named.items()}
 
 
 def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:

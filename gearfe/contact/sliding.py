@@ -123,7 +123,7 @@ def off_path(contact, cells, load, radius, approach):
 
 
 def cracks_beyond_lines(cells, bodies, load, approach):
-    """Part of the `approach` [mm] that cracks further away than their solved teeth may add; arguments as of `slid`."""
+    """Part of the `approach` [mm] that cracks further away than their solved teeth may add (see `slid`)."""
     out = 0.0
     for half in np.unique(cells.half).tolist():
         on = cells.half == half

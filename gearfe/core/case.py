@@ -179,11 +179,6 @@ class Case:
         """Whether a tooth is missing."""
         return any(isinstance(one, MissingTooth) for own in self.broken for one in own)
 
-    def without_broken(self, what: str) -> None:
-        """Raise ValueError if a tooth is missing or chipped, because `what` does not model it."""
-        for one in sum(self.broken, ()):
-            raise ValueError(f"a {one._nouns[0]} in {what}, which is limited to unbroken teeth: use mesh_stiffness or compare")
-
     @property
     def runs(self) -> str:
         """Type of teeth: `face`, or by their helix angle."""

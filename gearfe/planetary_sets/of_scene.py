@@ -88,18 +88,35 @@ def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, i
     known = dict.fromkeys((*outer.damage, *inner.damage))
     if case not in known:
         raise ValueError(f"no case {case!r} in the set of scene {scene.name}; it has {', '.join(known) or 'none'}")
-    one, two = outer.damage.get(case, {}), inner.damage.get(case, {})
-    hurt = [own for found in (*one.values(), *two.values()) for own in found]
+    one, two = outer.owned.get(case, {}), inner.owned.get(case, {})
+    hurt = [own for found in (*one.values(), *two.values()) for damage in found.values() for own in damage]
     other = sorted({own._nouns[0] for own in hurt if not isinstance(own, Crack)})
     if other:
         raise ValueError(
             f"case {case!r} has a {' and a '.join(other)}, but the section of a set has cracks only: choose a case of cracks"
         )
-    both = one.get("wheel", [])
-    ring_side = [replace(crack, side=_opposite(crack.side)) for crack in two.get("pinion", [])]
-    ring_side = [crack for crack in ring_side if crack not in both]
-    found = {"sun": one.get("pinion", []), ("planet", given.damaged_planet): both + ring_side, "ring": two.get("wheel", [])}
-    return {name: cracks for name, cracks in found.items() if cracks}
+    out: dict[Any, Any] = {}
+    for found, side, gear, turned in (
+        (one, "pinion", "sun", 0),
+        (one, "wheel", "planet", 0),
+        (two, "pinion", "planet", 1),
+        (two, "wheel", "ring", 0),
+    ):
+        for owner, cracks in found.get(side, {}).items():
+            own = out.setdefault(_gear_name(owner.body, gear, case, given), [])
+            seen = [replace(crack, side=_opposite(crack.side)) if turned else crack for crack in cracks]
+            own += [crack for crack in seen if crack not in own]
+    return out
+
+
+def _gear_name(body, gear, case, given):
+    """Name of a gear of the set: of planets with their number, which bodies count from 1 and sets from 0."""
+    known = [f"planet{i + 1}" for i in range(len(given.errors))] if gear == "planet" else [gear]
+    if body is not None and body not in known:
+        raise ValueError(f"case {case!r} damages body {body!r}, but the {gear} of the set is {', '.join(known)}")
+    if gear != "planet":
+        return gear
+    return gear, given.damaged_planet if body is None else known.index(body)
 
 
 def _opposite(side):

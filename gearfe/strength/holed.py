@@ -48,7 +48,8 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, sizes=None, strip=N
     """Solve the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
 
     The damage is that of one tooth of one gear, its pits in one half if herringbone, or the same in both. Without damage it is
-    tooth 0 of the pinion. `phases`: default the one of 16 at which the damaged tooth has the largest load.
+    tooth 0 of the pinion. Of a missing tooth it is the next one, which carries alone before the gap. `phases`: default the one of
+    16 at which the tooth has the largest load.
     `geometry.mesh.holes.holed_sector` describes `refine`, `teeth` and `sizes`. `strip` is the edge length along the loaded
     contact lines of the damaged tooth [modules], default that of the flank. `spread` is the half width of the load about its
     line, as a hat [modules]: 1.2 Hertz half widths are as wide as his pressure.
@@ -58,23 +59,22 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, sizes=None, strip=N
     """
     if not spread > 0:
         raise ValueError(f"spread = {spread}, but it is a length to either side of the contact line: give spread > 0")
-    case.without_broken("a tooth with holes")
     pair, materials, face, cracks, pits = case.pair, case.materials, case.runs, case.cracks, case.pits
-    which = [i for i in (0, 1) if cracks[i] or pits[i]] or [0]
-    if len(which) > 1 or len(cracks[which[0]]) > 1:
+    which = [i for i in (0, 1) if cracks[i] or pits[i] or case.broken[i]] or [0]
+    side, broken = which[0], case.broken[which[0]]
+    if len(which) > 1 or len(cracks[side]) > 1 or (broken and len([*cracks[side], *pits[side], *broken]) > 1):
         raise ValueError("give damage of the flank, one crack or both, of one tooth of one gear: holes are cut into one tooth")
-    side = which[0]
     gear, half, own_pits = _own(pair, side, face, case.groove, pits[side])
     crack = next(iter(cracks[side]), None)
-    tooth = next((one.tooth for one in (*pits[side], *cracks[side])), 0)
-    order = (1, -1)[side] * tooth
+    tooth = next((one.tooth for one in (*pits[side], *cracks[side], *broken)), 0) + (1, -1)[side] * case.missing
+    broken, order = [replace(one, tooth=one.tooth - tooth) for one in broken], (1, -1)[side] * tooth
     with part("contact", 0.0, 0.2):
         contact = contact_of(case, phases, order, extended=False)
     lines = [_lines(pair, of_phase, side, tooth, half) for of_phase in contact.cells]
     spread *= gear.m_n
     strips = () if strip is None else _strips(gear, lines, strip * gear.m_n / refine, spread)
     with part("mesh", 0.2, 0.5):
-        sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes, strips=strips)
+        sector = holed_sector(gear, own_pits, crack, broken=broken, teeth=teeth, refine=refine, sizes=sizes, strips=strips)
     nodes, cells, number = second_order(sector.points, sector.cells)
     kept = cells[:, sector.plug < 0]
     loads = np.column_stack([_pressure(sector, nodes, number, of_phase, spread) for of_phase in lines])

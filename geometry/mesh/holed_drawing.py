@@ -8,14 +8,16 @@ import math
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..damage.chip import chip_of
 from ..damage.crack import meshed_path, start_arc
 from ..damage.hollow_volume import hollow_frame
+from ..damage.missing import missing_teeth
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
 
 
-def section(gear, crack, teeth):
+def section(gear, crack, teeth, broken=()):
     """Points ``(2, n)``, curves and the loops of each face: one face, or body and cracked tooth."""
-    points, curves = [], []
+    points, curves, gone = [], [], missing_teeth(gear, broken)
 
     def at(xy):
         points.append(np.asarray(xy, dtype=float).reshape(2))
@@ -33,7 +35,7 @@ def section(gear, crack, teeth):
     for tooth in own_teeth:
         for side in ("unloaded", "loaded"):
             mark = None if crack is None or tooth else start_arc(gear, crack)
-            pieces = _half(gear, side, mark)
+            pieces = _no_tooth(gear, side) if tooth % gear.z in gone else _half(gear, side, mark, chip_of(gear, broken, tooth))
             for number, (kind, radius, angle, cut) in enumerate(pieces, 1):
                 closing = teeth is None and (tooth, side, number) == (own_teeth[-1], "loaded", len(pieces))
                 places = zip(radius[1 : -1 if closing else None], angle[1 : -1 if closing else None], strict=True)
@@ -71,15 +73,34 @@ def numbers_of(gear, teeth):
     return range(-(count // 2), count - count // 2)
 
 
-def _half(gear, side, mark):
+def _no_tooth(gear, side):
+    """Curves of `_half` where the tooth is missing."""
+    ends = np.array([0.0, math.pi / gear.z])
+    return [("arc", np.full(2, gear.r_f), ends if side == "loaded" else -ends[::-1], False)]
+
+
+def _tip(gear, side, chip):
+    """Curves of `_half` from the tip's middle to the flank."""
+    if chip is None:
+        return [("arc", [gear.r_a] * 2, np.array([0.0, gear.half_thickness(gear.r_a)]), False)]
+    out = []
+    for _, place in chip.top(gear, side):
+        x, y = place(np.array([0.0, 0.5, 1.0]))
+        radius = np.hypot(x, y)
+        kind = "arc" if np.ptp(radius) < 1e-9 * gear.r_a else "line"
+        out.append((kind, radius[::2], np.arctan2(x, y)[::2], False))
+    return out
+
+
+def _half(gear, side, mark, chip=None):
     """Curves of half a tooth clockwise: kind, radii and angles of its points, whether the crack's end is at its lower end."""
     sign = 1 if side == "loaded" else -1
     # even in roll: even in arc a spline would be off the involute near the base circle
-    rolls = np.linspace(gear.roll_a, gear.roll_f, 17)
+    rolls = np.linspace(gear.roll_a if chip is None else chip.end_roll(gear, side), gear.roll_f, 17)
     arcs = [fillet_length(gear), *([] if mark is None or not 0 < mark < fillet_length(gear) else [mark]), 0.0]
     fillets = [root_curve(gear, np.linspace(a, b, 13)) for a, b in zip(arcs[:-1], arcs[1:], strict=True)]
-    tip, half = gear.half_thickness(gear.r_a), math.pi / gear.z
-    out = [("arc", [gear.r_a] * 2, np.array([0.0, tip]), False), ("spline", *flank(gear, rolls), False)]
+    half = math.pi / gear.z
+    out = [*_tip(gear, side, chip), ("spline", *flank(gear, rolls), False)]
     out += [("spline", radius, angle, mark is not None and k == 0) for k, (radius, angle) in enumerate(fillets)]
     if half - root_half_angle(gear) > 1e-6:
         out.append(("arc", [gear.r_f] * 2, np.array([root_half_angle(gear), half]), False))

@@ -57,7 +57,7 @@ class Holed:
     removed: tuple
 
 
-def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, strips=(), stretch=1.0):
+def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, sizes=None, strips=(), stretch=1.0):
     """Mesh a sector of `gear`, or all of it, with pits as holes.
 
     Parameters
@@ -68,6 +68,8 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
         Pits of one tooth, which becomes tooth 0 of the sector. They may overlap and cross the tip edge and the end faces.
     crack : Crack, optional
         Crack of the same tooth, through the whole width.
+    broken : sequence of (MissingTooth or Chip)
+        Broken teeth, numbered from tooth 0 of the sector.
     teeth : int or None
         Odd number of teeth in the sector; None: the whole gear.
     refine : float
@@ -104,7 +106,9 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
     size = {name: value * gear.m_n / refine for name, value in (SIZES | (sizes or {})).items()}
     for finer in FINER:
         try:
-            made = _attempt(gear, pits, crack, teeth, {name: value / finer for name, value in size.items()}, strips, stretch)
+            drawn = section(gear, crack, teeth, broken)
+            finer_sizes = {name: value / finer for name, value in size.items()}
+            made = _attempt(gear, pits, crack, drawn, teeth, finer_sizes, strips, stretch)
         except UnmeshedError:  # pits that touch leave thin walls
             if finer == FINER[-1]:
                 raise
@@ -128,11 +132,11 @@ def filled(sector, *, teeth=3):
     return replace(sector, plug=plug, faces=faces | {name: sector.faces[name] for name in sector.faces if "crack" in name})
 
 
-def _attempt(gear, pits, crack, teeth, size, strips, stretch):
+def _attempt(gear, pits, crack, drawn, teeth, size, strips, stretch):
     rim = min((min(pit.axes) for pit in pits), default=1.0) * size["rim"] / gear.m_n
     squeeze = np.array([[1.0], [1.0], [1 / stretch]])
     made = tetrahedra(
-        section(gear, crack, teeth), gear.b / stretch, [tool(gear, pit, squeeze) for pit in pits],
+        drawn, gear.b / stretch, [tool(gear, pit, squeeze) for pit in pits],
         fine=fine(gear, crack, size, teeth), rim=rim, far=size["far"], strips=[(squeeze * line, *rest) for line, *rest in strips],
     )  # fmt: skip
     made = replace(made, points=made.points / squeeze, volume={piece: stretch * v for piece, v in made.volume.items()})

@@ -139,7 +139,7 @@ def test_bores_and_textbook_formulas(pair):
 def test_crack(pair):
     alone, whole, worst = loss(middle(pair), pair, angle=radians(60))
     says("faq.md", "At 60 degrees it is {} % in single tooth contact", alone)
-    says("faq.md", "(`single`), {} % of the mean over the mesh cycle in the middle", whole)
+    says("faq.md", "In the middle of the engagement of the cracked tooth it is {} % of the mean over the mesh cycle", whole)
     says("faq.md", "and {} % at the worst phase", worst)
     first = loss(64, pair, angle=radians(60))[1]
     says("faq.md", "where the cracked tooth is not in the middle of its engagement: {} %", first)
@@ -148,8 +148,8 @@ def test_crack(pair):
     says("faq.md", "and a part of the next ones: {} %", engaged)
     says("faq.md", "between {} and {} %, because definitions differ", min(engaged, first, whole), worst)
     cracks = [{}, {"angle": radians(30)}, *({"angle": radians(60)} | more for more in ({"start": "root"}, {"side": "unloaded"}))]
-    sentence = """the loss by 2 mm at 45 degrees is {} %, at 30 degrees {} %, at 60 degrees from the root circle {} %, and on the
-        unloaded side {} %"""
+    sentence = """the loss by 2 mm at 45 degrees is {} %, and at 30 degrees {} %. It is {} % at 60 degrees from the root circle,
+        and {} % on the unloaded side"""
     says("faq.md", sentence, *(loss(middle(pair), pair, **crack)[0] for crack in cracks))
 
 
@@ -204,7 +204,7 @@ def test_law_of_force(pair):
     says("faq.md", "(natural frequency {} kHz)", gf.natural_frequencies(machine)[0][0] / 1000)
     (parted, least), (kept, most) = swing(curve, 1500.0), swing(law, 1500.0)
     assert least <= 0 < most
-    says("faq.md", "the mesh force under the curve swings by {} N RMS", parted)
+    says("faq.md", "the mesh force under the curve oscillates by {} N RMS", parted)
     says("faq.md", "`gearfe.force_law` gives {} N", kept)
     says("faq.md", "At a third, 2500 Hz, the values are {} for {} N", swing(curve, 2500.0)[0], swing(law, 2500.0)[0])
     apart = {f: 100 * abs(swing(curve, f)[0] / swing(law, f)[0] - 1) for f in (280.0, 3500.0, 3000.0, 5500.0, 7000.0, 12000.0)}
@@ -229,10 +229,13 @@ def test_what_other_pages_say():
     rows = re.findall(r"\| (\d) \| (\d+) \| held all around \| (\d+) \| (\d+) \|", sets)
     below = [100 * (1 - float(sun) / alone[0]) for planets, rim, sun, _ in rows if rim == "5" and planets in "35"]
     above = [100 * (float(ring) / alone[1] - 1) for *_, ring in rows]
-    says("faq.md", "below that of the isolated pair with three planets and {} % with five", below[1])
-    says("faq.md", "k of sun and planet is {} % below", below[0])
-    says("faq.md", "k of planet and ring is {} to {} % above it", min(above), max(above))
-    says("faq.md", "and {} to {} times it on supports", *map(float, re.search(r"is ([\d.]+) to ([\d.]+) times", sets).groups()))
+    says("faq.md", "below that of the isolated pair: {} % with three planets and {} % with five", *below)
+    says("faq.md", "k of planet and ring is {} to {} % above that", min(above), max(above))
+    says(
+        "faq.md",
+        "On supports it is {} to {} times that of the isolated pair",
+        *map(float, re.search(r"is ([\d.]+) to ([\d.]+) times", sets).groups()),
+    )
     ritz, fe = re.search(
         r"In the section in (\d+) of 100 pairs for `ritz` and (\d+) of 100 pairs for `fe`", words_of(PAGES / "sample.md")
     ).groups()

@@ -12,6 +12,7 @@ from scipy.interpolate import PchipInterpolator
 import gearfe as gf
 from gearfe.comparison.vibration import analysis, recorded
 from gearfe.dynamics.machine.scene_curves import teeth_of
+from gearfe.dynamics.machine.tooth_damage import ToothDamage
 from gearfe.scene.load import scene_of
 
 GEAR = {"m_n_mm": 3.0, "alpha_n_deg": 20.0, "b_mm": 15.0, "material": "steel"}
@@ -57,10 +58,17 @@ def test_lines_stand_at_the_turns_of_the_damaged_gear_and_nowhere_else(gear, too
 
 
 def test_sidebands_of_a_cracked_wheel():
-    """2 mm on the wheel: 0.6 and 0.8 N at 662.1 and 644.2 Hz, 3e-4 N at the pinion's 640 Hz."""
-    machine = gf.build_machine(scene(crack=[{"gear": "wheel"}]), "cracked")
+    """2 mm on the wheel: 0.61 and 0.83 N at 662.1 and 644.2 Hz, as of the same curve put on the wheel by hand.
+
+    The curve by hand lacks the neighbours of the tooth, which is 2.5 % of these lines. With 32 phases the nearer line is 0.74 N.
+    """
+    hurt = scene(crack=[{"gear": "wheel"}])
+    machine = gf.build_machine(hurt, "cracked")
     near, far, pinion = amplitude(machine, MESH - TURNS["wheel"], MESH - 2 * TURNS["wheel"], MESH - TURNS["pinion"])
-    assert_allclose([near, far], [0.60, 0.74], rtol=0.2, err_msg="damage put on the wheel by hand")
+    curve = gf.solve(hurt.case(case="cracked"), gf.Solve("ritz", 64, "tooth"))
+    by_hand = gf.build_machine(hurt).with_meshes(damage=(ToothDamage(1, 0, curve),))
+    assert_allclose([near, far], amplitude(by_hand, MESH - TURNS["wheel"], MESH - 2 * TURNS["wheel"]), rtol=0.04)
+    assert_allclose([near, far], [0.611, 0.832], rtol=0.01)
     assert pinion < 1e-2
 
 
@@ -234,3 +242,34 @@ def test_slow_rotation_with_a_missing_tooth_has_the_transmission_error():
     machine = gf.single_mesh(1e-2, cycle.healthy, 1.0, force=1669.298, **options)
     run = gf.simulate(machine, 17.0, rate=32.0, filtered=False)
     assert_allclose(run["pair.x"][32:544], te[32:], atol=1e-3 * np.ptp(te))
+
+
+BALANCED = {
+    "shifts": {
+        "flank": {"gear": "pinion", "pitch_um": [0.0] * 5 + [20.0] + [0.0] * 11},
+        "crack": [{"gear": "pinion", "tooth": 3}],
+    },
+    "gap": {"missing_tooth": [{"gear": "pinion", "tooth": 3}]},
+}
+
+
+@pytest.mark.parametrize("name", BALANCED)
+def test_energy_and_momentum_balance_with_shifts_and_gaps(name):
+    """Over a revolution: what the load, the changing stiffness and the error put in is stored or taken by the damper."""
+    made = scene(**BALANCED[name])
+    case = replace(made.case(case=next(iter(made.pair().damage))), force=1669.298)
+    cycle = gf.mesh_cycle(case, gf.Solve(phases=32))
+    options = {"teeth": (17, 38), "damage": teeth_of(cycle), "zeta": 0.03, "backlash": 1e-3}
+    machine = gf.single_mesh(0.15, cycle.healthy, MESH, force=1669.298, **options)
+    run = gf.simulate(machine, 17 / MESH, dt=1 / MESH / 2048)
+    t, v, force, mesh = run.time, run["pair.x velocity"], run["force mesh"], machine.meshes[0]
+    error, rate = mesh.e(t)[:2]
+    x = np.maximum(run["pair.x"] - error, 0.0)
+    assert ((x == 0).any(), np.ptp(error) > 5e-6) == (name == "gap", True)
+    spent = machine.law["damping"][0] * (v - rate) ** 2
+    power = 1669.298 * v + np.gradient(mesh.k(t), t, edge_order=2) * x**2 / 2 - spent - force * rate
+    energy = 0.15 * v**2 / 2 + mesh.k(t) * x**2 / 2
+    moved = np.trapezoid(np.abs(force * rate) + spent, t)
+    assert abs(energy[-1] - energy[0] - np.trapezoid(power, t)) < 1e-3 * moved
+    push = 1669.298 - force
+    assert abs(0.15 * (v[-1] - v[0]) - np.trapezoid(push, t)) < 1e-5 * np.trapezoid(np.abs(push), t)

@@ -67,6 +67,10 @@ def test_flanks_and_cracks_are_those_of_the_gears(tmp_path):
     assert found.damage == {("planet", 2): (gf.Crack(level=0.2, tooth=4),)}
     inner = gf.build_set(loaded(tmp_path, text + crack + 'pair = "planet_ring"\n'), "planet")
     assert inner.damage == {("planet", 2): (gf.Crack(level=0.2, tooth=4, side="unloaded"),)}
+    named = gf.build_set(loaded(tmp_path, text + crack + 'body = "planet2"\n'), "planet")
+    assert named.damage == {("planet", 1): (gf.Crack(level=0.2, tooth=4),)}, "bodies count from 1"
+    with pytest.raises(ValueError, match="damages body 'planet4', but the planet of the set is planet1, planet2, planet3"):
+        gf.build_set(loaded(tmp_path, text + crack + 'body = "planet4"\n'), "planet")
     ring = gf.build_set(loaded(tmp_path, SCENE + '[[crack]]\ncase = "ring"\ngear = "ring"\nlevel = 0.2\n'), "ring")
     assert ring.damage == {"ring": (gf.Crack(level=0.2),)}
     with pytest.raises(ValueError, match=r"give it one \[flank.NAME\] table without pair"):

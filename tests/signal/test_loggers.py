@@ -226,7 +226,7 @@ def test_two_rates_and_how_to_say_which(tmp_path, capsys):
         gf.read_signal(path)
     assert gf.read_signal(path, rate=5120.0).rate == 5120.0
     assert main(["signal", str(path)]) == 1
-    assert "; say which holds by --rate\n" in capsys.readouterr().err
+    assert "; choose one by --rate\n" in capsys.readouterr().err
     csv = written(tmp_path / "x.csv", times(50), np.arange(50), "{:.9f},{:g}\n")
     assert main(["signal", str(csv), "--rate", "100"]) == 1
     assert re.search(r"rate = 100 Hz, but its times are 5120 Hz; leave --rate out", capsys.readouterr().err)

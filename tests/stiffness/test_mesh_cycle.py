@@ -77,7 +77,7 @@ def test_a_tooth_is_tooth_0_at_another_time(side, tooth):
 def test_changes_add_where_engagements_do_not_overlap():
     """Cracks five teeth apart: the changes of k add within the estimated error of k; those of neighbours add less well.
 
-    A crack softens the body three teeth away by 0.1 % here, which single cracks neglect and two cracks contain.
+    They add within 1.6e-4 of k, where the estimate is 2.7e-3; those of neighbours within 1.5e-3.
     """
     how = gf.Solve(phases=PHASES)
 
@@ -87,7 +87,7 @@ def test_changes_add_where_engagements_do_not_overlap():
 
     apart, beside = (np.abs(change(0) + change(tooth) - change(0, tooth)).max() for tooth in (5, 1))
     assert apart < gf.solve(CASE, replace(how, error=True)).error.max()
-    assert beside > 1.5 * apart
+    assert beside > 3 * apart
 
 
 def test_neighbours_of_a_cracked_tooth_are_softer():

@@ -4,15 +4,17 @@ from ..shared.outsider import ASKED, LOAD, PITS, PITTED, apart, cases, lines, st
 
 COMPARED = f"""
 CalculiX is an independent finite-element code. gearfe writes its decks (`gearfe.write_contact_inp` with `face`, and
-`gearfe.write_line_inp`): both whole gears with all teeth, of their finite width, bores (of a ring the outside) held, in 20-node
-hexahedra with reduced integration (C3D20R); pairs with pits in second-order tets (C3D10) with the pits cut out as holes. What
-the two have in common is the shape of the gears and where they stand; stiffness, contact, load sharing, half-space and what pits
-do are CalculiX's own. `ritz3d` has pits as lost contact.
+`gearfe.write_line_inp`). They have both whole gears with all teeth and finite width, held at the bores (a ring outside).
+The elements are 20-node hexahedra with reduced integration (C3D20R). Pairs with pits have second-order tets (C3D10) with
+the pits cut out. Both codes share the shape and position of the gears. Stiffness, contact, load sharing, half-space and effect of
+pits are CalculiX's own. `ritz3d` has pits as lost contact.
 
-In contact: 13/16 teeth (in a ring 13/36), m_n 2 mm, b 6 mm, 15 degrees unless spur, {LOAD:g} N/mm (with pits {PITTED:g}), phase
-0.45, tooth 0 of the pinion damaged; the gears are turned by the approach that `ritz3d` found when CalculiX was run, frictionless
-surface-to-surface contact of all flanks, large displacements. k is force over approach. Under a line load: the deflection of a
-strip of pressure under itself. A test compares the decks of the present code with those of the runs.
+- In contact: 13/16 teeth (ring 13/36), m_n 2 mm, b 6 mm, 15 degrees unless spur. {LOAD:g} N/mm (pits {PITTED:g}), phase
+  0.45, damage in tooth 0 of the pinion. The gears are rotated by the approach that `ritz3d` had when CalculiX was run.
+  Flanks have frictionless surface-to-surface contact with large displacements. k is force divided by approach.
+- Under a line load: the deflection of a strip of pressure under itself.
+
+A test compares the decks of the present code with those of the runs.
 
 `per_width`: edges per Hertz half width along the contact lines; there are 3 layers of elements along the width; `refine`
 divides all edges, these too. Edges of tets are half as long across the width as along it, and rims of pits have edges of 0.6 of

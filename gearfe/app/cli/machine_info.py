@@ -15,6 +15,7 @@ OPTIONAL = {  # package: (module, its use); optional ones of the project's extra
     "pyuff": ("pyuff", "signals in universal files (UFF58)"),
     "npTDMS": ("nptdms", "signals in TDMS"),
     "ezdxf": ("ezdxf", "outlines of gears as DXF"),
+    "fmpy": ("fmpy", "running FMUs of gear pairs"),
     "lvm-read": ("lvm_read", "LabVIEW measurement files"),
     "pyarrow": ("pyarrow", "sweeps, and signals in Parquet"),
     "dask": ("dask", "sweeps on a cluster"),

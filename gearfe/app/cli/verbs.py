@@ -35,6 +35,7 @@ def _title(scene, arguments, *more):
 def stiffness(arguments):
     """``gearfe stiffness``."""
     from ...comparison.compare import beside_health
+    from ...comparison.returns import returns_of
     from ...comparison.told_scene import told_supports
     from ...scene.load import load_scene
     from ...stiffness.methods import fitted
@@ -61,7 +62,8 @@ def stiffness(arguments):
             arguments.method, arguments.phases, extended=not arguments.no_extended, refine=arguments.refine,
             error=arguments.error, tell=tell, pose=arguments.pose,
         )  # fmt: skip
-        found = beside_health(case, how)
+        name = arguments.pair or next(iter(scene.pairs))
+        found = beside_health(case, how, returns=returns_of(scene, name, arguments.case))
     curve, meta = found.reference, found.reference.meta
     print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:\n")
     for one in found.by_tooth() if case.damaged else ():

@@ -1,6 +1,6 @@
 """
-What a crack does, and what textbook formulas add
-=================================================
+Stiffness loss by a crack, and error of textbook formulas
+=========================================================
 
 The pair of the first page while the cracked tooth is in mesh. Plain sums of tooth pairs are too stiff where two carry.
 """

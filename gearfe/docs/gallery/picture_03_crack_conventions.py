@@ -1,6 +1,6 @@
 """
-What "a crack of 30 %" means
-============================
+Definitions of "a crack of 30 %"
+================================
 
 The largest loss of stiffness over the level of a crack, by several definitions that are in use.
 """

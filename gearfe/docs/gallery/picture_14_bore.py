@@ -1,8 +1,8 @@
 """
-How much does the bore matter?
-==============================
+Influence of the bore
+=====================
 
-The bore is held, and what lies between it and the teeth gives way. An article that does not print its bores leaves k open.
+The bore is held, and the body between bore and teeth deflects. Without the bore, k of an article is undefined.
 """
 
 from math import radians

@@ -1,8 +1,8 @@
 """
-Where may a formula be used?
-============================
+Valid range of closed forms
+===========================
 
-Errors of closed forms in the mean mesh stiffness, by the number of teeth of both gears, bores of half the root radius.
+Errors of the mean mesh stiffness by closed forms, by the number of teeth of both gears, bores of half the root radius.
 """
 
 from math import radians

@@ -1,8 +1,8 @@
 """
-How much tip relief?
+Choice of tip relief
 ====================
 
-The swing of the transmission error over the load, for several amounts. Each amount is best at one load.
+The peak-to-peak transmission error over the load, for several amounts. Each amount is best at one load.
 """
 
 from math import radians

@@ -1,9 +1,9 @@
 """
-How much crowning?
+Choice of crowning
 ==================
 
-The load along the width of a spur pair that stands 15 µm askew, in single contact. Crowning takes the load away from the end, and
-too much of it heaps it in the middle.
+The load along the width of a spur pair with a misalignment of 15 µm, in single contact. Crowning takes the load away from
+the end, and too much of it concentrates the load in the middle.
 """
 
 from math import radians

@@ -1,9 +1,9 @@
 """
-What a cracked tooth does to the spectrum
-=========================================
+Spectrum of a cracked tooth
+===========================
 
-The cracked tooth meshes once a turn: lines appear beside the mesh frequency and its multiples, a shaft frequency apart. The
-rate is a hundred times the mesh frequency, so that what folds falls on its multiples.
+The cracked tooth meshes once per revolution. Sidebands at the distance of the shaft frequency appear around the mesh
+harmonics. The rate is a hundred times the mesh frequency, so that what folds falls on its multiples.
 """
 
 from math import radians

@@ -2,7 +2,7 @@
 Thousands of curves at once
 ===========================
 
-The smallest stiffness over load and crack, from a stand-in that was fitted to 24 curves. A curve takes microseconds.
+The smallest stiffness over load and crack, from a surrogate fitted to 24 curves. A curve takes microseconds.
 """
 
 from math import radians

@@ -62,11 +62,11 @@ for method in ("ritz", "fe", "coupled", "textbook"):
 
 # %%
 # The textbook formula is close with one pair in contact and far too stiff with two: it adds up pairs of teeth as if each stood on
-# a body of its own. (``extended=False`` leaves out contact of tip corners, which the formulas do not know.)
+# a separate body. (``extended=False`` leaves out contact of tip corners, which the formulas neglect.)
 #
 # Keep it
 # -------
-# The suffix says which kind of file: ``.csv``, ``.npz``, ``.mat`` or ``.json``. Everything needed to repeat the curve is in it.
+# The suffix is the kind of file: ``.csv``, ``.npz``, ``.mat`` or ``.json``. Everything needed to repeat the curve is in it.
 
 curve.save("sun_planet.csv")
 with open("sun_planet.csv", encoding="utf-8") as file:

@@ -2,7 +2,7 @@
 2. Your own gears
 =================
 
-What a gear needs, what it is refused for, and which of its dimensions decide how stiff it is.
+The data of a gear, invalid data, and the dimensions that determine its stiffness.
 """
 
 # %%
@@ -27,7 +27,7 @@ print(f"tip {pinion.r_a:.3f}, reference {pinion.r:.3f}, base {pinion.r_b:.3f}, r
 # %%
 # What cannot be
 # --------------
-# A message says what was given, why it cannot be, and what to do.
+# A message has the value, the reason why it is invalid, and the remedy.
 
 try:
     gf.Gear(z=19, r_bore=27.5, **rack)
@@ -67,7 +67,7 @@ print(f"planet in ring: contact ratio {inner.eps_alpha:.3f}, mean {curve.k.mean(
 # A scene file
 # ------------
 # Gears, pairs, damage, a machine and what you had to assume can be written into one text file, a *scene*. Every verb of the
-# command line takes one (``gearfe stiffness my.toml``), and says by name what it does not understand.
+# command line takes one (``gearfe stiffness my.toml``), and names each key that is unknown.
 
 SCENE = """
 title = "My pair"

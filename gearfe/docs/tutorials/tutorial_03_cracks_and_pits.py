@@ -2,7 +2,7 @@
 3. Cracks and pits
 ==================
 
-What damage of one tooth does to the stiffness, and what it does not.
+Stiffness with a crack, pits or a spall of one tooth.
 """
 
 # %%
@@ -40,7 +40,7 @@ plt.close(figure)
 # %%
 # How near is it to growing?
 # --------------------------
-# The stress intensity factors say how hard the load opens (I) and shears (II) the crack's tip.
+# The stress intensity factors measure the opening (I) and shear (II) at the crack tip.
 
 crack = gf.Crack(level=0.3)
 tip = gf.stress_intensity(pair.gear_1, crack, radius=18.5, line_load=125.0, material=steel)
@@ -50,7 +50,7 @@ print(f"K_I {tip.K_I:.0f}, K_II {tip.K_II:.0f} MPa sqrt(mm) at 125 N/mm")
 # Pits
 # ----
 # A pit is a hole in the flank: an ellipse of constant depth. The section cannot hold one, so gearfe takes the energy model in
-# three dimensions, ``ritz3d``. To see what the pits do, take the healthy curve by the same method.
+# three dimensions, ``ritz3d``. For the effect of the pits, compute the healthy curve by the same method.
 
 pits = [gf.Pit(radius=18.0, z=z, axes=(0.8, 0.8), depth=0.2) for z in (2.0, 5.0, 8.0)]
 phases = {"phases": [0.5, 0.75, 0.95], "method": "ritz3d", "force": 1250.0, "material": steel}

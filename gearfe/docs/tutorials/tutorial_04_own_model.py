@@ -39,7 +39,7 @@ np.savetxt("cosine.csv", np.transpose([phase, k]), delimiter=",", header="phase,
 # The table
 # ---------
 # ``compare`` computes the finite elements, the energy model and the closed forms of the literature for the same pair and load,
-# and puts yours beside them.
+# and adds yours.
 
 result = gf.compare(scene, models=[square_wave, gf.PairModel(parabola), "cosine.csv"])
 for row in result.rows():
@@ -63,7 +63,7 @@ plt.close(figure)
 #
 # A model of how one gear gives
 # -----------------------------
-# The best place for a model of your own is further inside: how one gear gives way between its contacts. gearfe then adds the
+# A user-defined model is best applied further inside, to the flexibility of one gear between its contacts. gearfe then adds the
 # local contact and who carries how much, exactly as for its own methods. Here, teeth as bars of constant thickness on rigid
 # bodies:
 
@@ -86,5 +86,5 @@ for name, method in methods.items():
     print(f"{name:21s} mean {curve.k.mean() / 1e6:6.1f} N/um")
 
 # %%
-# The second line has a pinion of bars on a real wheel. The zeros beside the diagonal say that these teeth do not move each other:
+# The second line has a pinion of bars on a real wheel. The zeros off the diagonal mean that these teeth are uncoupled:
 # together with the rigid bodies they make the mesh nearly twice as stiff as it is.

@@ -25,7 +25,7 @@ for stage in machine.stages:
 # %%
 # Let it run
 # ----------
-# ``simulate`` starts at rest under load. It chooses its own step, and says how large its error is.
+# ``simulate`` starts at rest under load. It chooses its step and estimates its error.
 
 responses = {case: gf.simulate(each, 1.5) for case, each in machines.items()}
 print(f"error estimate {responses['crack50'].stats['error']:.1e} of the range")
@@ -35,7 +35,7 @@ print(", ".join(responses["crack50"].names[:6]), "...")
 # Spectra
 # -------
 # Each time the cracked tooth meshes with one of the three planets, the sun is turned back a little less, and swings. In the
-# spectrum of its acceleration this shows as *sidebands*: lines beside the mesh frequency, at distances of the fault frequency.
+# spectrum of its acceleration this shows as *sidebands*: lines around the mesh frequency, at distances of the fault frequency.
 
 signals = {}
 for case, response in responses.items():

@@ -27,8 +27,8 @@ print("peak-to-peak [um]:", np.round(1e6 * plain.peak_to_peak, 2))
 # %%
 # Tip relief
 # ----------
-# A ``Flank`` says what is taken off. Amounts are in mm along the line of action, and positive is material removed. Here both tips
-# lose 10 um, in proportion over the last 4.7 mm of roll length:
+# A ``Flank`` defines the removed material. Amounts are in mm along the line of action, and positive is material removed.
+# Here both tips lose 10 um, in proportion over the last 4.7 mm of roll length:
 
 flanks = {
     name: gf.Flank(tip_relief=0.010, tip_start_roll=gear.roll_a - 4.7)

@@ -41,12 +41,12 @@ fig.savefig("cracks_along_the_width.png", dpi=120)
 plt.close(fig)
 
 # %%
-# The crack over half the width costs a quarter of what the whole width does, and not half: the sound part of the tooth holds the
+# The crack over half the width has a quarter of the loss of the whole width, and not half: the sound part of the tooth holds the
 # cracked part, and the load moves to it.
 #
 # Where would the crack grow?
 # ---------------------------
-# The stress intensity K_I says how hard the load opens the crack, point by point along its front. Where a sloping front is
+# The stress intensity K_I measures the opening of the crack at each point of its front. Where a sloping front is
 # shallow, K_I is larger: the front evens out as it grows.
 
 gear, sloping = pair.gear_1, gf.Crack(level=0.5, ends=(1, 0.4))

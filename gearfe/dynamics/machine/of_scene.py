@@ -23,6 +23,7 @@ from .mesh_curves import Samples
 from .mesh_errors import with_errors
 from .pitted_planetary import scene_planetary
 from .scene_curves import own_forces, pair_backlash
+from .stages import Fault
 from .tables import Machine
 
 MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it is built with either contact
@@ -97,6 +98,15 @@ def flat_machine(scene: Scene, case: str | None = None) -> Machine:
     """
     build, contact = _builder(scene, case)
     return build(scene, case, **({} if contact == "impact" else {"phases": ROUGH, "method": None, "loads": None}))
+
+
+def damaged_teeth(scene: Scene, case: str | None) -> Sequence[Fault]:
+    """`Fault` of each tooth that differs in a case; none if the scene has no machine, or its machine is invalid."""
+    try:
+        build = MACHINES[scene.machine["model"]]["linear"]
+        return build(scene, case, phases=ROUGH, method=None, loads=None).faults
+    except (KeyError, ValueError):  # `build_machine` gives the reason
+        return ()
 
 
 def _builder(scene, case):

@@ -1,0 +1,27 @@
+"""How often the damaged teeth of a scene's pair mesh, where the scene has a machine and so a speed."""
+
+from ..dynamics.machine.of_scene import damaged_teeth
+from ..geometry.damage.kinds import told
+from ..scene.load import Scene
+from ..stiffness.mesh_cycle import NAMES as SIDES
+
+
+def returns_of(scene: Scene, pair: str, case: str | None) -> dict[int, str]:
+    """Frequency and body of each damaged tooth by number of its tooth pair, as text; empty without a machine.
+
+    Examples
+    --------
+    >>> import gearfe as gf
+    >>> returns_of(gf.load_scene("compound_planetary"), "sun_planet", "crack30")
+    {0: '18.2 Hz, sun2'}
+    """
+    found = scene.pairs[pair]
+    out: dict[int, list[str]] = {}
+    faults = damaged_teeth(scene, case) if case in found.damage else ()
+    for side, gear in zip(SIDES, (found.pair.gear_1, found.pair.gear_2), strict=True):
+        hurt = found.damage[case].get(side, ()) if case and faults else ()
+        for tooth in dict.fromkeys(one.tooth for one in hurt):
+            what = told({side: gear}, {side: [one for one in hurt if one.tooth == tooth]})
+            alike = (one for one in faults if (one.tooth - tooth) % gear.z == 0 and one.what == what)
+            out.setdefault(tooth, []).extend(f"{one.frequency:.3g} Hz, {one.gear}" for one in list(alike)[:1])
+    return {tooth: "; ".join(words) for tooth, words in out.items() if words}
