@@ -165,7 +165,7 @@ def _gear(x_E: float | None = None, **given: Any) -> Gear:
 
 
 def _with_backlash(pair: GearPair, wanted: float) -> GearPair:
-    """The pair with a backlash along the line of action [mm]: both gears thinner by the same normal thickness."""
+    """Return the pair with a backlash along the line of action [mm]: both gears are thinner by the same normal thickness."""
     more = wanted - pair.backlash
     if more < -1e-6 * pair.gear_1.m_n:
         raise ValueError(

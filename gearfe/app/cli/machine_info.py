@@ -25,6 +25,16 @@ OPTIONAL = {  # package: (module, its use); optional ones of the project's extra
 }
 
 
+def citation():
+    """Return the lines of the BibTeX entry of the installed version."""
+    yield "@software{gearfe,"
+    yield "  author = {{The gearfe developers}},"
+    yield "  title = {{gearfe}: gear mesh stiffness and gear-fault dynamics},"
+    yield f"  version = {{{version('gearfe')}}},"
+    yield "  year = {2026}"
+    yield "}"
+
+
 def lines():
     """Return the lines of the report."""
     from ...core.memory import free_memory
