@@ -89,10 +89,11 @@ class Guard:
         if scope["method"] != "POST":
             return 0, ""
         length = headers.get("content-length", "")
-        if not (length.isascii() and length.isdigit()):
+        if not (length.isascii() and length.isdigit()) or "transfer-encoding" in headers:
             return 411, "a request without its length"
-        if int(length[:12]) > LARGEST:
-            return 413, f"{length[:12]} bytes, but a scene has at most {LARGEST}: this is not one"
+        length = length.lstrip("0")[:12] or "0"
+        if int(length) > LARGEST:
+            return 413, f"{length} bytes, but a scene has at most {LARGEST}: this is not one"
         if self.limits:
             why = self.limits.refused((scope.get("client") or ("",))[0])
             return (429, why) if why else (0, "")

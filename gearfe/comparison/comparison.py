@@ -4,6 +4,7 @@ import math
 import warnings
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field, replace
+from html import escape
 from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
@@ -241,6 +242,10 @@ class Comparison:
                 last += [(total, "{:.4f}, stored" if stored else "{:.4f}"), *([None] * (len(parts) - 1))]
             body.append(last)
         return Table(columns, body, "errors of each method")
+
+    def _repr_html_(self) -> str:
+        """Headline and table of errors, which notebooks display."""
+        return f"<p>{escape(self.headline)}</p>{self.table().html()}"
 
     def loss_table(self, zones: Collection[str] | None = None) -> Table | None:
         """`Table` by zone of the reference [N/um] healthy and damaged, and the loss by each method.

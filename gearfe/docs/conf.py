@@ -33,9 +33,10 @@ GROUPS = {
 
 
 def row(name):
-    """Row of a page in the index: its title, and its first paragraph, which is the answer."""
+    """Row of a page in the index: its title, and its first paragraph or list, which is the answer."""
     title, answer = (PAGES / f"{name}.md").read_text(encoding="utf-8").split("\n\n")[:2]
-    return f"| {{doc}}`{title.removeprefix('# ')} <{name}>` | {' '.join(answer.split())} |"
+    words = " ".join(answer.removeprefix("- ").replace("\n- ", " ").split())
+    return f"| {{doc}}`{title.removeprefix('# ')} <{name}>` | {words} |"
 
 
 def index():

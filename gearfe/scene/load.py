@@ -1,6 +1,7 @@
 """Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units stand in the key names."""
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -130,7 +131,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     reading.check_references(rows)
     materials: dict[str, Material] = {}
     gears: dict[str, Gear] = {}
-    makers: tuple[tuple[str, Any, dict[str, Any]], ...] = (("material", Material, materials), ("gear", Gear, gears))
+    makers: tuple[tuple[str, Any, dict[str, Any]], ...] = (("material", Material, materials), ("gear", _gear, gears))
     for kind, make, out in makers:
         for name, row in rows[kind].items():
             with located(file, f"{kind}.{name}", row):
@@ -155,6 +156,27 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     )  # fmt: skip
 
 
+def _gear(x_E: float | None = None, **given: Any) -> Gear:
+    """Gear of a row; a generating profile shift gives its allowance."""
+    gear = Gear(**given)
+    if x_E is None:
+        return gear
+    return replace(gear, E_sn=gear.outward * (x_E - gear.x) * 2 * gear.m_n * math.tan(gear.alpha_n))
+
+
+def _with_backlash(pair: GearPair, wanted: float) -> GearPair:
+    """Return the pair with a backlash along the line of action [mm]: both gears are thinner by the same normal thickness."""
+    more = wanted - pair.backlash
+    if more < -1e-6 * pair.gear_1.m_n:
+        raise ValueError(
+            f"backlash_um = {1e3 * wanted:g}, but these gears have {1e3 * pair.backlash:.4g} um at a_mm = {pair.a:.6g}: give "
+            "more, or leave it out"
+        )
+    thinner = more * math.cos(pair.gear_1.beta) / (2 * math.cos(pair.gear_1.alpha_t))
+    one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
+    return GearPair(one, two, pair.a)
+
+
 def _pair(file, name, rows, gears, materials, forces):
     """Return the `ScenePair` of the checked tables of a scene; `forces` are those of the pairs of a gearbox [N]."""
     row = rows["pair"][name]
@@ -164,6 +186,8 @@ def _pair(file, name, rows, gears, materials, forces):
     names = row["gear_1"], row["gear_2"]
     with located(file, f"pair.{name}", row):
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
+        if row["backlash_um"] is not None:
+            made = _with_backlash(made, 1e-3 * row["backlash_um"])
     owned = parts.damage_of(file, rows, name, made)
     return ScenePair(
         made,

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from scipy.signal import get_window
 
 from ..core.checks import is_number
 from ..geometry.aliases import Floats
@@ -33,6 +34,25 @@ def samples(name: str, values: Any) -> Floats:
     most = float(np.abs(values).max())
     if most >= LARGEST or 0 < most < SMALLEST:
         raise ValueError(f"{name}: the largest value is {most:g}, no quantity that is measured: scale it to its unit")
+    return values
+
+
+def window_values(window: Any, n: int) -> Floats:
+    """Return the `n` values of a window by its name, or by its name and parameters.
+
+    TypeError if it is neither text nor tuple. ValueError if scipy has no such window, or if its values are no window.
+    """
+    remedy = "but give a name such as 'hann', or a tuple such as ('kaiser', 8.0)"
+    if not isinstance(window, (str, tuple)):
+        raise TypeError(f"window = {window!r}, {remedy}")
+    try:
+        with np.errstate(all="ignore"):
+            values = np.asarray(get_window(window, n), float)
+        reason = "" if np.isfinite(values).all() and abs(values.mean()) > 1e-9 else "its values are not finite or have no mean"
+    except (ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
+        reason = str(error)
+    if reason:
+        raise ValueError(f"window = {str(window)[:60]}, {remedy}: {reason}")
     return values
 
 

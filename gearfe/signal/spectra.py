@@ -8,7 +8,7 @@ from scipy.fft import fft, fftfreq, ifft
 from scipy.signal import welch
 
 from ..core.checks import is_number
-from .given import band_of
+from .given import band_of, window_values
 from .series import Signal, expect_signal
 from .spectrum import Spectrum, amplitudes, noise_bins
 
@@ -88,7 +88,7 @@ def power_spectral_density(
         max(n // 16, min(n, 8))
         if resolution is None
         else round(signal.rate / resolution)
-        if is_number(resolution) and resolution > 0
+        if is_number(resolution) and resolution > signal.rate / (2 * n)
         else 0
     )
     if not 2 <= size <= n:
@@ -96,9 +96,10 @@ def power_spectral_density(
             f"resolution = {resolution} Hz, but a record of {signal.duration:g} s at {signal.rate:g} Hz resolves "
             f"{1 / signal.duration:g} to {signal.rate / 2:g} Hz"
         )
-    frequency, power = welch(signal.values, signal.rate, window=window, nperseg=size, detrend="constant")
+    w = window_values(window, size)
+    frequency, power = welch(signal.values, signal.rate, window=w, nperseg=size, detrend="constant")
     step = signal.rate / size
-    return Spectrum(frequency, power, f"({signal.unit})^2/Hz", step, step * noise_bins(window, size), signal.name)
+    return Spectrum(frequency, power, f"({signal.unit})^2/Hz", step, step * noise_bins(w), signal.name)
 
 
 def analytic(signal, band=None):

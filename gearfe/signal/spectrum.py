@@ -4,9 +4,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import get_window, periodogram
+from scipy.signal import periodogram
 
 from ..geometry.aliases import Floats
+from .given import window_values
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,15 +52,15 @@ class Spectrum:
 def amplitudes(values, rate, window, unit, name, axis):
     """`Spectrum` of equally spaced values, `rate` of them per second or per revolution."""
     n, mean = values.size, values.mean()
-    frequency, power = periodogram(values - mean, rate, window=window, detrend=False, scaling="spectrum")
+    w = window_values(window, n)
+    frequency, power = periodogram(values - mean, rate, window=w, detrend=False, scaling="spectrum")
     amplitude = np.sqrt(2 * power)
     if n % 2 == 0:
         amplitude[-1] = math.sqrt(power[-1])  # Nyquist's bin has no twin at negative frequencies
     amplitude[0] = abs(mean)
-    return Spectrum(frequency, amplitude, unit, rate / n, rate / n * noise_bins(window, n), name, axis)
+    return Spectrum(frequency, amplitude, unit, rate / n, rate / n * noise_bins(w), name, axis)
 
 
-def noise_bins(window, n):
-    """Equivalent noise bandwidth of a window over `n` samples, in bins."""
-    w = get_window(window, n)
-    return round(float(n * (w @ w) / w.sum() ** 2), 9)
+def noise_bins(w):
+    """Equivalent noise bandwidth of the values of a window, in bins."""
+    return round(float(w.size * (w @ w) / w.sum() ** 2), 9)

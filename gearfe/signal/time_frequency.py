@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 from scipy.fft import irfft, rfft
-from scipy.signal import ShortTimeFFT, get_window
+from scipy.signal import ShortTimeFFT
 
 from ..core.checks import whole
 from ..geometry.aliases import Floats
-from .given import oscillation
+from .given import oscillation, window_values
 from .series import Signal, expect_signal
 from .spectrum import Spectrum
 
@@ -66,7 +66,7 @@ def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[
     size = 2 ** round(np.log2(8 * n) / 2) if size is None else whole("size", size, 1)
     if not 8 <= size <= n // 2:
         raise ValueError(f"size = {size} samples, but {signal.name} has {n}: give 8 to {n // 2}")
-    transform = ShortTimeFFT(get_window(window, size), size // 4, signal.rate, fft_mode="onesided2X", scale_to="magnitude")
+    transform = ShortTimeFFT(window_values(window, size), size // 4, signal.rate, fft_mode="onesided2X", scale_to="magnitude")
     inside = {"p0": transform.lower_border_end[1], "p1": transform.upper_border_begin(n)[1]}
     values = np.abs(transform.stft(signal.values - signal.values.mean(), **inside))
     return Spectrogram(transform.f, transform.t(n, **inside), values, signal.unit, f"spectrogram of {signal.name}")

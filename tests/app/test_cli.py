@@ -119,6 +119,13 @@ def test_check_draws_the_pair_with_its_damage(tmp_path, capsys):
     assert "give --picture FILE too" in capsys.readouterr().err
 
 
+def test_info_cites_the_installed_version(capsys):
+    assert main(["info", "--cite"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "@software{gearfe,"
+    assert f"  version = {{{gf.__version__}}}," in lines
+
+
 def test_scenes_and_info(capsys):
     assert main(["scenes"]) == 0
     assert main(["info"]) == 0

@@ -160,6 +160,10 @@ def test_nonsense_is_refused_in_a_sentence(client, name):
 def test_what_is_too_large_is_not_read(client):
     assert client("/task/load", b"a" * (LARGEST + 1))[0] == 413
     assert client("/task/load", iter([b"a"]))[0] == 411
+    zeros = str(LARGEST + 1).zfill(20)
+    assert client("/task/load", b"a" * (LARGEST + 1), Content_Length=zeros)[0] == 413
+    chunk = b"%x\r\n%b\r\n0\r\n\r\n" % (LARGEST + 1, b"a" * (LARGEST + 1))
+    assert client("/task/load", chunk, Content_Length="9", Transfer_Encoding="chunked")[0] == 411
 
 
 @pytest.mark.parametrize("text", ["", "a = [" * 5000, "\x00", "z = 1\n" * 9000, None, 3])

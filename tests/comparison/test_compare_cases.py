@@ -37,6 +37,12 @@ def test_sections_are_judged_by_finite_elements(found):
     assert all(abs(row.error) < 5e-3 for row in ritz)
 
 
+def test_notebooks_display_the_headline_and_the_table(found):
+    page = found._repr_html_()
+    assert f"<p>{found.headline}</p>" in page
+    assert found.table().html() in page
+
+
 def test_deeper_cracks_take_more(found):
     small, large = (found.losses(("sun_planet", case))["ritz"] for case in ("crack30", "crack70"))
     for zone in ("mean", LARGEST):

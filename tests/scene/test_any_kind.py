@@ -30,7 +30,8 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
     },
     "pair": {
         "stage": {
-            "gear_1": "sun", "gear_2": "ring", "force_N": 2000.0, "a_mm": 62.0, "face": "spur", "groove_mm": 0.0,
+            "gear_1": "sun", "gear_2": "ring", "force_N": 2000.0, "a_mm": 62.0,
+            "backlash_um": 200.0, "face": "spur", "groove_mm": 0.0,
             "F_beta_x_um": 5.0, "f_sigma_beta_um": 0.0, "f_sigma_delta_um": 0.0, "bearing_span_mm": 60.0,
         }
     },
@@ -161,6 +162,7 @@ ALSO = [  # keys that exclude one of the whole scene, with what goes for them
     *[((*START, f"{end}_start_{how}"), (*START, f"{end}_start_roll_mm")) for end in ("tip", "root")
       for how in ("diameter_mm", "angle_deg", "length_mm")],
     ((*START, "root_start_roll_mm"), ()),
+    (("gear", "sun", "x_E"), ("gear", "sun", "E_sn_um")),
     (("crack", 0, "length_mm"), ("crack", 0, "level")),
     (("pits", 1, "span_mm"), ("pits", 1, "pitch_mm")),
     (("reference", 0, "absolute"), ("reference", 0, "relative")),

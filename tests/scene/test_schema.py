@@ -121,7 +121,7 @@ TEXT = (resources.files("gearfe.scene.scenes") / "planetary_pitting.toml").read_
 MESSAGES = [  # of a scene: text, what is there instead, the whole message but the file
     ("alpha_n_deg = 20.0", "alpha_n_deg = 0.35", "[gear.sun] alpha_n_deg = 0.35, but it must lie between 5 and 45 degrees"),
     ("z = 21", "zz = 21", "[gear.sun]: unknown key 'zz' (nearest: 'z'); expected z, m_n_mm, alpha_n_deg, beta_deg, b_mm, x, "
-     "addendum, dedendum, rack_tip_radius, r_bore_mm, r_rim_mm, z_cutter, E_sn_um, material"),
+     "addendum, dedendum, rack_tip_radius, r_bore_mm, r_rim_mm, z_cutter, E_sn_um, x_E, material"),
     ("z = 21\n", "", "[gear.sun]: missing key 'z'; expected a whole number"),
     ("b_mm = 20.0", "b_mm = '20'", "[gear.sun] b_mm = '20': expected a number in mm"),
     ("r_bore_mm = 7.4", "r_bore_mm = 74.0", "[gear.sun]: r_bore_mm = 74.0, but the bore must lie inside the root circle: give "

@@ -24,6 +24,10 @@ CALLS = {
     "cases": lambda bad: gf.batch(bad, workers=1),
     "healthy": lambda bad: gf.roc_auc(bad, []),
     "resolution": lambda bad: gf.power_spectral_density(RECORD, resolution=[bad]),
+    "window": lambda bad: gf.spectrum(RECORD, window=[bad]),
+    "window of power": lambda bad: gf.power_spectral_density(RECORD, window=("none such", bad)),
+    "window of frames": lambda bad: gf.spectrogram(RECORD, window=[bad]),
+    "window of orders": lambda bad: gf.order_spectrum(RECORD, window=("none such", bad)),
     "band": lambda bad: gf.envelope(RECORD, [bad]),
     "teeth": lambda bad: gf.gear_indicators(AVERAGE, [bad]),
     "average": lambda bad: gf.gear_indicators(bad, 20),
@@ -71,3 +75,20 @@ def test_what_cannot_be_is_refused_by_gearfe(name, tmp_path, monkeypatch):
     assert not wrong, "\n".join(wrong)
     assert time.process_time() - started < 5.0
     assert not list(tmp_path.iterdir())
+
+
+WINDOWS = [("kaiser", np.nan), ("kaiser", 10**400), ("kaiser", 1e300), ("chebwin", np.inf), ("general_cosine", [0.0])]
+WINDOWS += [("kaiser",), ("tukey", "no"), (), ("exponential", None, 0.0)]
+
+
+@pytest.mark.parametrize("window", WINDOWS)
+@pytest.mark.parametrize("function", [gf.spectrum, gf.power_spectral_density, gf.spectrogram, gf.order_spectrum])
+def test_windows_without_values_are_refused(function, window):
+    with pytest.raises(ValueError, match="but give a name such as"):
+        function(RECORD, window=window)
+
+
+@pytest.mark.parametrize("resolution", [5e-324, 10**400, 1e-300])
+def test_resolution_finer_than_any_record(resolution):
+    with pytest.raises(ValueError, match=r"resolves 0\.25 to 500 Hz"):
+        gf.power_spectral_density(RECORD, resolution=resolution)

@@ -15,6 +15,7 @@ OPTIONAL = {  # package: (module, its use); optional ones of the project's extra
     "pyuff": ("pyuff", "signals in universal files (UFF58)"),
     "npTDMS": ("nptdms", "signals in TDMS"),
     "ezdxf": ("ezdxf", "outlines of gears as DXF"),
+    "fmpy": ("fmpy", "running FMUs of gear pairs"),
     "lvm-read": ("lvm_read", "LabVIEW measurement files"),
     "pyarrow": ("pyarrow", "sweeps, and signals in Parquet"),
     "dask": ("dask", "sweeps on a cluster"),
@@ -22,6 +23,16 @@ OPTIONAL = {  # package: (module, its use); optional ones of the project's extra
     "starlette": ("starlette", "gearfe app"),
     "uvicorn": ("uvicorn", "gearfe app"),
 }
+
+
+def citation():
+    """Return the lines of the BibTeX entry of the installed version."""
+    yield "@software{gearfe,"
+    yield "  author = {{The gearfe developers}},"
+    yield "  title = {{gearfe}: gear mesh stiffness and gear-fault dynamics},"
+    yield f"  version = {{{version('gearfe')}}},"
+    yield "  year = {2026}"
+    yield "}"
 
 
 def lines():

@@ -138,7 +138,7 @@ def completion(arguments):
 
 def info(arguments):
     """``gearfe info``."""
-    from .machine_info import lines
+    from .machine_info import citation, lines
 
-    for line in lines():
+    for line in citation() if arguments.cite else lines():
         print(line)
