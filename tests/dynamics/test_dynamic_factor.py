@@ -31,5 +31,5 @@ def test_a_load_that_changes_is_no_dynamics_if_it_is_slow():
 def test_a_mesh_without_load_has_none():
     made = gf.single_mesh(1.0, 1e8, 500.0, force=0.0)
     run = gf.simulate(made, 0.002, initial=([1e-6], [0.0]), rate=2e4)
-    with pytest.raises(ValueError, match="mesh mesh carries nothing at rest"):
+    with pytest.raises(ValueError, match="mesh mesh is unloaded at rest"):
         gf.dynamic_factors(run)
