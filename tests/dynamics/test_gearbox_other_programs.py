@@ -40,7 +40,8 @@ def mass(machine, body, dof):
 
 
 def test_torsional_train_by_opentorsion():
-    ot = pytest.importorskip("opentorsion")
+    import opentorsion as ot
+
     machine, chains, scene = train_of("torsion")
     shafts, discs, at = [], [], {}
     for chain in chains.values():
@@ -98,12 +99,14 @@ def by_ross(rs, machine, chains, scene):
     return np.sort(np.sqrt(np.abs(eigh(train.K(0), train.M(0), eigvals_only=True)))) / (2 * math.pi)
 
 
+@pytest.mark.slow
 def test_spur_train_in_six_directions_by_ross():
     made = train_of("six")
     theirs = by_ross(pytest.importorskip("ross"), *made)
     assert_allclose(gf.natural_frequencies(made[0])[0][1:], theirs[1:], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_helical_rows_of_ross_differ_in_two_entries(monkeypatch):
     """Version 2.3.0 has sin(alpha) sin(beta) as axial component, and the tilt of the driven gear with the other sign.
 
