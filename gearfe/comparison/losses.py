@@ -1,7 +1,8 @@
 """Loss of mesh stiffness by damage: damaged and healthy gears at the same phases by the same method.
 
 All numbers of a damaged pair are over one mesh cycle, in which its damaged tooth is in the middle of its engagement. The tooth is
-then always in contact, and a healthy pair has the same mean over it as over any other cycle.
+then always in contact, and a healthy pair has the same mean over it as over any other cycle. A chip lies at the tip: its cycle is
+the last one of a pinion's tooth and the first one of a wheel's.
 """
 
 import math
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..core.case import Case
 from ..core.checks import COARSEST
+from ..geometry.damage.chip import Chip
 from ..geometry.damage.kinds import Damage, called, told
 from ..geometry.pair.gear_pair import GearPair
 from ..stiffness.curve import StiffnessCurve
@@ -28,7 +30,8 @@ LARGEST = "most at a phase"  # row of the phase at which most is lost
 def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
     """Phases ``(phases,)`` of the mesh cycle in which a tooth, by default the damaged one, is in the middle of its engagement.
 
-    They are multiples of ``1 / phases``: those of a healthy cycle, whole cycles further on.
+    Of a tooth with chips alone it is the cycle in which its tip is in contact: the last of a pinion's, the first of a wheel's.
+    Phases are multiples of ``1 / phases``: those of a healthy cycle, whole cycles further on.
 
     Examples
     --------
@@ -39,8 +42,11 @@ def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
     1.615 [0.5  0.75 1.   1.25]
     """
     tooth = (case.first_tooth or 0) if tooth is None else tooth
-    middle = (case.pair.eps_alpha + case.overlap()) / 2 - tooth
-    return (math.ceil((middle - 0.5) * phases - 1e-9) + np.arange(phases)) / phases
+    span, found = case.pair.eps_alpha + case.overlap(), damaged_pairs(case).get(tooth, {})
+    chipped = [side for side, damage in found.items() if all(isinstance(one, Chip) for one in damage)]
+    ends = {"pinion": span - 0.5, "wheel": 0.5}
+    middle = ends[chipped[0]] if len(found) == 1 and chipped else span / 2
+    return (math.ceil((middle - tooth - 0.5) * phases - 1e-9) + np.arange(phases)) / phases
 
 
 def cycle_of_tooth(case: Case, phases: int) -> NDArray:
@@ -96,7 +102,9 @@ def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
 
 def told_cycle(phases: NDArray | None, kind: str = "") -> str:
     """Return in words the phases of zones and means; `kind_of` describes `kind`; phases None: of several pairs."""
-    over = f"the mesh cycle that has the {kind} tooth in the middle of its engagement" if kind else "the mesh cycle"
+    middle = f"that has the {kind} tooth in the middle of its engagement"
+    where = "in which the tip of the chipped tooth is in contact" if kind == "chipped" else middle
+    over = f"the mesh cycle {where}" if kind else "the mesh cycle"
     span = "" if phases is None else f", phases {phases.min():.3g} to {phases.max():.3g}"
     return f"zones, mean and max are over {over}{span}"
 

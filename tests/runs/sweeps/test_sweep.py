@@ -107,7 +107,8 @@ def test_another_study_version_or_shard_is_noticed(undisturbed, tmp_path, monkey
     assert len(gf.sweep(STUDY | {"block": 7}, undisturbed.folder)) == 48  # how it is cut is no other study
     small = STUDY | {"vary": {"crack.cracked.level": [0.1, 0.2]}}
     gf.sweep(small, tmp_path / "runs", workers=1)
-    monkeypatch.setattr(run, "program", lambda: {"gearfe": "0.1.0", "source": "0" * 12, "numpy": "0.1"})
+    other = run.program() | {"source": "0" * 12, "numpy": "0.1"}
+    monkeypatch.setattr(run, "program", lambda: other)
     with pytest.raises(ValueError, match="begun by another program, with source"):
         gf.sweep(small, tmp_path / "runs")
     (tmp_path / "runs" / "block-000000.parquet").unlink()
