@@ -55,9 +55,15 @@ def curve(pair, case, **options):
 
 
 def model_curve(pair, case):
-    """Stiffness by the energy model, and the phases (a mask) at which no load presses the faces of a crack together."""
+    """Stiffness by the energy model, and a mask of phases that the hexahedra on file can judge.
+
+    No load presses the faces of a crack together there, and the cracked tooth is on its path of contact: the hexahedra took teeth
+    two away from it without the crack.
+    """
     found = curve(pair, case, method="ritz3d")
-    return found.k, ~np.isin(found.phase, found.meta.get("crack_closed_phases", ()))
+    apart = ~np.isin(found.phase, found.meta.get("crack_closed_phases", ()))
+    own = (found.phase >= 0) & (found.phase <= pair.eps_alpha + pair.eps_beta)
+    return found.k, apart & own if case.startswith("crack") else apart
 
 
 def wanted():

@@ -61,8 +61,8 @@ def test_whole_outlines_pressed_together_agree(side, monkeypatch):
     assert (abs(got.k - k) <= got.error + 15e3 * want.error).all()
     assert_allclose(got.k, k, rtol=5e-3)
     assert_allclose(1e3 * got.unloaded, want.least, atol=1e-6)
-    body = pressing.Body
-    monkeypatch.setattr(pressing, "Body", lambda *args, missing, **options: body(*args, **options))
+    body = pressing.MeshedBody
+    monkeypatch.setattr(pressing, "MeshedBody", lambda *args, missing, **options: body(*args, **options))
     idle = pressing.pressed(PAIR, None, FORCE / 15, PHASES[:2], (206e3, 0.3), missing=gone)
     bodies = [plane.flexibility(gear, STEEL) for gear in (PAIR.gear_1, PAIR.gear_2)]
     number = ("pinion", "wheel").index(side)
