@@ -35,7 +35,7 @@ GROUPS = {
 def row(name):
     """Row of a page in the index: its title, and its first paragraph or list, which is the answer."""
     title, answer = (PAGES / f"{name}.md").read_text(encoding="utf-8").split("\n\n")[:2]
-    words = " ".join(answer.removeprefix("- ").replace("\n- ", " ").split())
+    words = " ".join(answer.removeprefix("- ").replace("\n- ", " ").split()).replace("](#", f"]({name}.md#")
     return f"| {{doc}}`{title.removeprefix('# ')} <{name}>` | {words} |"
 
 
