@@ -188,6 +188,7 @@ def _pair(file, name, rows, gears, materials, forces):
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
         if row["backlash_um"] is not None:
             made = _with_backlash(made, 1e-3 * row["backlash_um"])
+        misalignment = parts.misalignment_of(made, row)
     owned = parts.damage_of(file, rows, name, made)
     return ScenePair(
         made,
@@ -198,7 +199,7 @@ def _pair(file, name, rows, gears, materials, forces):
         damage={case: {side: _of_one_body(found) for side, found in by_side.items()} for case, by_side in owned.items()},
         owned=owned,
         flanks=parts.flanks_of(file, rows, name, gears),
-        misalignment=parts.misalignment_of(file, name, made, row),
+        misalignment=misalignment,
         supports=parts.supports_of(file, rows, name, materials),
     )
 
