@@ -107,6 +107,6 @@ def test_a_set_has_the_tooth_or_refuses():
     }
     given |= {"set": {"n_planets": 3}, "crack": [{"case": "x", "gear": "planet", "tooth": 4, "level": 0.3}]}
     made = build_set(scene_of("set.toml", given), "x")
-    assert {name: [crack.tooth for crack in cracks] for name, cracks in made.damage.items()} == {("planet", 0): [4]}
+    assert {name: [crack.tooth for crack in cracks] for name, cracks in made.damage.items()} == {"planet1": [4]}
     with pytest.raises(ValueError, match="cracks only"):
         build_set(scene_of("set.toml", given), "mild")
