@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from html import escape
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from ..core.material import Material
 from ..core.record import check_named
 from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
+from ..core.table import Column, Table
 from ..geometry.aliases import StrPath
 from ..geometry.damage.kinds import Damage
 from ..geometry.pair.flanks import Misalignment
@@ -83,6 +85,20 @@ class Scene:
     changed: tuple[str, ...] = ()
     set: SceneSet | None = None  # a whole planetary set, `gearfe.planetary_sets.of_scene.build_set` gives its case
     train: Train | None = None  # shafts of a gearbox, their speeds and torques
+
+    def __repr__(self) -> str:
+        """Name, title, pairs and cases in one line."""
+        cases = sorted({case for pair in self.pairs.values() for case in pair.damage})
+        return f"<Scene {self.name}: {self.title}; pairs {', '.join(self.pairs)}; cases {', '.join(cases) or 'none'}>"
+
+    def _repr_html_(self) -> str:
+        """Title and a table of the pairs, which notebooks display."""
+        columns = ["pair", "teeth", Column("module", "mm"), Column("width", "mm"), Column("force", "N"), "cases of damage"]
+        rows = [
+            [name, f"{one.gear_1.z} / {one.gear_2.z}", one.gear_1.m_n, min(one.gear_1.b, one.gear_2.b), chosen.force,
+             ", ".join(chosen.damage)] for name, chosen in self.pairs.items() for one in (chosen.pair,)
+        ]  # fmt: skip
+        return f"<p>{escape(self.title)}</p>{Table(columns, rows).html()}"
 
     def pair(self, name: str | None = None) -> ScenePair:
         """Return the pair called `name`; the first one if None. ValueError if there is no such pair."""
