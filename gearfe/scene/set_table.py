@@ -25,7 +25,6 @@ class SceneSet:
     floating: bool
     pin: float
     errors: tuple[tuple[float, float], ...]
-    damaged_planet: int
     support: dict[str, Any]
 
 
@@ -57,7 +56,6 @@ def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet |
         _force(row, count * outer.gear_1.r_b, pairs[names[0]].force),
         floating=row["floating"],
         errors=_errors(file, rows["pin"], count),
-        damaged_planet=_planet(file, "set", "damaged_planet", row["damaged_planet"], count),
         support=ring["support"],
         **{"planet_angles": None, "pin": math.inf} | arguments("set", row, "planet_angles_deg", "pin_N_per_um"),
     )
@@ -96,17 +94,12 @@ def _force(row, radii, force):
 
 def _errors(file, pins, count):
     """Return pin position errors by planet, outwards and clockwise [mm]."""
-    out, said = [(0.0, 0.0)] * count, {}
+    out, said = dict.fromkeys((f"planet{i + 1}" for i in range(count)), (0.0, 0.0)), {}
     for name, row in pins.items():
-        planet = _planet(file, f"pin.{name}", "planet", row["planet"], count)
-        if planet in said:
-            raise ValueError(f"{file} [pin.{name}]: the pin of planet {planet} is [pin.{said[planet]}] already; give one of both")
-        said[planet] = name
-        out[planet] = tuple(arguments("pin", row, "radial_um", "tangential_um").values())
-    return tuple(out)
-
-
-def _planet(file, where, key, planet, count):
-    if not 0 <= planet < count:
-        raise ValueError(f"{file} [{where}] {key} = {planet}, but the set has {count} planets: give 0 to {count - 1}")
-    return planet
+        body = row["body"]
+        check_known(file, f"pin.{name}", "body", body, out, "planet of the set")
+        if body in said:
+            raise ValueError(f"{file} [pin.{name}]: the pin of {body} is [pin.{said[body]}] already; give one of both")
+        said[body] = name
+        out[body] = tuple(arguments("pin", row, "radial_um", "tangential_um").values())
+    return tuple(out.values())

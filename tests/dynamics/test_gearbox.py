@@ -367,3 +367,15 @@ def test_work_of_the_loads_is_stored_or_lost():
     power = run.v @ machine.load() - lost
     gained = np.concatenate([[0.0], np.cumsum((power[1:] + power[:-1]) / 2 * np.diff(run.time))])
     assert np.abs(stored - stored[0] - gained).max() < 1e-4 * np.abs(gained).max()
+
+
+@pytest.mark.parametrize(("key", "value", "message"), [
+    ("gears", ["nope"], r"own.toml \[shaft.one\] gears = 'nope': no such gear"),
+    ("bearings", ["one"], r"\[shaft.one\] bearings = \['one'\]: expected two texts"),
+    ("bearings", ["one", "two"], r"\[shaft.one\] bearings = 'one': no such bearing"),
+])  # fmt: skip
+def test_names_in_lists_are_those_of_tables(key, value, message):
+    tables = copy.deepcopy(TWO_STAGE)
+    tables["shaft"]["one"][key] = value
+    with pytest.raises(ValueError, match=message):
+        scene_of("own.toml", tables)

@@ -50,7 +50,9 @@ def test_of_several_sets_the_one_of_the_named_gears(tmp_path):
 
 
 def test_assumptions_speak_of_a_set(tmp_path):
-    note = '[[assumption]]\nwhat = "six pads"\nwhy = "a guess"\nholds = { "ring.support.count" = 6, "pin.first.planet" = 0 }\n'
+    note = (
+        '[[assumption]]\nwhat = "six pads"\nwhy = "a guess"\nholds = { "ring.support.count" = 6, "pin.first.body" = "planet1" }\n'
+    )
     assert len(loaded(tmp_path, SCENE + note).assumptions) == 1
     other = loaded(tmp_path, (SCENE + note).replace("count = 6\n", "count = 5\n"))
     assert not other.assumptions
@@ -73,9 +75,10 @@ def test_assumptions_speak_of_a_set(tmp_path):
         ("torque_Nm = 120", "torque_Nm = 120\nforce_N = 2000", r"\[set\]: force_N and torque_Nm exclude each other"),
         ("torque_Nm = 120", "torque_Nm = -1", r"\[set\] torque_Nm = -1, but it must be above 0 N m"),
         ("pin_N_per_um = 300", "pin_N_per_um = 0", r"\[set\] pin_N_per_um = 0, but it must be above 0 N/um"),
-        ("[set]\n", "[set]\ndamaged_planet = 3\n", r"\[set\] damaged_planet = 3, but the set has 3 planets: give 0 to 2"),
-        ("planet = 0\n", "planet = 3\n", r"\[pin.first\] planet = 3, but the set has 3 planets"),
-        ("[pin.first]", "[pin.second]\nplanet = 0\n[pin.first]", r"\[pin.first\]: the pin of planet 0 is \[pin.second\] already"),
+        ("[set]\n", "[set]\ndamaged_planet = 0\n", r"'damaged_planet' \(former key, counted from 0: give body = .planet1., the"),
+        ('body = "planet1"\n', "planet = 0\n", r"\[pin.first\]: unknown key 'planet' \(former key, counted from 0: give body"),
+        ('body = "planet1"\n', 'body = "planet4"\n', r"\[pin.first\] body = 'planet4': no such planet of the set"),
+        ("[pin.first]", '[pin.second]\nbody = "planet1"\n[pin.first]', r"\[pin.first\]: the pin of planet1 is \[pin.second\]"),
         ("[pin.first]", "[[pin]]", r"\[\[pin\]\] is a list of tables, but they have names: write \[pin.NAME\]"),
         ('kind = "pads"', 'kind = "bolts"', r"\[ring.support\] kind = 'bolts', but it must be one of held, bed"),
         ('kind = "pads"', 'kind = "held"', r"\[ring.support\]: kind = 'held' has no count; expected no other key"),
