@@ -22,7 +22,7 @@ TABLE = re.compile(r"\| zone \|.*?\| seconds [^\n]*\|", re.S)
 
 
 def five_rows():
-    """The rows of sun and planet of the table of ten, healthy and in all cases of damage."""
+    """Return the rows of sun and planet of the table of ten, healthy and in all cases of damage."""
     return "\n".join(line for line in error_table().splitlines() if not line.startswith("| planet_ring"))
 
 

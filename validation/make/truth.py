@@ -184,7 +184,7 @@ def linear_rows():
 
 
 def read():
-    """Committed rows."""
+    """Return the committed rows."""
     return [
         SourceRow(r["table"], r["case"], float(r["theirs"]), float(r["ours"]), float(r["tolerance"]), r["absolute"] == "True")
         for r in rows_of(CSV)
@@ -192,12 +192,12 @@ def read():
 
 
 def read_contact():
-    """Committed phases, k of `ritz`, k of CalculiX [N/m], as columns."""
+    """Return the committed phases, k of `ritz`, k of CalculiX [N/m], as columns."""
     return np.loadtxt(CONTACT, delimiter=",", skiprows=1, unpack=True)
 
 
 def text():
-    """The page as Markdown, from its committed tables."""
+    """Return the page as Markdown, from its committed tables."""
     tables = reference.load()
     tables["calculix_linear"] = {
         "source": "CalculiX on the decks of gearfe.write_inp, the same mesh and the same Gauss points",
