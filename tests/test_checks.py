@@ -42,7 +42,7 @@ def deck(path, gear=GEAR, radius=18.0, line_load=100.0, material=STEEL, **option
         ({"refine": True}, "refine = True"),
         ({"crack": gf.Crack(level=0.4, width=(0.0, 1e-6))}, "a width of 0.8 m_n"),
         ({"crack": gf.Crack(level=0.4, ends=(0.01, 0.01))}, "a depth of 0.15 and"),
-        ({"crack": gf.Crack(level=0.4, ends=(1e-9, 1e-9))}, "too short for any mesh"),
+        ({"crack": gf.Crack(level=0.4, ends=(1e-9, 1e-9))}, "too short to be meshed"),
     ],
 )
 def test_intensities_along_a_front(given, message):
@@ -128,5 +128,5 @@ def test_root_stress_of_contact():
 
 @pytest.mark.parametrize("method", ["ritz", "ritz3d", "fe", "fe3d"])
 def test_a_crack_too_short_for_any_mesh_says_so(method):
-    with pytest.raises(ValueError, match=r"crack of level = 1e-06: .* too short for any mesh"):
+    with pytest.raises(ValueError, match=r"crack of level = 1e-06: .* too short to be meshed"):
         gf.mesh_stiffness(PAIR, force=1000.0, material=STEEL, method=method, phases=2, damage={"pinion": [gf.Crack(level=1e-6)]})

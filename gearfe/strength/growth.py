@@ -25,7 +25,7 @@ from .fracture import growth_angle, tip_intensity
 PLACES = 9  # of a load on a flank, between which the intensity is a cubic
 WIDE = 0.12  # half width of a load [m_n]
 NEIGHBOURS = 1  # teeth to either side whose loads count
-END = 0.25  # of a step: a tip that close to a boundary has reached it
+END = 0.25  # of a step: a tip closer to a boundary than this has reached it
 SMOOTH = 40  # parts of a step over which cycles are summed
 
 

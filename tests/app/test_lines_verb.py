@@ -99,7 +99,7 @@ def test_signals_take_the_frequencies_of_a_gear(tmp_path, capsys):
     assert "mesh frequency + fault frequency" in told
     assert "3 of 3 lines of 10 times the local median are named" in told
     assert main(["signal", str(tmp_path / "a.csv"), "--gear", "idler_out"]) == 1
-    assert "give --scene too" in capsys.readouterr().err
+    assert "give --scene, too" in capsys.readouterr().err
 
 
 CHANGES = [  # what is changed in the tables of two stages, and what is said of it

@@ -17,7 +17,7 @@ ROWS = [
     ([], r"average: values of shape \(0,\)"),
     ([[]], "average: values of shape"),
     (TURN.reshape(2, -1), r"average: values of shape \(2, 256\)"),
-    (1e200 * TURN, "average: the largest value is 1.*, no quantity that is measured"),
+    (1e200 * TURN, "average: the largest value is 1.*, not a plausible measured value"),
     (1e-200 * TURN, "average: the largest value is"),
     (1j * TURN, "average: values .* type complex128"),
     (np.full(512, np.inf), "average: sample 0 is inf"),

@@ -209,7 +209,7 @@ class _Runs:
         if seconds > ENDLESS:
             raise ValueError(
                 f"duration = {self.duration:g} s: about {seconds / 3600:.2g} hours of computing at the step that this machine "
-                f"needs, {cost:.2g} s for each second of motion: give a shorter duration, or state step= and it is run"
+                f"needs, {cost:.2g} s for each second of motion: give a shorter duration, or give step= to run it"
             )
         if seconds > SLOW:
             self.tell(f"{self.duration:.3g} s of motion at this step: about {seconds:.2g} s")
@@ -239,7 +239,7 @@ class _Runs:
             try:
                 place, span = beginning(self.machine, self.duration, self.own, self.start)
                 found = estimate(self.machine, out.stats["dt"], span, [place])
-            except RuntimeError:  # the stretch, unlike the run, grows beyond all bounds
+            except RuntimeError:  # the stretch becomes unstable although the run does not
                 found = Estimate(math.inf, False, length, 0.0, math.inf)
         doubt = max(found.error, unseen(self.machine, self.start, self.duration, out.stats["dt"]))
         if not doubt <= COARSE:
