@@ -191,7 +191,7 @@ def grow_crack(
             break
         if i == steps:
             break
-        angle = sense * turn_angle(*values[:2], model.criterion)
+        angle = sense * turn_angle(values[0], values[1], model.criterion)
         heading = np.arctan2(*(corners[-1] - corners[-2])[::-1]) + angle + 0.5 * turn
         turn = angle if i else 0.0
         ahead = corners[-1] + step * np.array([math.cos(heading), math.sin(heading)])
@@ -246,7 +246,7 @@ def _single(case, index):
     pair = case.pair
     low, high = pair.path
     roll = low + pair.p_bt if index == 0 else pair.mate_roll(high - pair.p_bt)
-    line = case.load / min(pair.gear_1.b, pair.gear_2.b)
+    line = case.force / min(pair.gear_1.b, pair.gear_2.b)
     return {0: (np.array([roll]), np.array([line]))}
 
 

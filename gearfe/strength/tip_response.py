@@ -48,7 +48,7 @@ class TipResponse:
 
         `loads` are roll lengths [mm] and line loads [N/mm] by tooth.
         """
-        return sum(load[:, None] * self.under[tooth](roll) for tooth, (roll, load) in loads.items())
+        return np.array([load[:, None] * self.under[tooth](roll) for tooth, (roll, load) in loads.items()]).sum(axis=0)
 
     def in_contact(self, free: Floats) -> Floats:
         """K_I and K_II ``(2,)`` at one phase, with the faces kept from overlapping.
@@ -88,6 +88,8 @@ def fe_response(gear, material, crack, teeth, refine, carried, held=None):
         gear, dict.fromkeys(teeth, roll), fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], cracks=[crack]
     )
     body = HeldSection(mesh.mesh if held is None else _on_arcs(mesh.mesh, held), material)
+    low, high = sorted((gear.roll_f, gear.roll_a))
+    carried = max(carried[0] - 0.02 * gear.m_n, low), min(carried[1] + 0.02 * gear.m_n, high)  # one place is a short range
     places = np.linspace(*carried, FE_PLACES)
     units = [narrow_load(mesh, tooth, float(arc_at(gear, place)), WIDE * gear.m_n) for tooth in teeth for place in places]
     faces, seam = face_columns(mesh), mesh.seams[0].faces
