@@ -1,4 +1,4 @@
-"""What ends the growth of a crack: arrest, fracture, or a boundary."""
+"""End of crack growth: arrest, fracture, or a boundary."""
 
 import math
 

@@ -65,7 +65,7 @@ def tip_columns(sector, tip, numbers, order, material, state):
 
 
 def face_columns(sector, tip, order):
-    """Second integral of forces that push facing nodes of the crack apart ``(2, k)``, as of `panel`."""
+    """Second integral ``(2, k)`` of unit forces that push facing nodes of the crack apart."""
     line = sector.points[:, sector.faces[0][0]]
     part = (lobatto(order)[:-1] + 1) / 2
     places = (line[:, :-1, None] * (1 - part) + line[:, 1:, None] * part).reshape(2, -1)
