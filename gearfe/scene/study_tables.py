@@ -1,4 +1,4 @@
-"""Tables of a scene as studies take them: beside the study or built in, and reduced to one pair in one case."""
+"""Tables of a scene as studies take them: of a file near the study or built in, and reduced to one pair in one case."""
 
 from pathlib import Path
 
