@@ -22,6 +22,7 @@ from ..geometry.pair.gear_pair import GearPair
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.modified import Flank
 from . import assumed, parts
+from .dotted_keys import find_key, set_values
 from .reading import Reading, located
 from .references import Reference, read_references
 from .schema import arguments, scene_schema
@@ -175,13 +176,9 @@ def load_scene(name_or_path: StrPath, values: Mapping[str, Any] | None = None) -
         With file, table and key, if anything is unknown, missing or of the wrong type, or if a gear or pair is impossible.
     """
     file, tables = read_tables(name_or_path)
-    if values:
-        from .dotted_keys import find_key, set_values
-
-        for key in values:
-            find_key(key, tables)
-        tables = set_values(tables, values)
-    return scene_of(file, tables)
+    for key in values or {}:
+        find_key(key, tables)
+    return scene_of(file, set_values(tables, values) if values else tables)
 
 
 def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
