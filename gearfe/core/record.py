@@ -60,6 +60,15 @@ def settle_numbers(record: Any, what: str, names: str, unit: str = "", **limits:
         settle(record, **{name: ranged(f"{what}: {name}", getattr(record, name), unit, **limits)})
 
 
+def check_rows(record: Any, names: str) -> None:
+    """Raise ValueError unless the arrays of these fields, those that are None left out, have as many rows as the first."""
+    rows = {name: np.shape(getattr(record, name))[:1] for name in names.split() if getattr(record, name) is not None}
+    first = next(iter(rows.values()))
+    if not first or first == (0,) or set(rows.values()) != {first}:
+        stated = ", ".join(f"{name} {shape[0] if shape else 'none'}" for name, shape in rows.items())
+        raise ValueError(f"{type(record).__name__}: give arrays with as many rows, one at least; here: {stated}")
+
+
 def check_named(what: str, name: Any, known: Collection[Any]) -> None:
     """Raise ValueError, with the nearest name, if a name is not `known`."""
     if name not in known:
