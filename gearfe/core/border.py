@@ -1,7 +1,7 @@
 """Border of gearfe: arguments of public functions and records are compared with annotations, and become plain numbers.
 
 Numbers of any type become floats, lists become arrays where arrays are expected. Masked values, truth values as numbers, nan,
-and infinity without an infinite default are rejected. What a value means is checked by the function itself.
+and in functions infinity without an infinite default are rejected. What a value means is checked by the function itself.
 """
 
 import dataclasses
@@ -17,12 +17,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..geometry.checks import WrongTypeError, is_number, shown
-from .checks import number, truth, whole
+from ..geometry.checks import WrongTypeError, shown
+from .checks import has_truth, number, truth, whole
 
-PLAIN = {float: number, int: whole, bool: truth}
+
+def _number(name, value):
+    """Return a number as a float, or as the int that it is."""
+    out = number(name, value)
+    return value if type(value) is int else out
+
+
+PLAIN = {float: _number, int: whole, bool: truth}
 WORDS = {float: "a number", int: "a whole number", bool: "True or False", str: "a text", type(None): "None"}
 WORDS[os.PathLike] = "a path"
+RESULTS = ("Contact3D", "Kurtogram", "Spectrogram", "Spectrum")  # results that are no public names
 NUMERIC = {"f": "iuf", "i": "iu"}  # kinds of arrays that arrays of floats and of whole numbers are made of
 
 
@@ -33,6 +41,13 @@ class _Rule(NamedTuple):
     settled: Callable[[str, Any], Any]
 
 
+class _Named(type):
+    """A class that is known by name: its module is loaded by those who have an instance."""
+
+    def __instancecheck__(cls, value):
+        return any(base.__name__ == cls.__name__ for base in type(value).__mro__)
+
+
 class _Public(dict[str, Any]):
     """Names of annotations that only a type checker imports: public names of gearfe."""
 
@@ -40,6 +55,8 @@ class _Public(dict[str, Any]):
         package = sys.modules[__name__.partition(".")[0]]
         if name in package.__all__:
             return getattr(package, name)
+        if name in RESULTS:
+            return _Named(name, (), {})
         raise KeyError(name)
 
 
@@ -64,8 +81,8 @@ def _checked(function, called, record=False):
             rules.extend(_rules(function, called))
         places, named = rules
         try:
-            given = [_settled(*rule, value) for rule, value in zip(places, args, strict=False)]
-            stated = {key: _settled(*named[key], value) if key in named else value for key, value in options.items()}
+            given = [_settled(*rule, value, record) for rule, value in zip(places, args, strict=False)]
+            stated = {key: _settled(*named[key], value, record) if key in named else value for key, value in options.items()}
         except ValueError as misfit:
             if record:  # its own message has the unit and the range
                 _own_message(function, args, options, type(misfit))
@@ -85,8 +102,8 @@ def _own_message(function, args, options, kind):
         pass
 
 
-def _settled(name, rule, default, value):
-    """Argument to be passed on; the default is valid whatever its annotation."""
+def _settled(name, rule, default, value, infinite):
+    """Argument to be passed on; the default is valid whatever its annotation. Records decide whether they may be `infinite`."""
     if value is default:
         return value
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
@@ -94,7 +111,7 @@ def _settled(name, rule, default, value):
     if rule is None:
         return value
     out = rule.settled(name, value)
-    if type(out) is float and not math.isfinite(out) and default != math.inf:
+    if type(out) is float and not math.isfinite(out) and not infinite and default != math.inf:
         raise ValueError(f"{name} = {out}, but give a finite number")
     return out
 
@@ -135,8 +152,8 @@ def _rule(hint):
     if hint in PLAIN:
         return _Rule(WORDS[hint], PLAIN[hint])
     if origin in (typing.Union, types.UnionType):
-        like = any("numpy._typing" in str(one) for one in inner)
-        return _Rule("numbers", functools.partial(_like, inner[0] is str)) if like else _any_of([_rule(one) for one in inner])
+        like = any(str(one).startswith(("numpy._typing", "<class 'numpy._typing")) for one in inner)  # functions read these
+        return None if like else _any_of([_rule(one) for one in inner])
     if origin is np.ndarray:
         return _Rule("an array of real numbers", functools.partial(_array, "i" if "int" in str(inner[1]) else "f"))
     if not isinstance(origin, type):
@@ -154,9 +171,11 @@ def _any_of(rules):
     if None in rules:
         return None
 
+    classes_first = sorted(rules, key=lambda rule: "number" in rule.words)  # some classes are rows of numbers
+
     def settled(name, value):
         misfit = None
-        for rule in rules:
+        for rule in classes_first:
             try:
                 return rule.settled(name, value)
             except ValueError as error:  # that of an element, or of a value whose type fits, says more
@@ -185,25 +204,11 @@ def _is_a(kind, words, name, value):
 def _array(kind, name, value):
     try:
         out = np.asarray(value)
-        if not out.ndim or out.dtype.kind not in NUMERIC[kind]:
+        if not out.ndim or has_truth(value) or out.dtype.kind not in NUMERIC[kind]:
             raise ValueError
     except ValueError:
         raise _wrong(name, value, "an array of real numbers") from None
     return out.astype(float, copy=False) if kind == "f" else out
-
-
-def _like(text, name, value):
-    """Numbers that numpy reads, or a text if `text`."""
-    if text and isinstance(value, str):
-        return value
-    try:
-        out = np.asarray(value)
-        plain = out.dtype.kind in "iufc" or (out.dtype.kind == "O" and out.size and all(map(is_number, out.ravel())))
-    except ValueError:  # rows of different lengths
-        plain = False
-    if not plain:
-        raise _wrong(name, value, "numbers")
-    return value
 
 
 def _sequence(rule, kind):

@@ -37,7 +37,9 @@ def whole(name: str, value: Any, least: float = -math.inf, most: int = MOST) -> 
         raise ValueError(f"{name} = {shown(value)}, but the maximum is {most}")
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         close = is_number(value) and math.isfinite(value) and value == int(value) and value >= least
-        remedy = f": give {name} = {int(value)}" if close else "" if least == -math.inf else f" from {least} on"
+        remedy = (
+            f": give {name.rpartition(': ')[2]} = {int(value)}" if close else "" if least == -math.inf else f" from {least} on"
+        )
         kind = ValueError if is_number(value) else WrongTypeError
         raise kind(f"{name} = {shown(value)}, but it is a whole number{remedy}")
     return int(value)
@@ -64,13 +66,13 @@ def numbers(name: str, value: Any, unit: str) -> NDArray:
         raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}") from error
     if np.ma.is_masked(value):
         raise ValueError(f"{name} has masked values: give numbers without holes{unit}")
-    plain = array.dtype.kind in "iuf" and not _has_truth(value)
+    plain = array.dtype.kind in "iuf" and not has_truth(value)
     if not plain and not (array.dtype.kind == "O" and array.size and all(is_number(element) for element in array.ravel())):
         raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}, not {_kind(value)}")
     return array.astype(float)
 
 
-def _has_truth(value):
+def has_truth(value):
     """Whether a truth value hides among numbers of a list."""
     return isinstance(value, (list, tuple)) and any(isinstance(element, (bool, np.bool_)) for element in value)
 

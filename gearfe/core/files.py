@@ -122,9 +122,16 @@ def suffix_of(path, kind, *, reading=False):
     suffix = Path(path).suffix.lower()
     if suffix not in known:
         raise ValueError(f"{path}: no format for {suffix or 'a file without a suffix'!r}; use one of {', '.join(known)}")
-    if reading and os.path.exists(path) and not os.path.isfile(path):  # a pipe or a device may never end
-        raise ValueError(f"cannot read {path}: it is no regular file")
+    if reading:
+        check_regular(path)
     return suffix
+
+
+def check_regular(path):
+    """Raise ValueError for what is there and no regular file: a pipe or a device may never end."""
+    check_path("path", path)
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise ValueError(f"cannot read {path}: it is no regular file")
 
 
 def save(path, kind, content):
@@ -202,6 +209,7 @@ def write_json(name, content):
 
 def read_text(path):
     """Lines of a text file: in UTF-8, in UTF-16, or, with a warning, in Windows-1252, which holds Latin-1."""
+    check_regular(path)
     try:
         content = Path(path).read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
@@ -266,7 +274,7 @@ def read_mat(path):
 
 @contextlib.contextmanager
 def _opened(path):
-    check_path("path", path)
+    check_regular(path)
     try:
         with open(path, "rb") as file:
             yield file

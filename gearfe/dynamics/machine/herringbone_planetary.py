@@ -187,6 +187,7 @@ def _supports(layout, stage, options):
 def _neck(layout, name, gear, options):
     """Springs of the hollow shaft under the relief groove, between the faces of both halves."""
     width, G, apart, zeta = options
+    width, G = ranged("groove", width, " mm", above=0.0), ranged("shear_modulus", G, " Pa", above=0.0)
     outer, inner, length = 1e-3 * gear.r_f, 1e-3 * gear.r_bore, 1e-3 * width
     area, second = math.pi * (outer**2 - inner**2), math.pi / 4 * (outer**4 - inner**4)
     bend = 2.6 * G * second / length
