@@ -65,7 +65,7 @@ def bordered(public: Any, name: str) -> Any:
     """Return a public function that checks its arguments first; records are checked where they are built, and stay themselves."""
     if inspect.isfunction(public):
         out = _checked(public, name)
-        out.__module__, out.__qualname__ = "gearfe", name  # where other processes find it
+        out.__module__, out.__qualname__ = "gearfe", name  # other processes find it there
         return out
     if "__init__" in vars(public) and not issubclass(public, BaseException):
         public.__init__ = _checked(public.__init__, name, record=True)

@@ -21,7 +21,7 @@ DISTURBED = 1e-5  # size of disturbances of the initial state of a nonlinear mot
 STABLE = 1e-6  # above 1: a multiplier this large still counts as 1 (rigid-body motion, no damping)
 
 
-MOST_STEPS = 10_000_000  # of a period
+MOST_STEPS = 10_000_000  # largest number of steps in a period
 
 
 @dataclass(frozen=True, slots=True)
