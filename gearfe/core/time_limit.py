@@ -1,7 +1,7 @@
 """Limit of computing time: work whose estimate exceeds it is rejected before it begins.
 
 The limit is two hours, or the number of hours in the environment variable ``GEARFE_MAX_HOURS``. Sweeps and data sets have none:
-they are resumed, and `gearfe.plan_sweep` and ``gearfe sweep --check`` print their estimate.
+they are resumed, and `gearfe.plan_sweep` and ``--dry-run`` print their estimate.
 """
 
 import math
