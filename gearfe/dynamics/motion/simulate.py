@@ -185,12 +185,28 @@ def simulate(
     return compared(replace(out, stats=out.stats | seconds))
 
 
+def check_duration(duration, cost):
+    """Return the seconds of a run at a `cost` for each second of motion; ValueError if they are above the limit."""
+    what, remedy = (
+        f"duration = {duration:g} s, {cost:.2g} s for each second of motion",
+        "give a shorter duration, or a longer step=",
+    )
+    check_time(what, cost * duration, remedy)
+    return cost * duration
+
+
 def _reference(machine, duration, count, state, method, rtol, start, filtered):
-    """Return `reference`, its channels filtered if requested."""
+    """Return `reference`, its channels filtered if requested; a long run is timed on its first steps before it is begun."""
+    span = TRIED / 100 * default_step(machine)
+    if span < duration / 100:
+        started = time.perf_counter()
+        reference(machine, span, 1, state, method, rtol, start)
+        check_duration(duration, (time.perf_counter() - started) / span)
     if not filtered:
         return reference(machine, duration, count, state, method, rtol, start)
     counts = stages(FINE * math.ceil(duration / count / default_step(machine) * (1 - 1e-9)))
     every = math.prod(counts)
+    check_memory(machine, duration, count * every, filtered)
     whole = reference(machine, duration, count * every, state, method, rtol, start)
     return replace(whole.part(slice(None, None, every)), filtered=thinned([all_channels(whole)], counts))
 
@@ -205,11 +221,7 @@ class _Runs:
 
     def _watch(self, cost):
         """Report how long the whole run takes, from the seconds that one simulated second takes; refuse one that takes hours."""
-        seconds = cost * self.duration
-        check_time(
-            f"duration = {self.duration:g} s, {cost:.2g} s for each second of motion", seconds,
-            "give a shorter duration, or a longer step= than this machine needs",
-        )  # fmt: skip
+        seconds = check_duration(self.duration, cost)
         if seconds > SLOW:
             self.tell(f"{self.duration:.3g} s of motion at this step: about {seconds:.2g} s")
 
