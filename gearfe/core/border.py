@@ -256,8 +256,9 @@ def _mapping(inner):
         if not isinstance(value, Mapping):
             raise _wrong(name, value, "a dict")
         for key, one in value.items() if rule else ():
-            if one is not None:  # as good as missing
-                rule.settled(f"{name}[{key!r}]", one)
+            if one is not None:  # None is as good as missing, one record as good as a list of it
+                alone = rule.words.startswith("a sequence") and dataclasses.is_dataclass(one)
+                rule.settled(f"{name}[{key!r}]", [one] if alone else one)
         return value
 
     return _Rule("a dict", settled)

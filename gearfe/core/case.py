@@ -101,7 +101,7 @@ class Case:
     material: Material | tuple[Material, Material] | None = field(default=None, compare=False)
     _: KW_ONLY
     torque: float | Sequence[float] | Floats | None = None
-    damage: Mapping[str, Damage | Sequence[Damage]] | None = None
+    damage: Mapping[str, Sequence[Damage]] | None = None
     flanks: Mapping[str, Flank] | None = None
     misalignment: Misalignment | None = None
     supports: Mapping[str, Support | Shaft] | None = None
@@ -226,7 +226,7 @@ NAMES = tuple(own.name for own in GIVEN)
 class CaseOptions(TypedDict, total=False):
     """Options of a `Case` other than pair, load and materials, for functions that accept both; `Case` describes them."""
 
-    damage: Mapping[str, Damage | Sequence[Damage]] | None
+    damage: Mapping[str, Sequence[Damage]] | None
     flanks: Mapping[str, Flank] | None
     misalignment: Misalignment | None
     supports: Mapping[str, Support | Shaft] | None

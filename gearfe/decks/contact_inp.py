@@ -22,7 +22,7 @@ class DeckOptions(TypedDict, total=False):
     """Options of `write_contact_inp`."""
 
     face: str | None
-    damage: Mapping[str, Damage | Sequence[Damage]] | None
+    damage: Mapping[str, Sequence[Damage]] | None
     flanks: Mapping[str, Flank] | None
     misalignment: Misalignment | None
     pits: str

@@ -24,7 +24,7 @@ NEAR = 3.6  # half height of the close-up [modules]
 
 def plot_pair(
     pair: GearPair | Case,
-    damage: Mapping[str, Damage | Sequence[Damage]] | None = None,
+    damage: Mapping[str, Sequence[Damage]] | None = None,
     path: str | os.PathLike[str] | None = None,
     title: str = "",
 ) -> "Figure":
