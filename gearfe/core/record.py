@@ -76,6 +76,12 @@ def check_named(what: str, name: Any, known: Collection[Any]) -> None:
         raise ValueError(f"{what} {name!r}, but there is {', '.join(map(str, known))}; nearest: {', '.join(map(repr, near))}")
 
 
+def check_keys(what: str, given: Collection[Any], keys: Collection[str]) -> None:
+    """Raise ValueError if one of the `keys` is missing."""
+    if missing := [key for key in keys if key not in given]:
+        raise ValueError(f"{what} of {missing[0]!r} is missing: give it for {', '.join(keys)}")
+
+
 def check_text(what: str, name: Any) -> None:
     """Raise ValueError unless a name is text that is not empty."""
     if not isinstance(name, str) or not name:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.record import ranged
+from ...core.record import check_keys, ranged
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
 from .gear_mesh import GearMesh
@@ -97,6 +97,7 @@ def herringbone_planetary(
         out of range.
     """
     pairs, n = {"sun_planet": stage.sun_planet, "planet_ring": stage.planet_ring}, stage.n_planets
+    check_keys("stiffness", stiffness, pairs)
     sun, torque = pairs["sun_planet"].gear_1, ranged("torque", torque, " N m")
     layout, apart = _halves(stage, members or _solid(stage, density)), 5e-4 * (sun.b + groove)
     springs = _supports(layout, stage, (bearing, tilt, housing, drive, zeta))
