@@ -44,6 +44,18 @@ def random_polyline(seed):
     return gf.Crack(path=points)
 
 
+def test_a_scene_has_the_same_polyline(tmp_path):
+    """`path_mm` lists x and y of the corners; the crack of the wheel stays with the wheel."""
+    scene = gf.new_scene(tmp_path / "mine.toml").read_text()
+    scene = scene.replace('gear = "pinion"\nlevel = 0.3', 'gear = "wheel"\npath_mm = [1.0, 28.0, 0.2, 27.6]\n#')
+    (tmp_path / "mine.toml").write_text(scene)
+    case = gf.load_scene(tmp_path / "mine.toml").case(case="cracked")
+    assert [(side, one.path) for side, (one,) in case.damage.items()] == [("wheel", ((1.0, 28.0), (0.2, 27.6)))]
+    (tmp_path / "mine.toml").write_text(scene.replace("27.6]", "27.6, 1.0]"))
+    with pytest.raises(ValueError, match="corners have two numbers each"):
+        gf.load_scene(tmp_path / "mine.toml").case(case="cracked")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(20))
 def test_both_methods_have_the_same_stress_intensity_on_random_polylines(seed):
