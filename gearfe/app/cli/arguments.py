@@ -205,6 +205,22 @@ def main(argv=None):
     add("--teeth Z", "tooth numbers of pinion and wheel (default: 21 31; with a ring 21 63)", nargs=2, type=int)
     add("--module MM", "normal module [mm] (default: 2)", default=2.0)
     add("--helix DEG", "helix angle of the pinion [degrees] (default: 0)", default=0.0)
+    add("--alpha DEG", "normal pressure angle [degrees] (default: 20)", default=20.0)
+    add(
+        "--x",
+        "profile shift coefficients of pinion and wheel (default: 0 0)",
+        nargs=2,
+        metavar="X",
+        type=float,
+        default=(0.0, 0.0),
+    )
+    add(
+        "--bore",
+        "bore diameters of pinion and wheel, of a ring its rim diameter [mm] (default: half of the root diameters)",
+        nargs=2,
+        metavar="MM",
+        type=float,
+    )
     add("--width MM", "face width [mm] (default: 20)", default=20.0)
     add("--torque NM", "pinion torque [N m] (default: 100 N per mm of face width)", type=float)
     add(
