@@ -1,6 +1,7 @@
 """Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units stand in the key names."""
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from html import escape
 from importlib import resources
@@ -10,6 +11,7 @@ from typing import Any
 from ..core.case import Case
 from ..core.files import check_path
 from ..core.material import Material
+from ..core.record import check_named
 from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
 from ..core.table import Column, Table
@@ -35,8 +37,8 @@ HEALTHY = "healthy"  # the case without damage
 class ScenePair:
     """A gear pair of a scene with its materials, its force along the line of action [N], and how its teeth run.
 
-    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage, of one body on each side; `owned` holds it of all bodies,
-    by case, side and `gearfe.scene.parts.Owner`. `flanks`, `misalignment`, `supports` are as `gearfe.mesh_stiffness` has them.
+    `owned` holds the damage of all bodies by case, side and `gearfe.scene.parts.Owner`. `flanks`, `misalignment`, `supports` are
+    as `gearfe.mesh_stiffness` has them.
     """
 
     pair: GearPair
@@ -44,11 +46,15 @@ class ScenePair:
     force: float
     face: str | None = None
     groove: float = 0.0
-    damage: dict[str, dict[str, list[Damage]]] = field(default_factory=dict)
     flanks: dict[str, Flank] = field(default_factory=dict)
     misalignment: Misalignment | None = None
     supports: dict[str, Support | Shaft] = field(default_factory=dict)
     owned: dict[str, dict[str, parts.Owned]] = field(default_factory=dict)
+
+    @property
+    def damage(self) -> dict[str, dict[str, list[Damage]]]:
+        """Damage by case and side as `gearfe.mesh_stiffness` takes it, of one body on each side."""
+        return {case: {side: _of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
 
     def case(self, name: str | None = None) -> Case:
         """Return the pair as a `Case` with a case of damage; None: healthy. ValueError if the pair has no such case."""
@@ -101,6 +107,23 @@ class Scene:
         if name not in self.pairs:
             raise ValueError(f"scene {self.name} has no pair {name!r}; it has {', '.join(self.pairs)}")
         return self.pairs[name]
+
+    def with_damage(self, case: str, damage: Mapping[str, Mapping[str, Sequence[Damage]]]) -> "Scene":
+        """Copy with a case of damage by pair and side, such as ``{"stage": {"wheel": [Crack(level=0.3, tooth=5)]}}``.
+
+        The case has no other damage. ValueError if a pair or side is unknown.
+        """
+        for name, by_side in damage.items():
+            self.pair(name)
+            for side in by_side:
+                check_named("side", side, parts.SIDES)
+        pairs = {}
+        for name, pair in self.pairs.items():
+            given = damage.get(name, {}).items()
+            owned: dict[str, parts.Owned] = {side: {parts.Owner(None, name, side): list(found)} for side, found in given if found}
+            others = {other: found for other, found in pair.owned.items() if other != case}
+            pairs[name] = replace(pair, owned=others | ({case: owned} if owned else {}))
+        return replace(self, pairs=pairs)
 
     def case(self, pair: str | None = None, case: str | None = None) -> Case:
         """`Case` of a pair by name (None: the first), in a case of damage (None: healthy), as `gearfe.solve` takes it.
@@ -213,7 +236,6 @@ def _pair(file, name, rows, gears, materials, forces):
         force=float(force),
         face=row["face"],
         groove=float(row["groove_mm"]),
-        damage={case: {side: _of_one_body(found) for side, found in by_side.items()} for case, by_side in owned.items()},
         owned=owned,
         flanks=parts.flanks_of(file, rows, name, gears),
         misalignment=misalignment,

@@ -93,14 +93,14 @@ def _indicators(pitted, crack):
 
 def _grown(pitted, crack):
     """The machine with the pits of a case and a crack of a level."""
-    pairs = {}
-    for name, one in scene(NAME).pairs.items():
-        damage = {
+    damage = {
+        name: {
             side: [replace(d, level=crack) if isinstance(d, gf.Crack) else d for d in found]
             for side, found in one.damage.get(pitted, {}).items()
         }
-        pairs[name] = replace(one, damage={"grown": damage} if damage else {})
-    return gf.build_machine(replace(scene(NAME), pairs=pairs), "grown", method="ritz3d", phases=PHASES[NAME])
+        for name, one in scene(NAME).pairs.items()
+    }
+    return gf.build_machine(scene(NAME).with_damage("grown", damage), "grown", method="ritz3d", phases=PHASES[NAME])
 
 
 def _increments(name, pick):
