@@ -151,7 +151,12 @@ def main(argv=None):
     add("--animate FILE", "animate the deformed set over a mesh cycle or --cycles: .gif")
     _assumptions(add)
     add = verb("signal", signals.signal, "analyse measured signals: spectral lines, indicators, kurtogram, squared envelope")
-    add("file FILE", f"signal as {', '.join(SIGNALS)}; several: cases, the first healthy", nargs="+")
+    add(
+        "file FILE",
+        f"signal as {', '.join(SIGNALS)}; several: cases, the first healthy; a folder: trend over its records",
+        nargs="+",
+    )
+    add("-o --output FOLDER", "write all analyses as pictures and tables, and a page with the verdict, into this folder")
     add("--list", "only list the channels of the files")
     add("--rate HZ", "sampling rate, if the file does not state it", type=float)
     add("--unit U", "unit, if the file does not state it")
@@ -161,6 +166,7 @@ def main(argv=None):
     add("--start S", "begin of the part of each record that is analysed [s] (default: 0)", default=0.0)
     add("--stop S", "end of that part [s] (default: that of the record)", default=float("inf"))
     add("--scene SCENE", "scene whose machine gives the line frequencies of the last spectrum")
+    add("--case NAME", "case of damage of --scene: simulates the healthy and the damaged machine for comparison; needs --gear")
     add("--gear NAME", "gear of --scene; gives the frequencies and the number of teeth that are not stated")
     add("--mesh HZ", "mesh frequency [Hz]", type=float)
     add("--fault HZ", "fault frequency [Hz]", type=float)
