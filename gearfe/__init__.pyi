@@ -1,6 +1,8 @@
 # The public names as a type checker reads them; at run time gearfe/__init__.py loads each on first use.
 
 from .comparison.compare import compare as compare
+from .comparison.machine_fit import MachineFit as MachineFit
+from .comparison.machine_fit import fit_machine as fit_machine
 from .comparison.model_file import read_model as read_model
 from .comparison.own_model import PairModel as PairModel
 from .comparison.pattern import face_load_distribution as face_load_distribution

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 from ..core.files import read_text
 from ..geometry.aliases import Floats, StrPath
 from ..geometry.pair.gear_pair import GearPair
-from ..signal.signal_file import channels
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.curve_file import FIRST_LINE
 
@@ -191,6 +190,8 @@ def read_model(path: StrPath, *, phase_offset: float | None = None) -> ModelFile
 
 def _of_matlab(path, phase_offset):
     """`ModelFile` of the two vectors of a MATLAB file that state an abscissa and a stiffness."""
+    from ..signal.signal_file import channels
+
     found = channels(path)
     units = {name: found.units.get(name, "").strip("-") for name in found.vectors}
     names = {name: f"{name} [{unit}]" if unit else name for name, unit in units.items()}

@@ -22,6 +22,7 @@ from ..geometry.pair.gear_pair import GearPair
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.modified import Flank
 from . import assumed, parts
+from .dotted_keys import find_key, set_values
 from .reading import Reading, located
 from .references import Reference, read_references
 from .schema import arguments, scene_schema
@@ -86,6 +87,26 @@ class Scene:
     set: SceneSet | None = None  # a whole planetary set, `gearfe.planetary_sets.of_scene.build_set` gives its case
     train: Train | None = None  # shafts of a gearbox, their speeds and torques
 
+    def __post_init__(self) -> None:
+        """Raise ValueError if speeds, torques, forces or gears that follow from the file are those of other values."""
+        if self.train is not None:
+            motor, machine = self.train.ends["motor"]["shaft"], self.machine
+            given = [machine["speed_rpm"] * math.pi / 30, machine["torque_Nm"], *(one.force for one in self.pairs.values())]
+            forces = [self.train.forces.get(name) for name in self.pairs]
+            self._check("speed, torque or force", given, [self.train.speeds[motor], self.train.torques["motor"], *forces])
+        if self.set is not None:
+            outer, inner = (self.pair(name).pair for name in self.set.pairs)
+            gears = self.set.gears.sun_planet.gear_1, self.set.gears.sun_planet.gear_2, self.set.gears.planet_ring.gear_2
+            self._check("gear of the set", [outer.gear_1, outer.gear_2, inner.gear_2], gears)
+
+    def _check(self, what, given, derived):
+        for one, other in zip(given, derived, strict=True):
+            if one != other and not (isinstance(other, (int, float)) and math.isclose(one, other, rel_tol=1e-9)):
+                raise ValueError(
+                    f"scene {self.name}: a {what} was replaced, but others follow from the former one: give it with "
+                    "load_scene(..., values={...})"
+                )
+
     def __repr__(self) -> str:
         """Name, title, pairs and cases in one line."""
         cases = sorted({case for pair in self.pairs.values() for case in pair.damage})
@@ -140,15 +161,24 @@ def scene_names() -> list[str]:
     )
 
 
-def load_scene(name_or_path: StrPath) -> Scene:
+def load_scene(name_or_path: StrPath, values: Mapping[str, Any] | None = None) -> Scene:
     """Read a built-in scene by name, or a scene file by path.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+    values : dict, optional
+        Other values by dotted key, such as ``{"gear.pinion.r_bore_mm": 8.0, "machine.speed_rpm": 1200}``.
 
     Raises
     ------
     ValueError
         With file, table and key, if anything is unknown, missing or of the wrong type, or if a gear or pair is impossible.
     """
-    return scene_of(*read_tables(name_or_path))
+    file, tables = read_tables(name_or_path)
+    for key in values or {}:
+        find_key(key, tables)
+    return scene_of(file, set_values(tables, values) if values else tables)
 
 
 def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:

@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ..geometry.pair.planetary import PlanetarySet
 from .reading import check_known, checked, located
 from .schema import arguments
@@ -48,6 +50,7 @@ def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet |
     if angles == []:
         raise ValueError(f"{file} [set] planet_angles_deg = []: give the angle of each planet, or n_planets")
     count = n if angles is None else len(angles)
+    _check_machine(file, rows["machine"], count, angles)
     with located(file, "set", row):
         gears = PlanetarySet(outer.gear_1, outer.gear_2, inner.gear_2, n or 1, outer.a)
     return SceneSet(
@@ -59,6 +62,19 @@ def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet |
         support=ring["support"],
         **{"planet_angles": None, "pin": math.inf} | arguments("set", row, "planet_angles_deg", "pin_N_per_um"),
     )
+
+
+def _check_machine(file, machine, count, angles):
+    """Raise ValueError if the planets of a planetary machine are not those of the set: as many, equally spaced."""
+    if machine is None or machine["model"] not in ("planetary", "herringbone_planetary"):
+        return
+    apart = np.diff(np.sort(np.mod(angles or (), 360.0)))
+    even = angles is None or np.allclose(apart, 360.0 / count, rtol=0, atol=1e-3)
+    if machine["n_planets"] != count or not even:
+        raise ValueError(
+            f"{file} [set]: {count} planets{'' if even else ' at unequal angles'}, but [machine] has n_planets = "
+            f"{machine['n_planets']}, equally spaced: give the same planets in both tables"
+        )
 
 
 def _pairs(file, row, pairs, rows):

@@ -35,6 +35,22 @@ def test_units_are_those_of_the_keys(tmp_path):
     assert turned.set.force == 2000
 
 
+@pytest.mark.parametrize(("planets", "machine", "message"), [
+    ("n_planets = 3 ", 2, r"s.toml \[set\]: 3 planets, but \[machine\] has n_planets = 2, equally spaced: give the same planets"),
+    ("planet_angles_deg = [0, 120, 240] #", 3, ""),
+    ("planet_angles_deg = [0, 120, 205.71428571428572] #", 3, "3 planets at unequal angles, but"),
+])  # fmt: skip
+def test_set_and_machine_have_the_same_planets(tmp_path, planets, machine, message):
+    """A set of two planets stood beside a machine of three, without a message."""
+    text = SCENE.replace("n_planets = 3 ", planets)
+    text += f'[machine]\nmodel = "planetary"\nspeed_rpm = 100\ntorque_Nm = 120\nn_planets = {machine}\n'
+    if not message:
+        assert loaded(tmp_path, text).set is not None
+        return
+    with pytest.raises(ValueError, match=message):
+        loaded(tmp_path, text)
+
+
 def test_a_scene_without_a_set_has_none(tmp_path):
     assert loaded(tmp_path, SCENE[: SCENE.index("[set]")]).set is None
 
