@@ -314,11 +314,20 @@ def _mesh_of(machine, stage):
 
 
 def simulated_gear(scene, case, gear, duration=None):
-    """`Signal` of the mesh force of a gear of a scene by case, healthy and in a case of damage, with the angle of its shaft."""
+    """Return the mesh force of a gear of a scene as `Signal` by case, with the angle of the gear's shaft.
+
+    The cases are healthy and `case`. White noise of `RANGE` of the rms is added, as any recorder has it: without noise the
+    difference signal of a healthy gear is an error of interpolation.
+    """
     lines, found = gear_lines(scene, gear), responses(scene, case, duration=duration)
     mesh = next(one for one in next(iter(found.values())).machine.meshes if abs(abs(one.frequency) / lines.mesh - 1) < 1e-6)
     channel = f"force {mesh.name}"
-    return {f"simulated {name}": replace(one.signal(channel, lines.turning), name=name) for name, one in found.items()}
+    out, noise = {}, np.random.default_rng(0)
+    for name, one in found.items():
+        signal = one.signal(channel, lines.turning)
+        values = signal.values + RANGE * signal.values.std() * noise.standard_normal(signal.values.size)
+        out[f"simulated {name}"] = replace(signal, values=values, name=f"simulated {name}")
+    return out
 
 
 def gears_table(found):
