@@ -164,12 +164,13 @@ from .stiffness.transmission_error import transmission_error as transmission_err
 from .strength.crack_front import FrontIntensity as FrontIntensity
 from .strength.crack_front import stress_intensity_along_front as stress_intensity_along_front
 from .strength.fracture import stress_intensity as stress_intensity
+from .strength.growth import CrackModel as CrackModel
 from .strength.growth import Growth as Growth
-from .strength.growth import ParisLaw as ParisLaw
 from .strength.growth import grow_crack as grow_crack
 from .strength.loaded_tooth import root_stress as root_stress
 from .strength.loaded_tooth import tooth_flexibility as tooth_flexibility
 from .strength.mesh_picture import render_mesh as render_mesh
+from .strength.paris import ParisLaw as ParisLaw
 from .strength.render import render_stress as render_stress
 from .strength.root_of_contact import root_stress_of_contact as root_stress_of_contact
 from .strength.root_stress import RootStress as RootStress

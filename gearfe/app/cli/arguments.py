@@ -272,7 +272,33 @@ def main(argv=None):
     add("--steps N", "maximum number of steps (default: 60)", default=60)
     add("--paris", "constants C [mm/(MPa sqrt(mm))^m] and m of Paris's law", nargs=2, metavar=("C", "M"), type=float)
     add("--threshold K", "threshold range of K [MPa sqrt(mm)] (default: 0)", default=0.0)
-    add("--refine X", "finite-element resolution: divides the edge lengths (default: 1)", default=1.0)
+    add("--refine X", "resolution: divides the edge lengths (default: 1)", default=1.0)
+    add(
+        "--method",
+        "method (default: ritz while the crack is in its sector, then fe)",
+        choices=("auto", "ritz", "fe"),
+        default="auto",
+    )
+    add(
+        "--loading",
+        "loads that pass over the tooth and its neighbours, or the whole load at the highest point of single contact (default: "
+        "engagement)",
+        choices=("engagement", "single"),
+        default="engagement",
+    )
+    add(
+        "--criterion",
+        "direction of growth: largest tangential stress, largest energy release rate, or no K_II (default: tangential)",
+        choices=("tangential", "energy", "shear"),
+        default="tangential",
+    )
+    add(
+        "--held",
+        "arc of the bore that is held [degrees], from the cracked tooth towards its loaded side (default: all)",
+        nargs=2,
+        metavar=("FROM", "TO"),
+        type=float,
+    )
     add("--plot FILE", "draw the grown crack in its tooth: .png, .svg or .pdf")
     add = verb("check", tools.check, "summarise a scene file and show which method each case would use")
     add("scene SCENE", "a .toml file, or a built-in scene (see 'gearfe scenes')")
