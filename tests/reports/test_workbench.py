@@ -4,8 +4,6 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.app.cli import main
-from gearfe.comparison.vibration import simulated_gear
-from gearfe.signal.tooth_verdict import tooth_verdict
 
 
 @pytest.fixture
@@ -57,19 +55,3 @@ def test_parts_of_records_and_an_estimated_speed(files, capsys):
     assert "the average keeps" not in printed.err
     assert main(["signal", str(files / "b.csv"), "--speeds", "19", "21"]) == 1
     assert "give --teeth" in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_the_simulated_machine_stands_beside(files, capsys):
-    command = ["signal", str(files / "a.csv"), "--shaft", "20", "--teeth", "23", "-o", str(files / "bench")]
-    assert main([*command, "--scene", "phm2009_spur", "--gear", "idler_out", "--case", "chipped", "--mesh", "460"]) == 0
-    assert "| simulated healthy | simulated chipped |" in capsys.readouterr().out
-    assert (files / "bench" / "simulated_average.png").exists()
-
-
-@pytest.mark.slow
-def test_a_chip_is_seen_in_the_simulated_average_and_a_healthy_gear_is_not():
-    records = simulated_gear(gf.load_scene("phm2009_spur"), "chipped", "idler_out")
-    healthy, chipped = records.values()
-    assert tooth_verdict(healthy, 48).level == "not seen"
-    assert tooth_verdict(chipped, 48, healthy).level == "likely"
