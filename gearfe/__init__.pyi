@@ -1,6 +1,8 @@
 # The public names as a type checker reads them; at run time gearfe/__init__.py loads each on first use.
 
 from .comparison.compare import compare as compare
+from .comparison.machine_fit import MachineFit as MachineFit
+from .comparison.machine_fit import fit_machine as fit_machine
 from .comparison.model_file import read_model as read_model
 from .comparison.own_model import PairModel as PairModel
 from .comparison.pattern import face_load_distribution as face_load_distribution
@@ -162,12 +164,13 @@ from .stiffness.transmission_error import transmission_error as transmission_err
 from .strength.crack_front import FrontIntensity as FrontIntensity
 from .strength.crack_front import stress_intensity_along_front as stress_intensity_along_front
 from .strength.fracture import stress_intensity as stress_intensity
+from .strength.growth import CrackModel as CrackModel
 from .strength.growth import Growth as Growth
-from .strength.growth import ParisLaw as ParisLaw
 from .strength.growth import grow_crack as grow_crack
 from .strength.loaded_tooth import root_stress as root_stress
 from .strength.loaded_tooth import tooth_flexibility as tooth_flexibility
 from .strength.mesh_picture import render_mesh as render_mesh
+from .strength.paris import ParisLaw as ParisLaw
 from .strength.render import render_stress as render_stress
 from .strength.root_of_contact import root_stress_of_contact as root_stress_of_contact
 from .strength.root_stress import RootStress as RootStress

@@ -107,6 +107,22 @@ def test_a_set_has_the_tooth_or_refuses():
     }
     given |= {"set": {"n_planets": 3}, "crack": [{"case": "x", "gear": "planet", "tooth": 4, "level": 0.3}]}
     made = build_set(scene_of("set.toml", given), "x")
-    assert {name: [crack.tooth for crack in cracks] for name, cracks in made.damage.items()} == {("planet", 0): [4]}
+    assert {name: [crack.tooth for crack in cracks] for name, cracks in made.damage.items()} == {"planet1": [4]}
     with pytest.raises(ValueError, match="cracks only"):
         build_set(scene_of("set.toml", given), "mild")
+
+
+@pytest.mark.parametrize(("gear", "tooth"), PLACES)
+def test_damage_given_in_python_is_that_of_the_file(gear, tooth):
+    """Curves and machine; a copy of a scene whose pairs had other damage was healthy in its machine."""
+    read = scene_of("pair.toml", tables(gear, tooth))
+    given = scene_of("pair.toml", tables(gear, 0)).with_damage("own", {"stage": read.pair().damage["cracked"]})
+    assert given.case(case="own") == read.case(case="cracked")
+    ours, theirs = (gf.build_machine(one, case, phases=8) for one, case in ((given, "own"), (read, "cracked")))
+    assert ours.faults == theirs.faults
+    at = np.linspace(0.0, 0.06, 500)
+    np.testing.assert_array_equal(ours.meshes[0].k(at), theirs.meshes[0].k(at))
+    with pytest.raises(ValueError, match="side 'sun', but there is pinion, wheel"):
+        read.with_damage("own", {"stage": {"sun": []}})
+    with pytest.raises(TypeError, match="damage"):
+        replace(read.pair(), damage={})

@@ -50,7 +50,7 @@ def test_the_errors_of_the_herringbone_stage_are_those_of_its_scene():
 
     own = gf.load_scene("herringbone").machine
     told = table_rows.read_runs("herringbone_machine")["with errors"]
-    assert f"play {own['backlash_um']:g} um" in told
+    assert f"backlash {own['backlash_um']:g} um" in told
     assert f"{own['profile_error_um']:g} um at 480 Hz" in told
     assert "errors" not in table_rows.read_runs("herringbone_machine")["without errors"]
 

@@ -38,7 +38,7 @@ def test_what_is_not_reproduced_has_a_reason(page):
     by_id = {one.id: one for one in machines.references(page)}
     for row in table_rows.read(page):
         if row.verdict not in (verdicts.REPRODUCED, verdicts.FORMULA):
-            assert verdicts.reason(by_id[row.id], row), f"{row.id}, {row.case}: {row.verdict} without reason or correction"
+            assert verdicts.reasons(by_id[row.id], row), f"{row.id}, {row.case}: {row.verdict} without reason or correction"
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -62,7 +62,8 @@ def test_verdicts_follow_from_the_numbers(page):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_pages_are_not_stale(page):
-    assert pages.read(page)[0] == machines.text(page), f"{page}.md is stale: run python -m validation PAGE"
+    for name, made in ((page, machines.text(page)), (f"{page}_variants", machines.variants(page))):
+        assert pages.read(name)[0] == made, f"{name}.md is stale: run python -m validation PAGE"
     for name in machines.module(page).PICTURES:
         picture = machines.FOLDER / f"{name}.png"
         assert picture.is_file(), f"{name}.png is missing: run python -m validation PAGE"

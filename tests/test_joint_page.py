@@ -72,12 +72,12 @@ def test_what_decides_a_statement(monkeypatch):
     load = np.array([row["inputs"]["load"] for row in rows])
     half = joint_inputs.DRAWS // 2
     chance = 1 - (1 - 2 / math.comb(2 * half, half)) ** len(joint_inputs.RANGES["helical_pitting"])
-    said = f"torque: {half} of {half} above its middle, 0 below (by chance {chance:.2g})"
+    said = f"torque: {half}, 0 ({chance:.2g})"
     assert joint.decides("helical_pitting", load > np.median(load)) == said
-    assert joint.decides("helical_pitting", np.ones(joint_inputs.DRAWS, bool)) == "none of them"
+    assert joint.decides("helical_pitting", np.ones(joint_inputs.DRAWS, bool)) == ""
     lone = np.zeros(joint_inputs.DRAWS, bool)
     lone[0] = True
-    assert joint.decides("helical_pitting", lone) == "no single one"
+    assert joint.decides("helical_pitting", lone) == "none"
 
 
 @pytest.mark.parametrize("yes", range(1, 8))
@@ -99,7 +99,7 @@ def test_pages_say_what_the_draws_found(page):
         assert_allclose(list(row["inputs"].values()), [value for _, value in draw.values])
     text = pages.read(page)[0]
     assert machines.drawn_jointly(page) in text
-    for line in joint.section(page):
+    for line in joint.section(page, machines.decided(page, table_rows.read(page))):
         assert line in text
     assumed = {row.case for row in table_rows.read(page) if row.verdict == "set by an assumption"}
     assert sum(joint.counts(page)) == len(set(joint.said(page)) - assumed)
@@ -180,5 +180,5 @@ def test_what_is_printed_of_the_measured_acceleration_is_counted_on_it(monkeypat
         "impacts raise the force": False,
     }
     assert joint.counts("planetary_pitting") == (1, 1, 0)
-    assert joint.judges("planetary_pitting").startswith("the first; of 'rms rises with severity' ring.y acceleration")
+    assert joint.judges("planetary_pitting").startswith("the first; for 'rms rises with severity', ")
     assert joint.judges("helical_pitting") == "the first"

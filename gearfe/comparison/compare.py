@@ -71,6 +71,8 @@ def compare(
     models : sequence or dict of str to model
         User-defined models: functions ``f(phase) -> k`` [N/m] of the total mesh stiffness, ``PairModel(f)`` of one tooth pair,
         ``OwnFlexibility(f)`` of one gear, or files with stated units (see `gearfe.comparison.own_model` and `gearfe.read_model`).
+        A tuple ``(damaged, healthy)`` of two of them adds the losses by that model. Of two `PairModel` or two tables over the
+        radius the damaged one counts for the damaged teeth, the healthy one for all others.
     phases : int or array
         As in `mesh_stiffness`.
     refine : float
@@ -104,7 +106,12 @@ def compare(
     found = _compared(plan, (key,), methods, how, cycles, fresh=True, left_out=left_out)
     for name, model in named.items():
         started = time.perf_counter()
-        found.solved[*key, name] = own_curve(name, model, chosen.pair, found.solved[*key, methods[0]])
+        model, healthy = model if isinstance(model, tuple) else (model, None)
+        if healthy is not None:
+            if not chosen.damaged:
+                raise ValueError(f"model {name!r} has a damaged and a healthy part: state the case of damage")
+            found.solved[key[0], None, name] = own_curve(name, healthy, chosen.pair, found.solved[key[0], None, methods[0]])
+        found.solved[*key, name] = own_curve(name, model, chosen.pair, found.solved[*key, methods[0]], healthy)
         found.times[*key, name] = time.perf_counter() - started
     return found
 

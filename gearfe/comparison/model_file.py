@@ -18,12 +18,13 @@ from ..stiffness.curve_file import FIRST_LINE
 FORCE = {"N": 1.0, "kN": 1e3, "MN": 1e6, "GN": 1e9}
 LENGTH = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
 TURN = {"deg": math.pi / 180, "rad": 1.0}
-ANGLES, RADII = ("angle", "pinion angle", "roll angle"), ("radius", "pinion radius", "contact radius")
+ANGLES, RADII = ("angle", "pinion angle", "roll angle", "theta"), ("radius", "pinion radius", "contact radius")
 ABSCISSAE = "'phase' (mesh cycles), 'angle [deg]' or 'angle [rad]' (of the pinion) or 'radius [mm]' (one pair, on the pinion)"
 UNITS = "N/m, N/mm, N/um (also kN, MN, GN) or, per width, N/(mm um), N/(m um)"
 COARSEST = 1 / 20  # longest step between rows: of a mesh cycle, or of the active flank
 SNAP = 1e-4  # tolerance for rounded angles and phases [mesh cycles]
 EXACT = 1e-9  # the same for requested phases
+DECIMAL_COMMA = re.compile(r"^([-+]?\d*),(\d+(?:e[-+]?\d+)?)$", re.IGNORECASE)
 STEEP = 0.1  # rise of k between rows, as a part of its mean, that means an entering pair
 
 
@@ -58,28 +59,41 @@ class ModelFile:
         """Return the mesh stiffness of the file at mesh phases: [N/m], or [N/m per m] if `per_width`.
 
         It is linear between rows, but not across the phases at which a pair enters or leaves. There the nearest row on the same
-        side counts. ValueError if the rows do not cover one mesh cycle, cover more than one, or are more than `COARSEST` apart.
+        side counts. Rows of one mesh cycle are repeated. More rows count at their own phases, as the engagement of a damaged
+        tooth needs it. ValueError if the rows do not cover what is asked, or are more than `COARSEST` apart.
         """
         cycle = 2 * math.pi / pair.gear_1.z if self.abscissa == "angle" else 1.0
-        x = self.x / cycle
+        asked, x, k = np.asarray(phase, dtype=float), self.x / cycle, self.k
         self._check_cycle(x, cycle)
-        once = x < x[0] + 1 - SNAP
-        self._check_origin(x[once] + self.phase_offset, self.k[once])
-        leaves = pair.eps_alpha % 1.0
-        rows = (x[once] + self.phase_offset + SNAP) % 1.0 - SNAP
-        asked = (np.asarray(phase, dtype=float) + EXACT) % 1.0 - EXACT
-        out = np.empty(asked.shape)
-        for low, high in ((-1.0, leaves), (leaves, 1.0)):
-            row = (rows > low + SNAP) & (rows <= high + SNAP)
-            inside = (asked > low + EXACT) & (asked <= high + EXACT)
-            if inside.any() and not row.any():
+        if x[-1] - x[0] > 1 + np.diff(x).max() + SNAP:
+            rows = x + self.phase_offset
+            if not (rows[0] - SNAP <= asked.min() and asked.max() <= rows[-1] + SNAP):
                 raise ValueError(
-                    f"{self.path}: no row from phase {max(low, 0):.4g} to {high:.4g}, where another number of pairs is in "
-                    "contact; give rows there"
+                    f"{self.path}: phases {rows[0]:.4g} to {rows[-1]:.4g}, but {asked.min():.4g} to {asked.max():.4g} are "
+                    "needed; give them all, or keep the rows of one mesh cycle"
                 )
-            order = np.argsort(rows[row])
-            if inside.any():
-                out[inside] = np.interp(asked[inside], rows[row][order], self.k[once][row][order])
+        else:
+            once = x < x[0] + 1 - SNAP
+            self._check_origin(x[once] + self.phase_offset, k[once])
+            cycles = np.arange(math.floor(asked.min() - EXACT) - 1, math.floor(asked.max()) + 2)[:, None]
+            rows = ((x[once] + self.phase_offset + SNAP) % 1.0 - SNAP + cycles).ravel()
+            k = np.tile(k[once], cycles.size)
+        return self._between(rows, k, asked, pair.eps_alpha % 1.0)
+
+    def _between(self, rows, k, asked, leaves):
+        """Stiffness at phases between rows of the same pairs in contact."""
+        out, order = np.empty(asked.shape), np.argsort(rows)
+        at, of_row = asked + EXACT, rows[order] + SNAP
+        zone, zone_of_row = (2 * np.floor(x) + (x % 1.0 > leaves + 2 * slack) for x, slack in ((at, EXACT), (of_row, SNAP)))
+        for one in np.unique(zone):
+            row, inside = zone_of_row == one, zone == one
+            if not row.any():
+                low, high = (leaves, 1.0) if one % 2 else (0.0, leaves)
+                raise ValueError(
+                    f"{self.path}: no row from phase {low:.4g} to {high:.4g}, where another number of pairs is in contact; "
+                    "give rows there"
+                )
+            out[inside] = np.interp(asked[inside], rows[order][row], k[order][row])
         return out
 
     def _check_cycle(self, x, cycle):
@@ -89,8 +103,6 @@ class ModelFile:
         coverage = f"{self.path}: {self.abscissa}s {start:.6g} to {stop:.6g}{unit} cover {span:.4g} mesh cycles"
         if span + step < 1 - SNAP:
             raise ValueError(f"{coverage}, but one is needed: {start:.6g} to {start + whole:.6g}{unit}")
-        if span > 1 + step + SNAP:
-            raise ValueError(f"{coverage}: keep the rows of one, for example {start:.6g} to {start + whole:.6g}{unit}")
         if step > COARSEST + SNAP:
             finer = f"sample every {COARSEST * cycle * scale:.4g}{unit} or finer"
             raise ValueError(f"{self.path}: rows are up to {step:.4g} of a mesh cycle apart; {finer}")
@@ -129,16 +141,18 @@ class ModelFile:
 def read_model(path: StrPath, *, phase_offset: float | None = None) -> ModelFile:
     """Read a stiffness curve of any program, or one that gearfe wrote.
 
-    Two columns separated by comma, semicolon or tab, numbers with a decimal point. Units are stated by a header line or by a
-    comment line (# or %) above the numbers, in brackets or, as MATLAB's variable names need it, as an ending:
+    A text file has two columns separated by comma, semicolon or tab. Numbers have a decimal point, or with another separator a
+    decimal comma. Units are stated by a header line or by a comment line (# or %) above the numbers, in brackets or, as MATLAB's
+    variable names need it, as an ending. A MATLAB file (``.mat``) has two vectors of such names:
 
-    - first column ``phase``, ``angle [deg]``, ``angle [rad]``, ``radius [mm]``, or ``angle_deg``, ``angle_rad``, ``radius_mm``
+    - first column ``phase``, ``angle [deg]``, ``angle [rad]``, ``radius [mm]``, or ``angle_deg``, ``theta_rad``, ``radius_mm``
     - second column, of any name, in N/m, N/mm, N/um (or kN, MN, GN), or per width in N/(mm um), N/(m um), which is multiplied
       by the scene's width: ``k [N/um]``, ``k_N_per_um``, ``c [N/(mm um)]``, ``c_N_per_mm_um``
 
-    Phase and angle give the total mesh stiffness over one mesh cycle, 1 or ``2 pi / z_1``; radius gives the stiffness of one
-    tooth pair over the active flank of the pinion. At phase 0 a pair enters at the start of the path of contact. A file that
-    counts from elsewhere says at which phase its zero is: ``# phase_offset = 0.25``.
+    Phase and angle give the total mesh stiffness over one mesh cycle, 1 or ``2 pi / z_1``. That of a damaged pair may cover the
+    whole engagement of the damaged tooth instead. Radius gives the stiffness of one tooth pair over the pinion's active flank.
+    At phase 0 a pair enters at the start of the path of contact. A file with another origin states the mesh phase of its zero:
+    ``# phase_offset = 0.25``.
 
     Parameters
     ----------
@@ -155,6 +169,8 @@ def read_model(path: StrPath, *, phase_offset: float | None = None) -> ModelFile
     ValueError
         Naming file and line, if a unit is missing or unknown, a number is not finite, k not positive, or the abscissa not rising.
     """
+    if str(path).lower().endswith(".mat"):
+        return _of_matlab(path, phase_offset)
     lines = read_text(path)
     if lines[:1] == [FIRST_LINE]:
         curve = StiffnessCurve.from_csv(path)
@@ -169,9 +185,28 @@ def read_model(path: StrPath, *, phase_offset: float | None = None) -> ModelFile
         raise ValueError(
             f"{path}: {len(header)} columns ({', '.join(header)}), but give two, separated by comma, semicolon or tab"
         )
+    return _model(path, header, rows, _offset(path, comments, phase_offset))
+
+
+def _of_matlab(path, phase_offset):
+    """`ModelFile` of the two vectors of a MATLAB file that state an abscissa and a stiffness."""
+    from ..signal.signal_file import channels
+
+    found = channels(path)
+    units = {name: found.units.get(name, "").strip("-") for name in found.vectors}
+    names = {name: f"{name} [{unit}]" if unit else name for name, unit in units.items()}
+    first = next((name for name, told in names.items() if _name_and_unit(told)[0] in ("phase", *ANGLES, *RADII)), None)
+    second = next((name for name, told in names.items() if _stiffness_unit(told)), None)
+    if first is None or second is None:
+        raise ValueError(f"{path}: vectors {', '.join(names)}, but it must hold {ABSCISSAE} and a stiffness such as k_N_per_m")
+    rows = enumerate(zip(map(repr, found.vectors[first].tolist()), map(repr, found.vectors[second].tolist()), strict=True), 1)
+    return _model(path, (names[first], names[second]), rows, None if phase_offset is None else _finite(path, phase_offset))
+
+
+def _model(path, header, rows, offset):
+    """`ModelFile` of numbered rows of two cells under a header of two names with units."""
     (abscissa, scale), (unit, per_width) = _abscissa(path, header[0]), _stiffness(path, header[1])
     x, k = _numbers(path, rows)
-    offset = _offset(path, comments, phase_offset)
     if offset is not None and abscissa == "radius":
         raise ValueError(f"{path}: phase_offset = {offset:g}, but a table over the radius has no phase; leave it out")
     return ModelFile(str(path), abscissa, scale * x, unit * k, per_width, offset or 0.0)
@@ -179,7 +214,8 @@ def read_model(path: StrPath, *, phase_offset: float | None = None) -> ModelFile
 
 def _cells(line):
     separator = next((s for s in ";\t," if s in line), ",")
-    return [cell.strip().strip('"').strip() for cell in line.split(separator)]
+    cells = [cell.strip().strip('"').strip() for cell in line.split(separator)]
+    return cells if separator == "," else [DECIMAL_COMMA.sub(r"\1.\2", cell) for cell in cells]
 
 
 def _is_number(cell):
@@ -245,7 +281,7 @@ def _numbers(path, rows):
     table = []
     for line, cells in rows:
         if len(cells) != 2 or not all(map(_is_number, cells)):
-            hint = "; use a decimal point" if any(re.fullmatch(r"[-+\d]*,\d+(e.*)?", cell, re.I) for cell in cells) else ""
+            hint = "; separate columns by ; if numbers have a decimal comma" if len(cells) > 2 else ""
             raise ValueError(f"{path}, line {line}: {'; '.join(cells)!r} is not a row of two numbers{hint}")
         x, k = map(float, cells)
         if not math.isfinite(x) or not (math.isfinite(k) and k > 0):

@@ -45,7 +45,8 @@ class PairModel:
 
 
 # a function of the phase, or what says more of itself
-OwnModel = Callable[[Floats], Floats] | PairModel | OwnFlexibility | ModelFile | StrPath
+OneModel = Callable[[Floats], Floats] | PairModel | OwnFlexibility | ModelFile | StrPath
+OwnModel = OneModel | tuple[OneModel, OneModel]  # of a damaged pair and of the healthy one
 
 
 def own_models(models, taken=()):
@@ -53,27 +54,37 @@ def own_models(models, taken=()):
 
     Models are functions ``f(phase) -> k`` (mesh phases from 0 to 1, ndarray of shape (n,), to the total stiffness [N/m] over the
     whole width), `PairModel`, `OwnFlexibility`, ``"file.py:name"`` of one of these in a Python file, which is run, paths of
-    tables (see `read_model`) or `ModelFile`; the keys of a dict are the names, and no model may have one of `taken`. ValueError
-    if something is none of these, cannot be read, or two share a name.
+    tables (see `read_model`) or `ModelFile`; the keys of a dict are the names, and no model may have one of `taken`. A tuple
+    ``(damaged, healthy)`` of two of them, or text ``"damaged.csv,healthy.csv"``, models a damaged pair and the same pair healthy.
+    ValueError if something is none of these, cannot be read, or two share a name.
     """
     if callable(models) or isinstance(models, (str, os.PathLike, PairModel, OwnFlexibility, ModelFile)):
         raise ValueError(f"models = {models!r}, but give a list, models=[...], or a dict, models={{'name': ...}}")
     items = list(models.items()) if isinstance(models, dict) else [(_name(m, i), m) for i, m in enumerate(models, 1)]
     out = {}
     for name, model in items:
-        if isinstance(model, (str, os.PathLike)):
-            match = re.fullmatch(r"(.+\.py)(?::(.*))?", str(model), re.DOTALL)
-            model = _in_file(*match.groups()) if match else read_model(model)
-        elif not callable(model) and not isinstance(model, (PairModel, OwnFlexibility, ModelFile)):
-            raise ValueError(
-                f"model {name!r} is {type(model).__name__}, but give f(phase) -> k [N/m], PairModel(f), OwnFlexibility(f), "
-                "or the path of a file"
-            )
+        parts = model if isinstance(model, tuple) else model.split(",") if isinstance(model, str) else [model]
+        if len(parts) > 2:
+            raise ValueError(f"model {name!r} has {len(parts)} parts, but give one, or the damaged and the healthy one")
+        read = [_read(name, one) for one in parts]
         if name in taken or name in out:
             clash = "is a formulation of gearfe" if name in taken else "stands for two models"
             raise ValueError(f"the name {name!r} {clash}; rename the file or function, or give models={{'another name': ...}}")
-        out[name] = model
+        out[name] = read[0] if len(read) == 1 else tuple(read)
     return out
+
+
+def _read(name, model):
+    """Return a model, read if it is a path; ValueError if it is none."""
+    if isinstance(model, (str, os.PathLike)):
+        match = re.fullmatch(r"(.+\.py)(?::(.*))?", str(model), re.DOTALL)
+        return _in_file(*match.groups()) if match else read_model(model)
+    if not callable(model) and not isinstance(model, (PairModel, OwnFlexibility, ModelFile)):
+        raise ValueError(
+            f"model {name!r} is {type(model).__name__}, but give f(phase) -> k [N/m], PairModel(f), OwnFlexibility(f), "
+            "or the path of a file"
+        )
+    return model
 
 
 def _in_file(path, name):
@@ -99,6 +110,7 @@ def _in_file(path, name):
 
 
 def _name(model, number):
+    model = model[0] if isinstance(model, tuple) else model.split(",")[0] if isinstance(model, str) else model
     if isinstance(model, OwnFlexibility):
         return model.name if model.name.isidentifier() else f"model {number}"
     if isinstance(model, PairModel):
@@ -111,9 +123,10 @@ def _name(model, number):
     return name if name.isidentifier() else f"model {number}"
 
 
-def own_curve(name, model, pair, reference):
+def own_curve(name, model, pair, reference, healthy=None):
     """`StiffnessCurve` of an own model, as `own_models` gives it, at the phases and the load of a reference curve.
 
+    With a `healthy` model of tooth pairs, `model` is that of the damaged pairs alone.
     ``k_tangent = k`` and ``deflection = F / k``; pressures are nan, and so are the forces of the pairs if the model gives only
     their total. An `OwnFlexibility` gives all of it, by `solve`. ValueError if the model fails, or k has the wrong shape or is
     not finite and positive; if a file does not cover what is asked.
@@ -128,7 +141,11 @@ def own_curve(name, model, pair, reference):
     meta = {key: reference.meta[key] for key in SHARED_META} | {"method": name, "model": _kind(model)}
     if isinstance(model, PairModel) or getattr(model, "abscissa", None) == "radius":
         of_pair = np.zeros(touching.shape)
-        of_pair[touching] = _single(name, model, pair, touch.roll_1[touching], touch.roll_2[touching], meta["width_mm"])
+        damaged = [one["tooth"] for side in reference.meta.get("damage", {}).values() for one in side]
+        whole = touching & ~np.isin(touch.order, damaged) & (healthy is not None)
+        for one, where in ((model, touching & ~whole), (healthy, whole)):
+            if where.any():
+                of_pair[where] = _single(name, one, pair, touch.roll_1[where], touch.roll_2[where], meta["width_mm"])
         k = of_pair.sum(axis=1)
         force = meta["force_N"] * of_pair / k[:, None]
     else:
@@ -156,11 +173,11 @@ def _single(name, model, pair, roll_1, roll_2, width):
 
 
 def _total(name, model, pair, phase, width):
-    """Total mesh stiffness [N/m]; the model is asked for phases from 0 up to, not including, 1."""
-    phase = phase % 1.0
-    phase[phase >= 1.0] = 0.0  # -1e-17 % 1.0 is 1.0
+    """Total mesh stiffness [N/m]; a function is called with phases from 0 up to, not including, 1."""
     if isinstance(model, ModelFile):
         return model.total(pair, phase) * (width * 1e-3 if model.per_width else 1.0)
+    phase = phase % 1.0
+    phase[phase >= 1.0] = 0.0  # -1e-17 % 1.0 is 1.0
     return _called(name, model, (phase,), "phase {:.6g}")
 
 

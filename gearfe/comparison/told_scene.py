@@ -8,14 +8,12 @@ from ..core.supports.support import Support
 from ..core.units import in_newton_per_um
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.modified import Flank
-from ..planetary_sets.of_scene import build_set
 from ..scene.load import Scene, ScenePair
 from ..scene.schema import in_words, scene_schema
 from ..scene.train import thrusts_of
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.solve import Solve
 from .losses import told_damage
-from .told_set import told_set
 
 SIDES = ("pinion", "wheel")
 AMOUNTS = [
@@ -164,6 +162,9 @@ def _train(scene: Scene) -> Iterator[str]:
 def _set(scene: Scene) -> Iterator[str]:
     """Return a description of the set of a scene."""
     if scene.set is not None:
+        from ..planetary_sets.of_scene import build_set  # only sets need it: 0.1 s
+        from .told_set import told_set
+
         yield f"set: {told_set(build_set(scene))}"
 
 

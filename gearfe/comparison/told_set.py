@@ -76,7 +76,7 @@ def set_table(curves: SetCurves) -> Table:
             inside, alone, load = (one[k, :, planet] for one in (curves.k, curves.k_alone, curves.force))
             numbers = [value / NEWTON_PER_UM for value in (_mean(inside), inside.min(), inside.max(), alone.mean())]
             change = 100 * error[k, planet], 100 * (numbers[0] / numbers[3] - 1)
-            rows.append([kind, planet, *numbers, *change, load.min(), load.max()])
+            rows.append([kind, planet + 1, *numbers, *change, load.min(), load.max()])
     return Table(COLUMNS, rows)
 
 
@@ -116,7 +116,7 @@ def _taken(curves, healthy):
         loss = np.where((curves.k > 0) & (healthy.k > 0), 1 - curves.k / healthy.k, -np.inf)
     k, at, planet = np.unravel_index(int(loss.argmax()), loss.shape)
     most, kind = 100 * loss[k, at, planet], MESHES[int(k)].replace("-", " and ")
-    return f"the damage reduces k by up to {most:.1f} % in the mesh of {kind}, planet {planet}"
+    return f"the damage reduces k by up to {most:.1f} % in the mesh of {kind}, planet {planet + 1}"
 
 
 def _mean(k: Floats) -> float:

@@ -9,8 +9,9 @@ import numpy as np
 
 from ..core.steps import part, steps
 from ..core.table import Column, Table
-from ..dynamics.machine.of_scene import build_machine
+from ..dynamics.machine.of_scene import build_machine, flat_machine
 from ..dynamics.motion.reference import SOLVERS
+from ..dynamics.motion.response import Response
 from ..dynamics.motion.simulate import simulate
 from ..dynamics.motion.step_control import default_step
 from ..dynamics.motion.thinned import REACH
@@ -25,11 +26,13 @@ from ..signal.spectral_lines import BINS, expected_lines, find_lines
 from .record_length import resolving_seconds, too_short
 
 FREE = 1e-3  # remaining part of the initial free vibration at the beginning of a record
+DURATIONS = (1.0, 5.0)  # s, shortest and longest default record
 UNDAMPED = 0.5  # part of the duration that is discarded before it if a free vibration does not decay
 LONGEST = 20.0  # s left out at most
 NEAR = 50  # bins on either side that give the noise floor of a line
 QUARTILE = math.sqrt(math.log(2) / math.log(4 / 3))  # median over lower quartile of the amplitudes of noise
 FLOOR = 5.0  # times its noise floor at least is a line; the largest of five bins of noise is so once in some millions
+ROUNDING = 1e-9  # part of the largest motion below which a motion is rounding
 RANGE = 1e-4  # smaller lines, relative to the rms of a record, are lost in any recorder (80 dB; 16 bits have 96 dB)
 PULSES = 2  # harmonics of the fault at least in an envelope: pulses of a tooth have many, run-out and misplaced planets one
 RISE = 2.0  # times the healthy machine's at least is a line of a fault
@@ -170,13 +173,19 @@ def _risen(found: Demodulated, name, before):
     return f"{in_words(name)} at {frequency:.2f} Hz, {over}{healthy}"
 
 
-def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, loads=(1.0,), progress=None):
+def responses(scene, case=None, *, duration=None, channel=None, method="fast", phases=64, loads=(1.0,), progress=None):
     """Return the `Response` of a scene's machine by case: ``"healthy"`` and, on request, a case of damage.
 
-    `duration` [s] begins when the free vibrations have decayed to a thousandth (`recorded`). `phases` are those of the stiffness
-    curves, per mesh cycle. `gearfe.build_machine` describes `loads`, `gearfe.simulate` `method` and `progress`.
+    `duration` [s] begins when the free vibrations have decayed to a thousandth (`recorded`). By default it resolves the
+    sidebands of the damage, within the limits `DURATIONS`. A `channel` that does not exist raises ValueError before the run.
+    `phases` are those of the stiffness curves, per mesh cycle. `gearfe.build_machine` describes `loads`, `gearfe.simulate`
+    `method` and `progress`.
     """
-    check_run(duration, method)
+    check_run(DURATIONS[0] if duration is None else duration, method)
+    if channel is not None:
+        machine = flat_machine(scene)
+        n = 2 * len(machine.dofs)
+        Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
     cases = {name for pair in scene.pairs.values() for name in pair.damage}
     if case is not None and case not in cases:
         raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(sorted(cases)) or 'none'}")
@@ -190,6 +199,10 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, loads
             name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves, loads=loads)
             for name in steps(names, lambda name: f"stiffness curves, {name}")
         }
+    if duration is None:
+        _, fault, turning, carrier = _fault_lines(list(machines.values())[-1])
+        needed = resolving_seconds(fault, turning, carrier)
+        duration = min(max(DURATIONS[0], math.ceil(10 * needed) / 10), DURATIONS[1])
     rate = math.ceil(duration / min(default_step(one) for one in machines.values())) / duration
     with part("", 0.5, 1.0):
         return {
@@ -246,24 +259,51 @@ def analysis(found, channel=None):
     ``"healthy"`` alone, with teeth all alike, there are none.
     """
     first, faults = next(iter(found.values())), list(found.values())[-1].machine.faults
-    if not first.machine.stages:
-        raise ValueError("the machine names no stages, so that no lines are known: give it stages=(Stage(...),)")
-    gears = {one.gear: one for one in reversed(faults)}
-    main = faults[0] if faults else None
-    stage = first.machine.stages[-1] if main is None else first.machine.stage_of(main.gear)
+    gears, main = {one.gear: one for one in reversed(faults)}, faults[0] if faults else None
+    stage, several, turning, _ = _fault_lines(list(found.values())[-1].machine)
     channel = channel or f"force {_mesh_of(first.machine, stage).name}"
     rate = 1 / (first.time[1] - first.time[0])
     signals = {
         case: Signal(np.asarray(one[channel], dtype=float), rate, one.unit(channel), name=case) for case, one in found.items()
     }
+    _check_moving(list(found.values())[-1], channel)
     options = {"carrier": stage.carrier, "channel": channel}
     if main is not None:
-        several = main.frequency if main.frequency > main.turning * (1 + 1e-9) else None
         others = {name: one.frequency for name, one in gears.items() if abs(one.frequency / main.frequency - 1) > 1e-9}
-        return analyse(signals, stage.mesh, several, turning=main.turning, others=others, **options)
+        return analyse(signals, stage.mesh, several, turning=turning, others=others, **options)
     if set(found) == {"healthy"}:
         return analyse(signals, stage.mesh, **options)
     return analyse(signals, stage.mesh, stage.fault, turning=stage.turning, **options)
+
+
+def _check_moving(response, channel):
+    """Raise ValueError if a degree of freedom moves by rounding alone, less than `ROUNDING` of those of its unit."""
+    head, _, tail = channel.partition(" ")
+    dofs = response.machine.dofs
+    if head not in dofs:
+        return
+    alike = [i for i, name in enumerate(dofs) if response.unit(name) == response.unit(head)]
+    moved = {"": response.q, "velocity": response.v}[tail] if tail != "acceleration" else response.accelerations()
+    sizes = moved.std(axis=0)
+    own, largest = sizes[dofs.index(head)], sizes[alike].max()
+    if own < ROUNDING * largest:
+        unit = response.unit(channel)
+        raise ValueError(
+            f"channel = {channel!r} has an rms of {own:.2g} {unit}, which is rounding: others of its kind have up to "
+            f"{largest:.2g} {unit}; give a channel that moves"
+        )
+
+
+def _fault_lines(machine):
+    """Stage of the first faulty gear (without one the last stage), and fault, shaft and carrier frequency [Hz] or None."""
+    if not machine.stages:
+        raise ValueError("the machine names no stages, so that no lines are known: give it stages=(Stage(...),)")
+    main = machine.faults[0] if machine.faults else None
+    stage = machine.stages[-1] if main is None else machine.stage_of(main.gear)
+    if main is None:
+        return stage, None, None, stage.carrier
+    several = main.frequency if main.frequency > main.turning * (1 + 1e-9) else None
+    return stage, several, main.turning, stage.carrier
 
 
 def _mesh_of(machine, stage):

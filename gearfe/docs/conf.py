@@ -27,6 +27,7 @@ GROUPS = {
     "How large are the errors of closed forms?": "map speed speed_stages sweeps",
     "Are the articles reproduced?": "two_minutes printed joint assumptions planetary_pitting "
     "compound_planetary helical_pitting herringbone herringbone_machine herringbone_layouts herringbone_readings "
+    "planetary_pitting_variants compound_planetary_variants helical_pitting_variants herringbone_machine_variants "
     "sideband_centroid",
     "Are vibration and diagnosis right?": "dynamics dynamics_chatter rig measured detection",
 }
@@ -35,7 +36,7 @@ GROUPS = {
 def row(name):
     """Row of a page in the index: its title, and its first paragraph or list, which is the answer."""
     title, answer = (PAGES / f"{name}.md").read_text(encoding="utf-8").split("\n\n")[:2]
-    words = " ".join(answer.removeprefix("- ").replace("\n- ", " ").split())
+    words = " ".join(answer.removeprefix("- ").replace("\n- ", " ").split()).replace("](#", f"]({name}.md#")
     return f"| {{doc}}`{title.removeprefix('# ')} <{name}>` | {words} |"
 
 

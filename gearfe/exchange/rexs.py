@@ -289,7 +289,7 @@ class _Unit:
         one = self.sets[0]
         count = len(one.angles)
         even = all(abs(angle - 360 * i / count) < 1e-6 for i, angle in enumerate(one.angles))
-        row: dict[str, Any] = {"n_planets": count} if even else {"angles_deg": list(one.angles)}
+        row: dict[str, Any] = {"n_planets": count} if even else {"planet_angles_deg": list(one.angles)}
         stiffness = self._pin(one.first)
         row |= {"sun": one.sun, "planet": one.planet, "ring": one.ring} | ({"pin_N_per_um": stiffness} if stiffness else {})
         return {"set": row}
@@ -308,6 +308,9 @@ class _Unit:
         one = self.pairs[name][0]
         speed = self.power.speed_of(self.gears[one].id, self.meshes)
         if not speed or name not in forces or len(self.pairs) - len(self.sets) != 1:
+            return {}
+        if "planet_angles_deg" in self._set().get("set", {}):
+            self.reader.assume("no [machine]", "the machine of a scene has equally spaced planets, and these are not")
             return {}
         mesh = self.meshes[0]
         row = {"model": "planetary" if self.sets else "helical_pair", "speed_rpm": abs(speed)}

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..core.files import save_figure
 from .look import COLOURS, blank
-from .stiffness_plots import told
+from .stiffness_plots import periodic, told
 
 
 def plot_transmission_error(found, path=None, title=None, plain=None):
@@ -19,9 +19,9 @@ def plot_transmission_error(found, path=None, title=None, plain=None):
     order = np.argsort(found.force)[::-1]
     colours = colormaps["plasma"](np.linspace(0.0, 0.62, order.size))  # no paler: light loads are lines on white, too
     for i, colour in zip(order.tolist(), colours, strict=True):
-        phase, te = _closed(found.phase, found.te[i])
+        phase, te = _closed(found, found.te[i])
         top.plot(phase, 1e6 * te, color=colour, label=f"{found.force[i]:g} N")
-    phase, te = _closed(found.phase, found.unloaded)
+    phase, te = _closed(found, found.unloaded)
     top.plot(phase, 1e6 * te, color="black", linestyle=":", label="unloaded")
     top.set_title(told(found.curves[0], load=False) if title is None else title, fontsize=10)
     top.set_xlabel("mesh phase (0: a pair enters, 1: one base pitch later)")
@@ -40,8 +40,9 @@ def plot_transmission_error(found, path=None, title=None, plain=None):
     return save_figure(figure, path, dpi=120)
 
 
-def _closed(phase, values):
-    """One mesh cycle with its first point again at its end; other phases as they are."""
-    if phase.size > 1 and (np.diff(phase) > 0).all() and phase[-1] < phase[0] + 1:
+def _closed(found, values):
+    """One mesh cycle with its first point again at its end; other phases, and teeth that differ, as they are."""
+    phase = found.phase
+    if all(map(periodic, found.curves)) and phase.size > 1 and (np.diff(phase) > 0).all() and phase[-1] < phase[0] + 1:
         return np.append(phase, phase[0] + 1), np.append(values, values[0])
     return phase, values

@@ -1,5 +1,7 @@
 """Line styles of all pictures: colours for colour-blind readers, and dashes; an empty picture."""
 
+import io
+from functools import partial
 from typing import Any
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555")
@@ -18,5 +20,13 @@ def blank(size: tuple[float, float], *rows: int, **options: Any) -> tuple[Any, A
     """Return an empty figure of a size [inch], and its axes from matplotlib's ``Figure.subplots``."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=size, layout="constrained")
+    figure: Any = Figure(figsize=size, layout="constrained")
+    figure._repr_png_ = partial(_png, figure)  # notebooks show it as the value of a cell
     return figure, figure.subplots(*rows, **options)
+
+
+def _png(figure):
+    """Bytes of a figure as PNG."""
+    file = io.BytesIO()
+    figure.savefig(file, format="png", dpi=100)
+    return file.getvalue()

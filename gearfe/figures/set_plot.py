@@ -53,11 +53,11 @@ def draw_curves(curves: Any, path: StrPath | None, *, dpi: int) -> "Figure":
     figure, (above, middle, below) = blank((9, 8), 3, sharex=True)
     for planet in range(curves.force.shape[2]):
         for inner, name in enumerate(("sun", "ring")):
-            label = f"planet {planet}, {name}"
+            label = f"planet {planet + 1}, {name}"
             line = {"color": COLOURS[planet % len(COLOURS)], "linestyle": DASHES[inner]}
             above.plot(curves.position, curves.k[inner, :, planet] / NEWTON_PER_UM, label=label, **line)
             if not inner:
-                middle.plot(curves.position, curves.share[inner, :, planet], label=f"planet {planet}", **line)
+                middle.plot(curves.position, curves.share[inner, :, planet], label=f"planet {planet + 1}", **line)
     for inner in (0, 1):
         above.plot(curves.position, curves.k_alone[inner, :, 0] / NEWTON_PER_UM, color="gray", linestyle=DASHES[inner],
                    label=f"alone, {('sun', 'ring')[inner]}")  # fmt: skip

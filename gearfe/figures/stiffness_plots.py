@@ -8,6 +8,8 @@ from ..core.files import save_figure
 from ..core.units import NEWTON_PER_UM
 from .look import SQUASHED, blank, look
 
+UNEVEN = ("pitch", "tooth_scale", "eccentricity")  # deviations of flanks from tooth to tooth
+
 
 def plot_curves(curves, path=None, title=None):
     """Draw stiffness curves by name over the phase [N/um], the load shares of the first below; save to `path` if given.
@@ -49,6 +51,12 @@ def told(curve, *, load=True):
     return ", ".join(parts)
 
 
+def periodic(curve):
+    """Whether a curve repeats after one mesh cycle: without damage, and without teeth that differ."""
+    flanks = curve.meta.get("flanks", {}).values()
+    return not curve.meta.get("damage") and not any(flank.get(name) for flank in flanks for name in UNEVEN)
+
+
 def closed(curve):
     """Phases and stiffness [N/um] as they are drawn: one cycle closed, jumps upright.
 
@@ -58,7 +66,7 @@ def closed(curve):
     """
     phase, k, order = curve.phase, curve.k / NEWTON_PER_UM, np.arange(curve.phase.size)
     rises = phase.size > 1 and bool((np.diff(phase) > 0).all())
-    if rises and phase[-1] < phase[0] + 1 and phase[-1] - phase[0] > 0.75:  # one cycle: close it
+    if rises and periodic(curve) and phase[-1] < phase[0] + 1 and phase[-1] - phase[0] > 0.75:  # one cycle: close it
         phase, order = np.append(phase, phase[0] + 1), np.append(order, 0)
     k = k[order]
     meta = curve.meta

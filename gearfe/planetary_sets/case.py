@@ -15,13 +15,18 @@ from ..core.record import ranged, settle
 from ..geometry.damage.crack import Crack, check_apart, check_through
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.planetary import PlanetarySet
-from ..geometry.renamed import renamed
+from ..geometry.renamed import renamed, warn_renamed
 from ..geometry.tooth.modified import Flank
 from .rim_supports import check_support
 from .standing import assembled
 
 GEARS = ("sun", "planet", "ring")
 LARGEST = 0.1  # modules: larger position errors are probably given in another unit
+
+
+def planet_name(index: int) -> str:
+    """Name of a planet by its place in the arrays: ``"planet1"`` is the first, as in machines."""
+    return f"planet{index + 1}"
 
 
 @renamed(angles="planet_angles")
@@ -51,10 +56,11 @@ class PlanetaryCase:
     errors : sequence of (float, float), optional
         Pin position error of each planet [mm]: outwards, and clockwise, the direction in which the sun drives it.
     flanks : dict, optional
-        Modifications ``{"sun": Flank(...), "planet": Flank(...), ("planet", 1): Flank(...), "ring": Flank(...)}``; ``"planet"``
-        is every planet for which ``("planet", number)`` is not given. Both flanks of a planet have them. A pitch deviation of a
-        planet moves the whole tooth; its sign is that of the flank towards the sun. Teeth are counted clockwise: at position 0
-        tooth 0 of the sun meets tooth 0 of planet 0, see `gearfe.planetary_sets.standing`.
+        Modifications ``{"sun": Flank(...), "planet": Flank(...), "planet2": Flank(...), "ring": Flank(...)}``. Planets are
+        ``"planet1"``, ``"planet2"``, as in machines; ``"planet"`` is every planet that has no entry of its own. Both flanks of a
+        planet have them. A pitch deviation of a planet moves the whole tooth; its sign is that of the flank towards the sun.
+        Teeth are counted clockwise: at position 0 tooth 0 of the sun meets tooth 0 of planet 1, see
+        `gearfe.planetary_sets.standing`.
     damage : dict, optional
         Lists of cracks through the whole width ``{"sun": [Crack(...)], ...}``, by the same names. The loaded side of a planet's
         tooth is the one that the sun loads. One crack to a side of a tooth. Faces of cracks do not pass through each other under
@@ -137,17 +143,20 @@ class PlanetaryCase:
         return tuple(map(tuple, errors.tolist()))
 
     def _by_gear(self, what, given, kind, *, single):
-        """By gear, planets one by one: ``{"sun": ..., ("planet", i): ..., "ring": ...}``, those given only."""
+        """By gear, planets one by one: ``{"sun": ..., "planet1": ..., "ring": ...}``, those given only."""
         if given is None:
             return Frozen({})
         if not isinstance(given, Mapping):
             raise ValueError(f"{what} = {given!r}, but give them by gear: {{'sun': ..., 'planet': ..., 'ring': ...}}")
-        names = {"sun", "ring", *(("planet", i) for i in range(self.planets))}
+        planets = [planet_name(i) for i in range(self.planets)]
+        former = {("planet", i): name for i, name in enumerate(planets) if ("planet", i) in given}
+        for old, new in former.items():
+            warn_renamed(f"{what} of {old}", repr(new))
+        given = {former.get(name, name): value for name, value in given.items()}
         out: dict[Any, Any] = {}
         for name in sorted(given, key=lambda entry: entry != "planet"):
-            counts = name in names and not (isinstance(name, tuple) and isinstance(name[1], bool))
-            if not counts and name != "planet":
-                raise ValueError(f"{what} of {name!r}, but give 'sun', 'planet', 'ring' or ('planet', 0 ... {self.planets - 1})")
+            if not isinstance(name, str) or name not in ("sun", "planet", "ring", *planets):
+                raise ValueError(f"{what} of {name!r}, but give 'sun', 'planet', 'ring', or one planet: {', '.join(planets)}")
             value = given[name]
             if not single:
                 if not isinstance(value, (list, tuple)):
@@ -156,7 +165,7 @@ class PlanetaryCase:
             for entry in (value,) if single else value:
                 if not isinstance(entry, kind):
                     raise ValueError(f"{what} of {name!r}: {entry!r} is no {kind.__name__}; the section has no other")
-            out |= {("planet", i): value for i in range(self.planets)} if name == "planet" else {name: value}
+            out |= dict.fromkeys(planets, value) if name == "planet" else {name: value}
         return Frozen(out)
 
     def _check_faults(self):

@@ -8,6 +8,7 @@ from scipy.linalg import block_diag
 
 from ..contact.pair_contact import OVERLAP
 from ..geometry.aliases import Floats
+from .case import planet_name
 from .cracked import CrackOpenings
 from .whole_gear import PLACES
 
@@ -68,6 +69,6 @@ def _loads_on(block, name):
         return None if block.inner else (0, slice(PLACES))
     if name == "ring":
         return (1, slice(PLACES)) if block.inner else None
-    if name[1] != block.planet:
+    if name != planet_name(block.planet):
         return None
     return (0, slice(PLACES, None)) if block.inner else (1, slice(PLACES))

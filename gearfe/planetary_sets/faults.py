@@ -7,6 +7,7 @@ import numpy as np
 
 from ..geometry.pair.flanks import flank_forms
 from ..geometry.tooth.modified import Flank
+from .case import planet_name
 
 
 def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, bool]:
@@ -15,7 +16,7 @@ def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, b
     `inner`: it is the mesh with the ring. `first` is the wheel's tooth that meets the pinion's tooth 0: C or D of `Standing`.
     Cracks count teeth in each gear's own frame, as `gearfe.flexibility.plane.Flexibility` does.
     """
-    pair, names = case.pairs[inner], (("planet", planet), "ring") if inner else ("sun", ("planet", planet))
+    pair, names = case.pairs[inner], (planet_name(planet), "ring") if inner else ("sun", planet_name(planet))
     flanks = [case.flanks.get(name, Flank()) for name in names]
     # the pinion's tooth in pair j is tooth j, of a planet in a ring -j; the wheel's is first - j
     teeth = [np.arange(gear.z) * (-1 if inner and k == 0 else 1) for k, gear in enumerate((pair.gear_1, pair.gear_2))]

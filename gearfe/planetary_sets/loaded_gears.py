@@ -43,7 +43,7 @@ def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
     check_meshable(case)
     without = np.flatnonzero((curves.force[:, at] == 0).any(axis=0)).tolist()
     if without:
-        raise ValueError(f"planet {without[0]} is unloaded at position {at}, so its place is undefined: choose another")
+        raise ValueError(f"planet {without[0] + 1} is unloaded at position {at}, so its place is undefined: choose another")
     return case, standing(case.gears, np.array(case.planet_angles), [curves.position[at]])
 
 

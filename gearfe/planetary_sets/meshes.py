@@ -17,6 +17,7 @@ from ..flexibility.energy.ritz.plane import flexibility
 from ..flexibility.section_contact import Solved
 from ..geometry.aliases import Floats
 from ..geometry.pair.contacts import near_pitches
+from .case import planet_name
 from .faults import faults
 from .standing import DIGITS, Standing
 
@@ -89,7 +90,7 @@ class Meshes:
 
     def _key(self, inner, planet):
         differs = faults(self.case, bool(inner), planet, int(self._firsts[inner][planet]))[2]
-        return inner, planet, differs, None if differs else self.case.flanks.get(("planet", planet))
+        return inner, planet, differs, None if differs else self.case.flanks.get(planet_name(planet))
 
     def at(self, i: int, loads: Floats, reach: Floats) -> list[list[PlacedContacts]]:
         """`PlacedContacts` of all meshes at position i by ``[inner][planet]``, for loads [N/mm] and approaches [mm]."""

@@ -8,15 +8,15 @@ from ..scene.load import Scene, ScenePair
 from ..scene.reading import located
 from ..scene.schema import arguments
 from ..scene.set_table import SceneSet
-from .case import PlanetaryCase
+from .case import PlanetaryCase, planet_name
 from .rim_supports import RimBed, RimSupports
 
 
 def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
     """Return the planetary set of a scene for `gearfe.planetary_stiffness`, with its flanks and a case of damage.
 
-    Cracks of the planet's gear are in one planet (``damaged_planet``), on the flank that the sun loads. A crack that the scene
-    states in the pair of planet and ring only is on the other flank.
+    Cracks of the planet's gear are in the planet of their ``body``, by default the first, on the flank that the sun loads.
+    A crack that the scene states in the pair of planet and ring only is on the other flank.
 
     Parameters
     ----------
@@ -110,13 +110,11 @@ def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, i
 
 
 def _gear_name(body, gear, case, given):
-    """Name of a gear of the set: of planets with their number, which bodies count from 1 and sets from 0."""
-    known = [f"planet{i + 1}" for i in range(len(given.errors))] if gear == "planet" else [gear]
+    """Name of a gear of the set; the planet without a body is the first."""
+    known = [planet_name(i) for i in range(len(given.errors))] if gear == "planet" else [gear]
     if body is not None and body not in known:
         raise ValueError(f"case {case!r} damages body {body!r}, but the {gear} of the set is {', '.join(known)}")
-    if gear != "planet":
-        return gear
-    return gear, given.damaged_planet if body is None else known.index(body)
+    return known[0] if body is None else body
 
 
 def _opposite(side):

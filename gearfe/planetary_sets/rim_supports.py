@@ -52,7 +52,7 @@ class RimSupports:
         by a fifth.
     first : float
         Angle from the centre-line of the ring's tooth 0 to the middle of the first pad, clockwise [rad]. Tooth 0 of the ring is
-        the one in mesh with planet 0 at position 0, in the newest pair of teeth there.
+        the one in mesh with planet 1 at position 0, in the newest pair of teeth there.
     radial, tangential : float
         Stiffness of each pad over the whole face width [N/mm]; default: rigid; 0: the pad does not hold in that direction. The
         rim on a pad stays an arc that moves as a whole, without tilting.

@@ -21,7 +21,7 @@ def content(curves: Any) -> Content:
     for name, unit in PER_MESH.items():
         for k, kind in enumerate(MESHES):
             for planet in range(curves.force.shape[2]):
-                columns[f"{name} {kind} {planet} [{unit}]"] = getattr(curves, name)[k, :, planet]
+                columns[f"{name} {kind} {planet + 1} [{unit}]"] = getattr(curves, name)[k, :, planet]
     seconds = {name: value for name, value in curves.meta.items() if name.startswith("seconds")}
     meta = {"case": repr(curves.meta["case"]), "K_gamma": curves.K_gamma, **seconds, "versions": versions()}
     meta["estimated_error"] = {name: np.asarray(value).tolist() for name, value in curves.meta.get("error", {}).items()}

@@ -68,8 +68,8 @@ def assembled(set_: "PlanetarySet", angles: ArrayLike) -> Floats:
 def standing(set_: "PlanetarySet", angles: Floats, position: ArrayLike) -> Standing:
     """`Standing` of a set whose sun is turned by `position` ``(n,)`` of its pitches.
 
-    At position 0 planet 0 and the sun are at mesh phase 0, with tooth 0 of both; ring tooth 0 is that of the newest pair of
-    planet 0 and the ring.
+    At position 0 planet 1 and the sun are at mesh phase 0, with tooth 0 of both; ring tooth 0 is that of the newest pair of
+    planet 1 and the ring.
     """
     sun_planet, planet_ring, n = set_.sun_planet, set_.planet_ring, angles.size
     behind = set_.sun.z * (angles - angles[0]) / (2 * math.pi)

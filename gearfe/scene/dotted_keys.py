@@ -5,10 +5,8 @@ A part of a key is the name of a table, the case of a list of damage, or the pla
 
 import copy
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, cast
 
-from .load import read_tables, scene_of
 from .parts import DAMAGE
 from .schema import LISTS, Key, scene_schema
 
@@ -16,13 +14,6 @@ OUTSIDE = ("pair", "case")  # keys by themselves: which pair, which case of dama
 BEFORE_LOAD = ("gear", "material")  # inputs of the healthy gears; then damage; the rest shares the gears
 PRINTED = ("reference", "assumption", "given", "later")  # statements on the source, which no value depends on
 Tables = dict[str, Any]
-
-
-def tables_near(place: Path, scene: str) -> tuple[str, Tables]:
-    """Name and tables of a scene, a file in the folder `place` or a built-in one, without statements on its source."""
-    near = place / scene
-    name, tables = read_tables(near if near.is_file() else scene)
-    return name, {kind: table for kind, table in tables.items() if kind not in PRINTED}
 
 
 def check_key(dotted: str, tables: Tables, options: Mapping[str, Any]) -> None:
@@ -94,35 +85,6 @@ def _with_number(home, name, at, value):
         raise ValueError(f"{name} = {numbers!r} in the scene has no number {at}; the first is 0")
     numbers[at] = value
     return numbers
-
-
-def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
-    """Return the tables of one pair in one case of damage, since the rest would be checked for every case of a sweep.
-
-    The pair of a gearbox has its force in the gearbox.
-    """
-    chosen = tables["pair"][pair]
-    if is_gearbox(tables):
-        whole = {kind: table for kind, table in tables.items() if kind not in (*DAMAGE, *PRINTED)}
-        chosen = chosen | {"force_N": scene_of("scene", whole).pair(pair).force}
-    gears = {chosen.get(name) for name in ("gear_1", "gear_2")}
-    out: Tables = {name: tables[name] for name in ("title", "source") if name in tables}
-    out |= {"pair": {pair: chosen}, "gear": {name: table for name, table in tables["gear"].items() if name in gears}}
-    for kind, key in scene_schema()["scene"].keys.items():
-        if not key.of or "gear" not in scene_schema()[key.of].keys:
-            continue
-        wanted = lambda row: row.get("gear") in gears and row.get("pair") in (None, pair) and row.get("case", case) == case  # noqa: E731
-        if key.type == "listed":
-            out[kind] = [row for row in tables.get(kind, []) if wanted(row)]
-        else:
-            out[kind] = {name: row for name, row in tables.get(kind, {}).items() if wanted(row)}
-    used = {row.get("material") for kind in ("gear", "shaft") for row in out[kind].values()}
-    return out | {"material": {name: table for name, table in tables["material"].items() if name in used}}
-
-
-def is_gearbox(tables: Tables) -> bool:
-    """Whether the forces of the pairs follow from the torque of a gearbox."""
-    return bool(tables.get("machine", {}).get("model") == "gearbox")
 
 
 def rank(dotted: str) -> int:

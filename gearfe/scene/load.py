@@ -1,7 +1,9 @@
 """Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units stand in the key names."""
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from html import escape
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -9,8 +11,10 @@ from typing import Any
 from ..core.case import Case
 from ..core.files import check_path
 from ..core.material import Material
+from ..core.record import check_named
 from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
+from ..core.table import Column, Table
 from ..geometry.aliases import StrPath
 from ..geometry.damage.kinds import Damage
 from ..geometry.pair.flanks import Misalignment
@@ -18,6 +22,7 @@ from ..geometry.pair.gear_pair import GearPair
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.modified import Flank
 from . import assumed, parts
+from .dotted_keys import find_key, set_values
 from .reading import Reading, located
 from .references import Reference, read_references
 from .schema import arguments, scene_schema
@@ -33,8 +38,8 @@ HEALTHY = "healthy"  # the case without damage
 class ScenePair:
     """A gear pair of a scene with its materials, its force along the line of action [N], and how its teeth run.
 
-    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage, of one body on each side; `owned` holds it of all bodies,
-    by case, side and `gearfe.scene.parts.Owner`. `flanks`, `misalignment`, `supports` are as `gearfe.mesh_stiffness` has them.
+    `owned` holds the damage of all bodies by case, side and `gearfe.scene.parts.Owner`. `flanks`, `misalignment`, `supports` are
+    as `gearfe.mesh_stiffness` has them.
     """
 
     pair: GearPair
@@ -42,11 +47,15 @@ class ScenePair:
     force: float
     face: str | None = None
     groove: float = 0.0
-    damage: dict[str, dict[str, list[Damage]]] = field(default_factory=dict)
     flanks: dict[str, Flank] = field(default_factory=dict)
     misalignment: Misalignment | None = None
     supports: dict[str, Support | Shaft] = field(default_factory=dict)
     owned: dict[str, dict[str, parts.Owned]] = field(default_factory=dict)
+
+    @property
+    def damage(self) -> dict[str, dict[str, list[Damage]]]:
+        """Damage by case and side as `gearfe.mesh_stiffness` takes it, of one body on each side."""
+        return {case: {side: _of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
 
     def case(self, name: str | None = None) -> Case:
         """Return the pair as a `Case` with a case of damage; None: healthy. ValueError if the pair has no such case."""
@@ -78,6 +87,40 @@ class Scene:
     set: SceneSet | None = None  # a whole planetary set, `gearfe.planetary_sets.of_scene.build_set` gives its case
     train: Train | None = None  # shafts of a gearbox, their speeds and torques
 
+    def __post_init__(self) -> None:
+        """Raise ValueError if speeds, torques, forces or gears that follow from the file are those of other values."""
+        if self.train is not None:
+            motor, machine = self.train.ends["motor"]["shaft"], self.machine
+            given = [machine["speed_rpm"] * math.pi / 30, machine["torque_Nm"], *(one.force for one in self.pairs.values())]
+            forces = [self.train.forces.get(name) for name in self.pairs]
+            self._check("speed, torque or force", given, [self.train.speeds[motor], self.train.torques["motor"], *forces])
+        if self.set is not None:
+            outer, inner = (self.pair(name).pair for name in self.set.pairs)
+            gears = self.set.gears.sun_planet.gear_1, self.set.gears.sun_planet.gear_2, self.set.gears.planet_ring.gear_2
+            self._check("gear of the set", [outer.gear_1, outer.gear_2, inner.gear_2], gears)
+
+    def _check(self, what, given, derived):
+        for one, other in zip(given, derived, strict=True):
+            if one != other and not (isinstance(other, (int, float)) and math.isclose(one, other, rel_tol=1e-9)):
+                raise ValueError(
+                    f"scene {self.name}: a {what} was replaced, but others follow from the former one: give it with "
+                    "load_scene(..., values={...})"
+                )
+
+    def __repr__(self) -> str:
+        """Name, title, pairs and cases in one line."""
+        cases = sorted({case for pair in self.pairs.values() for case in pair.damage})
+        return f"<Scene {self.name}: {self.title}; pairs {', '.join(self.pairs)}; cases {', '.join(cases) or 'none'}>"
+
+    def _repr_html_(self) -> str:
+        """Title and a table of the pairs, which notebooks display."""
+        columns = ["pair", "teeth", Column("module", "mm"), Column("width", "mm"), Column("force", "N"), "cases of damage"]
+        rows = [
+            [name, f"{one.gear_1.z} / {one.gear_2.z}", one.gear_1.m_n, min(one.gear_1.b, one.gear_2.b), chosen.force,
+             ", ".join(chosen.damage)] for name, chosen in self.pairs.items() for one in (chosen.pair,)
+        ]  # fmt: skip
+        return f"<p>{escape(self.title)}</p>{Table(columns, rows).html()}"
+
     def pair(self, name: str | None = None) -> ScenePair:
         """Return the pair called `name`; the first one if None. ValueError if there is no such pair."""
         if name is None:
@@ -85,6 +128,23 @@ class Scene:
         if name not in self.pairs:
             raise ValueError(f"scene {self.name} has no pair {name!r}; it has {', '.join(self.pairs)}")
         return self.pairs[name]
+
+    def with_damage(self, case: str, damage: Mapping[str, Mapping[str, Sequence[Damage]]]) -> "Scene":
+        """Copy with a case of damage by pair and side, such as ``{"stage": {"wheel": [Crack(level=0.3, tooth=5)]}}``.
+
+        The case has no other damage. ValueError if a pair or side is unknown.
+        """
+        for name, by_side in damage.items():
+            self.pair(name)
+            for side in by_side:
+                check_named("side", side, parts.SIDES)
+        pairs = {}
+        for name, pair in self.pairs.items():
+            given = damage.get(name, {}).items()
+            owned: dict[str, parts.Owned] = {side: {parts.Owner(None, name, side): list(found)} for side, found in given if found}
+            others = {other: found for other, found in pair.owned.items() if other != case}
+            pairs[name] = replace(pair, owned=others | ({case: owned} if owned else {}))
+        return replace(self, pairs=pairs)
 
     def case(self, pair: str | None = None, case: str | None = None) -> Case:
         """`Case` of a pair by name (None: the first), in a case of damage (None: healthy), as `gearfe.solve` takes it.
@@ -101,15 +161,24 @@ def scene_names() -> list[str]:
     )
 
 
-def load_scene(name_or_path: StrPath) -> Scene:
+def load_scene(name_or_path: StrPath, values: Mapping[str, Any] | None = None) -> Scene:
     """Read a built-in scene by name, or a scene file by path.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+    values : dict, optional
+        Other values by dotted key, such as ``{"gear.pinion.r_bore_mm": 8.0, "machine.speed_rpm": 1200}``.
 
     Raises
     ------
     ValueError
         With file, table and key, if anything is unknown, missing or of the wrong type, or if a gear or pair is impossible.
     """
-    return scene_of(*read_tables(name_or_path))
+    file, tables = read_tables(name_or_path)
+    for key in values or {}:
+        find_key(key, tables)
+    return scene_of(file, set_values(tables, values) if values else tables)
 
 
 def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
@@ -188,6 +257,7 @@ def _pair(file, name, rows, gears, materials, forces):
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
         if row["backlash_um"] is not None:
             made = _with_backlash(made, 1e-3 * row["backlash_um"])
+        misalignment = parts.misalignment_of(made, row)
     owned = parts.damage_of(file, rows, name, made)
     return ScenePair(
         made,
@@ -195,10 +265,9 @@ def _pair(file, name, rows, gears, materials, forces):
         force=float(force),
         face=row["face"],
         groove=float(row["groove_mm"]),
-        damage={case: {side: _of_one_body(found) for side, found in by_side.items()} for case, by_side in owned.items()},
         owned=owned,
         flanks=parts.flanks_of(file, rows, name, gears),
-        misalignment=parts.misalignment_of(file, name, made, row),
+        misalignment=misalignment,
         supports=parts.supports_of(file, rows, name, materials),
     )
 

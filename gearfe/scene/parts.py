@@ -74,7 +74,12 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
 
 def crack_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     """Return the crack of a row."""
-    return [Crack(**arguments("crack", row))]
+    given = arguments("crack", row)
+    if path := given.get("path"):
+        if len(path) % 2:
+            raise ValueError(f"path_mm = {list(path)}, but corners have two numbers each: x, y [mm]")
+        given["path"] = tuple(zip(path[::2], path[1::2], strict=True))
+    return [Crack(**given)]
 
 
 def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
@@ -137,14 +142,13 @@ def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[st
     return out
 
 
-def misalignment_of(file: str, name: str, pair: GearPair, row: Row) -> Misalignment | None:
-    """Misalignment of the pair `name`, from its row; None if it has none."""
+def misalignment_of(pair: GearPair, row: Row) -> Misalignment | None:
+    """Misalignment of a pair, from its row; None if it has none."""
     amounts = ("F_beta_x_um", "f_sigma_beta_um", "f_sigma_delta_um")
     if not any(row[amount] for amount in amounts):
         return None
-    with located(file, f"pair.{name}", row):
-        misalignment = Misalignment(**arguments("pair", row, *amounts, "bearing_span_mm"))
-        tilt_of(pair, misalignment)
+    misalignment = Misalignment(**arguments("pair", row, *amounts, "bearing_span_mm"))
+    tilt_of(pair, misalignment)
     return misalignment
 
 

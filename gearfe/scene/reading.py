@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from .schema import LISTS, NAMES, REQUIRED, Key, KeyTable, scene_schema, schema_of, shown
+from .schema import LISTS, NAMES, REQUIRED, KeyTable, scene_schema, schema_of, shown
 
 LARGEST, MOST = 1e30, 2**63  # no length, force or stiffness is larger, in any unit; whole numbers that arrays can hold
 PLAIN = {"boolean": bool, "values": dict}  # types of keys that are neither numbers nor texts
@@ -14,11 +14,11 @@ PLAIN = {"boolean": bool, "values": dict}  # types of keys that are neither numb
 
 @dataclass(slots=True)
 class Reading:
-    """The reading of one file by the `tables` of a schema; `references` are (place, key, name) of keys that name a table."""
+    """The reading of one file by the `tables` of a schema; `references` (place, type, key, name) are keys that name a table."""
 
     file: str
     tables: Mapping[str, KeyTable]
-    references: list[tuple[str, Key, str]] = field(default_factory=list)
+    references: list[tuple[str, str, str, str]] = field(default_factory=list)
 
     def row(self, name: str, where: str, given: Any) -> dict[str, Any]:
         """Values of the table ``[where]``, that is `given`, with defaults filled in; nested tables too.
@@ -62,8 +62,8 @@ class Reading:
         value = given[key.name]
         if wrong := _wrong(key, value):
             raise ValueError(f"{self.file} [{where}] {key.name} = {shown(value)}{wrong}")
-        if key.type in NAMES:
-            self.references.append((where, key, value))
+        if (kind := LISTS.get(key.type, key.type)) in NAMES:
+            self.references += [(where, kind, key.name, name) for name in (value if kind != key.type else [value])]
         return value
 
     def _nested(self, key, where, value):
@@ -85,8 +85,8 @@ class Reading:
 
     def check_references(self, rows: Mapping[str, Any]) -> None:
         """Raise ValueError if a key names a table of a scene that is not among its `rows`."""
-        for where, key, name in self.references:
-            check_known(self.file, where, key.name, name, rows[key.type], key.type)
+        for where, kind, key, name in self.references:
+            check_known(self.file, where, key, name, rows[kind], kind)
 
 
 def checked(package: str, name: str, file: str, where: str, given: Any) -> dict[str, Any]:
@@ -127,6 +127,8 @@ def unknown(name: Any, names: Iterable[str]) -> str:
     hint = f" (nearest: {near[0]!r})" if near else ""
     if name == "torque_Nm" and "force_N" in names:
         hint = " (force_N is the torque of gear_1 in N m times 1000, over its base radius in mm)"
+    if name in ("damaged_planet", "planet") and {"floating", "tangential_um"} & set(names):
+        hint = ' (former key, counted from 0: give body = "planet1", the first, in the table of the damage or pin)'
     return f"unknown key {shown(name)}{hint}; expected {', '.join(names)}"
 
 

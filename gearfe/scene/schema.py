@@ -16,12 +16,14 @@ from typing import Any
 
 REQUIRED = object()
 SHOWN = 60  # characters of a value in a message
-LISTS = {"numbers": "number", "strings": "string", "tables": "values"}  # type of list: type of its entries
+LISTS = {  # type of list: type of its entries
+    "numbers": "number", "strings": "string", "tables": "values", "gears": "gear", "bearings": "bearing",
+}  # fmt: skip
 NAMES = ("gear", "pair", "material", "shaft", "bearing")  # types of keys that name a table
 TYPES = {
     "number": "a number", "integer": "a whole number", "string": "a text", "boolean": "true or false",
     "numbers": "a list of numbers", "strings": "a list of texts", "tables": "a list of tables",
-    "values": "a table of values by dotted key",
+    "values": "a table of values by dotted key", "gears": "a list of texts", "bearings": "a list of texts",
 }  # fmt: skip
 UNIT = re.compile(r"_([A-Za-z]+_per_\w+|mm|deg|um|N|MPa|Nm|rpm|s|Hz|kg|kgm2)$")
 IN_PYTHON: dict[str, Callable[[float], float]] = {  # units of TOML in those of the library: mm, N, MPa, rad
@@ -84,7 +86,7 @@ class Key:
     @property
     def expected(self) -> str:
         """Type and unit in words."""
-        words = "two numbers" if self.count == 2 else TYPES.get(self.type, "a text")
+        words = TYPES.get(self.type, "a text").replace("a list of", "two" if self.count == 2 else "a list of")
         return f"{words} in {SPELLED.get(self.unit, self.unit)}" if self.unit else words
 
     @property

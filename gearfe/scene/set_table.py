@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ..geometry.pair.planetary import PlanetarySet
 from .reading import check_known, checked, located
 from .schema import arguments
@@ -25,7 +27,6 @@ class SceneSet:
     floating: bool
     pin: float
     errors: tuple[tuple[float, float], ...]
-    damaged_planet: int
     support: dict[str, Any]
 
 
@@ -49,6 +50,7 @@ def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet |
     if angles == []:
         raise ValueError(f"{file} [set] planet_angles_deg = []: give the angle of each planet, or n_planets")
     count = n if angles is None else len(angles)
+    _check_machine(file, rows["machine"], count, angles)
     with located(file, "set", row):
         gears = PlanetarySet(outer.gear_1, outer.gear_2, inner.gear_2, n or 1, outer.a)
     return SceneSet(
@@ -57,10 +59,22 @@ def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet |
         _force(row, count * outer.gear_1.r_b, pairs[names[0]].force),
         floating=row["floating"],
         errors=_errors(file, rows["pin"], count),
-        damaged_planet=_planet(file, "set", "damaged_planet", row["damaged_planet"], count),
         support=ring["support"],
         **{"planet_angles": None, "pin": math.inf} | arguments("set", row, "planet_angles_deg", "pin_N_per_um"),
     )
+
+
+def _check_machine(file, machine, count, angles):
+    """Raise ValueError if the planets of a planetary machine are not those of the set: as many, equally spaced."""
+    if machine is None or machine["model"] not in ("planetary", "herringbone_planetary"):
+        return
+    apart = np.diff(np.sort(np.mod(angles or (), 360.0)))
+    even = angles is None or np.allclose(apart, 360.0 / count, rtol=0, atol=1e-3)
+    if machine["n_planets"] != count or not even:
+        raise ValueError(
+            f"{file} [set]: {count} planets{'' if even else ' at unequal angles'}, but [machine] has n_planets = "
+            f"{machine['n_planets']}, equally spaced: give the same planets in both tables"
+        )
 
 
 def _pairs(file, row, pairs, rows):
@@ -96,17 +110,12 @@ def _force(row, radii, force):
 
 def _errors(file, pins, count):
     """Return pin position errors by planet, outwards and clockwise [mm]."""
-    out, said = [(0.0, 0.0)] * count, {}
+    out, said = dict.fromkeys((f"planet{i + 1}" for i in range(count)), (0.0, 0.0)), {}
     for name, row in pins.items():
-        planet = _planet(file, f"pin.{name}", "planet", row["planet"], count)
-        if planet in said:
-            raise ValueError(f"{file} [pin.{name}]: the pin of planet {planet} is [pin.{said[planet]}] already; give one of both")
-        said[planet] = name
-        out[planet] = tuple(arguments("pin", row, "radial_um", "tangential_um").values())
-    return tuple(out)
-
-
-def _planet(file, where, key, planet, count):
-    if not 0 <= planet < count:
-        raise ValueError(f"{file} [{where}] {key} = {planet}, but the set has {count} planets: give 0 to {count - 1}")
-    return planet
+        body = row["body"]
+        check_known(file, f"pin.{name}", "body", body, out, "planet of the set")
+        if body in said:
+            raise ValueError(f"{file} [pin.{name}]: the pin of {body} is [pin.{said[body]}] already; give one of both")
+        said[body] = name
+        out[body] = tuple(arguments("pin", row, "radial_um", "tangential_um").values())
+    return tuple(out.values())

@@ -29,7 +29,7 @@ def train_of(file: str, rows: Row, gears: dict[str, Gear], materials: dict[str, 
     if not _is_gearbox(file, rows, shafts):
         return None
     made = {name: _shaft(file, name, row, rows, materials) for name, row in shafts.items()}
-    homes = _homes(file, made, gears)
+    homes = _homes(file, made)
     ends = {"motor": rows["motor"]} | rows["load"]
     for name, row in ends.items():
         _on(file, name if name == "motor" else f"load.{name}", "shaft", row["shaft"], row["at_mm"], made)
@@ -63,12 +63,11 @@ def _is_gearbox(file, rows, shafts):
     return True
 
 
-def _homes(file, shafts, gears):
+def _homes(file, shafts):
     """Shaft of each gear."""
     homes: dict[str, str] = {}
     for name, shaft in shafts.items():
         for gear in shaft.gears:
-            check_known(file, f"shaft.{name}", "gears", gear, gears, "gear")
             if gear in homes:
                 raise ValueError(f"{file} [shaft.{name}] gears: {gear!r} is on [shaft.{homes[gear]}] already; give one of both")
             homes[gear] = name
@@ -103,8 +102,6 @@ def _held(file, where, row, rows, made):
     """Return the shaft with its bearings."""
     for at in row["bearings_at_mm"]:
         _along(file, where, "bearings_at_mm", at, made)
-    for kind in row["bearings"] or ():
-        check_known(file, where, "bearings", kind, rows["bearing"], "bearing")
     radial = tuple(1e6 * k for k in row["bearings_N_per_um"] or ())
     axial = tuple(1e6 * k for k in row["bearings_axial_N_per_um"] or ()) or (radial and (radial[0], 0.0))
     damping = tuple(1e3 * c for c in row["bearings_Ns_per_mm"] or ())

@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections import Counter
 from typing import NamedTuple
 
 from ..core.table import Table
@@ -102,16 +103,18 @@ def _rounded(value):
     return float(f"{value:.6g}")
 
 
-def reason(reference, row):
-    """Return the reason of a verdict: the correction, or why it is not reproducible."""
+def reasons(reference, row):
+    """Return the reasons of a verdict: the correction by which it is judged, and why the value is not reproduced."""
     printed = next(entry for entry in reference.rows if (entry.case, entry.pair or "") == (row.case, row.pair))
     if row.verdict == CORRECTED:
-        return printed.correction
-    if row.verdict == ASSUMED:
-        return printed.set_by
-    if printed.corrected is not None and row.verdict in (TREND, NOT):
-        return "; ".join(entry for entry in (f"judged by the corrected value ({printed.correction})", printed.reason) if entry)
-    return printed.reason if row.verdict in (TREND, NOT, NEVER) else ""
+        found = [printed.correction]
+    elif row.verdict == ASSUMED:
+        found = [printed.set_by]
+    elif row.verdict in (TREND, NOT, NEVER):
+        found = ["" if printed.corrected is None else printed.correction, printed.reason]
+    else:
+        found = []
+    return [one for one in found if one]
 
 
 def counts(rows):
@@ -138,39 +141,74 @@ def _words(rows):
     return ", ".join(f"{n} {'depend' if word == DEPENDS else word}" for word, n in many.items() if n)
 
 
-def text(references, rows, beside=None):
-    """Return rows as Markdown, with sources, tolerances and reasons below; `beside` has remarks on verdicts by case."""
-    cells, notes, codes = [], [], reason_codes(references, rows)
+def text(references, rows, elsewhere=()):
+    """Return rows as Markdown, with sources, tolerances and reasons below.
+
+    Parameters
+    ----------
+    references : sequence of Reference
+    rows : sequence of PrintedRow
+    elsewhere : collection of str
+        Cases of statements that another table lists with their verdicts.
+    """
+    cells, codes, usual = [], reason_codes(references, rows), usual_tolerance(references, rows)
+    notes = notes_of(references, rows)
+    numbers = number_of(references, rows)
     for reference in references:
-        mark = ""
-        judged = [row for row in rows if row.id == reference.id]
-        note = _told(reference, judged, codes)
-        if note:
-            notes.append(note)
-            mark = f" [{len(notes)}]"
-        for i, row in enumerate(judged):
-            name = f"{reference.quantity}{_unit(reference)}{mark}" if i == 0 else ""
-            case = f"{row.case}, {row.pair}" if row.pair else row.case
+        above, pair = ["", ""], None
+        for row in rows:
+            if row.id != reference.id or (row.kind == STATEMENT and row.case in elsewhere):
+                continue
+            name = "" if above[0] else f"{reference.quantity}{_unit(reference)} [{numbers[reference.id]}]"
+            case = f"{row.case}, {row.pair}" if row.pair and row.pair != pair else row.case
             printed = _shown(reference, row.printed)
             if not math.isnan(row.corrected):
                 printed += f" (corrected {_shown(reference, row.corrected)})"
-            verdict = f"**{row.verdict}**" if row.verdict in (NOT, NEVER) else row.verdict
-            verdict += (beside or {}).get(case, "") if row.kind in ("model", STATEMENT) else ""
-            cells.append((name, case, row.kind, printed, _shown(reference, row.ours), _away(reference, row), verdict))
+            own = [row.kind, marked(row.verdict)]
+            kind, verdict = ("" if one == last else one for one, last in zip(own, above, strict=True))
+            cells.append((name, case, kind, printed, _shown(reference, row.ours), _away(reference, row), verdict))
+            above, pair = own, row.pair
     table = Table(("quantity", "case", "kind", "printed", "gearfe", "difference", "verdict"), cells).markdown()
     return "\n".join(
         [
             *(f"- {part}." for part in re.split("; (?:apart from them )?", counts(rows))),
             "",
+            "A quantity, pair, kind or verdict that is left out is that of the row above. An empty difference is below 0.005 %.",
+            "",
             table,
             "",
-            "Sources, tolerances, reasons:",
+            f"Sources, tolerances, reasons.{f' Without a tolerance: {usual[0].lower()}{usual[1:]}' if usual else ''}",
             "",
-            *(f"{i}. {line}" for i, line in enumerate(notes, 1)),
+            *(f"{number}. {note}" for number, note in {numbers[name]: note for name, note in notes.items()}.items()),
             *(["", "Reasons that hold for several quantities:", ""] if codes else []),
             *(f"- {code}: {why}." for why, code in codes.items()),
         ]
     )
+
+
+def marked(verdict):
+    """Return a verdict as Markdown, bold if the printed value is not found."""
+    return f"**{verdict}**" if verdict in (NOT, NEVER) else verdict
+
+
+def notes_of(references, rows):
+    """Return source, tolerance and reasons of each reference by its id; references may share a text."""
+    codes, usual = reason_codes(references, rows), usual_tolerance(references, rows)
+    return {one.id: _told(one, [row for row in rows if row.id == one.id], codes, usual) for one in references}
+
+
+def number_of(references, rows):
+    """Return the number of the note of each reference by its id."""
+    notes = notes_of(references, rows)
+    places = {note: number for number, note in enumerate(dict.fromkeys(notes.values()), 1)}
+    return {name: places[note] for name, note in notes.items()}
+
+
+def usual_tolerance(references, rows):
+    """Return the tolerance that most references have, as a sentence; empty if fewer than three share one."""
+    known = Counter(_stated(one, [row for row in rows if row.id == one.id]) for one in references)
+    del known[""]
+    return next((size for size, count in known.most_common(1) if count > 2), "")
 
 
 def reason_codes(references, rows):
@@ -178,25 +216,33 @@ def reason_codes(references, rows):
     by_reason = {}
     for reference in references:
         for row in rows:
-            if row.id == reference.id and (why := reason(reference, row)):
+            for why in reasons(reference, row) if row.id == reference.id else ():
                 by_reason.setdefault(why, set()).add(reference.id)
     shared = [why for why, names in by_reason.items() if len(names) > 1]
     return {why: f"R{number}" for number, why in enumerate(shared, 1)}
 
 
-def _told(reference, rows, codes):
+def _stated(reference, rows):
     silent = reference.unit == "statement" or all(row.verdict == FORMULA for row in rows)
-    size = "" if silent else f" {_tolerance(reference)} ({reference.tolerance})."
-    parts = [f"{reference.source}.{size}"]
+    return "" if silent else f"{_tolerance(reference)} ({reference.tolerance})."
+
+
+def _told(reference, rows, codes, usual):
+    size = _stated(reference, rows)
+    parts = [f"{reference.source}.", *([size] if size and size != usual else [])]
     parts += [_sentence(reference.note)] if reference.note else []
     by_reason = {}
+    named = [row.case for row in rows]
     for row in rows:
-        why = reason(reference, row)
+        why = "; ".join(codes.get(one, one) for one in reasons(reference, row))
         if why:
-            by_reason.setdefault((row.verdict, why), []).append(f"{row.case}, {row.pair}" if row.pair else row.case)
+            case = row.case if named.count(row.case) == 1 else f"{row.case}, {row.pair}"
+            by_reason.setdefault((row.verdict, why), []).append(case)
+    words = [word for word, _ in by_reason]
     for (word, why), cases in by_reason.items():
-        which = "" if len(cases) == len(rows) else f" ({'; '.join(cases)})"
-        parts.append(f"{_sentence(word)[:-1]}{which}: {codes.get(why, why)}.")
+        alone = words.count(word) == 1 and len(cases) == sum(row.verdict == word for row in rows)
+        which = "" if alone else f" ({'; '.join(cases)})"
+        parts.append(f"{_sentence(word)[:-1]}{which}: {why}.")
     return " ".join(parts)
 
 
@@ -208,7 +254,7 @@ def _tolerance(reference):
     if (reference.absolute if reference.relative is None else reference.relative) < 1e-8:
         return "Exactly"
     if reference.relative is None:
-        return f"Within {reference.absolute:g} {reference.unit}".rstrip()
+        return f"Within {reference.absolute:g} {reference.unit}".removesuffix(" -")
     return f"Within {100 * reference.relative:g} %"
 
 
@@ -227,4 +273,5 @@ def _shown(reference, value):
 def _away(reference, row):
     if math.isnan(row.difference) or reference.unit == "statement":
         return ""
-    return f"{row.difference:+.3g}" if reference.relative is None else f"{row.difference:+.2f} %"
+    shown = f"{row.difference:+.3g}" if reference.relative is None else f"{row.difference:+.2f} %"
+    return "" if re.fullmatch(r"\+0(\.00 %)?", shown) else shown

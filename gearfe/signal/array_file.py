@@ -1,5 +1,6 @@
 """Channels of files that hold arrays by name: numpy archives, MATLAB files of every version, HDF5. Nothing is unpickled."""
 
+import json
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ def array_file(path: StrPath) -> Found:
     if HDF in (start[: len(HDF)], start[512:]):
         return hdf_file(path)
     arrays, units = _response(read(path, "signal"))
+    units |= json.loads(str(np.ravel(arrays["units_json"])[0])) if "units_json" in arrays else {}
     recording = Found({}, units, nested="." if any(_opens(value) for value in arrays.values()) else "")
     for name, value in arrays.items():
         _take(recording, name, value)

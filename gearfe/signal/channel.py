@@ -33,7 +33,7 @@ def signal_of(
     """Return a channel with its rate, unit and angle; arguments and errors are those of `gearfe.read_signal`."""
     if not (is_number(scale) and math.isfinite(scale) and scale):
         raise ValueError(f"scale = {scale!r}, but give a finite factor other than 0")
-    time, angle = (_axis(path, found, name, names, factors) for names, factors in ((TIMES, TIME), (ANGLES, TURN)))
+    time, angle = _axis(path, found, name, TIMES, TIME, rate), _axis(path, found, name, ANGLES, TURN)
     turning = _one(path, "shaft_frequency", [shaft_frequency, *found.nearest(found.stated, name, SHAFTS)], found.named(SHAFTS))
     values = found.vectors[name]
     _whole(path, name, values)
@@ -61,21 +61,27 @@ def _unit(path, found, name, given, scale):
     raise ValueError(f"{path}: {text} for {name!r}{remedy}")
 
 
-def _axis(path, found, channel, names, factors):
-    """Return time [s] or angle [rad] of a channel: that of its group, else of the whole file; None if there is none."""
+def _axis(path, found, channel, names, factors, rate=None):
+    """Return time [s] or angle [rad] of a channel: that of its group, else of the whole file; None if there is none.
+
+    Times without a unit have the one that fits the `rate`.
+    """
     chosen = found.nearest({name: name for name in found.vectors}, channel, names)
     if not chosen:
         return None
     if len(chosen) > 1:
         raise ValueError(f"{path}: {' and '.join(map(repr, chosen))}; keep one of them")
-    unit = found.units.get(chosen[0], "")
+    values, unit = found.vectors[chosen[0]], found.units.get(chosen[0], "")
+    if not unit and is_number(rate) and len(values) > 1:
+        step = float(values[-1] - values[0]) / (len(values) - 1)
+        unit = next((one for one, factor in factors.items() if abs(rate * factor * step - 1) <= AGREE), "")
     if unit not in factors:
         raise ValueError(
             f"{path}: column {chosen[0]!r} has {f'unit {unit!r}' if unit else 'no unit'}, but must state one of "
-            f"{', '.join(factors)}: '{chosen[0]} [{next(iter(factors))}]' in the file, or for a text table in header=, "
-            "the names of all its columns"
+            f"{', '.join(factors)}: '{chosen[0]} [{next(iter(factors))}]' in the file, for a text table in header=, "
+            "the names of all its columns, or for times the rate= that fits them"
         )
-    return factors[unit] * found.vectors[chosen[0]]
+    return factors[unit] * values
 
 
 def _one(path, name, values, where=""):

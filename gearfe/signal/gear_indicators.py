@@ -16,7 +16,7 @@ from scipy.fft import fft, ifft, rfft
 from ..core.table import Column, Table
 from ..geometry.aliases import Floats
 from .given import oscillation, samples
-from .orders import residual_signal, synchronous_average
+from .orders import mesh_coherence, residual_signal, synchronous_average
 from .series import Signal
 
 GEAR_SOURCES = {
@@ -30,6 +30,7 @@ GEAR_SOURCES = {
     "sideband level factor": "sum of the first sidebands' amplitudes f_m +- f_shaft over the rms of the average; Vecer 2005",
 }
 CLEAR = 3.0  # threshold over the median of adjacent orders: white noise exceeds it in 0.2 % of the cases
+SHARP = 0.9  # part of the mesh line that an average keeps: below it the indicators of local faults change
 EMPTY = 1e-9  # part of the average below which a remainder is rounding
 
 
@@ -146,6 +147,15 @@ def gear_indicator_table(
         raise ValueError(f"signals = {signals!r}, but give one record or more, by name or in a list")
     if not isinstance(signals, Mapping):
         signals = {record.name: record for record in records}
+        if len(signals) < len(records):
+            raise ValueError("two records have the same name: give them by name, in a dict")
+    for name, record in signals.items():
+        if (kept := mesh_coherence(record, teeth)) < SHARP:
+            warnings.warn(
+                f"{name}: the average keeps {100 * kept:.2g} % of the mesh line of {teeth} teeth, because the speed varies or "
+                "differs from the one given; local faults are smeared: give tacho=, or speeds= to estimate the speed",
+                stacklevel=2,
+            )
     averages = {name: synchronous_average(record, samples_per_turn)[0] for name, record in signals.items()}
     if len({record.size for record in averages.values()}) > 1:
         most = max(record.size for record in averages.values())

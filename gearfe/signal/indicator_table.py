@@ -17,6 +17,7 @@ LABELS = {  # labels in tables; rms may be larger than the peak, for a signal wi
     "SC (S1)": "mean amplitude around the mesh frequency (article S1)",
 }
 TENFOLD = 900.0  # percent: growth from here on is printed as a factor
+ROUNDING = 1e-9  # part of the largest oscillation
 GREAT = 1e8  # percent: growth beyond it means that the healthy value is rounding
 
 
@@ -58,7 +59,8 @@ def indicator_table(
     Returns
     -------
     dict of str to dict of str to (float, float)
-        ``table[case][indicator]`` is the value and the increment [%], nan where the healthy value is 0.
+        ``table[case][indicator]`` is the value and the increment [%], nan where the healthy value is 0. Both are nan for a record
+        whose oscillation is rounding, less than 1e-9 of the largest.
 
     Raises
     ------
@@ -81,7 +83,11 @@ def indicator_table(
             )
     count = min(signal.values.size for signal in signals.values())
     at = mesh_frequency, fault_frequency
-    indicators = {case: signal.part(0, count).indicators(*at, **options) for case, signal in signals.items()}
+    indicators = {case: signal[:count].indicators(*at, **options) for case, signal in signals.items()}
+    sizes = {case: signal.values.std() for case, signal in signals.items()}
+    for case, size in sizes.items():
+        if size < ROUNDING * max(sizes.values()):
+            indicators[case] = dict.fromkeys(indicators[case], math.nan)
     reference = indicators[healthy]
     return {
         case: {name: (value, increment(value, reference[name]) if reference[name] else math.nan) for name, value in row.items()}

@@ -122,6 +122,29 @@ def synchronous_average(signal: Signal, samples_per_turn: int | None = None, *, 
     return rows.mean(axis=0), periods
 
 
+def mesh_coherence(signal: Signal, teeth: int) -> float:
+    """Part of the mesh line's amplitude that the synchronous average keeps: 1 if it has one phase in all revolutions.
+
+    ::
+
+        c_j = Fourier coefficient of revolution j at the mesh order with the largest line among its first three
+        coherence**2 = (|mean c_j|**2 - s**2 / n) / (mean |c_j|**2 - s**2),   s**2 = mean |c_j+1 - c_j|**2 / 2
+
+    s is the noise. A smaller value means that the angle of the shaft does not follow its speed. nan if there are fewer than 4
+    revolutions, or the noise exceeds the line. ValueError as `synchronous_average`.
+    """
+    turns = by_turn(signal)
+    orders = [order for order in (teeth, 2 * teeth, 3 * teeth) if 2 * order < turns.shape[1]]
+    if len(turns) < 4 or not orders:
+        return math.nan
+    c = rfft(turns, axis=1)[:, orders]
+    noise = np.mean(np.abs(np.diff(c, axis=0)) ** 2, axis=0) / 2
+    whole = np.mean(np.abs(c) ** 2, axis=0) - noise
+    kept = np.abs(c.mean(axis=0)) ** 2 - noise / len(c)
+    most = int(np.argmax(whole))
+    return float(np.sqrt(max(kept[most], 0.0) / whole[most])) if whole[most] > noise[most] else math.nan
+
+
 def residual_signal(average: ArrayLike, teeth: int, *, sidebands: int = 0, shaft_orders: int = 2) -> Floats:
     """Remove the orders of a healthy gear from a synchronous average: a local fault remains as a peak.
 

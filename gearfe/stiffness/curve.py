@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.extras import missing
 from ..core.files import save, save_as
 from ..core.units import NEWTON_PER_UM
+from ..figures.inline import line_svg
 from ..figures.stiffness_plots import plot_curves
 from ..flexibility.section_contact import MARKS
 from ..geometry.aliases import Floats, StrPath
@@ -73,6 +75,10 @@ class StiffnessCurve:
         text = f"{k.min():.4g} to {k.max():.4g} N/um, mean {k.mean():.4g}"
         phases = f"{self.phase.size} phase{'s' if self.phase.size > 1 else ''} from {self.phase[0]:.3g} to {self.phase[-1]:.3g}"
         return f"<StiffnessCurve by {meta.get('method', '?')}: {phases}{load}, k {text}>"
+
+    def _repr_html_(self) -> str:
+        """Return the same line and a small picture of k, which notebooks display."""
+        return f"<p>{escape(repr(self))}</p>{line_svg(self.phase, self.k / NEWTON_PER_UM, 'phase', 'k [N/um]')}"
 
     def to_pandas(self) -> Any:
         """Return the curve as a `pandas.DataFrame`, one row for each phase.

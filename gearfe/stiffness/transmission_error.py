@@ -61,15 +61,26 @@ class TransmissionError:
             )
         return 2 / n * np.abs(np.fft.rfft(self.te, axis=1))[:, round(cycles) * np.arange(1, count + 1)]
 
-    def table(self, plain: TransmissionError | None = None, r_b: float | None = None) -> Table:
+    def record(self) -> Table:
+        """`Table` of the transmission error over the phase [m], a column for each load."""
+        columns = {f"te at {force:.6g} N": row for force, row in zip(self.force, self.te, strict=True)}
+        columns["te unloaded"] = self.unloaded
+        rows = np.column_stack([self.phase, *columns.values()]).tolist()
+        return Table(["phase", *(Column(name, "m") for name in columns)], rows)
+
+    def table(
+        self, plain: TransmissionError | None = None, r_b: float | None = None, healthy: TransmissionError | None = None
+    ) -> Table:
         """`Table` of peak-to-peak, mean and first harmonics by load [um].
 
-        With the peak-to-peak of plain involutes and, if the base radius of the pinion `r_b` [mm] is given, the torque.
+        With the peak-to-peak of plain involutes, that of the `healthy` pair, and, if the base radius of the pinion `r_b` [mm] is
+        given, the torque.
         """
         shown: dict[Column, list[Any]] = {Column("force", "N", "{:.6g}"): [*self.force, "unloaded"]}
         if r_b is not None:
             shown[Column("torque", "N m", "{:.4g}")] = [*1e-3 * r_b * self.force, None]
-        spans = {"peak-to-peak": self} | ({} if plain is None else {"of involutes": plain})
+        others = {"of involutes": plain, "healthy": healthy}
+        spans = {"peak-to-peak": self} | {name: one for name, one in others.items() if one is not None}
         in_um = {name: [*one.peak_to_peak, np.ptp(one.unloaded)] for name, one in spans.items()}
         in_um["mean"] = [*self.te.mean(axis=1), self.unloaded.mean()]
         in_um |= {f"harmonic {n + 1}": [*part, np.nan] for n, part in enumerate(self.harmonics(3).T)}

@@ -11,13 +11,11 @@ the straight line through two tubes. (A parabola through three needs a tube of a
 follow the singularity are off by percents, and multiplies that by 8 / 3.)
 """
 
-from types import SimpleNamespace
-
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ..flexibility.finite_elements.hexahedron import gauss, shapes, slopes_at
-from .fracture import _singular
+from ..flexibility.tip import singular
 
 BLOCK = 400  # elements at a time
 PARTS = 6  # straight pieces of the curve between two places of the front
@@ -73,7 +71,7 @@ def _flows(du, r, angle, material):
     stress = mu * (du + du.swapaxes(0, 1))
     for d in range(3):
         stress[d, d] += lam * (du[0, 0] + du[1, 1] + du[2, 2])
-    body, root = SimpleNamespace(material=material, state="plane strain"), np.sqrt(2 * np.pi * r)
+    root = np.sqrt(2 * np.pi * r)
     out = []
     for mode in (1, 2, 3):
         aux_stress, aux_slope = np.zeros(du.shape), np.zeros(du.shape[1:])
@@ -82,7 +80,7 @@ def _flows(du, r, angle, material):
             aux_stress[0, 2] = aux_stress[2, 0] = -np.sin(angle / 2) / root
             aux_stress[1, 2] = aux_stress[2, 1] = np.cos(angle / 2) / root
         else:
-            aux_stress[:2, :2], aux_slope[:2] = _singular(mode, r, angle, body)
+            aux_stress[:2, :2], aux_slope[:2] = singular(mode, r, angle, material, "plane strain")
             aux_stress[2, 2] = material.nu * (aux_stress[0, 0] + aux_stress[1, 1])
         flow = np.einsum("ij...,i...->j...", stress, aux_slope) + np.einsum("ij...,i...->j...", aux_stress, du[:, 0])
         flow[0] -= np.einsum("ij...,ij...->...", aux_stress, du)

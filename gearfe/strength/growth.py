@@ -1,84 +1,72 @@
-"""Growth of a root crack: its path by the largest tangential stress, and its life by Paris's law."""
+"""Growth of a root crack: its path by a criterion of direction, and its life by Paris's law."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.sparse import hstack
 
 from ..core.case import SIDES, Case
 from ..core.checks import number, one_of, whole
+from ..core.material import Material
 from ..core.table import Column, Table
 from ..core.threads import single
-from ..flexibility.finite_elements.elasticity import HeldSection
-from ..flexibility.finite_elements.fe import EDGES
-from ..flexibility.finite_elements.one_tooth import edge_lengths, narrow_load
 from ..geometry.aliases import Floats
 from ..geometry.damage.crack import Crack, crack_path
-from ..geometry.mesh.outline import stations
-from ..geometry.mesh.section_mesh import section
 from ..geometry.tooth.gear import Gear
-from ..geometry.tooth.profile import arc_at, cartesian, fillet_length, lengths, root_curve
+from ..geometry.tooth.profile import lengths
 from ..stiffness.solve import Solve, solve
-from .fracture import growth_angle, tip_intensity
+from .growth_end import reached, stopped
+from .kink import CRITERIA, turn_angle
+from .paris import ParisLaw, cycles_along
+from .tip_response import fe_response, ritz_response
 
-PLACES = 9  # of a load on a flank, between which the intensity is a cubic
-WIDE = 0.12  # half width of a load [m_n]
 NEIGHBOURS = 1  # teeth to either side whose loads count
-END = 0.25  # of a step: a tip that close to a boundary has reached it
-SMOOTH = 40  # parts of a step over which cycles are summed
+PHASES = 97  # places of the pair between the first contact of one neighbour and the last of the other
+LOADINGS = ("engagement", "single")
+METHODS = ("auto", "ritz", "fe")
 
 
 @dataclass(frozen=True, slots=True)
-class ParisLaw:
-    """Growth of a crack in each cycle, ``da/dN = C dK_eff^m``.
-
-    ``dK_eff = K_max (1 - R)^gamma`` with ``R = max(K_min, 0) / K_max`` (K. Walker, ASTM STP 462 (1970) 1-14): a crack that is
-    pressed shut is closed at K = 0. One revolution of the gear is one cycle.
+class CrackModel:
+    """Method, loads, support and criterion of crack growth.
 
     Parameters
     ----------
-    C : float
-        [mm / (MPa sqrt(mm))^m].
-    m : float
-    threshold : float
-        Least dK_eff that grows a crack [MPa sqrt(mm)].
-    K_Ic : float
-        Fracture toughness [MPa sqrt(mm)].
-    gamma : float
-        Walker's exponent; 1: no effect of the load ratio beyond closure.
-    source : str
-        Where the constants come from.
+    method : {"auto", "ritz", "fe"}
+        ``"auto"``: ``ritz`` while the crack lies in the middle 80 % of the sector of its tooth, then ``fe``.
+    loading : {"engagement", "single"}
+        ``"engagement"``: the loads of the healthy pair pass over the tooth and both neighbours. ``"single"``: the whole load
+        stands at the highest point of single contact, and falls to zero.
+    criterion : {"tangential", "energy", "shear"}
+        Largest tangential stress (Erdogan and Sih 1963), largest energy release rate, or no K_II behind the tip (Amestoy and
+        Leblond 1992).
+    held : sequence of (float, float), optional
+        Arcs of the bore (of a ring its outside) that are held [rad], from the centre-line of the cracked tooth, positive towards
+        its loaded flank. Default: all around. Only ``fe`` has arcs.
 
     Raises
     ------
     ValueError
-        If C or m is not positive, the threshold is negative, K_Ic is not above it, or gamma is not between 0 and 1.
+        If an option is unknown, an arc does not end after its start, or arcs are given for ``ritz``.
     """
 
-    C: float
-    m: float
-    threshold: float = 0.0
-    K_Ic: float = math.inf
-    gamma: float = 1.0
-    source: str = ""
+    method: str = "auto"
+    loading: str = "engagement"
+    criterion: str = "tangential"
+    held: tuple[tuple[float, float], ...] | None = None
 
     def __post_init__(self) -> None:
-        """Check the constants."""
-        for name in ("C", "m", "threshold", "K_Ic", "gamma"):
-            object.__setattr__(self, name, number(name, getattr(self, name)))
-        if not (self.C > 0 and self.m > 0):
-            raise ValueError(f"C = {self.C}, m = {self.m}, but both are positive")
-        if not 0 <= self.threshold < self.K_Ic:
-            raise ValueError(f"threshold = {self.threshold}, K_Ic = {self.K_Ic} MPa sqrt(mm), but 0 <= threshold < K_Ic")
-        if not 0 <= self.gamma <= 1:
-            raise ValueError(f"gamma = {self.gamma}, but it lies between 0 and 1")
-
-    def range(self, largest: Floats, least: Floats) -> Floats:
-        """Effective range of K [MPa sqrt(mm)] of cycles between `least` and `largest`."""
-        top = np.maximum(largest, 0.0)
-        ratio = np.clip(np.maximum(least, 0.0) / np.where(top > 0, top, 1.0), 0.0, 1.0)
-        return top * (1 - ratio) ** self.gamma
+        """Check the options."""
+        for name, known in (("method", METHODS), ("loading", LOADINGS), ("criterion", CRITERIA)):
+            one_of(name, getattr(self, name), known)
+        if self.held is None:
+            return
+        arcs = tuple((number("held", start), number("held", stop)) for start, stop in self.held)
+        if not arcs or any(not 0 < stop - start <= 2 * math.pi for start, stop in arcs):
+            raise ValueError(f"held = {self.held} rad, but each arc ends after its start and is at most a full circle")
+        if self.method == "ritz":
+            raise ValueError("held: ritz has equal sectors with the whole bore held; use method = 'fe'")
+        object.__setattr__(self, "held", arcs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,15 +80,18 @@ class Growth:
     length : ndarray, shape (n,)
         Of the crack [mm].
     K_I, K_II : ndarray, shape (n,)
-        Stress intensity [MPa sqrt(mm)] at the phase of the largest K_I.
+        Stress intensity [MPa sqrt(mm)] at the phase of the largest K_I, with closed faces in contact.
     K_min : ndarray, shape (n,)
-        Least K_I over the engagement of the tooth and its neighbours [MPa sqrt(mm)]; negative where the crack is pressed shut.
+        Least K_I over the engagement of the tooth and its neighbours [MPa sqrt(mm)], faces free to overlap. It is negative where
+        the crack is pressed shut.
     cycles : ndarray, shape (n,) or None
         Revolutions of the gear until this length; None without a law.
     outcome : str
         ``"tooth lost"``, ``"rim cut"``, ``"arrested"``, ``"fracture"`` or ``"unfinished"``.
     why : str
         What ended the growth, in words.
+    methods : tuple of str
+        Method of each step, ``"ritz"`` or ``"fe"``.
     """
 
     cracks: tuple[Crack, ...]
@@ -111,6 +102,7 @@ class Growth:
     cycles: Floats | None
     outcome: str
     why: str
+    methods: tuple[str, ...] = ()
 
     def table(self) -> Table:
         """One row for each step."""
@@ -124,8 +116,9 @@ class Growth:
         return Table(columns, rows)
 
     def __str__(self) -> str:
-        """Outcome and table."""
-        return f"{self.outcome}: {self.why}\n\n{self.table()}"
+        """Outcome, methods and table."""
+        used = " then ".join(dict.fromkeys(self.methods))
+        return f"{self.outcome}: {self.why}\nmethod: {used}\n\n{self.table()}"
 
 
 @single
@@ -137,14 +130,14 @@ def grow_crack(
     step: float | None = None,
     steps: int = 60,
     law: ParisLaw | None = None,
+    model: CrackModel | None = None,
     refine: float = 1.0,
 ) -> Growth:
     """Grow a root crack through the section of a gear, under the contact of its tooth and of the neighbours.
 
-    At each step the section is meshed with the crack. The loads of the healthy pair pass over three teeth. K_I and K_II at the
-    tip follow for every phase. The crack turns by the direction of the largest tangential stress at the phase of the largest K_I
-    (F. Erdogan, G. C. Sih, J. Basic Eng. 85 (1963) 519-527). Half of the last turn is added, because the path goes on turning
-    within the step. The bore is held all around. Faces do not carry pressure: where K_I is negative the crack counts as closed.
+    At each step the section is solved with the crack. K_I and K_II at the tip follow for every phase. The crack turns by the
+    criterion at the phase of the largest K_I. Half of the last turn is added, because the path goes on turning within the step.
+    Faces that overlap at that phase are kept in contact without friction. Cycles count a crack as closed where K_I is negative.
 
     Parameters
     ----------
@@ -160,6 +153,8 @@ def grow_crack(
         At most so many steps.
     law : ParisLaw, optional
         For the number of revolutions.
+    model : CrackModel, optional
+        Method, loads, support and criterion.
     refine : float
         Divides the edge lengths.
 
@@ -170,35 +165,37 @@ def grow_crack(
     Raises
     ------
     ValueError
-        If the pair is not a spur pair, the crack is not through the width, or a number is out of range.
+        If the pair is not a spur pair, the crack is not through the width, a number is out of range, or the crack leaves its
+        sector with ``method="ritz"``.
     """
     one_of("side", side, [name for name, _ in SIDES])
-    steps = whole("steps", steps, 1, 1000)
+    steps, model = whole("steps", steps, 1, 1000), model or CrackModel()
     index = [name for name, _ in SIDES].index(side)
-    gear, material = (case.pair.gear_1, case.pair.gear_2)[index], case.materials[index]
+    gear = (case.pair.gear_1, case.pair.gear_2)[index]
     step = 0.1 * gear.m_n if step is None else number("step", step)
     if not 0 < step <= gear.m_n:
         raise ValueError(f"step = {step} mm, but it is positive and at most a module, {gear.m_n:g} mm")
     if gear.beta or not crack.through:
         raise ValueError("grow_crack is for spur gears and cracks through the whole width, because it solves a section")
-    loads = _loads(case, index)
+    loads = _loads(case, index) if model.loading == "engagement" else _single(case, index)
+    tip = _Tip(gear, case.materials[index], model, loads, refine)
     crack = replace(crack, tooth=0)
-    corners = crack_path(gear, crack).T * [1 if crack.side == "loaded" else -1, 1]
+    sense = 1 if crack.side == "loaded" else -1
+    corners = crack_path(gear, crack).T * [sense, 1]
     cracks, found, turn, outcome = [crack], [], 0.0, ("unfinished", f"{steps} steps of {step:g} mm")
     for i in range(steps + 1):
-        values = _over_the_mesh(gear, material, cracks[-1], loads, refine)
+        values = tip.intensity(cracks[-1])
         found.append(values)
-        if ended := _ended(values, law):
+        if ended := stopped(values, law):
             outcome = ended
             break
         if i == steps:
             break
-        angle = growth_angle(*values[:2])
-        heading = np.arctan2(*(corners[-1] - corners[-2])[::-1]) + (angle if crack.side == "loaded" else -angle)
-        heading += 0.5 * turn
-        turn = (angle if crack.side == "loaded" else -angle) if i else 0.0
+        angle = sense * turn_angle(values[0], values[1], model.criterion)
+        heading = np.arctan2(*(corners[-1] - corners[-2])[::-1]) + angle + 0.5 * turn
+        turn = angle if i else 0.0
         ahead = corners[-1] + step * np.array([math.cos(heading), math.sin(heading)])
-        if ended := _reached(gear, corners[-1], ahead, step):
+        if ended := reached(gear, corners[-1], ahead, step):
             outcome = ended
             break
         corners = np.vstack([corners, ahead])
@@ -206,8 +203,51 @@ def grow_crack(
         cracks.append(replace(crack, level=None, length=None, turning=False, path=path))
     k_1, k_2, k_min = np.array(found).T
     length = np.array([lengths(crack_path(gear, one))[-1] for one in cracks])
-    cycles = None if law is None else _cycles(law, length, k_1, k_min)
-    return Growth(tuple(cracks), length, k_1, k_2, k_min, cycles, *outcome)
+    cycles = None if law is None else cycles_along(law, length, k_1, k_min)
+    return Growth(tuple(cracks), length, k_1, k_2, k_min, cycles, *outcome, tuple(tip.methods))
+
+
+@dataclass
+class _Tip:
+    """Solves for the tip of a crack, and notes by which method; from the first crack that `ritz` lacks on by `fe`."""
+
+    gear: Gear
+    material: Material
+    model: CrackModel
+    loads: dict
+    refine: float
+    methods: list = field(default_factory=list)
+
+    def intensity(self, crack):
+        """K_I and K_II at the phase of the largest K_I, and the least K_I [MPa sqrt(mm)]."""
+        response = self._response(crack)
+        free = response.free(self.loads)
+        top = int(np.argmax(free[:, -2]))
+        return (*map(float, response.in_contact(free[top])), float(min(free[:, -2].min(), 0.0)))
+
+    def _response(self, crack):
+        if self.model.method != "fe" and self.model.held is None and "fe" not in self.methods:
+            try:
+                found = ritz_response(self.gear, self.material, crack, self.loads, self.refine)
+            except (ValueError, RuntimeError):  # it leaves its sector, or no coarse triangles follow it
+                if self.model.method == "ritz":
+                    raise
+            else:
+                self.methods.append("ritz")
+                return found
+        self.methods.append("fe")
+        rolls = np.concatenate([rolls[load > 0] for rolls, load in self.loads.values()])
+        carried = float(rolls.min()), float(rolls.max())
+        return fe_response(self.gear, self.material, crack, self.loads, self.refine, carried, self.model.held)
+
+
+def _single(case, index):
+    """Whole line load [N/mm] on tooth 0 at the highest point of single contact of its gear, in the form of `_loads`."""
+    pair = case.pair
+    low, high = pair.path
+    roll = low + pair.p_bt if index == 0 else pair.mate_roll(high - pair.p_bt)
+    line = case.force / min(pair.gear_1.b, pair.gear_2.b)
+    return {0: (np.array([roll]), np.array([line]))}
 
 
 def _loads(case, index):
@@ -222,80 +262,10 @@ def _loads(case, index):
                 share[roll] = force / min(pair.gear_1.b, pair.gear_2.b)
     rolls = np.array(sorted(share))
     line = np.array([share[roll] for roll in rolls])
-    at = np.linspace(low - pair.p_bt, high + pair.p_bt, 97)
+    at = np.linspace(low - pair.p_bt, high + pair.p_bt, PHASES)
     out = {}
     for k in range(-NEIGHBOURS, NEIGHBOURS + 1):
         roll = at + k * pair.p_bt
         load = np.where((roll >= low) & (roll <= high), np.interp(roll, rolls, line), 0.0)
         out[k] = (roll if index == 0 else pair.mate_roll(roll)), load
     return out
-
-
-def _over_the_mesh(gear, material, crack, loads, refine):
-    """K_I and K_II at the phase of the largest K_I, and the least K_I [MPa sqrt(mm)]."""
-    edge = edge_lengths(gear, EDGES, refine)
-    edge["fillet"] /= 2
-    roll = stations(gear, edge["flank"])
-    mesh = section(
-        gear, dict.fromkeys(loads, roll), fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], cracks=[crack]
-    )
-    body = HeldSection(mesh.mesh, material)
-    carried = np.concatenate([rolls[load > 0] for rolls, load in loads.values()])
-    places = np.linspace(carried.min(), carried.max(), PLACES)
-    units = [narrow_load(mesh, k, float(arc_at(gear, place)), WIDE * gear.m_n) for k in loads for place in places]
-    moved = body.solve(hstack(units))
-    tips = [tip_intensity(body, column, mesh.seams[0].faces) for column in moved.T]
-    unit = np.array([[tip.K_I, tip.K_II] for tip in tips]).reshape(len(loads), PLACES, 2)
-    total = np.zeros((next(iter(loads.values()))[1].size, 2))
-    for (rolls, load), values in zip(loads.values(), unit, strict=True):
-        curves = np.polynomial.Polynomial.fit(places, values[:, 0], 4), np.polynomial.Polynomial.fit(places, values[:, 1], 4)
-        within = np.clip(rolls, places[0], places[-1])
-        total += load[:, None] * np.column_stack([curve(within) for curve in curves])
-    top = int(np.argmax(total[:, 0]))
-    return float(total[top, 0]), float(total[top, 1]), float(min(total[:, 0].min(), 0.0))
-
-
-def _ended(values, law):
-    """Outcome and reason if the crack does not grow from here; None if it does."""
-    largest, _, least = values
-    if largest <= 0:
-        return "arrested", f"the crack is pressed shut: the largest K_I is {largest:.3g} MPa sqrt(mm)"
-    if law is None:
-        return None
-    if largest >= law.K_Ic:
-        return "fracture", f"K_I = {largest:.4g} reaches K_Ic = {law.K_Ic:.4g} MPa sqrt(mm)"
-    swing = float(law.range(np.array(largest), np.array(least)))
-    if swing <= law.threshold:
-        return "arrested", f"dK = {swing:.4g} is below the threshold {law.threshold:.4g} MPa sqrt(mm)"
-    return None
-
-
-def _reached(gear: Gear, tip, ahead, step):
-    """Outcome and reason if the next step reaches a boundary; None if it does not."""
-    if gear.outward * (np.hypot(*ahead) - gear.held) < END * step + 0.02 * gear.m_n:
-        return "rim cut", f"the crack reaches the held edge at {math.degrees(math.atan2(*ahead)):.3g} degrees from its tooth"
-    arcs = np.linspace(0.0, fillet_length(gear), 200)
-    right = cartesian(*root_curve(gear, arcs))
-    for k in (-1, 0, 1):
-        turn = 2 * math.pi * k / gear.z
-        cos, sin = math.cos(turn), math.sin(turn)
-        for sign, name in ((1, "loaded"), (-1, "unloaded")):
-            if k == 0 and sign == 1:
-                continue  # its own fillet
-            x, y = right * [[sign], [1]]
-            apart = np.hypot(cos * x + sin * y - ahead[0], cos * y - sin * x - ahead[1]).min()
-            if apart < END * step + 0.03 * gear.m_n or (k == 0 and ahead[0] < -np.interp(ahead[1], right[1], right[0])):
-                whose = "its tooth" if k == 0 else f"tooth {k}"
-                return "tooth lost", f"the crack reaches the {name} fillet of {whose}"
-    return None
-
-
-def _cycles(law, length, largest, least):
-    """Revolutions until each length, with K linear between two steps."""
-    out = [0.0]
-    for i in range(length.size - 1):
-        part = np.linspace(0.0, 1.0, SMOOTH + 1)
-        swing = law.range(*(values[i] + part * (values[i + 1] - values[i]) for values in (largest, least)))
-        slow = 1 / (law.C * np.maximum(swing, 1e-300) ** law.m)
-        out.append(out[-1] + float(np.trapezoid(slow, dx=(length[i + 1] - length[i]) / SMOOTH)))
-    return np.array(out)

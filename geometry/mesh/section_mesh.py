@@ -17,7 +17,7 @@ from ..tooth.profile import cartesian, fillet_length, lengths, root_curve, turne
 from .mesher import triangulate
 from .outline import along, held_circle, inside, outline
 
-CRACK_EDGE = 0.2  # edge length at a crack tip, in edge lengths of the fillet, and at most a fifth of the crack
+CRACK_EDGE = 0.2  # edge length at a crack tip, in edge lengths of the fillet, and at most a fifth of its last straight part
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), 
         paths[place] = corners = turned(meshed_path(gear, crack), 2 * math.pi * crack.tooth / gear.z)
         length = lengths(corners)[-1]
         marks[place] = start_arc(gear, crack), min(fillet_size, length / 4)
-        tips[place] = min(CRACK_EDGE * fillet_size, length / 5)
+        tips[place] = min(CRACK_EDGE * fillet_size, math.dist(corners[:, -2], corners[:, -1]) / 5)
         if crack.turning and crack.level > 0.5:  # it runs towards its mirror image: refine there as the ligament shrinks
             left = math.dist(corners[:, -1], turned(mirrored(gear, crack), 2 * math.pi * crack.tooth / gear.z))
             opposite = "unloaded" if crack.side == "loaded" else "loaded"

@@ -268,7 +268,7 @@ def _chains(gear, size, cracks, loop):
         start = int(np.argmin(np.hypot(*(loop - corners[:, :1]))))
         legs = np.hypot(*np.diff(corners, axis=1))
         ends = np.concatenate([[0.0], np.cumsum(legs)])
-        tip_size, largest = min(size["crack tip"], ends[-1] / 20), min(size["crack"], ends[-1] / 2)
+        tip_size, largest = min(size["crack tip"], legs[-1] / 20), min(size["crack"], ends[-1] / 2)
         fine = [(ends[-1], ends[-1], tip_size)] + [(end, end, 5 * tip_size) for end in ends[1:-1]]
         places = np.concatenate(
             [spaced(a, b, largest, fine, 1, 1.5 * GROWTH)[1:] for a, b in zip(ends[:-1], ends[1:], strict=True)]

@@ -4,6 +4,7 @@ from importlib import resources
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.app.cli import main
@@ -212,3 +213,17 @@ def test_missing_renderer_names_the_package(monkeypatch, tmp_path, capsys):
 def test_a_law_of_contact_for_a_scene_without_machine_is_refused(capsys):
     assert main(["dynamics", "herringbone_contact_line", "--contact", "impact"]) == 1
     assert "has no [machine] table" in capsys.readouterr().err
+
+
+def test_transmission_error_of_a_damaged_pair_is_saved_beside_healthy(tmp_path, capsys):
+    arguments = ["te", "compound_planetary", "--case", "crack50", "--phases", "16", "--forces", "1000", "2000"]
+    assert main([*arguments, "-o", str(tmp_path / "te.csv")]) == 0
+    printed = capsys.readouterr().out
+    assert "5.11 mm crack at 45 degrees" in printed
+    assert "healthy [um]" in printed
+    scene = gf.load_scene("compound_planetary")
+    rows = np.loadtxt(tmp_path / "te.csv", delimiter=",", skiprows=1)
+    want = gf.transmission_error(scene.case(case="crack50"), [1000.0, 2000.0], phases=rows[:, 0])
+    assert_allclose(rows[:, 1:], np.vstack([want.te, want.unloaded]).T, rtol=1e-9)
+    assert main([*arguments, "-o", str(tmp_path / "te.tex")]) == 0
+    assert "tabular" in (tmp_path / "te.tex").read_text()

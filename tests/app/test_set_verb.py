@@ -44,7 +44,7 @@ def test_damage_stands_beside_health(scene, capsys):
     cracked, healthy = (gf.planetary_stiffness(gf.build_set(loaded, case), at) for case in ("cracked", None))
     loss = 100 * (1 - cracked.k / healthy.k)
     assert loss.argmax() // (3 * at.size) == 0
-    assert said.endswith(f"the damage reduces k by up to {loss.max():.1f} % in the mesh of sun and planet, planet 0")
+    assert said.endswith(f"the damage reduces k by up to {loss.max():.1f} % in the mesh of sun and planet, planet 1")
 
 
 def test_what_cannot_be_is_refused_before_work_begins(scene, tmp_path, monkeypatch, capsys):

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.quick
 def cracked():
     scene = gf.load_scene("compound_planetary")
     pair = scene.pairs["sun_planet"]
-    few = replace(pair, damage={name: pair.damage[name] for name in ("crack30", "crack70")})
+    few = replace(pair, owned={name: pair.owned[name] for name in ("crack30", "crack70")})
     return replace(scene, pairs={"sun_planet": few, "planet_planet": scene.pairs["planet_planet"]})
 
 

@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.io import savemat
 
 import gearfe as gf
 from gearfe.comparison.own_model import own_curve
@@ -135,7 +136,7 @@ def test_headers_and_line_ends(tmp_path, header, end):
         ("phase,k [N/m],error\n0,1,2\n", "3 columns"),
         ("phase,k [N/m]\n0,1\n0.1\n", "k.csv, line 3: '0.1' is not a row of two numbers"),
         ("phase,k [N/m]\n0,1\n\n# end\n0.1,x\n", "line 5: '0.1; x' is not a row"),
-        ("phase;k [N/m]\n0;1\n0,1;3,2E+08\n", "line 3: .*use a decimal point"),
+        ("phase,k [N/m]\n0,0,3\n", "line 2: .*separate columns by ;"),
         ("phase,k [N/m]\n0,nan\n", "line 2: 0, nan: both must be finite"),
         ("phase,k [N/m]\n0,1\ninf,1\n", "line 3: inf, 1: both must be finite"),
         ("phase,k [N/m]\n0,1\n0.1,0\n", "line 3: 0.1, 0: .*k positive"),
@@ -158,7 +159,7 @@ def test_unreadable_files(tmp_path):
     with pytest.raises(ValueError, match=r"cannot read .*none.csv: No such file"):
         gf.read_model(tmp_path / "none.csv")
     (tmp_path / "k.mat").write_bytes(b"MATLAB 5.0 \x00\x01IM\xff\xfe")
-    with pytest.raises(ValueError, match=r"k.mat is not text in UTF-8, UTF-16 or Windows-1252: export it as CSV"):
+    with pytest.raises(ValueError, match=r"k.mat is not a MATLAB file, or a damaged one"):
         gf.read_model(tmp_path / "k.mat")
 
 
@@ -167,7 +168,7 @@ def test_unreadable_files(tmp_path):
     [
         (np.linspace(0, 0.6, 61), "angles 0 to 10.2857 deg cover 0.6 mesh cycles, but one is needed: 0 to 17.1429 deg"),
         (np.linspace(0, 0.97, 98), "cover 0.97 mesh cycles, but one is needed"),
-        (np.linspace(0, PAIR.eps_alpha, 99), r"cover 1.615 mesh cycles: keep the rows of one, for example 0 to 17.1429 deg"),
+        (np.linspace(0.5, 1.7, 99), r"phases 0.5 to 1.7, but 0 to 0.98 are needed; give them all, or keep the rows of one"),
         (np.linspace(0, 1, 17), "rows are up to 0.0625 of a mesh cycle apart; sample every 0.8571 deg or finer"),
         (np.delete(np.linspace(0, 1, 101), range(30, 36)), "rows are up to 0.07 of a mesh cycle apart"),
     ],
@@ -244,8 +245,7 @@ def test_a_curve_written_by_gearfe(tmp_path):
     with pytest.warns(UserWarning, match=r"f.csv was computed for another force_N than"):
         curve_of(tmp_path / "f.csv", 64)
     by_textbook(64, span="tooth").to_csv(tmp_path / "t.csv")
-    with pytest.raises(ValueError, match=r"keep the rows of one, for example -0\.25 to 0\.75"):
-        curve_of(tmp_path / "t.csv")
+    assert_array_equal(curve_of(tmp_path / "t.csv", 64).k, want.k)
 
 
 def test_matlab_example_is_the_textbooks_curve():
@@ -254,3 +254,36 @@ def test_matlab_example_is_the_textbooks_curve():
     assert data.count(b"\r\n") == example.ROWS + 1
     want = by_textbook(np.arange(example.ROWS) / example.ROWS)
     assert_allclose(gf.read_model(example.EXAMPLE).k, want.k, rtol=1e-12, err_msg="remake: python -m validation own_model")
+
+
+def test_decimal_commas_and_matlab_vectors_are_the_same_curve(tmp_path):
+    angle = 360 / PAIR.gear_1.z * PHASE
+    rows = "".join(f"{x!r};{k!r}\n".replace(".", ",") for x, k in zip(angle.tolist(), (STEP / 1e6).tolist(), strict=True))
+    (tmp_path / "k.csv").write_text(f"theta_deg;k_N_per_um\n{rows}")
+    savemat(tmp_path / "k.mat", {"theta_deg": angle, "k_N_per_um": STEP / 1e6, "torque": 3.0})
+    for name in ("k.csv", "k.mat"):
+        assert_allclose(curve_of(tmp_path / name, PHASE).k, STEP, rtol=1e-14)
+
+
+def test_a_cracked_curve_of_gearfe_loses_what_gearfe_finds(tmp_path):
+    scene = gf.load_scene("compound_planetary")
+    case, pair = next(iter(scene.pair().damage)), next(iter(scene.pairs))
+    cycle = gf.compare(scene, pair, case=case, phases=16)
+    chosen = {"healthy": scene.case(pair), case: scene.case(pair, case)}
+    for name, suffix in (("healthy", "mat"), (case, "csv")):
+        phases = np.linspace(-0.5, 2.5, 97)
+        gf.solve(chosen[name], gf.Solve("fe", phases)).save(tmp_path / f"{name}.{suffix}")
+    with_own = gf.compare(scene, pair, case=case, phases=16, models=[f"{tmp_path}/{case}.csv,{tmp_path}/healthy.mat"])
+    found = with_own.losses()
+    for zone, lost in cycle.losses()["fe"].items():
+        assert_allclose(found[case][zone], lost, atol=2e-4, err_msg=zone)
+
+
+def test_a_pair_model_of_the_damaged_tooth_counts_for_that_tooth_alone():
+    healthy, half = (gf.PairModel(lambda r_1, r_2, k=k: np.full(r_1.shape, k)) for k in (2e8, 1e8))
+    scene = gf.load_scene("compound_planetary")
+    found = gf.compare(scene, case=next(iter(scene.pair().damage)), phases=16, models={"mine": (half, healthy)})
+    lost = found.losses()["mine"]
+    assert_allclose([lost["single"], lost["double"]], [0.5, 0.25], rtol=1e-12)
+    with pytest.raises(ValueError, match="state the case of damage"):
+        gf.compare(scene, phases=16, models={"mine": (half, healthy)})

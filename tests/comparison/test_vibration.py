@@ -169,3 +169,8 @@ def test_a_record_of_what_never_settles_says_so():
     got = recorded(machine, 0.1, 2000.0)
     assert got.stats["free"] == 1.0
     assert_allclose(got.stats["settled"], 0.05, rtol=1e-12)
+
+
+def test_an_unknown_channel_is_rejected_before_the_run():
+    with pytest.raises(ValueError, match="no channel 'nonsense'"):
+        responses(SCENE, channel="nonsense")

@@ -103,8 +103,12 @@ print(len([line for line in told if line.startswith("compiling the integrator")]
 
 
 def test_without_a_listener_compiling_is_a_warning():
-    with pytest.warns(UserWarning, match="compiling the integrator"), announced():
+    with pytest.warns(UserWarning, match="compiling the integrator"), announced() as found:
         njit(lambda x: x + 1)(1)
+    assert found.seconds > 0
+    with announced() as found:
+        pass
+    assert found.seconds == 0
 
 
 def test_where_nothing_may_be_written_loops_are_compiled_all_the_same(monkeypatch):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.figures.error_plots import plot_transmission_error
@@ -79,3 +80,23 @@ def test_a_drawn_pair_has_its_damage_below_the_flank_that_touches(name, side):
         assert depth[1] < depth[0] < gear.m_n, "from the fillet into the body"
     with pytest.raises(ValueError, match="'pinion' and 'wheel'"):
         gf.plot_pair(pair, {"sun": []})
+
+
+def test_curves_of_teeth_that_differ_are_not_closed():
+    scene = gf.load_scene("compound_planetary")
+    hurt = next(iter(scene.pair().damage))
+    for case, closed in ((None, True), (hurt, False)):
+        found = gf.transmission_error(scene.case(case=case), phases=16)
+        drawn = plot_transmission_error(found).axes[0].lines[0].get_xydata()
+        assert len(drawn) == 16 + closed
+        assert_allclose(drawn[:16, 1], 1e6 * found.te[0])
+        assert len(found.curves[0].plot().axes[0].lines[0].get_xdata()) >= 16 + closed
+
+
+def test_notebooks_show_figures_curves_and_scenes():
+    scene = gf.load_scene("planetary_pitting")
+    curve = gf.solve(scene.case(), gf.Solve("textbook", phases=16))
+    assert curve.plot()._repr_png_().startswith(b"\x89PNG")
+    assert "<svg" in curve._repr_html_()
+    assert "<td>21 / 31</td>" in scene._repr_html_()
+    assert len(repr(scene)) < 300

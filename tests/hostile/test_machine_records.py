@@ -182,9 +182,9 @@ RECORDS = {
         (lambda v: run(step=v), (1e-300, 0.0, NAN, "1")),
     ],
     "planet": [
-        (lambda v: case(flanks={v: gf.Flank()}), (("planet", True), ("planet", 3), "planets")),
+        (lambda v: case(flanks={v: gf.Flank()}), ("planet0", "planet4", "planets", ("planet", 3))),
         (
-            lambda v: case(flanks={("planet", 2): gf.Flank(pitch=[0.001] + [0.0] * 30)}).with_(planet_angles=v),
+            lambda v: case(flanks={"planet3": gf.Flank(pitch=[0.001] + [0.0] * 30)}).with_(planet_angles=v),
             ([0.0, 2 * math.pi / 3],),
         ),
     ],

@@ -106,7 +106,7 @@ def test_flanks_of_the_deck_touch(given, tmp_path):
         (lambda: case(ring=gf.RimSupports(6, 4.8, radial=1e5)), "neither held nor on rigid pads"),
         (lambda: case(flanks={"sun": gf.Flank(tip_relief=0.01, tip_start_diameter=44.5)}), "flanks and cracks"),
         (lambda: case(damage={"sun": [gf.Crack(level=0.3)]}), "flanks and cracks"),
-        (lambda: unequal(0, 35, 70, errors=[(0, -0.1), (0, 0), (0, 0)]).with_(force=50.0), "planet 1 is unloaded"),
+        (lambda: unequal(0, 35, 70, errors=[(0, -0.1), (0, 0), (0, 0)]).with_(force=50.0), "planet 2 is unloaded"),
     ],
 )
 def test_sets_that_are_not_meshed_gear_by_gear_are_refused(given, message, tmp_path):

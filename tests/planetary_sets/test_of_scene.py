@@ -59,16 +59,16 @@ def test_flanks_and_cracks_are_those_of_the_gears(tmp_path):
     """A planet's crack is one, on the flank of the sun; one of the ring's mesh alone is on the other flank of its tooth."""
     flanks = "".join(f'[flank.{gear}]\ngear = "{gear}"\nprofile_crowning_um = {um}\n' for gear, um in (("sun", 3), ("planet", 5)))
     crack = '[[crack]]\ncase = "planet"\ngear = "planet"\nlevel = 0.2\ntooth = 4\n'
-    text = SCENE.replace(PADS, "").replace("[set]", "[set]\ndamaged_planet = 2")
+    text = SCENE.replace(PADS, "")
     found = gf.build_set(loaded(tmp_path, text + flanks + crack), "planet")
     assert {name: one.profile_crowning for name, one in found.flanks.items() if name != "ring"} == {
-        "sun": 0.003, ("planet", 0): 0.005, ("planet", 1): 0.005, ("planet", 2): 0.005,
+        "sun": 0.003, "planet1": 0.005, "planet2": 0.005, "planet3": 0.005,
     }  # fmt: skip
-    assert found.damage == {("planet", 2): (gf.Crack(level=0.2, tooth=4),)}
+    assert found.damage == {"planet1": (gf.Crack(level=0.2, tooth=4),)}
     inner = gf.build_set(loaded(tmp_path, text + crack + 'pair = "planet_ring"\n'), "planet")
-    assert inner.damage == {("planet", 2): (gf.Crack(level=0.2, tooth=4, side="unloaded"),)}
+    assert inner.damage == {"planet1": (gf.Crack(level=0.2, tooth=4, side="unloaded"),)}
     named = gf.build_set(loaded(tmp_path, text + crack + 'body = "planet2"\n'), "planet")
-    assert named.damage == {("planet", 1): (gf.Crack(level=0.2, tooth=4),)}, "bodies count from 1"
+    assert named.damage == {"planet2": (gf.Crack(level=0.2, tooth=4),)}
     with pytest.raises(ValueError, match="damages body 'planet4', but the planet of the set is planet1, planet2, planet3"):
         gf.build_set(loaded(tmp_path, text + crack + 'body = "planet4"\n'), "planet")
     ring = gf.build_set(loaded(tmp_path, SCENE + '[[crack]]\ncase = "ring"\ngear = "ring"\nlevel = 0.2\n'), "ring")
@@ -107,8 +107,8 @@ def test_files_hold_the_curves(tmp_path):
         found.save(tmp_path / f"x.{suffix}")
     _, meta, head, *rows = (tmp_path / "x.csv").read_text().splitlines()
     table = dict(zip(head.split(","), np.array([row.split(",") for row in rows], dtype=float).T, strict=True))
-    assert_allclose(table["k planet-ring 2 [N/m]"], found.k[1, :, 2], rtol=0)
-    assert_allclose(table["force sun-planet 0 [N]"], found.force[0, :, 0], rtol=0)
+    assert_allclose(table["k planet-ring 3 [N/m]"], found.k[1, :, 2], rtol=0)
+    assert_allclose(table["force sun-planet 1 [N]"], found.force[0, :, 0], rtol=0)
     assert_allclose(table["te [m]"], found.te, rtol=0)
     assert json.loads(meta.removeprefix("# meta: "))["case"].startswith("PlanetaryCase(")
     with np.load(tmp_path / "x.npz") as kept:

@@ -40,7 +40,7 @@ def drawn(seed):
     ring = ("held", RimBed(*bed), pads, pads, lugs)[rng.integers(5)]
     damage = {}
     for _ in range(rng.integers(1, 4)):
-        name = ("sun", ("planet", int(rng.integers(3))), "ring")[rng.integers(3)]
+        name = ("sun", f"planet{rng.integers(1, 4)}", "ring")[rng.integers(3)]
         size = {"length": rng.uniform(0.5, 4.0), "start": "root"} if name == "ring" else {"level": rng.uniform(0.1, 0.9)}
         side = ("loaded", "unloaded")[rng.integers(2)]
         crack = gf.Crack(**size, angle=math.radians(rng.uniform(20, 60)), tooth=int(rng.integers(-4, 5)), side=side)

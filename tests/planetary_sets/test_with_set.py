@@ -150,7 +150,7 @@ def test_sets_repeat_by_their_pads_and_their_faults():
     assert cycles_of(case(ring=gf.RimSupports(5, 4.8))) == 84
     assert cycles_of(case(damage={"sun": [gf.Crack(level=0.3)]}, flanks=RELIEF)) == 21
     pitch = [0.01] + [0.0] * 30
-    assert cycles_of(case(damage={"sun": [gf.Crack(level=0.3)]}, flanks={("planet", 1): gf.Flank(pitch=pitch)})) == 21 * 31
+    assert cycles_of(case(damage={"sun": [gf.Crack(level=0.3)]}, flanks={"planet2": gf.Flank(pitch=pitch)})) == 21 * 31
 
 
 def test_machines_and_sets_that_do_not_fit_are_refused():

@@ -35,6 +35,22 @@ def test_units_are_those_of_the_keys(tmp_path):
     assert turned.set.force == 2000
 
 
+@pytest.mark.parametrize(("planets", "machine", "message"), [
+    ("n_planets = 3 ", 2, r"s.toml \[set\]: 3 planets, but \[machine\] has n_planets = 2, equally spaced: give the same planets"),
+    ("planet_angles_deg = [0, 120, 240] #", 3, ""),
+    ("planet_angles_deg = [0, 120, 205.71428571428572] #", 3, "3 planets at unequal angles, but"),
+])  # fmt: skip
+def test_set_and_machine_have_the_same_planets(tmp_path, planets, machine, message):
+    """A set of two planets stood beside a machine of three, without a message."""
+    text = SCENE.replace("n_planets = 3 ", planets)
+    text += f'[machine]\nmodel = "planetary"\nspeed_rpm = 100\ntorque_Nm = 120\nn_planets = {machine}\n'
+    if not message:
+        assert loaded(tmp_path, text).set is not None
+        return
+    with pytest.raises(ValueError, match=message):
+        loaded(tmp_path, text)
+
+
 def test_a_scene_without_a_set_has_none(tmp_path):
     assert loaded(tmp_path, SCENE[: SCENE.index("[set]")]).set is None
 
@@ -50,7 +66,9 @@ def test_of_several_sets_the_one_of_the_named_gears(tmp_path):
 
 
 def test_assumptions_speak_of_a_set(tmp_path):
-    note = '[[assumption]]\nwhat = "six pads"\nwhy = "a guess"\nholds = { "ring.support.count" = 6, "pin.first.planet" = 0 }\n'
+    note = (
+        '[[assumption]]\nwhat = "six pads"\nwhy = "a guess"\nholds = { "ring.support.count" = 6, "pin.first.body" = "planet1" }\n'
+    )
     assert len(loaded(tmp_path, SCENE + note).assumptions) == 1
     other = loaded(tmp_path, (SCENE + note).replace("count = 6\n", "count = 5\n"))
     assert not other.assumptions
@@ -73,9 +91,10 @@ def test_assumptions_speak_of_a_set(tmp_path):
         ("torque_Nm = 120", "torque_Nm = 120\nforce_N = 2000", r"\[set\]: force_N and torque_Nm exclude each other"),
         ("torque_Nm = 120", "torque_Nm = -1", r"\[set\] torque_Nm = -1, but it must be above 0 N m"),
         ("pin_N_per_um = 300", "pin_N_per_um = 0", r"\[set\] pin_N_per_um = 0, but it must be above 0 N/um"),
-        ("[set]\n", "[set]\ndamaged_planet = 3\n", r"\[set\] damaged_planet = 3, but the set has 3 planets: give 0 to 2"),
-        ("planet = 0\n", "planet = 3\n", r"\[pin.first\] planet = 3, but the set has 3 planets"),
-        ("[pin.first]", "[pin.second]\nplanet = 0\n[pin.first]", r"\[pin.first\]: the pin of planet 0 is \[pin.second\] already"),
+        ("[set]\n", "[set]\ndamaged_planet = 0\n", r"'damaged_planet' \(former key, counted from 0: give body = .planet1., the"),
+        ('body = "planet1"\n', "planet = 0\n", r"\[pin.first\]: unknown key 'planet' \(former key, counted from 0: give body"),
+        ('body = "planet1"\n', 'body = "planet4"\n', r"\[pin.first\] body = 'planet4': no such planet of the set"),
+        ("[pin.first]", '[pin.second]\nbody = "planet1"\n[pin.first]', r"\[pin.first\]: the pin of planet1 is \[pin.second\]"),
         ("[pin.first]", "[[pin]]", r"\[\[pin\]\] is a list of tables, but they have names: write \[pin.NAME\]"),
         ('kind = "pads"', 'kind = "bolts"', r"\[ring.support\] kind = 'bolts', but it must be one of held, bed"),
         ('kind = "pads"', 'kind = "held"', r"\[ring.support\]: kind = 'held' has no count; expected no other key"),

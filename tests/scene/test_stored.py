@@ -45,10 +45,8 @@ def test_nothing_for_another_load_or_bore(scene, tmp_path):
 def test_other_damage_is_another_case(scene, tmp_path):
     file = tmp_path / "curves.csv"
     write_curves(scene, curves(), file)
-    pair = scene.pairs["sun_planet"]
-    deeper = {"case1": {"pinion": [gf.Crack(level=0.11)]}}
-    found = read_curves(replace(scene, pairs={"sun_planet": replace(pair, damage=deeper)}), file)
-    assert list(found) == [("sun_planet", None)]
+    deeper = scene.with_damage("case1", {"sun_planet": {"pinion": [gf.Crack(level=0.11)]}})
+    assert list(read_curves(deeper, file)) == [("sun_planet", None)]
 
 
 def test_no_file_no_curves(scene, tmp_path):
@@ -56,7 +54,8 @@ def test_no_file_no_curves(scene, tmp_path):
 
 
 def test_fingerprint_does_not_count_defaults(scene):
-    pair = scene.pairs["sun_planet"]
-    said = replace(pair, damage={"one": {"pinion": [gf.Crack(level=0.3, start="30deg")]}})
-    unsaid = replace(pair, damage={"one": {"pinion": [gf.Crack(level=0.3)]}})
-    assert fingerprint(said.case("one")) == fingerprint(unsaid.case("one")) != fingerprint(said.case())
+    said, unsaid = (
+        scene.with_damage("one", {"sun_planet": {"pinion": [crack]}}).case("sun_planet", "one")
+        for crack in (gf.Crack(level=0.3, start="30deg"), gf.Crack(level=0.3))
+    )
+    assert fingerprint(said) == fingerprint(unsaid) != fingerprint(said.healthy)

@@ -32,8 +32,7 @@ def test_a_value_that_its_row_calls_swapped_is_not_reproduced():
     assert row.verdict == verdicts.NOT
     assert row.difference == pytest.approx(8.75, abs=0.01)
     one = reference(printed("planet3", 1.23, corrected=1.15, correction="rows swapped"))
-    assert "rows swapped" in verdicts.reason(one, row)
-    assert "why" in verdicts.reason(one, row)
+    assert verdicts.reasons(one, row) == ["rows swapped", "why"]
 
 
 def test_the_corrected_value_is_reproduced_after_a_correction():
@@ -48,7 +47,7 @@ def test_agreement_that_an_assumption_sets_is_none():
     rows = [Printed(str(value), None, value, None, "", "why", "model", "the runout assumed") for value in (1.0, 2.0)]
     found = judged([1.01, 3.0], *rows)
     assert [row.verdict for row in found] == [verdicts.ASSUMED, verdicts.NOT]
-    assert verdicts.reason(reference(*rows), found[0]) == "the runout assumed"
+    assert verdicts.reasons(reference(*rows), found[0]) == ["the runout assumed"]
     assert verdicts.counts(found) == "2 numbers of a model: 1 set by an assumption, 1 not reproduced"
     assert [row.verdict for row in judged([5.0, 9.0], *rows, trend=True)] == [verdicts.ASSUMED] * 2
     corrected = Printed("a", None, 2.0, 1.0, "swapped", "why", "model", "the runout assumed")

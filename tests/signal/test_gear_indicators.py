@@ -1,6 +1,7 @@
 """FM0 ... NB4 against averages whose indicators are known in closed form."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.signal.gear_indicators import GEAR_SOURCES, tabulate_gear_indicators
+from gearfe.signal.orders import mesh_coherence
 
 N, Z = 4096, 24
 TURN = 2 * np.pi * np.arange(N) / N
@@ -97,3 +99,25 @@ def test_refusals():
         gf.gear_indicators(np.arange(100.0), 60)
     with pytest.raises(ValueError, match="no mesh line of 24 teeth"):
         gf.gear_indicators(np.cos(5 * TURN), Z)
+
+
+def test_the_average_keeps_the_mesh_line_that_follows_the_shaft():
+    rate, turning, teeth = 12800.0, 16.7, 23
+    time = np.arange(4 * 12800) / rate
+    angle = 2 * np.pi * turning * (time + 0.002 / 1.9 * (1 - np.cos(1.9 * time)))  # 0.2 % of fluctuation
+    values = np.cos(teeth * angle) + 0.5 * np.random.default_rng(3).standard_normal(time.size)
+    follows = gf.Signal(values, rate, "m/s^2", "follows", angle=angle)
+    constant = gf.Signal(values, rate, "m/s^2", "constant", shaft_frequency=turning)
+    assert_allclose(mesh_coherence(follows, teeth), 1.0, atol=0.02)
+    phase = teeth * (angle - 2 * np.pi * turning * time)
+    assert_allclose(mesh_coherence(constant, teeth), abs(np.exp(1j * phase).mean()), atol=0.02)
+    with pytest.warns(UserWarning, match="constant: the average keeps .* % of the mesh line of 23 teeth"):
+        gf.gear_indicator_table([follows, constant], teeth)
+    noise = replace(follows, values=np.random.default_rng(1).standard_normal(time.size))
+    assert np.isnan(mesh_coherence(noise, teeth))
+
+
+def test_records_of_one_name_in_a_list_are_rejected():
+    one = gf.Signal(np.cos(np.arange(1000.0)), 1000.0, "g", shaft_frequency=10.0)
+    with pytest.raises(ValueError, match="two records have the same name"):
+        gf.gear_indicator_table([one, one], 16)

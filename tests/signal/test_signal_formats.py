@@ -337,3 +337,13 @@ def test_a_missing_library_is_named_with_its_extra(tmp_path, monkeypatch, suffix
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(RuntimeError, match=rf"pip install {name}.*, or pip install 'gearfe\[signals\]'"):
         gf.read_signal(tmp_path / f"x{suffix}")
+
+
+@pytest.mark.parametrize(("factor", "rate"), [(1.0, 500.0), (1e3, 500.0)])
+def test_times_without_a_unit_have_the_one_that_fits_the_rate(tmp_path, factor, rate):
+    frame = pd.DataFrame({"t": factor * np.arange(100) / rate, "acc": np.sin(np.arange(100))})
+    frame.to_parquet(tmp_path / "one.parquet")
+    assert gf.read_signal(tmp_path / "one.parquet", rate=rate, unit="g").rate == rate
+    for wrong in ({}, {"rate": 3 * rate}):
+        with pytest.raises(ValueError, match="column 't' has no unit"):
+            gf.read_signal(tmp_path / "one.parquet", unit="g", **wrong)

@@ -159,3 +159,25 @@ def test_signal_keeps_its_own_samples():
     assert signal.duration == 2.0
     with pytest.raises(ValueError, match="read-only"):
         signal.values[0] = 1.0
+
+
+def test_slices_and_parts_of_a_record_keep_their_angles():
+    angle = np.cumsum(1 + 0.1 * np.cos(np.arange(1000) / 50))
+    whole = gf.Signal(np.arange(1000.0), 100.0, "g", angle=angle)
+    for part in (whole[200:500], whole.between(2.0, 5.0), whole.part(200, 500)):
+        assert_allclose(part.values, np.arange(200.0, 500.0))
+        assert_allclose(part.angle, angle[200:500])
+    assert whole.between(9.5).values.size == 50
+    for start, stop in ((5.0, 5.0), (10.0, 11.0), (-1.0, 2.0)):
+        with pytest.raises(ValueError, match="signal has 0 to 10 s"):
+            whole.between(start, stop)
+    with pytest.raises(TypeError, match="without a step"):
+        whole[::2]
+
+
+def test_a_record_of_rounding_has_no_indicators():
+    time = np.arange(2000) / 1000
+    healthy = gf.Signal(1e-13 * np.sin(700 * time), 1000.0, "N")
+    found = gf.indicator_table({"healthy": healthy, "faulty": gf.Signal(np.sin(500 * time), 1000.0, "N")})
+    assert all(np.isnan(pair).all() for pair in found["healthy"].values())
+    assert all(np.isfinite(value) and np.isnan(change) for value, change in found["faulty"].values())

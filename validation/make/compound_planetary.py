@@ -237,7 +237,7 @@ def more():
     parts = [row.values() for row in rows_of(PARTS)]
     first = float(rows_of(PARTS)[0]["mean k [N/m]"])
     lines = [
-        "What the foundation is worth, sun and planet, the same inferred gears:",
+        "Effect of the foundation, sun and planet, inferred gears:",
         "",
         "| model | mean k [N/um] | of the first |",
     ]
@@ -266,13 +266,11 @@ BESIDE = {
     "the article says": lambda view: statements(*VIEWS[view]),
 }
 SAID_OF = (
-    "The first column is judged: the ring's angular acceleration, where a broken tooth is absent. The second is the velocity of "
-    "sun 2, which S2 shows of its simulation. In the third a broken tooth is the crack of 80 %, which keeps most of the mean "
-    "stiffness over its engagement. In the fourth the meshes have backlash, so that contact is lost where the tooth is absent; "
-    "without backlash the mesh has no stiffness there and cannot open. In the last two a broken tooth is `gearfe.MissingTooth`. "
-    "Where no other pair is on the path of contact, the gears rotate on by up to 136 um until tip corners of the neighbours "
-    "touch. A pair that is alone is 17 to 22 % stiffer than its share beside the tooth. Statements hold as in the first column; "
-    "the draws have the reading of the first column"
+    "The verdicts and draws use the first column, in which a broken tooth is absent. The second is the velocity of sun 2, "
+    "which S2 shows. In the third, a broken tooth is the crack of 80 %. With backlash, contact is lost where the tooth is "
+    "absent. Without backlash, the mesh has no stiffness there and cannot open. In the last two columns, a broken tooth is "
+    "`gearfe.MissingTooth`. Where no other pair is on the path of contact, the gears rotate by up to 136 um until tip "
+    "corners of the neighbours touch. A single pair is 17 to 22 % stiffer than its share with the broken tooth"
 )
 
 

@@ -179,8 +179,7 @@ BESIDE = {
     "the article says": statements,
 }
 BOTH = (
-    "The same under S3's own law (impact force, load shared by the lengths of the contact lines), which is judged above, "
-    "and with the "
+    "The verdicts use S3's law (impact force, load shared by the lengths of the contact lines). The second column uses the "
     "linear stiffness curves of the pitted teeth"
 )
 

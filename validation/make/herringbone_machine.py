@@ -93,14 +93,14 @@ def _indicators(pitted, crack):
 
 def _grown(pitted, crack):
     """The machine with the pits of a case and a crack of a level."""
-    pairs = {}
-    for name, one in scene(NAME).pairs.items():
-        damage = {
+    damage = {
+        name: {
             side: [replace(d, level=crack) if isinstance(d, gf.Crack) else d for d in found]
             for side, found in one.damage.get(pitted, {}).items()
         }
-        pairs[name] = replace(one, damage={"grown": damage} if damage else {})
-    return gf.build_machine(replace(scene(NAME), pairs=pairs), "grown", method="ritz3d", phases=PHASES[NAME])
+        for name, one in scene(NAME).pairs.items()
+    }
+    return gf.build_machine(scene(NAME).with_damage("grown", damage), "grown", method="ritz3d", phases=PHASES[NAME])
 
 
 def _increments(name, pick):
@@ -189,7 +189,7 @@ def more():
     """Further sections of the page."""
     rows = rows_of(MOVED)
     lines = [
-        "What each assumed error does to the healthy sun along x (from rest; of the transient some is left):",
+        "Effect of each assumed error on the healthy sun along x (from rest, with a part of the transient):",
         "",
         f"| {' | '.join(rows[0])} |",
         "|---|---|---|---|",
@@ -231,7 +231,7 @@ BESIDE = {
     "its largest difference from the healthy one [rad/s^2]": _impulses,
     "what pits add to the crack of case 3, of what the crack changes": lambda errors: {"case 3": beside_crack(errors)},
 }
-BOTH = "With the errors that the scene assumes, which is judged above, and without any"
+BOTH = "The verdicts use the errors that the scene assumes. The second column has no errors"
 
 
 def runs():

@@ -102,12 +102,12 @@ def section():
 
 
 PLAY = (
-    "The table lists the share of time in which the first sun mesh is open, or in contact on its back flank, by the torque of "
-    "the sun. The errors and the backlash of 96 um are those that the scene assumes. S4 has 400 N m and prints no backlash. With "
-    "the torque reversed, the mesh crosses the backlash once, from rest on the driving flanks"
+    "Share of time in which the first sun mesh is open or in contact on its back flank, by the torque of the sun. The scene "
+    "assumes errors and a backlash of 96 um. S4 has 400 N m and prints no backlash. With reversed torque, the mesh crosses the "
+    "backlash once, from rest on the driving flanks"
 )
 GROOVE = (
-    "The scene assumes a shaft of 20 mm under the relief groove. The table also has shafts a hundred times as stiff and as soft, "
-    "which correspond to 0.2 mm and 2 m. Case 2 has its damage in one half or in both. The first rows give the motion of "
-    "the sun's halves relative to each other, divided by their common motion"
+    "The scene assumes a shaft of 20 mm under the relief groove. The other shafts are a hundred times as stiff (0.2 mm) and as "
+    "soft (2 m). Case 2 has its damage in one half or in both. The first rows give the relative motion of the sun's halves, "
+    "divided by their common motion"
 )

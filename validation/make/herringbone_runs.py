@@ -29,11 +29,11 @@ def made(case):
     """Machine of a case of the scene, or of `CRACK60`."""
     if case != CRACK60:
         return machine(NAME, case)
-    pairs = {}
-    for name, one in scene(NAME).pairs.items():
-        damage = {side: [d for d in found if isinstance(d, gf.Crack)] for side, found in one.damage.get("case3", {}).items()}
-        pairs[name] = replace(one, damage={CRACK60: damage} if damage else {})
-    return gf.build_machine(replace(scene(NAME), pairs=pairs), CRACK60, method="ritz3d", phases=PHASES[NAME])
+    damage = {
+        name: {side: [d for d in found if isinstance(d, gf.Crack)] for side, found in one.damage.get("case3", {}).items()}
+        for name, one in scene(NAME).pairs.items()
+    }
+    return gf.build_machine(scene(NAME).with_damage(CRACK60, damage), CRACK60, method="ritz3d", phases=PHASES[NAME])
 
 
 @cache

@@ -6,6 +6,7 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.core.table import Column, Table
+from gearfe.scene import verdicts
 
 from ..shared import joint_inputs, page
 from ..shared.kept_rows import kept, stored
@@ -19,6 +20,11 @@ The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, even in the loga
 statements and thresholds were fixed in a commit before the first run
 (`validation/shared/joint_inputs.py`). A number without a unit is a factor of what the scene or its machine assumes. Masses and
 curves of stiffness stay; channel and path are crossed with every draw. Whether a statement holds is decided as on its page.
+
+The pages have these columns. 'gearfe' is yes if the statement holds with the assumed inputs. 'input' is the input with the
+strongest relation to the statement. Two numbers follow. They are the draws in which the statement holds, of
+{joint_inputs.DRAWS // 2} above and of {joint_inputs.DRAWS // 2} below the median of the input. The probability of such a
+difference by chance is in parentheses. 'none': no input has such a relation. The cell is empty if all draws agree.
 """
 
 
@@ -51,15 +57,15 @@ def said(name):
 def decides(name, held):
     """The input whose larger and smaller half of draws differ most, in words."""
     if held.all() or not held.any():
-        return "none of them"
-    best = (0, "")
+        return ""
+    best, names = 0, []
     for word in joint_inputs.RANGES[name]:
         upper = np.argsort([row["inputs"][word] for row in rows_of(name)])[held.size // 2 :]
         above, below = int(held[upper].sum()), int(held.sum() - held[upper].sum())
-        told = f"{joint_inputs.MEANT[word]}: {above} of {upper.size} above its middle, {below} below"
-        told += f" (by chance {by_chance(abs(above - below), held, len(joint_inputs.RANGES[name])):.2g})"
-        best = max(best, (abs(above - below), told))
-    return best[1] if best[0] >= DECIDES else "no single one"
+        told = f"{joint_inputs.MEANT[word].partition(',')[0]}: {above}, {below}"
+        names = [told] if abs(above - below) > best else [*names, told] if abs(above - below) == best else names
+        best = max(best, abs(above - below))
+    return f"{'; '.join(names)} ({by_chance(best, held, len(joint_inputs.RANGES[name])):.2g})" if best >= DECIDES else "none"
 
 
 def by_chance(apart, held, inputs):
@@ -81,8 +87,6 @@ def judged(name):
 
 def counts(name):
     """Statements, on the channel that the page judges, that hold in all draws, in none and in some; none that we set."""
-    from gearfe.scene import verdicts
-
     ours = {row.case for row in read(name) if row.verdict == verdicts.ASSUMED}
     share = [held.mean() for word, held in judged(name).items() if word not in ours]
     return sum(x == 1 for x in share), sum(x == 0 for x in share), sum(0 < x < 1 for x in share)
@@ -97,8 +101,8 @@ def sentence(name):
     )
 
 
-def section(name):
-    """Lines of the page of a machine; none without rows."""
+def section(name, judged_rows):
+    """Lines of the page of a machine, with the verdicts of these rows on its statements; none without rows."""
     if not rows_of(name):
         return []
     found, own = said(name), judged(name)
@@ -106,24 +110,25 @@ def section(name):
     lines = [
         "## Within which unprinted inputs statements hold",
         "",
-        f"{sentence(name)[0].upper()}{sentence(name)[1:]}. Statements that an assumption of the scene sets are not counted. "
-        "[joint.md](joint.md) lists the inputs with their ranges. The table gives the number of draws in which a statement "
-        f"holds, by channel. A statement is judged on this channel: {judges(name)}. The last column is the input with the "
-        "strongest relation to it.",
+        f"A channel's column gives the number of {joint_inputs.DRAWS} draws in which the statement holds. Verdicts use this "
+        f"channel: {judges(name)}. [joint.md](joint.md) explains the other columns and lists the ranges of the inputs.",
         "",
     ]
-    rows = []
+    rows, verdict = [], {row.case: row for row in judged_rows if row.kind == verdicts.STATEMENT}
     for statement, one in found.items():
-        cells = [f"{one[channel].sum()} of {one[channel].size}" if channel in one else "" for channel in channels]
-        rows.append([statement, *cells, decides(name, own[statement])])
-    table = Table(("statement", *channels, "input that goes with it"), rows).markdown()
+        row = verdict.get(statement)
+        held = ["yes" if row.ours else "no", verdicts.marked(row.verdict)] if row else ["", ""]
+        cells = [f"{one[channel].sum()}" if channel in one else "" for channel in channels]
+        rows.append([statement, *held, *cells, decides(name, own[statement])])
+    table = Table(("statement", "gearfe", "verdict", *channels, "input"), rows).markdown()
     return [*lines, *table.splitlines(), "", *numbers(name)]
 
 
 def judges(name):
     """Which channel a page judges its statements on, in words."""
     chosen = getattr(home(name), "JUDGED_ON", {})
-    return "the first" + "".join(f"; of '{word}' {channel}" for word, channel in chosen.items())
+    words = {channel: [f"'{word}'" for word, one in chosen.items() if one == channel] for channel in chosen.values()}
+    return "the first" + "".join(f"; for {', '.join(own)} {channel}" for channel, own in words.items())
 
 
 def told(name):
@@ -146,10 +151,10 @@ def numbers(name):
             channel = word.partition(", ")[2]
             meant = scene[reference].quantity.replace("its centre", "centre of the band of largest spectral kurtosis")
             quantity = ", ".join(filter(None, (meant, channel)))
-            span = f"{min(values):.3g} to {max(values):.3g}", f"{inside} of {len(values)}"
+            span = f"{min(values):.3g} to {max(values):.3g}", f"{inside}"
             lines.append([quantity if not i else "", row.case, row.printed, row.ours, *span])
     ours = Column("printed", form="{:g}"), Column("judged on this page", form="{:.3g}")
-    head = ("number", "case", *ours, "least to largest of the draws", "draws within the tolerance")
+    head = ("number", "case", *ours, "least to largest of the draws", f"draws of {joint_inputs.DRAWS} within the tolerance")
     return [*Table(head, lines).markdown().splitlines(), ""]
 
 

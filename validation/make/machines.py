@@ -94,24 +94,37 @@ def text(page):
         f"- Cause of the difference: {decide}.",
         *([f"- Unprinted inputs: {drawn}"] if drawn else []),
         "",
-        verdicts.text(references(page), rows, draws(page)),
+        verdicts.text(references(page), rows, joint.said(page)),
         "",
-        *runs_of(page, rows),
-        *joint.section(page),
-        *(home.more() if hasattr(home, "more") else ()),
+        *joint.section(page, rows),
     ]
-    for name, caption in home.PICTURES.items():
-        lines += [f"![{caption}]({name}.png)", "", f"{caption}.", ""]
+    for number, (name, caption) in enumerate(home.PICTURES.items(), 1):
+        lines += [f"![Figure {number}]({name}.png)", "", f"Figure {number}. {caption}.", ""]
     lines += [
         "## Method and source",
         "",
+        f"Variants of the simulations are on [{page}_variants.md]({page}_variants.md).",
         f"{scene.source}.",
         "",
         f"`python -m validation {page}` computes this page and [tables/{page}.csv](tables/{page}.csv).",
-        f"The printed values are the `[[reference]]` rows of `gearfe/scene/scenes/{PAGES[page]}.toml`.",
-        "The last statements are those of `validation/sources/statements.toml`, which were added after a first run.",
-        f"`gearfe stiffness {PAGES[page]} --assumptions` prints the {len(scene.assumptions)} assumptions of the scene with",
-        "their reasons and effects. Verdicts and kinds are defined on [printed.md](printed.md).",
+        f"`gearfe stiffness {PAGES[page]} --assumptions` prints the {len(scene.assumptions)} assumptions of the scene.",
+        "[printed.md](printed.md) defines verdicts and kinds.",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def variants(page):
+    """Return the page of further simulations as Markdown: other contact laws, paths, errors and loads."""
+    title = gf.load_scene(PAGES[page]).title
+    lines = [
+        f"# {title}: variants of the simulations of {ARTICLES[page]}",
+        "",
+        f"- The verdicts on {ARTICLES[page]} are on [{page}.md]({page}.md). This page shows what other assumptions change.",
+        "- Statements with the same answer in all columns are omitted.",
+        "",
+        *module(page).more(),
+        *runs_of(page, table_rows.read(page)),
+        f"`python -m validation {page}` computes this page.",
     ]
     return "\n".join(lines) + "\n"
 
@@ -125,11 +138,6 @@ def decided(page, rows):
         else row
         for row in rows
     ]
-
-
-def draws(page):
-    """Words on the share of joint draws in which a statement holds, by case."""
-    return {case: f"; holds in {held.sum()} of {held.size} draws" for case, held in joint.judged(page).items()}
 
 
 def drawn_jointly(page):
@@ -170,15 +178,34 @@ def runs_of(page, rows):
             by_run.setdefault(row.run, []).append(row.id)
     if not by_run:
         return []
-    told = table_rows.read_runs(page)
-    named = [(name, made, ", ".join(dict.fromkeys(by_run.get(name, []))) or "beside") for name, made in told.items()]
-    table = Table(("run", "what it was made with", "rows"), named).markdown()
-    return ["## Simulations", "", "The settings are read from the machines that ran.", "", table, ""]
+    told = {name: made.split("; ") for name, made in table_rows.read_runs(page).items()}
+    shared = [part for part in next(iter(told.values())) if all(part in made for made in told.values())]
+    own = [part for made in told.values() for part in made if part not in shared]
+    letters = {part: chr(ord("A") + number) for number, part in enumerate(dict.fromkeys(own)) if own.count(part) > 1}
+    numbers, named = verdicts.number_of(references(page), rows), []
+    for name, made in told.items():
+        judged = sorted({numbers[one] for one in by_run.get(name, [])})
+        named.append((name, "; ".join(letters.get(part, part) for part in made if part not in shared), _spans(judged)))
+    table = Table(("run", "settings", "rows of the main page"), named).markdown()
+    about = [f"All runs: {'; '.join(shared)}.", *(f"{letter}: {part}." for part, letter in letters.items())]
+    return ["## Simulations", "", " ".join(about), "", table, ""]
+
+
+def _spans(numbers):
+    """Numbers of notes in words, such as ``[2] to [4], [7]``."""
+    parts = []
+    for number in numbers:
+        if parts and number == parts[-1][-1] + 1:
+            parts[-1].append(number)
+        else:
+            parts.append([number])
+    return ", ".join(f"[{one[0]}]" + (f" to [{one[-1]}]" if len(one) > 1 else "") for one in parts)
 
 
 def write_page(page):
-    """Write the Markdown of a page from its rows."""
+    """Write the Markdown of a page and of its variants from their rows."""
     put(page, text(page))
+    put(f"{page}_variants", variants(page))
 
 
 def compute(page):

@@ -197,21 +197,19 @@ def more():
 
 CENTROID = "What the two formulas of SC do on synthetic lines: [sideband_centroid.md](sideband_centroid.md)."
 BOTH = (
-    "The articles' formula, L = 2 b - N l, has the N = 5, 10, 15 pits of a level on one line of contact. So they are judged "
-    "above: on the pitch circle, evenly over the width, 1 mm wide, so that 5, 10 and 15 of the 20 mm are lost at once. The "
-    "cases mild_rows, moderate_rows and severe_rows of the scene have rows of five on one, two and three lines: there a severe "
-    "fault is longer, not deeper. Both under the "
-    "articles' own law, and one line with the linear stiffness curves of the pitted teeth; the healthy sidebands are "
-    "what 'pits raise sidebands' compares with"
+    "The articles' formula, L = 2 b - N l, has the N = 5, 10, 15 pits of a level on one line of contact. The verdicts use such "
+    "pits on the pitch circle, 1 mm wide, so that 5, 10 and 15 of the 20 mm are lost at once. The cases mild_rows, moderate_rows "
+    "and severe_rows have rows of five on one, two and three lines. The last column has one line and the linear stiffness curves "
+    "of the pitted teeth"
 )
 
 
 BOTH_PATHS = (
-    "The table compares two transmission paths from mesh to sensor. The verdicts use the raised cosine. The other path is "
-    "`gf.ring_window` of the ring between its root circle and rim, on a foundation of 1e8 N/m. They are not printed. A ring "
-    "with a centre line of constant length has no mean response over a revolution of the carrier. The mesh line of equal planets "
-    "in phase then vanishes, and the lines 3 f_c from it remain. The sun makes 84/21 = 4 revolutions relative to the carrier in "
-    "one revolution of the carrier. Lines one carrier frequency from the sun's harmonics therefore coincide with those of the "
+    "The articles print no transmission path from mesh to sensor. The verdicts use the raised cosine. The other path is "
+    "`gf.ring_window` of the ring between its root circle and rim, on a foundation of 1e8 N/m. A ring with a centre line of"
+    " constant length has no mean response over a revolution of the carrier. The mesh line of equal planets in phase then "
+    "vanishes, and the lines 3 f_c from it remain. The sun makes 84/21 = 4 revolutions relative to the carrier in one "
+    "revolution of the carrier. Lines one carrier frequency from the sun's harmonics are therefore also lines of the "
     "passing planets. With several harmonics in the path, a healthy stage has them, too. Impact law, without pulses"
 )
 

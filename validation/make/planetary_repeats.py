@@ -127,9 +127,9 @@ def section():
 
 
 TEXT = (
-    "S1 measured each level three times under impacts: SC told the levels apart and rose with them, RMS, kurtosis and shape "
-    "factor told none apart. Here pulses of 125, 250 and 500 N m, acceleration of the ring, article's own law; levels are told "
-    "apart if the ranges of their three repeats do not overlap, and by SC, which is said to rise, only if they rise"
+    "S1 measured each level three times under impacts. SC separated the levels and increased with them. RMS, kurtosis and shape "
+    "factor did not. The table has the acceleration of the ring under pulses of 125, 250 and 500 N m, with the article's law. "
+    "Levels are separated if the ranges of their repeats do not overlap. SC must also increase"
 )
 
 

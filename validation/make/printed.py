@@ -29,6 +29,9 @@ VERDICTS = """
 | model | the result of a model, which could have been different |
 | statement | a sentence of the article without a number; the table states in how many draws it holds |
 
+The printed values are the `[[reference]]` rows of the scene files. The statements that an article "says, too" are those of
+`validation/sources/statements.toml`. They were added after a first run.
+
 ## All printed numbers
 """  # noqa: E501
 CSV = TABLES / "printed.csv"

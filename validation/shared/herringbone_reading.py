@@ -12,20 +12,18 @@ PAGE = """
 ## The reading that gives its finite element column: scene `herringbone_contact_line`
 
 - The list of 'maximum reduction rates' is `1 - k / k_healthy` of the *analytical* column, {rounding}.
-- The finite element column has other reductions ({own}). Its values are therefore at one phase, that of the largest reduction.
-- S4 constrains the driven gear and rotates the driving gear. At the same rotation, a damaged gear carries less than its share. This
-  raises k / k_healthy to a power of {power}.
-- The scene has bores of {sun:.2f} and {planet:.2f} of the root radius and a rim of 93 mm. A crack of p % has the level p / 2, and pits have a
+- The finite element column has other reductions ({own}). Its values are therefore at one phase.
+- S4 rotates the driving gear. At the same rotation, a damaged gear carries less than its share. This raises k / k_healthy to a power of {power}.
+- The scene has bores of {sun:.2f} and {planet:.2f} of the root radius and a rim of 93 mm. A crack of p % has the level p / 2. Pits have a
   diameter of 1.26 mm.
-- A scan of five unprinted values and eight layouts of pits found this reading ([herringbone_layouts.md](herringbone_layouts.md)). It is a fit and
-  no evidence. That page also states observations that would falsify it.
-- Rotation: that of the healthy pair. Phase: that of the largest loss in case 4. Errors and reductions are relative to S4's finite element column.
+- [herringbone_layouts.md](herringbone_layouts.md) describes the scan and observations that would falsify its result.
+- The rotation is that of the healthy pair. The phase is that of the largest loss in case 4. Errors are relative to S4's finite element column.
 
 | pair | case | S4 FE | `ritz3d` [N/um] | error | reduction, S4 FE | `ritz3d` | points | largest within 0.25 base pitches | `herringbone_article` | `herringbone_article`, k_h with summed widths | `fe3d`, error |
 |---|---|---|---|---|---|---|---|---|---|---|---|
 {ten}
 
-The loss of case 4 has a plateau: it exceeds nine tenths of the maximum over {plateau:.2f} base pitches. Losses by offset from the pitch point:
+The loss of case 4 exceeds nine tenths of its maximum over {plateau:.2f} base pitches. Losses by offset from the pitch point:
 
 {spike}
 
@@ -54,7 +52,7 @@ def ten():
             cells += [f"{own[j]:.2f}", f"{lost[j]:.2f}", f"{lost[j] - own[j]:+.1f}", f"{largest:.2f}"]
         cells += [f"{100 * (one[i] / k[i] - 1):+.1f} %" for one in others.values()]
         cells.append(f"{100 * (solid[i] / want[i] - 1):+.1f} %")
-        out.append(f"| {pair} | {case} | " + " | ".join(cells) + " |")
+        out.append(f"| {pair if case == 'healthy' else ''} | {case} | " + " | ".join(cells) + " |")
     return "\n".join(out)
 
 

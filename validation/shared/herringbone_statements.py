@@ -15,9 +15,8 @@ NAME = "herringbone_statements"
 TITLE = """
 ## What S4 concludes from its stiffness
 
-The first table lists the largest reduction [%] by `ritz3d` under the same load, within a quarter of a base pitch of the pitch
-point. Its three values are for crack and pits together, for the crack alone and for the pits alone. 'Close' means that the pits
-add less than a tenth of the reduction by the crack.
+The largest reduction [%] by `ritz3d` within a quarter of a base pitch of the pitch point is listed for crack and pits, the crack
+alone and the pits alone. 'Close': the pits add less than a tenth of the reduction by the crack.
 """
 
 

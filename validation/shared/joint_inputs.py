@@ -24,7 +24,7 @@ MEANT = {
     "damping": "damping ratio of supports",
     "noise": "noise, of the signal's standard deviation",
     "pulses": "pulses, of the load",
-    "play": "play",
+    "play": "backlash",
     "path": "foundation under the ring, to the sensor",
     "mesh_damping": "damping of meshes",
     "groove": "stiffness of the groove",

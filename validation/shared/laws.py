@@ -21,11 +21,13 @@ def _cell(value):
 
 
 def tables(name, about, *laws):
-    """Lines of Markdown of the table that `beside` wrote."""
+    """Lines of Markdown of the table that `beside` wrote, without statements of the same answer in all columns."""
     rows = rows_of(TABLES / f"{name}_laws.csv")
     lines = [f"{about}.", "", f"| quantity | case | {' | '.join(laws)} |", "|---|---|" + "---|" * len(laws)]
     last = ""
     for row in rows:
+        if len({row[law] for law in laws}) == 1 and row[laws[0]] in ("yes", "no"):
+            continue
         shown = [row[law] if row[law] in ("yes", "no") else f"{float(row[law]):.4g}" for law in laws]
         lines.append(f"| {row['quantity'] if row['quantity'] != last else ''} | {row['case']} | {' | '.join(shown)} |")
         last = row["quantity"]

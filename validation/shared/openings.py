@@ -18,14 +18,13 @@ def planetary_pitting(found):
     beyond = [f"{x:g}" for x in (*found.printed("sc_simulated"), *found.printed("sc_measured")) if x > high]
     return (
         f"the sideband centroid SC increases with the number of pits on a sun tooth, {ends[0]} Hz simulated and {ends[1]} Hz "
-        "measured. It hardly depends on impacts. The levels are separated less well by "
-        f"RMS ({_list(found.printed('rms'))} m/s^2), kurtosis and shape factor",
-        f"SC is {', '.join(f'{x:.1f}' for x in sc)} Hz under the articles' own contact law, with N pits on one line{same}. "
-        f"The other values are {_sizes(found, 'rms', 'RMS')}, and {_sizes(found, 'amplitudes', 'peaks')}. "
+        f"measured. It hardly depends on impacts. RMS ({_list(found.printed('rms'))} m/s^2), kurtosis and shape factor separate "
+        "the levels less well",
+        f"SC is {', '.join(f'{x:.1f}' for x in sc)} Hz under the articles' own contact law{same}. "
+        f"Others: {_sizes(found, 'rms', 'RMS')}, and {_sizes(found, 'amplitudes', 'peaks')}. "
         f"Three repeats tell the levels apart by {', '.join(_telling(found)) or 'none of its indicators'}",
         f"SC averages frequencies from {low:g} to {high:g} Hz by definition, so that "
-        f"{' and '.join(beyond)} Hz are impossible. Levels depend on load, masses and the path to the sensor, which are not "
-        "printed",
+        f"{' and '.join(beyond)} Hz are impossible. Load, masses and sensor path are not printed",
     )
 
 
@@ -83,10 +82,9 @@ def herringbone_machine(found):
         f"cause lines {found.ours('fault_frequency', 'N f_m / z_s'):g} Hz about the mesh line. The kurtosis increases (up to "
         f"{most[0]:.0f} %) more than the crest factor (up to {most[1]:.0f} %)",
         f"the lines appear, and {sum(order)} of {len(order)} statements on their order hold. The range along x is "
-        f"{min(span):.3g} to {max(span):.3g} um, which the errors cause and damage hardly changes. For the sun's angular "
-        f"acceleration, the kurtosis increases by at most {kurtosis:.2g} % and the crest factor by {crest:.2g} %. Without "
-        f"errors, the increases are {bare[0]:.2g} and {bare[1]:.2g} %. The stiffness tables are on "
-        "[their own page](herringbone.md)",
+        f"{min(span):.3g} to {max(span):.3g} um, which the errors cause and damage hardly changes. The kurtosis increases by at "
+        f"most {kurtosis:.2g} % and the crest factor by {crest:.2g} % ({bare[0]:.2g} and {bare[1]:.2g} % without errors). "
+        "Stiffness tables: [herringbone.md](herringbone.md)",
         "the sizes of errors, supports and damping are not printed. Three planets in phase cancel in x. The printed inertias "
         f"are {min(heavy):.0f} to {max(heavy):.0f} times too large for such gears, so that the sun hardly rotates",
     )

@@ -102,7 +102,7 @@ def told(response):
     rubbed = sum(bool(mesh.friction) for mesh in made.meshes)
     parts += [f"Coulomb friction in {rubbed} meshes"] if rubbed else []
     play = {f"{1e6 * one:g}" for one in law["backlash"] if math.isfinite(one) and one > 0}
-    parts.append(f"play {', '.join(sorted(play))} um" if play else "meshes never open")
+    parts.append(f"backlash {', '.join(sorted(play))} um" if play else "meshes never open")
     sizes = sorted({f"{1e6 * size:.3g} um at {f:.4g} Hz" for mesh in made.meshes for size, f, _ in mesh.error})
     parts += [f"errors in the meshes of {', '.join(sizes)}"] if sizes else []
     for load in made.loads:

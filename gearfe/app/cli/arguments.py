@@ -55,6 +55,7 @@ def main(argv=None):
     add("--forces N", "forces along the line of action [N] (default: the force of the scene)", nargs="+", type=float)
     add("--torques NM", "torques of the pinion instead of forces [N m]", nargs="+", type=float)
     add("--no-extended", "neglect tip-corner contact outside the path of contact")
+    add("-o --output FILE", ".csv: transmission error over the phase at each load; .md or .tex: the table as printed")
     add("--plot FILE", "draw the transmission error: .png, .svg or .pdf")
     add = verb("compare", run.compare, "compare formulations with finite elements: table of errors by zone, with cost")
     _scene_arguments(add)
@@ -63,7 +64,7 @@ def main(argv=None):
         "user-defined stiffness model, may be repeated: file.py:function, k [N/m] at an array of mesh phases from 0 to "
         "1; or two columns, units in the header: first phase (0: a pair enters), angle [deg] or angle [rad] (of the "
         "pinion), or radius [mm] (one tooth pair, on the pinion); then k in N/m, N/mm, N/um (or kN, MN, GN), or per "
-        "width in N/(mm um) or N/(m um); or a .csv written by gearfe",
+        "width in N/(mm um) or N/(m um); or a .csv or .mat written by gearfe; damaged.csv,healthy.csv adds the losses",
         action="append",
         default=[],
     )
@@ -110,8 +111,9 @@ def main(argv=None):
     add("--case NAME", "case of damage, compared with healthy (default: healthy alone)")
     add(
         "--duration S",
-        "duration of the record [s], after the start-up transient has decayed to 0.1 %% (at most 20 s; default: 1)",
-        default=1.0,
+        "duration of the record [s], after the start-up transient has decayed to 0.1 %% (at most 20 s; default: that which "
+        "resolves the sidebands of the damage, 1 to 5)",
+        type=float,
     )
     add("--channel NAME", "channel to analyse, e.g. 'sun.theta acceleration' (default: first mesh's force)")
     add("--contact", "contact law (default: the scene's, else linear)", choices=("linear", "impact"))
@@ -156,6 +158,8 @@ def main(argv=None):
     add("--column NAME", "column (channel) to analyse, if there are several")
     add("--header TEXT", "column names and units for a table that has no header line, e.g. 'time [s], a [m/s^2]'")
     add("--scale X", "calibration factor; --unit is the unit after scaling (default: 1)", default=1.0)
+    add("--start S", "begin of the part of each record that is analysed [s] (default: 0)", default=0.0)
+    add("--stop S", "end of that part [s] (default: that of the record)", default=float("inf"))
     add("--scene SCENE", "scene whose machine gives the line frequencies of the last spectrum")
     add("--gear NAME", "gear of --scene; gives the frequencies and the number of teeth that are not stated")
     add("--mesh HZ", "mesh frequency [Hz]", type=float)
@@ -164,6 +168,13 @@ def main(argv=None):
     add("--teeth Z", "number of teeth; computes FM0, FM4, NA4, ... from the synchronous average (TSA)", type=int)
     add("--shaft HZ", "rotational frequency of that gear [Hz]", type=float)
     add("--tacho NAME", "column with tachometer pulses or shaft speed [rpm], instead of --shaft")
+    add(
+        "--speeds",
+        "lowest and highest rotational frequency of that gear [Hz]; estimates its speed from the mesh lines, instead of --shaft",
+        nargs=2,
+        metavar=("LOW", "HIGH"),
+        type=float,
+    )
     add("--pulses N", "pulses per revolution of the tachometer's shaft (default: 1)", default=1)
     add("--tacho-ratio R", "ratio of the gear's shaft speed to the tachometer's, e.g. 29/95 (default: 1)", default=1, type=_ratio)
     add("--level X", "trigger level of the tachometer pulses (default: half the highest)", type=float)
@@ -239,7 +250,33 @@ def main(argv=None):
     add("--steps N", "maximum number of steps (default: 60)", default=60)
     add("--paris", "constants C [mm/(MPa sqrt(mm))^m] and m of Paris's law", nargs=2, metavar=("C", "M"), type=float)
     add("--threshold K", "threshold range of K [MPa sqrt(mm)] (default: 0)", default=0.0)
-    add("--refine X", "finite-element resolution: divides the edge lengths (default: 1)", default=1.0)
+    add("--refine X", "resolution: divides the edge lengths (default: 1)", default=1.0)
+    add(
+        "--method",
+        "method (default: ritz while the crack is in its sector, then fe)",
+        choices=("auto", "ritz", "fe"),
+        default="auto",
+    )
+    add(
+        "--loading",
+        "loads that pass over the tooth and its neighbours, or the whole load at the highest point of single contact (default: "
+        "engagement)",
+        choices=("engagement", "single"),
+        default="engagement",
+    )
+    add(
+        "--criterion",
+        "direction of growth: largest tangential stress, largest energy release rate, or no K_II (default: tangential)",
+        choices=("tangential", "energy", "shear"),
+        default="tangential",
+    )
+    add(
+        "--held",
+        "arc of the bore that is held [degrees], from the cracked tooth towards its loaded side (default: all)",
+        nargs=2,
+        metavar=("FROM", "TO"),
+        type=float,
+    )
     add("--plot FILE", "draw the grown crack in its tooth: .png, .svg or .pdf")
     add = verb("check", tools.check, "summarise a scene file and show which method each case would use")
     add("scene SCENE", "a .toml file, or a built-in scene (see 'gearfe scenes')")

@@ -40,13 +40,15 @@ def export_file(arguments):
 
 def grow(arguments):
     """``gearfe crack``."""
+    import math
     from dataclasses import replace
 
     from ...core.files import check_output
     from ...figures.pair_plot import plot_pair
     from ...geometry.damage.crack import Crack
     from ...scene.load import load_scene
-    from ...strength.growth import ParisLaw, grow_crack
+    from ...strength.growth import CrackModel, grow_crack
+    from ...strength.paris import ParisLaw
 
     if arguments.plot:
         check_output(arguments.plot, "picture")
@@ -58,8 +60,11 @@ def grow(arguments):
         )
     side, crack = found[0]
     law = ParisLaw(*arguments.paris, threshold=arguments.threshold) if arguments.paris else None
+    held = arguments.held and [tuple(map(math.radians, arguments.held))]
+    model = CrackModel(arguments.method, arguments.loading, arguments.criterion, held)
+    options = {"step": arguments.step, "steps": arguments.steps, "refine": arguments.refine}
     with working("crack"):
-        growth = grow_crack(case, crack, side, step=arguments.step, steps=arguments.steps, law=law, refine=arguments.refine)
+        growth = grow_crack(case, crack, side, law=law, model=model, **options)
     print(growth)
     if arguments.plot:
         grown = replace(growth.cracks[-1], tooth=crack.tooth)

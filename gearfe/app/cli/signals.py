@@ -16,8 +16,10 @@ def signal(arguments):
         _print_channels(arguments)
         return
     for option in ("teeth", "orders"):
-        if getattr(arguments, option) is not None and arguments.shaft is None and arguments.tacho is None:
-            raise ValueError(f"--{option} needs the shaft frequency of that gear: give --shaft HZ or --tacho COLUMN")
+        if getattr(arguments, option) is not None and not (arguments.shaft or arguments.tacho or arguments.speeds):
+            raise ValueError(f"--{option} needs the shaft frequency of that gear: give --shaft HZ, --tacho COLUMN or --speeds")
+    if arguments.speeds and (arguments.teeth is None or arguments.tacho is not None):
+        raise ValueError("--speeds estimates the speed of a gear from its mesh lines: give --teeth, and no --tacho")
     if arguments.pulses < 1:
         raise ValueError(f"--pulses {arguments.pulses}: give 1 or more pulses per revolution")
     with working("reading"):
@@ -55,7 +57,7 @@ def _of_scene(arguments):
 
     found = gear_lines(load_scene(arguments.scene), arguments.gear)
     own = {"mesh": found.mesh, "fault": found.fault, "carrier": found.carrier, "teeth": found.teeth}
-    if arguments.tacho is None:
+    if arguments.tacho is None and arguments.speeds is None:
         own["shaft"] = found.turning
     for name, value in own.items():
         if getattr(arguments, name) is None:
@@ -104,6 +106,7 @@ def _print_channels(arguments):
 def _read(arguments):
     """Read the chosen channel of every file by name, with the angle of the shaft or its frequency if known."""
     from ...core.steps import steps
+    from ...signal.shaft_speed import with_estimated_speed
     from ...signal.signal_file import read_signals
 
     out = {}
@@ -119,8 +122,12 @@ def _read(arguments):
         (channel,) = channels.values()
         if channel.name in out:
             raise ValueError("two files have the same name: their cases could not be distinguished; rename one")
-        turns = {"shaft_frequency": arguments.shaft} if arguments.shaft is not None and channel.angle is None else {}
-        out[channel.name] = replace(channel, **turns)
+        channel = channel.between(arguments.start, arguments.stop)
+        if arguments.speeds:
+            channel = with_estimated_speed(replace(channel, angle=None, shaft_frequency=None), arguments.teeth, arguments.speeds)
+        elif arguments.shaft is not None and channel.angle is None:
+            channel = replace(channel, shaft_frequency=arguments.shaft)
+        out[channel.name] = channel
     return out
 
 

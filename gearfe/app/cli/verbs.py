@@ -85,18 +85,20 @@ def stiffness(arguments):
 def transmission_error(arguments):
     """``gearfe te``."""
     from ...comparison.harris import harris
-    from ...comparison.losses import cycle_of_tooth
+    from ...comparison.losses import cycle_of_tooth, told_damage
     from ...figures.error_plots import plot_transmission_error
     from ...figures.stiffness_plots import told
     from ...scene.load import load_scene
     from ...stiffness.methods import fitted
     from ...stiffness.solve import Solve
+    from ...stiffness.transmission_error import errors_under_loads
 
-    _check_outputs(arguments, plot="picture")
+    _check_outputs(arguments, output="table", plot="picture")
     if arguments.forces and arguments.torques:
         raise ValueError("--forces and --torques both state the loads: give one of them")
     scene = load_scene(arguments.scene)
     case, variants, left_out = fitted(arguments.method, scene.case(arguments.pair, arguments.case))
+    named = told_damage(case.pair, case.damage) if case.damaged else "healthy"
     print("\n\n".join([scene.title, *left_out]), end="\n\n")
     r_b = case.pair.gear_1.r_b
     forces = arguments.forces or [1e3 * torque / r_b for torque in arguments.torques or ()] or [case.forces[0]]
@@ -104,8 +106,13 @@ def transmission_error(arguments):
         phases = cycle_of_tooth(case, arguments.phases) if case.first_tooth else arguments.phases
         how = Solve(arguments.method, phases, extended=not arguments.no_extended, refine=arguments.refine, variants=variants)
         found, plain = harris(replace(case, force=forces), how)
-    print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle\n")
-    print(found.table(plain, r_b))
+        healthy = errors_under_loads(replace(case.healthy, force=forces), how) if case.damaged else None
+    table = found.table(plain, r_b, healthy)
+    print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle, {named}\n")
+    print(table)
+    if arguments.output:
+        (found.record() if arguments.output.lower().endswith(".csv") else table).save(arguments.output)
+        print(f"written: {arguments.output}")
     if arguments.plot:
         title = _title(scene, arguments, told(found.curves[0], load=False))
         plot_transmission_error(found, arguments.plot, title, plain)
@@ -253,7 +260,8 @@ def dynamics(arguments):
         scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
     print(f"{scene.title}\n")
     with working("stiffness curves and response") as tell:
-        options = {"duration": arguments.duration, "method": arguments.method, "loads": arguments.loads, "progress": tell}
+        names = ("duration", "method", "loads", "channel")
+        options = {"progress": tell} | {name: getattr(arguments, name) for name in names}
         found = responses(scene, arguments.case, **options)
     made = next(iter(found.values())).machine
     for name, value in made.notes.items():
@@ -273,6 +281,9 @@ def dynamics(arguments):
             print(f"  {case}: reference used because {stats['switched']}")
         if "chaotic" in stats:
             print(f"  {case}: {stats['chaotic']}")
+    if arguments.output:
+        list(found.values())[-1].save(arguments.output)
+        print(f"written: {arguments.output}")
     report = analysis(found, arguments.channel)
     _print_analysis(report, arguments, scene.name)
     if gears := gears_table(found):
@@ -280,9 +291,6 @@ def dynamics(arguments):
     if report.too_short:
         print(f"longer: --duration {report.resolving:.3g}")
     _print_assumptions(scene, arguments.assumptions, scene.assumptions)
-    if arguments.output:
-        list(found.values())[-1].save(arguments.output)
-        print(f"written: {arguments.output}")
 
 
 def _print_analysis(report, arguments, name=""):

@@ -40,26 +40,30 @@ def _stamp():
     return sha256(b"".join(file.read_bytes() for file in sorted(files))).hexdigest()
 
 
-class _Announcer(event.Listener):
-    """Reports the compilation once."""
+class _Announcer(event.TimingListener):
+    """Reports the compilation once, and measures its duration."""
 
     def __init__(self, tell):
+        super().__init__()
         self.tell = tell
 
     def on_start(self, event):
+        super().on_start(event)
         if self.tell:
             tell, self.tell = self.tell, None
-            tell("compiling the integrator, about 10 s once; the result is stored on disk")
+            tell("compiling the integrator, 8 to 30 s once; the result is stored on disk")
 
-    def on_end(self, event):
-        pass
+    @property
+    def seconds(self):
+        """Seconds of compilation."""
+        return self.duration if self.done else 0.0
 
 
 @contextlib.contextmanager
 def announced(tell=None):
-    """In the block, `tell` gets a line if something has to be compiled; by default it is a warning."""
-    with event.install_listener("numba:compile", _Announcer(tell or warnings.warn)):
-        yield
+    """In the block, `tell` gets a line if something has to be compiled; by default it is a warning. Gives the `_Announcer`."""
+    with event.install_listener("numba:compile", _Announcer(tell or warnings.warn)) as announcer:
+        yield announcer
 
 
 @compiled

@@ -102,7 +102,7 @@ def simulate(
         If False, channels are those of the integrator at the output times. Default: filtered, unless `dt` makes each step an
         output. Filtering needs two steps or more for each output.
     progress : callable, optional
-        Function that receives a line before compilation (about 10 s on the first run on a computer), and one with the expected
+        Function that receives a line before compilation (8 to 30 s on the first run on a computer), and one with the expected
         seconds of a long run.
 
     Returns
@@ -176,11 +176,13 @@ def simulate(
     from .loop_parts import announced  # loads the compiler
 
     run = _Runs(machine, duration, count, state, own, start, filtered, progress)
-    with announced(progress):
+    with announced(progress) as compiled:
         if step is None and dt is None:
-            return compared(run.controlled(error))
-        steps = math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1
-        return compared(run.given(steps, error))
+            out = run.controlled(error)
+        else:
+            out = run.given(math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1, error)
+    seconds = {"seconds": out.stats["seconds"] - compiled.seconds, "compiled": compiled.seconds}
+    return compared(replace(out, stats=out.stats | seconds))
 
 
 def _reference(machine, duration, count, state, method, rtol, start, filtered):

@@ -199,7 +199,7 @@ def damaged_flexibility(
     mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks, broken=broken)
     body = HeldSection(mesh.mesh, material, state=state)
     on = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
-    faces = _face_columns(mesh)
+    faces = face_columns(mesh)
     tilted = [part for tooth in solved for part in _tilted(mesh, tooth)]
     influence, at = _between(body, [*(on[tooth].load for tooth in solved), faces, *(part.load for part in tilted)])
     pairs = zip(solved, at[len(solved) + 1 :: 2], at[len(solved) + 2 :: 2], strict=True)
@@ -232,7 +232,7 @@ def damaged_flexibility(
     return Flexibility(gear, near, far, blocks, limits, refine, faces.shape[0], healthy, seam, **options)
 
 
-def _face_columns(mesh):
+def face_columns(mesh):
     """Return columns of unit forces that push facing nodes of all cracks apart, without tips and their quarter points."""
     columns = []
     for seam in mesh.seams:

@@ -48,10 +48,11 @@ from typing import Any
 
 from ...dynamics.machine.of_scene import flat_machine
 from ...geometry.aliases import StrPath
-from ...scene.dotted_keys import check_key, is_gearbox, set_values, tables_near
+from ...scene.dotted_keys import check_key, set_values
 from ...scene.load import Scene, scene_of
 from ...scene.parts import DAMAGE
 from ...scene.reading import checked
+from ...scene.study_tables import is_gearbox, tables_near
 from ...scene.toml_file import given_tables
 from ..sweeps.axes import RUNS
 from ..sweeps.samples import check_shape

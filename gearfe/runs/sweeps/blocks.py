@@ -12,8 +12,9 @@ import numpy as np
 
 from ...core.steps import listening
 from ...core.threads import own_warnings
-from ...scene.dotted_keys import rank, set_values, trimmed
+from ...scene.dotted_keys import rank, set_values
 from ...scene.load import Scene, scene_of
+from ...scene.study_tables import trimmed
 from ...stiffness.cache import program
 from ..store.shards import ShardColumn, arrow, encoded, fields, table
 from .kinds import KINDS

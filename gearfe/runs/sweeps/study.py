@@ -43,10 +43,11 @@ from typing import Any
 import numpy as np
 
 from ...geometry.aliases import StrPath
-from ...scene.dotted_keys import check_key, is_gearbox, tables_near, trimmed
+from ...scene.dotted_keys import check_key
 from ...scene.load import scene_of
 from ...scene.parts import DAMAGE
 from ...scene.reading import check_listed, check_named, checked
+from ...scene.study_tables import is_gearbox, tables_near, trimmed
 from ...scene.toml_file import given_tables
 from . import samples
 from .axes import MOST, RUNS, axes, checked_sample

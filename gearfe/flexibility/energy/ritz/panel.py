@@ -23,6 +23,7 @@ from ....geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
 from ... import flamant
 from ...condense import condense
 from ...plane_elements import bent_stiffness, stiffness
+from .tip import face_columns, load_columns, tip_columns, tip_of
 
 STRAIGHT = 1e-12  # edges that depart less from their chord, by the size of the sector
 GROUP = 10  # triangles eliminated together, and up to twice as many
@@ -34,7 +35,8 @@ class Panel:
 
     `stiffness` (m, m); for n loads on the flank `push` (m, n) their forces on the sides, `own` (n, n) the displacement at load
     i with the sides held under load j, the half-plane's logarithm taken out; for k facing pairs of crack nodes `open_push`
-    (m, k), `open_own` (k, n) their opening under the loads and `open_open` (k, k) under unit forces that push them apart.
+    (m, k), `open_own` (k, n) their opening under the loads and `open_open` (k, k) under unit forces that push them apart. With
+    `intensity` of `panel` K_I and K_II follow the pairs; their own block is empty of meaning.
     """
 
     stiffness: np.ndarray
@@ -66,7 +68,7 @@ def check_order(order):
         raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
 
 
-def panel(model, sector, roll, tilt=0.0):
+def panel(model, sector, roll, tilt=0.0, *, intensity=False):
     """Return the `Panel` of a `gearfe.geometry.mesh.sector.Sector` of a `SectionModel`.
 
     Parameters
@@ -75,6 +77,8 @@ def panel(model, sector, roll, tilt=0.0):
         Roll lengths of unit line loads on the loaded flank [mm]; none for a sector that only supports others.
     tilt : float or ndarray, shape (n,)
         By what angle the loads lean from the flank's normal towards the outside of the gear [rad]; small.
+    intensity : bool
+        Whether K_I and K_II at the tip of the only crack are two more openings [MPa sqrt(mm) per N/mm].
     """
     gear, material, state, order = model.gear, model.material, model.state, model.order
     modulus = material.plane_modulus(state)
@@ -86,6 +90,10 @@ def panel(model, sector, roll, tilt=0.0):
     parts, extra = _loads(gear, sector, bulges, chain, roll, order, (modulus, ratio), tilt)
     m, n = 2 * sides.size, roll.size
     parts.append(_apart(sector, chain, 2 * n))
+    if intensity:
+        tip, first = tip_of(sector), int(parts[-1][1].max()) + 1
+        at, column, force = tip_columns(sector, tip, numbers, order, material, state)
+        parts.append((at, first + column, force))
     rows, columns, values = (np.concatenate([part[k] for part in parts]) for k in range(3))
     k = int(columns.max(initial=2 * n - 1)) + 1 - 2 * n
     load = coo_array((values, (rows, columns)), shape=(2 * count, 2 * n + k))
@@ -97,6 +105,9 @@ def panel(model, sector, roll, tilt=0.0):
         where, inward, tip_side = _frames(gear, roll, tilt)
         pinned = flamant.displacement(_matched(gear, sector, order), where, inward, tip_side, modulus, ratio)
         total[:, loads] += total[:, : edge.size] @ pinned.transpose(2, 0, 1).reshape(edge.size, n)
+    if intensity:
+        total[np.ix_(faces[-2:], loads)] -= load_columns(sector, tip, *_frames(gear, roll, tilt))
+        total[np.ix_(faces[-2:], faces[:-2])] -= face_columns(sector, tip, order)
     turn = _polar(gear, sides.size // 2)
     push = turn.T @ total[:m, edge.size :]
     return Panel(

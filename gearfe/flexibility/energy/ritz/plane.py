@@ -106,7 +106,7 @@ def _damaged(model, cracks, broken, neighbours, cache):
 
 
 def loaded_sector(model, cracks, cache=True, *, broken=None):
-    """`Panel` of a sector with `cracks` under the loads at `_places`, and under eight tilted ones: at `_leans`, both ways.
+    """`Panel` of a sector with `cracks` under the loads at `loaded_places`, and under eight tilted ones: at `_leans`, both ways.
 
     The tooth may be `broken`; a missing one has no loads.
     """
@@ -114,7 +114,7 @@ def loaded_sector(model, cracks, cache=True, *, broken=None):
     end, missing = loaded_side(gear, [broken], broken.tooth if broken else 0), isinstance(broken, MissingTooth)
 
     def solve():
-        rolls = np.append(_places(end), np.repeat(roll_at_arc(gear, _leans(end)), 2))
+        rolls = np.append(loaded_places(end), np.repeat(roll_at_arc(gear, _leans(end)), 2))
         tilt = np.append(np.zeros(PLACES), [TILT, -TILT] * 4)
         loads = slice(0 if missing else None)
         return panel(model, sector(gear, cracks, broken=broken, refine=model.refine), rolls[loads], tilt[loads])
@@ -156,7 +156,7 @@ def _arcs(gear, places):
 
 
 @keeping(64)
-def _places(gear):
+def loaded_places(gear):
     """Roll lengths of the loads: Chebyshev points in `_variable`, from root to tip."""
     return roll_at_arc(gear, _arcs(gear, chebyshev.chebpts2(PLACES)))
 

@@ -1,0 +1,312 @@
+"""`fit_machine`: parameters of a scene's machine from a healthy record, and that record with a simulated fault."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import stdtrit
+
+from ..core.table import Column, Table
+from ..dynamics.machine.of_scene import build_machine
+from ..dynamics.machine.stages import Fault
+from ..dynamics.motion.steady import common_period, steady_state
+from ..dynamics.motion.transfer_path import through_frf
+from ..geometry.aliases import Floats
+from ..scene.dotted_keys import find_key, set_values
+from ..scene.load import Scene, read_tables, scene_of
+from ..scene.schema import LISTS
+from ..signal.series import Signal
+from .vibration import recorded
+
+PATH = ("path.frequency_Hz", "path.damping_ratio", "path.mass_kg")
+BAND = 0.4  # of the rate: highest line that is used
+APART = 4.0  # widths 1/T of a spectral line between two lines, so that a Hann window parts them
+NOISE = (5, 60)  # such widths beside a line in which the noise is measured
+STARTS = 6  # starting points per parameter; the best two are refined
+SHORT = 4  # mesh cycles of the common period up to which the periodic motion is solved directly
+CLEAR = 3.0  # times the noise together are lines that can be fitted
+OFF = 0.02  # part of the speed within which a faster or slower record is searched for
+
+
+@dataclass(frozen=True, slots=True)
+class MachineFit:
+    """A machine fitted to a healthy record.
+
+    Attributes
+    ----------
+    scene : Scene
+        With the fitted values.
+    channel : str
+        Channel of the machine that the record is compared with.
+    values : dict
+        Fitted value by key, in the unit of the key.
+    intervals : dict
+        95 % interval by key. It is the whole range of `vary` where the record does not determine the value.
+    determined : dict
+        Whether the interval is narrower than the range on both sides.
+    frequency, measured, fitted, noise : ndarray, shape (n,)
+        Lines [Hz], their amplitudes in the record and in the machine, and the standard deviation of the first.
+    misfit : float
+        Root mean square of (measured - fitted) / noise per degree of freedom; above 1 the model lacks something.
+    """
+
+    scene: Scene
+    record: Signal
+    channel: str
+    values: dict[str, float]
+    intervals: dict[str, tuple[float, float]]
+    determined: dict[str, bool]
+    frequency: Floats
+    measured: Floats
+    fitted: Floats
+    noise: Floats
+    misfit: float
+
+    def __str__(self) -> str:
+        rows = [[key, value, *self.intervals[key], "yes" if self.determined[key] else "no"] for key, value in self.values.items()]
+        number = "{:.4g}"
+        table = Table(["key", *(Column(name, "", number) for name in ("value", "from", "to")), "determined"], rows)
+        return f"{table.markdown()}\n\n{self.summary}"
+
+    @property
+    def summary(self) -> str:
+        """Quality of the fit in two sentences."""
+        return (
+            f"The lines of machine and record differ by {100 * self.error:.1f} % (rms), {self.misfit:.2g} times the noise. "
+            f"Intervals of 95 %{', widened by that factor' if self.misfit > 1 else ''}; 'no': the record leaves the range open."
+        )
+
+    @property
+    def error(self) -> float:
+        """Root mean square difference of the lines of machine and record over that of the record."""
+        return float(np.linalg.norm(self.fitted - self.measured) / np.linalg.norm(self.measured))
+
+    def with_fault(self, case: str) -> tuple[Signal, dict[str, Any]]:
+        """Return the record with the change that a simulated fault makes, and its labels.
+
+        Healthy and damaged machine run with the fitted values. Their difference is added to the record, at the mesh phase of the
+        record. The tooth's place in the revolution is that of the machine at time 0.
+
+        Parameters
+        ----------
+        case : str
+            Case of damage of the scene.
+
+        Returns
+        -------
+        Signal
+            Of length and rate of the record.
+        dict
+            ``faults`` (list of gear, tooth, damage in words, frequency [Hz]), and ``error``: the part by which healthy lines of
+            machine and record differ. The change by the fault is at least as uncertain.
+
+        Raises
+        ------
+        ValueError
+            If the scene has no such case.
+        """
+        healthy, faulty = (build_machine(self.scene, one) for one in (None, case))
+        shift, rate, path = self._shift(healthy), self.record.rate, _path(self.values)
+        runs = (recorded(one, self.record.duration, rate, start=shift) for one in (healthy, faulty))
+        before, after = (_through(one.signal(self.channel), path).values[: self.record.values.size] for one in runs)
+        signal = replace(self.record, values=self.record.values + after - before, name=f"{self.record.name}, {case}")
+        return signal, {"faults": [_label(one) for one in faulty.faults], "error": self.error}
+
+    def _shift(self, machine):
+        """Time by which the machine is ahead so that its lines have the phases of the record [s]."""
+        ours = _lines(machine, self.channel, self.frequency) * _gain(_path(self.values), self.frequency)
+        theirs = _projected(self.record, self.frequency)
+        times = np.linspace(0, 1 / self.frequency[0], 20 * self.frequency.size + 1)[:-1]
+        match = np.exp(2j * math.pi * np.outer(times, self.frequency)) @ (ours * theirs.conj())
+        return float(times[np.argmax(match.real)])
+
+
+def fit_machine(
+    scene: Any, record: Signal, vary: Mapping[str, tuple[float, float]], *, channel: str, harmonics: int = 8, seed: int = 0
+) -> MachineFit:
+    """Fit values of a scene's machine to a healthy record at constant speed.
+
+    The amplitudes of the mesh lines are compared. Least squares weigh each line by the noise that the record has beside it.
+    Intervals follow from the linearised model at the solution. If lines differ by more than their noise, intervals are widened.
+
+    Parameters
+    ----------
+    scene : str or path
+        Scene with a machine; it must have the speed and the load of the record.
+    record : Signal
+        Of the healthy machine.
+    vary : dict
+        Lowest and highest value by key of the scene, such as ``"shaft.idler.bearings_N_per_um": (20, 500)``; in lists all entries
+        have the value. A transfer path of one mode has the keys ``"path.frequency_Hz"``, ``"path.damping_ratio"`` and
+        ``"path.mass_kg"``; without them the record is the channel itself. Positive values are fitted by their logarithm.
+    channel : str
+        Channel of the machine, a force if there is a path: ``"spring bearing idler2 x"``.
+    harmonics : int
+        Of each mesh frequency, as far as 0.4 of the rate of the record.
+    seed : int
+        Of the starting points.
+
+    Returns
+    -------
+    MachineFit
+
+    Raises
+    ------
+    ValueError
+        If a range or key is invalid, the record has another speed, or has fewer lines than there are keys.
+    """
+    if not isinstance(record, Signal):
+        raise ValueError(f"record = {record!r}, but give a Signal, such as gearfe.read_signal gives")
+    low, high = _ranges(vary)
+    file, tables = read_tables(scene)
+    logs = low > 0
+
+    def changed(x: Floats) -> tuple[Scene, dict[str, float]]:
+        values = dict(zip(vary, np.where(logs, np.exp(np.where(logs, x, 0.0)), x).tolist(), strict=True))
+        return scene_of(file, set_values(tables, _entries(tables, values))), values
+
+    ends = np.where(logs, np.log(np.where(logs, low, 1.0)), low), np.where(logs, np.log(np.where(logs, high, 1.0)), high)
+    frequency = _frequencies(build_machine(changed((ends[0] + ends[1]) / 2)[0]), record, harmonics)
+    if frequency.size < low.size:
+        raise ValueError(f"the record has {frequency.size} mesh lines below {BAND:g} of its rate, but {low.size} keys vary")
+    measured, noise = np.abs(_projected(record, frequency)), _noise(record, frequency)
+
+    def lines(x: Floats) -> Floats:
+        fitted, values = changed(x)
+        return np.abs(_lines(build_machine(fitted), channel, frequency) * _gain(_path(values), frequency))
+
+    def residuals(x: Floats) -> Floats:  # the mean of a noisy amplitude is larger than that without noise
+        return (measured - np.hypot(lines(x), noise)) / noise
+
+    from scipy.optimize import least_squares
+    from scipy.stats import qmc
+
+    starts = qmc.Halton(low.size, seed=seed).random(STARTS * low.size) * (ends[1] - ends[0]) + ends[0]
+    best = sorted(starts, key=lambda x: float(np.sum(residuals(x) ** 2)))[:2]
+    steps = {"diff_step": 1e-3, "x_scale": ends[1] - ends[0], "xtol": 1e-4, "ftol": 1e-6}
+    found = min((least_squares(residuals, x, bounds=ends, **steps) for x in best), key=lambda one: one.cost)
+    free = frequency.size - low.size
+    misfit = math.sqrt(2 * found.cost / free) if free else 1.0
+    reach = _reach(found.jac, max(misfit, 1.0), free, ends[1] - ends[0])
+    fitted, values = changed(found.x)
+    bounds = [np.where(logs, np.exp(np.where(logs, end, 0.0)), end) for end in (found.x - reach, found.x + reach)]
+    inside = (bounds[0] > low) & (bounds[1] < high)
+    intervals = zip(np.maximum(bounds[0], low).tolist(), np.minimum(bounds[1], high).tolist(), strict=True)
+    return MachineFit(
+        fitted, record, channel, values, dict(zip(vary, intervals, strict=True)),
+        dict(zip(vary, inside.tolist(), strict=True)), frequency, measured, lines(found.x), noise, misfit,
+    )  # fmt: skip
+
+
+def _ranges(vary):
+    if not isinstance(vary, Mapping) or not vary:
+        raise ValueError(f"vary = {vary!r}, but give the lowest and the highest value by key of the scene")
+    for key, ends in vary.items():
+        numbers = isinstance(ends, (tuple, list)) and len(ends) == 2 and all(isinstance(one, (int, float)) for one in ends)
+        if not (numbers and -math.inf < ends[0] < ends[1] < math.inf):
+            raise ValueError(f"vary: {key} = {ends!r}, but give a lowest and a larger highest value")
+    there = [key for key in vary if key.startswith("path.")]
+    if there and set(there) != set(PATH):
+        raise ValueError(f"vary: {', '.join(there)}, but a transfer path needs {', '.join(PATH)}")
+    return np.array(list(vary.values()), dtype=float).T
+
+
+def _entries(tables, values):
+    """Values by key of scalars: of a list all entries."""
+    out = {}
+    for dotted, value in values.items():
+        if dotted in PATH:
+            continue
+        key, home = find_key(dotted, tables), tables
+        if not (key.type in LISTS and dotted.endswith(f".{key.name}")):
+            out[dotted] = value
+            continue
+        for part in dotted.split("."):
+            home = home.get(part, ())
+        out |= {f"{dotted}.{i}": value for i in range(len(home))}
+    return out
+
+
+def _path(values):
+    return tuple(values[key] for key in PATH) if PATH[0] in values else None
+
+
+def _through(signal, path):
+    if path is None:
+        return signal
+    lines = np.fft.rfftfreq(signal.values.size, 1 / signal.rate)
+    return through_frf(signal, lines, _gain(path, lines))
+
+
+def _gain(path, frequency):
+    """Acceleration of the mode under a unit force."""
+    if path is None:
+        return np.ones(frequency.size)
+    ratio = frequency / path[0]
+    return -(ratio**2) / (1 - ratio**2 + 2j * path[1] * ratio) / path[2]
+
+
+def _frequencies(machine, record, harmonics):
+    """Mesh lines [Hz] of a machine that the record resolves; ValueError if the record has another speed."""
+    meshes = {abs(mesh.frequency) for mesh in machine.meshes if mesh.frequency}
+    every = sorted(n * mesh for mesh in meshes for n in range(1, harmonics + 1) if n * mesh < BAND * record.rate)
+    least = APART / record.duration
+    lines = np.array([one for one, before in zip(every, [0.0, *every], strict=False) if one - before > least])
+    speeds = 1 + np.arange(-OFF, OFF, 0.25 / (record.duration * max(lines.max(initial=0.0), 1.0)))
+    found = np.sum(_fine(record, np.outer([1.0, *speeds], lines)) ** 2, axis=1)
+    if not found.max() > CLEAR**2 * float(np.sum(_noise(record, lines) ** 2)):
+        raise ValueError("the record shows no mesh lines above its noise: give a longer record of this channel and speed")
+    if found[0] < found.max() / 2:
+        raise ValueError(
+            f"the mesh lines of the record are those of {speeds[int(np.argmax(found[1:]))]:.5f} times the speed of the scene: "
+            "give the scene the speed of the record"
+        )
+    return lines
+
+
+def _projected(signal, frequency, window=np.hanning):
+    """Complex amplitudes of lines under a window."""
+    window = window(signal.values.size)
+    weighed = window * (signal.values - signal.values.mean())
+    turns = np.exp(-2j * math.pi * np.outer(frequency, signal.time))
+    return 2 * (turns @ weighed) / window.sum()
+
+
+def _noise(record, frequency) -> NDArray[np.float64]:
+    """Return the standard deviation of the amplitude of each line: from the median of those around it, by Rayleigh's law."""
+    apart = np.arange(*NOISE) / record.duration
+    around = np.add.outer(frequency, [*-apart, *apart])
+    return np.median(_fine(record, around), axis=1) / math.sqrt(2 * math.log(2))
+
+
+def _fine(record, frequency):
+    """Amplitudes under a Hann window, at the nearest of bins that are a quarter of the line width apart."""
+    window, size = np.hanning(record.values.size), 4 * record.values.size
+    spectrum = np.abs(np.fft.rfft(window * (record.values - record.values.mean()), size)) * 2 / window.sum()
+    return spectrum[np.clip(np.rint(np.abs(frequency) * size / record.rate).astype(int), 0, spectrum.size - 1)]
+
+
+def _lines(machine, channel, frequency):
+    """Complex amplitudes of the lines of a machine: of its periodic motion if that is short, else of a run."""
+    period = common_period(machine)
+    if period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
+        found = steady_state(machine, period=period).response
+        return _projected(found.part(slice(None, -1)).signal(channel), frequency, np.ones)
+    apart = np.diff(frequency, prepend=0.0).min()
+    run = recorded(machine, 2 * APART / apart, 1.5 * float(frequency.max()) / BAND)
+    return _projected(run.signal(channel), frequency)
+
+
+def _reach(jacobian, scale, free, whole):
+    """Half widths of 95 % intervals, of singular directions the whole range."""
+    _, sizes, ways = np.linalg.svd(jacobian * whole, full_matrices=False)
+    spread = 1 / np.maximum(sizes, 1e-12)
+    quantile = float(stdtrit(free, 0.975)) if scale > 1 and free else 1.96
+    return quantile * scale * whole * np.sqrt(np.sum((ways.T * spread) ** 2, axis=1))
+
+
+def _label(fault: Fault):
+    return {"gear": fault.gear, "tooth": fault.tooth, "damage": fault.what, "frequency_Hz": fault.frequency}

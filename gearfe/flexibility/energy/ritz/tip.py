@@ -1,0 +1,91 @@
+"""Stress intensity at the tip of a crack in a sector of polynomial triangles, as two more columns of its loads."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....geometry.aliases import Floats
+from ....geometry.mesh.triangle import lobatto, table
+from ...flamant import traction
+from ...plane_elements import stiffness
+from ...tip import face_factor, tip_rows
+
+RING = 0.4  # radius of the ring, by the distance to the nearest boundary or kink: bent triangles stay outside
+ROOTS = 12  # points of an edge of a face, in the root of the distance to the tip
+
+
+@dataclass(frozen=True, slots=True)
+class Tip:
+    """Tip of a sector's crack: its axes `turn` (2, 2), place (2,) [mm], and q at the vertices of the sector (n,)."""
+
+    turn: Floats
+    place: Floats
+    q: Floats
+
+
+def tip_of(sector):
+    """`Tip` of the only crack of a `Sector`, with q for the largest ring in which the crack is straight."""
+    (faces,) = sector.faces
+    line = sector.points[:, faces[0]]
+    ahead = line[:, -1] - line[:, -2]
+    ahead = ahead / np.hypot(*ahead)
+    turn = np.array([ahead, [-ahead[1], ahead[0]]])
+    place = turn @ (sector.points - line[:, -1:])
+    distance = np.hypot(*place)
+    off = np.abs(place[1, faces[0]]) > 1e-6 * distance[faces[0]].max()
+    straight = distance[faces[0]][int(off.nonzero()[0].max(initial=-1)) + 1]
+    rim = np.unique([edge for edge in sector.bulge])
+    rim = rim[~np.isin(rim, faces)]
+    reach = RING * min(straight, distance[rim].min())
+    return Tip(turn, line[:, -1], np.clip(2 - 2 * distance / reach, 0.0, 1.0))
+
+
+def tip_columns(sector, tip, numbers, order, material, state):
+    """Return the forces of both columns on the unknowns: unknowns, columns 0 and 1, forces."""
+    q = tip.q[sector.triangles]
+    used = np.flatnonzero((q.max(axis=0) > 0) & (q.min(axis=0) < 1))
+    corners = sector.points[:, sector.triangles[:, used]]
+    basis = table(order)
+    arms = np.einsum("dcm,ce->mde", corners, basis.corner_slope)
+    back = np.linalg.inv(arms)  # reference coordinate by place
+    grads = np.einsum("ad,med,enq->namq", tip.turn, back, basis.slope)
+    slope = np.einsum("ad,med,ce,cm->am", tip.turn, back, basis.corner_slope, q[:, used])[:, :, None]
+    place = np.einsum("ad,dcm,cq->amq", tip.turn, corners - tip.place[:, None, None], basis.corner)
+    area = np.abs(np.linalg.det(arms))[:, None] * basis.weight
+    rows = tip_rows(grads, place, np.broadcast_to(slope, place.shape), area, material, state)
+    rows = np.einsum("knam,ad->mknd", rows, tip.turn).reshape(used.size, 2, -1)
+    local = stiffness(basis.slope, basis.weight, arms, *material.lame(state))
+    kept = 2 * (basis.count - basis.inside)
+    if basis.inside:
+        inner = np.linalg.solve(local[:, kept:, kept:], local[:, kept:, :kept])
+        rows = rows[:, :, :kept] - rows[:, :, kept:] @ inner
+    unknowns = (2 * numbers[:, used].T[:, :, None] + np.arange(2)).reshape(used.size, 1, -1)
+    columns = np.broadcast_to(np.arange(2)[:, None], rows.shape)
+    return np.broadcast_to(unknowns, rows.shape).ravel(), columns.ravel(), rows.ravel()
+
+
+def face_columns(sector, tip, order):
+    """Second integral ``(2, k)`` of unit forces that push facing nodes of the crack apart."""
+    line = sector.points[:, sector.faces[0][0]]
+    part = (lobatto(order)[:-1] + 1) / 2
+    places = (line[:, :-1, None] * (1 - part) + line[:, 1:, None] * part).reshape(2, -1)
+    q = tip.q[sector.faces[0][0]]
+    away = np.hypot(*(places - tip.place[:, None]))
+    return np.array([face_factor(away, (q[:-1, None] * (1 - part) + q[1:, None] * part).ravel()), np.zeros(away.size)])
+
+
+def load_columns(sector, tip, where, inward, tip_side):
+    """Second integral ``(2, n)`` of the tractions on the faces that undo those of the singular fields of n loads."""
+    chain = sector.faces[0][0]
+    away, q = np.hypot(*(sector.points[:, chain] - tip.place[:, None])), tip.q[chain]
+    edges = np.flatnonzero(q[1:] > 0)
+    gauss, weight = np.polynomial.legendre.leggauss(ROOTS)
+    far, near = np.sqrt(away[:-1][edges, None]), np.sqrt(away[1:][edges, None])
+    root = (near + far) / 2 + (far - near) / 2 * gauss
+    distance = root**2
+    value = q[1:][edges, None] + (q[:-1] - q[1:])[edges, None] * (distance - near**2) / (far**2 - near**2)
+    factor = face_factor(distance, value) * (far - near) / 2 * weight * 2 * root
+    points = tip.place[:, None] - tip.turn[0][:, None] * distance.ravel()
+    normal = np.broadcast_to(tip.turn[1][:, None], points.shape)
+    spread = traction(points, normal, where, inward, tip_side)
+    return np.einsum("ad,dlp,p->al", tip.turn[::-1], spread, factor.ravel())

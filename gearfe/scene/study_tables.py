@@ -1,0 +1,44 @@
+"""Tables of a scene as studies take them: of a file near the study or built in, and reduced to one pair in one case."""
+
+from pathlib import Path
+
+from .dotted_keys import PRINTED, Tables
+from .load import read_tables, scene_of
+from .parts import DAMAGE
+from .schema import scene_schema
+
+
+def tables_near(place: Path, scene: str) -> tuple[str, Tables]:
+    """Name and tables of a scene, a file in the folder `place` or a built-in one, without statements on its source."""
+    near = place / scene
+    name, tables = read_tables(near if near.is_file() else scene)
+    return name, {kind: table for kind, table in tables.items() if kind not in PRINTED}
+
+
+def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
+    """Return the tables of one pair in one case of damage, since the rest would be checked for every case of a sweep.
+
+    The pair of a gearbox has its force in the gearbox.
+    """
+    chosen = tables["pair"][pair]
+    if is_gearbox(tables):
+        whole = {kind: table for kind, table in tables.items() if kind not in (*DAMAGE, *PRINTED)}
+        chosen = chosen | {"force_N": scene_of("scene", whole).pair(pair).force}
+    gears = {chosen.get(name) for name in ("gear_1", "gear_2")}
+    out: Tables = {name: tables[name] for name in ("title", "source") if name in tables}
+    out |= {"pair": {pair: chosen}, "gear": {name: table for name, table in tables["gear"].items() if name in gears}}
+    for kind, key in scene_schema()["scene"].keys.items():
+        if not key.of or "gear" not in scene_schema()[key.of].keys:
+            continue
+        wanted = lambda row: row.get("gear") in gears and row.get("pair") in (None, pair) and row.get("case", case) == case  # noqa: E731
+        if key.type == "listed":
+            out[kind] = [row for row in tables.get(kind, []) if wanted(row)]
+        else:
+            out[kind] = {name: row for name, row in tables.get(kind, {}).items() if wanted(row)}
+    used = {row.get("material") for kind in ("gear", "shaft") for row in out[kind].values()}
+    return out | {"material": {name: table for name, table in tables["material"].items() if name in used}}
+
+
+def is_gearbox(tables: Tables) -> bool:
+    """Whether the forces of the pairs follow from the torque of a gearbox."""
+    return bool(tables.get("machine", {}).get("model") == "gearbox")
