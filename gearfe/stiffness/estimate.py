@@ -33,7 +33,7 @@ def fixed_phases(phase, periodic):
 def lowered(method, order=None):
     """Return by which factor the error of a coarser solve is larger than that of the curve, at least.
 
-    With a field of regularity ``r**s`` at the corners of a mesh, edges h and order p, energy and k err as ``h**(2 s) / p**(4 s)``.
+    With a field of regularity ``r**s`` at the corners of a mesh, edges h and order p, k errs as ``h**(2 s) / p**(4 s)``.
 
     References
     ----------
@@ -51,7 +51,7 @@ def coarser_order(order):
 def estimate(phase, periodic, k, coarse, finer, *, order=None):
     """Estimated discretisation error of `k` from a coarser solve, and from one with finer hats at tip corners.
 
-    Two solves that differ by d, whose errors have the ratio g (`lowered`), have the smaller error ``d / (g - 1)``; times `SAFETY`.
+    Two solves differ by d and their errors have the ratio g (`lowered`): the smaller error is ``d / (g - 1)``, times `SAFETY`.
     Because d can vanish by chance, its largest value at the phase itself and at the fixed phases within
     `WINDOW` is taken, and at least the mean over the fixed phases within `MEAN`. Of finite elements, whose meshes of different
     size have nothing in common, the window is wider, and that mean is added.
@@ -93,7 +93,8 @@ def estimate(phase, periodic, k, coarse, finer, *, order=None):
 
 def other_solves(refine, order=None):
     """Options of the coarser solve and of that with finer hats; the energy model has an `order`."""
-    coarse = (
-        {"refine": COARSER["fe"] * refine} if order is None else {"refine": COARSER["ritz"] * refine, "order": coarser_order(order)}
-    )
+    if order is None:
+        coarse = {"refine": COARSER["fe"] * refine}
+    else:
+        coarse = {"refine": COARSER["ritz"] * refine, "order": coarser_order(order)}
     return coarse, {"hats": FINER}
