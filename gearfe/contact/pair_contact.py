@@ -136,8 +136,8 @@ class PairContact:
     def _solved(self, sets, line_load, smooth, phases):
         """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch.
 
-        `phases` are their numbers. `smooth` are the line loads if all were single contacts: hats start in touch up to the gap at the
-        ends of Hertz's contact under these, which is the same for any radius.
+        `phases` are their numbers. `smooth` are the line loads if all were single contacts: hats start in touch up to the gap
+        at the ends of Hertz's contact under these, which is the same for any radius.
         """
         names = ("flexibility", "gap", "coefficient", "radius", "column", "tilt")
         flexibility, gap, coefficient, radius, column, tilt = (stacked([contacts[name] for contacts in sets]) for name in names)
