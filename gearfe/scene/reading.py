@@ -126,8 +126,6 @@ def unknown(name: Any, names: Iterable[str]) -> str:
 
     near = get_close_matches(str(name), names := list(names), 1)
     hint = f" (nearest: {near[0]!r})" if near else ""
-    if name == "torque_Nm" and "force_N" in names:
-        hint = " (force_N is the torque of gear_1 in N m times 1000, over its base radius in mm)"
     if name in ("damaged_planet", "planet") and {"floating", "tangential_um"} & set(names):
         hint = ' (former key, counted from 0: give body = "planet1", the first, in the table of the damage or pin)'
     return f"unknown key {shown(name)}{hint}; expected {', '.join(names)}"

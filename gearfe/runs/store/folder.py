@@ -1,7 +1,8 @@
 """A folder with a note of what is in it: files that are whole or not there, one writer at a time.
 
-A folder holds ``about.json`` (what made its files), the files, and ``.lock``. A file is written under another name, flushed to
-the disk and then renamed, so that a process that is killed, or a disk that runs full, leaves either the whole file or none.
+A folder holds ``_about.json`` (what made its files), the files, and ``.lock``. The underscore hides it from readers of Parquet.
+A file is written under another name, flushed to the disk and then renamed, so that a process that is killed, or a disk that runs
+full, leaves either the whole file or none.
 """
 
 import contextlib
@@ -16,7 +17,7 @@ from ...core.files import PART, check_path, written
 from ...geometry.aliases import StrPath
 
 COUNT = object()  # a whole number from 1 on, in the shape of a note
-ABOUT, LOCK = "about.json", ".lock"
+ABOUT, FORMER, LOCK = "_about.json", "about.json", ".lock"
 
 
 def durable(path: StrPath, content: bytes) -> None:
@@ -89,7 +90,7 @@ def read_about(folder: StrPath, form: str, shape: Mapping[str, Any]) -> dict[str
     lacks a key or has one of another type; nothing in it is touched.
     """
     check_path("folder", folder)
-    file = Path(folder) / ABOUT
+    file = next((one for one in (Path(folder) / ABOUT, Path(folder) / FORMER) if one.is_file()), Path(folder) / ABOUT)
     if not Path(folder).is_dir():
         raise ValueError(f"no folder {folder}")
     if not file.is_file():
