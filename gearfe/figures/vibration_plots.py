@@ -43,6 +43,8 @@ def plot_spectra(
     title : str
         What is shown: scene, case, channel.
     """
+    if not spectra:
+        raise ValueError("spectra: give one at least")
     figure, rows = blank((9, 1 + 2 * len(spectra)), len(spectra), 1, sharex=True, sharey=True, squeeze=False)
     rows = rows[:, 0]
     largest = max(curve.values.max() for curve in spectra.values())
@@ -168,6 +170,8 @@ def plot_phase(
     """Draw a phase portrait, `gearfe.phase_portrait`, with the points of a Poincare section; save to `path` if given."""
     figure, axes = blank((5, 4))
     axes.plot(*portrait, linewidth=0.4, color=COLOURS[0])
+    if section is not None and np.shape(section)[1:] != (2,):
+        raise ValueError(f"section of shape {np.shape(section)}: give displacement and velocity of each point (n, 2)")
     if section is not None:
         axes.plot(*np.transpose(section), ".", color=COLOURS[1], markersize=5, label="Poincaré section")
         axes.legend(fontsize=8)

@@ -6,7 +6,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from .schema import LISTS, NAMES, REQUIRED, KeyTable, scene_schema, schema_of, shown
+from ..geometry.checks import shown
+from .schema import LISTS, NAMES, REQUIRED, KeyTable, scene_schema, schema_of
 
 LARGEST, MOST = 1e30, 2**63  # no length, force or stiffness is larger, in any unit; whole numbers that arrays can hold
 PLAIN = {"boolean": bool, "values": dict}  # types of keys that are neither numbers nor texts

@@ -179,7 +179,7 @@ def _picture(path, size, text, top):
 
 def _label(plotter, text, position, size):
     """Add a text on white; its style."""
-    plotter.add_text(text, position=position, viewport=True, color="black", font_size=1)
+    plotter.add_text(text.encode(errors="replace").decode(), position=position, viewport=True, color="black", font_size=1)
     style = plotter.actors[next(reversed(plotter.actors))].prop
     style.SetFontSize(round(size))
     style.SetBackgroundColor(1.0, 1.0, 1.0)

@@ -12,9 +12,11 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from ...core.checks import whole
 from ...core.files import PART, check_path, written
 from ...geometry.aliases import StrPath
 
+COUNT = object()  # a whole number from 1 on, in the shape of a note
 ABOUT, FORMER, LOCK = "_about.json", "about.json", ".lock"
 
 
@@ -112,6 +114,11 @@ def _check_shape(note, shape, place=""):
     for name, kind in shape.items():
         if isinstance(kind, Mapping):
             _check_shape(note.get(name), kind, f"{place}{name}.")
+        elif kind is COUNT:
+            whole(f"{place}{name}", note.get(name), 1)
+        elif isinstance(kind, list):  # of tables
+            for row in note[name] if isinstance(note.get(name), list) else [None]:
+                _check_shape(row, {}, f"{place}{name}.")
         elif type(note.get(name)) is not kind:
             raise ValueError(f"{place}{name} = {_short(note.get(name))}, but expected {kind.__name__}")
 

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
+from ...geometry.checks import shown
 from ...scene.reading import LARGEST, checked
-from ...scene.schema import schema_of, shown
+from ...scene.schema import schema_of
 from . import samples
 
 RUNS = "gearfe.runs"
