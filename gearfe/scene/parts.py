@@ -74,7 +74,12 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
 
 def crack_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     """Return the crack of a row."""
-    return [Crack(**arguments("crack", row))]
+    given = arguments("crack", row)
+    if path := given.get("path"):
+        if len(path) % 2:
+            raise ValueError(f"path_mm = {list(path)}, but corners have two numbers each: x, y [mm]")
+        given["path"] = tuple(zip(path[::2], path[1::2], strict=True))
+    return [Crack(**given)]
 
 
 def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:

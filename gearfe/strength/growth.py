@@ -33,7 +33,7 @@ class CrackModel:
     Parameters
     ----------
     method : {"auto", "ritz", "fe"}
-        ``"auto"``: ``ritz`` while the crack lies in the middle 90 % of the sector of its tooth, then ``fe``.
+        ``"auto"``: ``ritz`` while the crack lies in the middle 80 % of the sector of its tooth, then ``fe``.
     loading : {"engagement", "single"}
         ``"engagement"``: the loads of the healthy pair pass over the tooth and both neighbours. ``"single"``: the whole load
         stands at the highest point of single contact, and falls to zero.

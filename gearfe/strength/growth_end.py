@@ -28,7 +28,8 @@ def stopped(values, law):
 def reached(gear: Gear, tip, ahead, step):
     """Outcome and reason if the next step reaches a boundary; None if it does not."""
     if gear.outward * (np.hypot(*ahead) - gear.held) < END * step + 0.02 * gear.m_n:
-        return "rim cut", f"the crack reaches the held edge at {math.degrees(math.atan2(*ahead)):.3g} degrees from its tooth"
+        edge = "outside of the ring" if gear.internal else "bore"
+        return "rim cut", f"the crack reaches the {edge} at {math.degrees(math.atan2(*ahead)):.3g} degrees from its tooth"
     arcs = np.linspace(0.0, fillet_length(gear), 200)
     right = cartesian(*root_curve(gear, arcs))
     for k in (-1, 0, 1):

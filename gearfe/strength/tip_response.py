@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import Polynomial
+from scipy.interpolate import CubicSpline
 from scipy.optimize import nnls
 from scipy.sparse import csc_matrix, hstack
 
@@ -24,7 +24,8 @@ from ..geometry.mesh.sector import sector
 from ..geometry.tooth.profile import arc_at
 from .fracture import ring, tip_reads
 
-FE_PLACES = 9  # of a load on a flank, between which `fe` has a polynomial of order 4
+FE_PLACES = 9  # of a load on a flank, between which `fe` has a cubic spline
+MIDDLE = 0.8  # part of the sector in which a tip of `ritz` lies: 2 % off in K at 0.82, 0.4 % further inside
 WIDE = 0.12  # half width of a load of `fe` [m_n]
 
 
@@ -65,7 +66,7 @@ class TipResponse:
 
 def ritz_response(gear, material, crack, teeth, refine):
     """`TipResponse` by the energy model. ValueError if the crack leaves its sector."""
-    check_sector(gear, crack)
+    check_sector(gear, crack, MIDDLE)
     model = SectionModel(gear, material, refine=float(refine))
     healthy = loaded_sector(model, ())
     places = loaded_places(gear)
@@ -101,8 +102,8 @@ def fe_response(gear, material, crack, teeth, refine, carried, held=None):
     apart[-2] += face_factor(np.hypot(*place[:, at]), q[at])
 
     def fitted(values):
-        curves = [Polynomial.fit(places, row, 4) for row in values]
-        return lambda roll: np.column_stack([curve(np.clip(roll, *carried)) for curve in curves])
+        curve = CubicSpline(places, values.T)
+        return lambda roll: curve(np.clip(roll, *carried))
 
     split = under.reshape(under.shape[0], len(teeth), FE_PLACES)
     return TipResponse({tooth: fitted(split[:, i]) for i, tooth in enumerate(teeth)}, apart)

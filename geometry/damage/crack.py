@@ -356,12 +356,12 @@ def _sampled(path, count=200):
     return np.array([np.interp(place, np.arange(path.shape[1]), row) for row in path])
 
 
-def check_sector(gear: Gear, crack: "Crack") -> None:
-    """ValueError if a crack leaves the sector of its tooth, of which a method makes the gear."""
+def check_sector(gear: Gear, crack: "Crack", part: float = SECTOR) -> None:
+    """ValueError if a crack leaves the middle `part` of the sector of its tooth, of which a method makes the gear."""
     turn = np.abs(np.arctan2(*_sampled(crack_path(gear, crack)))).max()
-    if turn > SECTOR * math.pi / gear.z:
+    if turn > part * math.pi / gear.z:
         raise ValueError(
-            f"crack of {_size(crack)}: it leaves the middle {SECTOR:.0%} of the sector of its tooth (z = {gear.z}): "
+            f"crack of {_size(crack)}: it leaves the middle {part:.0%} of the sector of its tooth (z = {gear.z}): "
             "use method = 'fe'"
         )
 

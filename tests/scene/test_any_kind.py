@@ -164,6 +164,7 @@ ALSO = [  # keys that exclude one of the whole scene, with what goes for them
     ((*START, "root_start_roll_mm"), ()),
     (("gear", "sun", "x_E"), ("gear", "sun", "E_sn_um")),
     (("crack", 0, "length_mm"), ("crack", 0, "level")),
+    (("crack", 0, "path_mm"), ("crack", 0, "level")),
     (("pits", 1, "span_mm"), ("pits", 1, "pitch_mm")),
     (("reference", 0, "absolute"), ("reference", 0, "relative")),
     (("reference", 0, "rows", 0, "claim"), ("reference", 0, "rows", 0, "printed")),

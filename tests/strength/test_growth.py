@@ -7,6 +7,7 @@ import pytest
 
 import gearfe as gf
 from gearfe.geometry.damage.crack import crack_path
+from gearfe.geometry.tooth.profile import fillet_length
 from gearfe.strength.kink import kinked, turn_angle
 from gearfe.strength.tip_response import fe_response, ritz_response
 
@@ -41,6 +42,18 @@ def random_polyline(seed):
         x, y = x + 0.5 * math.cos(heading), y + 0.5 * math.sin(heading)
         points.append((x, y))
     return gf.Crack(path=points)
+
+
+def test_a_scene_has_the_same_polyline(tmp_path):
+    """`path_mm` lists x and y of the corners; the crack of the wheel stays with the wheel."""
+    scene = gf.new_scene(tmp_path / "mine.toml").read_text()
+    scene = scene.replace('gear = "pinion"\nlevel = 0.3', 'gear = "wheel"\npath_mm = [1.0, 28.0, 0.2, 27.6]\n#')
+    (tmp_path / "mine.toml").write_text(scene)
+    case = gf.load_scene(tmp_path / "mine.toml").case(case="cracked")
+    assert [(side, one.path) for side, (one,) in case.damage.items()] == [("wheel", ((1.0, 28.0), (0.2, 27.6)))]
+    (tmp_path / "mine.toml").write_text(scene.replace("27.6]", "27.6, 1.0]"))
+    with pytest.raises(ValueError, match="corners have two numbers each"):
+        gf.load_scene(tmp_path / "mine.toml").case(case="cracked")
 
 
 @pytest.mark.slow
@@ -108,7 +121,7 @@ def test_both_methods_grow_the_same_path():
 def test_a_crack_that_leaves_its_sector_goes_on_by_finite_elements():
     """A crack from the middle of the space lies at the side of its sector."""
     start = gf.Crack(start=-0.1, path=[(2.78, 18.0)])
-    with pytest.raises(ValueError, match="leaves the middle 90%"):
+    with pytest.raises(ValueError, match="leaves the middle 80%"):
         gf.grow_crack(CASE, start, steps=1, model=gf.CrackModel(method="ritz"))
     growth = gf.grow_crack(CASE, start, steps=1, refine=0.7)
     assert growth.methods == ("fe", "fe")
@@ -167,6 +180,25 @@ def test_a_single_load_is_the_highest_and_a_free_arc_of_the_bore_weakens_a_rim()
 def test_impossible_models_are_refused(options, message):
     with pytest.raises(ValueError, match=message):
         gf.CrackModel(**options)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("backup", "part", "outcome"), [
+    (3.3, 0.9, "tooth lost"), (3.3, 0.1, "tooth lost"), (1.0, 0.5, "tooth lost"), (0.5, 0.9, "tooth lost"),
+    (0.5, 0.1, "rim cut"), (0.3, 0.9, "rim cut"), (0.3, 0.1, "rim cut"),
+])  # fmt: skip
+def test_thin_rims_break_as_in_the_tests_of_nasa(backup, part, outcome):
+    """D. G. Lewicki, R. Ballarini, NASA TM-107229 (1996): tooth at backup ratios 3.3 and 1.0, rim at 0.3, either at 0.5.
+
+    The support is not printed. The bore is free over 90 degrees under the tooth.
+    """
+    rack = {"m_n": 3.175, "alpha_n": math.radians(20), "b": 6.35}
+    depth, root = 2.25 * 3.175, (14 - 1.25) * 3.175
+    rim = gf.Gear(z=28, r_bore=root - backup * depth, **rack)
+    case = gf.Case(gf.GearPair(rim, gf.Gear(z=28, r_bore=15.0, **rack)), 1500.0, STEEL)
+    model = gf.CrackModel(held=[(math.radians(45), math.radians(315))])
+    start = gf.Crack(length=0.26, start=part * fillet_length(rim))
+    assert gf.grow_crack(case, start, step=0.5, model=model).outcome == outcome
 
 
 def test_a_threshold_arrests_and_toughness_ends():
