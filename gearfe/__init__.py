@@ -42,4 +42,7 @@ def __getattr__(name: str) -> Any:
     from .core.threads import loading
 
     with loading:
-        return _load(name)
+        from .core.border import bordered
+
+        globals()[name] = bordered(_load(name), name)
+        return globals()[name]

@@ -7,6 +7,20 @@ from numbers import Integral, Real
 from typing import Any, TypeGuard
 
 LARGEST = sys.float_info.max
+SHOWN = 60  # characters of a value in a message
+
+
+class WrongTypeError(TypeError, ValueError):
+    """An argument is of a wrong Python type."""
+
+
+def shown(value: Any) -> str:
+    """Return a value for a message, at most a line long."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python writes no whole numbers of more than 4300 digits
+        return "a number of thousands of digits"
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 
 
 def is_number(value: object) -> TypeGuard[float]:

@@ -37,7 +37,7 @@ def only_for_checkers(module):
 
 def hints_of(one):
     """Annotations of a function or class, every name in them resolved."""
-    return get_type_hints(one, localns=only_for_checkers(one.__module__))
+    return get_type_hints(one, localns=only_for_checkers(inspect.unwrap(one).__module__))
 
 
 def parts(hint):

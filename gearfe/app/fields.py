@@ -8,7 +8,8 @@ from dataclasses import asdict, dataclass, replace
 from importlib import resources
 from typing import Any
 
-from ..scene.schema import SPELLED, Key, scene_schema, shown
+from ..geometry.checks import shown
+from ..scene.schema import SPELLED, Key, scene_schema
 
 LONGEST = 200  # characters of a title
 

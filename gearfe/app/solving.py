@@ -18,10 +18,10 @@ from ..core.units import NEWTON_PER_UM
 from ..figures.pair_plot import NEAR
 from ..figures.stiffness_plots import closed
 from ..flexibility.solved import PROCESS
+from ..geometry.checks import shown
 from ..geometry.tooth.drawing import outline_points
 from ..scene.assumed import of_stiffness
 from ..scene.load import Scene, scene_names, scene_of
-from ..scene.schema import shown
 from ..scene.toml_file import toml
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve

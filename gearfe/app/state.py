@@ -4,11 +4,12 @@ import math
 import tomllib
 from typing import Any
 
+from ..geometry.checks import shown
 from ..scene.dotted_keys import set_values
 from ..scene.load import Scene, scene_of
 from ..scene.parts import DAMAGE
 from ..scene.reading import Reading
-from ..scene.schema import REQUIRED, scene_schema, shown
+from ..scene.schema import REQUIRED, scene_schema
 from ..scene.study_tables import trimmed
 from .fields import FIELDS, SIDES, START, checked_state, key_at
 

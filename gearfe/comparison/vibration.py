@@ -9,6 +9,7 @@ import numpy as np
 
 from ..core.steps import part, steps
 from ..core.table import Column, Table
+from ..dynamics.machine.lines import gear_lines
 from ..dynamics.machine.of_scene import build_machine, flat_machine
 from ..dynamics.motion.reference import SOLVERS
 from ..dynamics.motion.response import Response
@@ -310,6 +311,23 @@ def _mesh_of(machine, stage):
     """Mesh of the name of a stage, else the first one of its frequency."""
     alike = [one for one in machine.meshes if abs(abs(one.frequency) - stage.mesh) < 1e-6 * stage.mesh]
     return next((one for one in alike if one.name == stage.name), alike[0])
+
+
+def simulated_gear(scene, case, gear, duration=None):
+    """Return the mesh force of a gear of a scene as `Signal` by case, with the angle of the gear's shaft.
+
+    The cases are healthy and `case`. White noise of `RANGE` of the rms is added, as any recorder has it: without noise the
+    difference signal of a healthy gear is an error of interpolation.
+    """
+    lines, found = gear_lines(scene, gear), responses(scene, case, duration=duration)
+    mesh = next(one for one in next(iter(found.values())).machine.meshes if abs(abs(one.frequency) / lines.mesh - 1) < 1e-6)
+    channel = f"force {mesh.name}"
+    out, noise = {}, np.random.default_rng(0)
+    for name, one in found.items():
+        signal = one.signal(channel, lines.turning)
+        values = signal.values + RANGE * signal.values.std() * noise.standard_normal(signal.values.size)
+        out[f"simulated {name}"] = replace(signal, values=values, name=f"simulated {name}")
+    return out
 
 
 def gears_table(found):

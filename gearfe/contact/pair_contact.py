@@ -82,6 +82,7 @@ class PairContact:
             beside = pair.relative_radius(points.roll_1, points.roll_2)
             self.flat_radius = np.where(beside > 0, np.maximum(beside, points.radius), points.radius)
         self.opening = self.opening_at(points.roll_1, points.roll_2, points.order)
+        self.stiffness = None
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
             self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
@@ -110,7 +111,7 @@ class PairContact:
             sets = [problem | {"gap": problem["gap"] - least[i]} for i, problem in zip(open_.tolist(), sets, strict=True)]
             sets = [_within(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
             line[open_], pressure[open_], closing[open_], tangent[open_], closed, fillet = self._solved(
-                sets, line_load, line[open_]
+                sets, line_load, line[open_], open_
             )
         unloaded = least if self.flanks is not None or least.any() else None
         marked = (tuple(open_[which].tolist()) for which in (closed, fillet))
@@ -132,11 +133,11 @@ class PairContact:
         wanted = [(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in np.flatnonzero(chosen).tolist()]
         return self.contacts_at(wanted, rows, tilt), rows
 
-    def _solved(self, sets, line_load, smooth):
+    def _solved(self, sets, line_load, smooth, phases):
         """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch.
 
-        `smooth` are the line loads if all were single contacts: hats start in touch up to the gap at the ends of Hertz's contact
-        under these, which is the same for any radius.
+        `phases` are their numbers. `smooth` are the line loads if all were single contacts: hats start in touch up to the gap
+        at the ends of Hertz's contact under these, which is the same for any radius.
         """
         names = ("flexibility", "gap", "coefficient", "radius", "column", "tilt")
         flexibility, gap, coefficient, radius, column, tilt = (stacked([contacts[name] for contacts in sets]) for name in names)
@@ -155,7 +156,7 @@ class PairContact:
                 carried[:], approach[k], tangent[k] = self._share(contacts, line_load)
             if self.opening is not None and _closing(carried @ contacts["opening"]):
                 closed.append(k)
-                carried[:], approach[k], tangent[k] = self._share_closing(contacts, line_load, carried)
+                carried[:], approach[k], tangent[k] = self._share_closing(contacts, line_load, carried, phases[k])
             if (contacts["fillet"] & (carried > 0)).any():
                 fillet.append(k)
         line, pressure = np.zeros((2, len(sets), self.found.order.size))
@@ -170,10 +171,11 @@ class PairContact:
         values = (contacts[name] for name in ("flexibility", "gap", "coefficient", "radius"))
         return line_contact(LineContacts(*values, self.modulus, contacts["tilt"]), line_load, *more)
 
-    def _share_closing(self, contacts, line_load, carried):
+    def _share_closing(self, contacts, line_load, carried, phase):
         """Return the same contacts with crack faces that can push each other apart but not pass through.
 
-        Those that overlap under the line loads `carried` with open cracks are first taken to touch.
+        Those that overlap under the line loads `carried` with open cracks are first taken to touch. The contacts of `phase` then
+        slide on gears whose touching faces are shut.
         """
         faces = block_diag(*(flexible.seam.influence for flexible in self.flexibility if flexible.seam))
         opening = contacts["opening"].T
@@ -183,10 +185,17 @@ class PairContact:
             "gap": np.append(contacts["gap"], np.zeros(m)),
             "coefficient": np.append(contacts["coefficient"], np.zeros(m)),
             "radius": np.append(contacts["radius"], np.ones(m)),
-            "tilt": np.zeros(contacts["tilt"].size + m),  # it is that of open cracks
+            "tilt": np.zeros(n + m),
         }
+        weight = np.append(np.ones(n), np.zeros(m))
         start = np.append(carried, np.where(opening @ carried < 0, line_load, 0.0))
-        force, approach, tangent = self._share(extended, line_load, np.append(np.ones(n), np.zeros(m)), start)
+        force = self._share(extended, line_load, weight, start)[0]
+        shut = np.flatnonzero(force[n:] > 0)
+        stiffness = self.stiffness.copy()
+        stiffness[np.ix_(shut, shut)] -= np.linalg.inv(faces[np.ix_(shut, shut)])
+        tilt = bounded(self, line_load, slice(phase, phase + 1), stiffness)[0, contacts["column"]]
+        extended["tilt"][:n] = np.where(contacts["coefficient"] > 0, tilt, 0.0)
+        force, approach, tangent = self._share(extended, line_load, weight, force)
         return force[:n], approach, tangent
 
     def opening_at(self, roll_1, roll_2, order):

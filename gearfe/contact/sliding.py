@@ -13,34 +13,41 @@ MOST = 0.05  # largest approach by sliding, as a part of the deflection of the p
 STEP = 0.01  # step along the flank for the derivative of a flexibility [m_n]
 
 
-def sliding(contact):
+def sliding(contact, phases=slice(None), stiffness=None):
     """How contacts move under load to where they yield less ``(phases, pairs)`` [mm per (N/mm)**2].
+
+    At some of the `phases` of a `PairContact`, with the `stiffness` ``(faces, faces)`` of its crack faces; default: all open.
 
     Under a line load P the flanks tilt by ``P S' / 2``, half the change of the pair's flexibility S along them; the contact moves
     by ``x = -R P S' / 2`` to where they are parallel again, and comes closer by ``P S' x + x**2 / 2 R = -3/8 R (P S')**2``. That
     counts where flanks nearly conform: 0.5 % of ring pairs under a heavy load. At the ends of flanks it is left out.
     """
     points, step = contact.found, STEP * contact.pair.gear_1.m_n
-    ahead, behind = _alone(contact, step * np.array([1, -1])[:, None, None])
-    on = np.isfinite(points.gap)
-    for flexible, roll in zip(contact.flexibility, (points.roll_1, points.roll_2), strict=True):
+    rolls = points.roll_1[phases], points.roll_2[phases]
+    stiffness = contact.stiffness if stiffness is None else stiffness
+    ahead, behind = _alone(contact, rolls, step * np.array([1, -1])[:, None, None], stiffness)
+    on = np.isfinite(points.gap[phases])
+    for flexible, roll in zip(contact.flexibility, rolls, strict=True):
         gear = flexible.gear
         arc, low, high = arc_at(gear, roll), arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
         on &= (arc > low + step) & (arc < high - step)
-    return np.where(on, 3 / 8 * contact.radius * ((ahead - behind) / (2 * step)) ** 2, 0.0)
+    return np.where(on, 3 / 8 * contact.radius[phases] * ((ahead - behind) / (2 * step)) ** 2, 0.0)
 
 
-def _alone(contact, moved):
-    """Flexibility of each pair alone ``(k, phases, pairs)``, its contact moved up the pinion's side by `moved` (k, 1, 1) [mm]."""
-    points, rolls = contact.found, []
-    out = np.zeros((len(moved), *points.gap.shape))
-    places = ((points.roll_1, points.order, moved), (points.roll_2, -points.order, -moved))
+def _alone(contact, start, moved, stiffness):
+    """Flexibility of each pair alone ``(k, phases, pairs)``, its contact moved up the pinion's side by `moved` (k, 1, 1) [mm].
+
+    The contacts are at the rolls `start`, for both gears ``(phases, pairs)``; crack faces have the `stiffness` of `sliding`.
+    """
+    order, rolls = contact.found.order, []
+    out = np.zeros((len(moved), *start[0].shape))
+    places = ((start[0], order, moved), (start[1], -order, -moved))
     for flexible, (roll, teeth, by) in zip(contact.flexibility, places, strict=True):
         rolls.append(roll_at_arc(flexible.gear, arc_at(flexible.gear, roll) + by))
         for k in range(teeth.size):
             out[..., k] += flexible.matrix(rolls[-1][..., k, None], teeth[k : k + 1])[..., 0, 0]
-    opening = contact.opening_at(*rolls, points.order)
-    return out if opening is None else out + np.einsum("...f,fg,...g->...", opening, contact.stiffness, opening)
+    opening = contact.opening_at(*rolls, order)
+    return out if opening is None else out + np.einsum("...f,fg,...g->...", opening, stiffness, opening)
 
 
 def slid(cells, bodies, load, radius):
@@ -71,11 +78,16 @@ def slid(cells, bodies, load, radius):
     return 1.5 * radius * tilt**2
 
 
-def bounded(contact, line_load):
+def bounded(contact, line_load, phases=slice(None), stiffness=None):
     """Return `sliding` of a contact under a load [N/mm], limited to the part `MOST` of the deflection of a pair."""
-    width = half_width(line_load, contact.radius, contact.modulus)
-    yields = np.diagonal(contact.matrix, axis1=1, axis2=2) + sum(contact.coefficients) * (np.log(2 / width) + 0.5)
-    return np.minimum(contact.sliding, MOST * np.maximum(yields, 0.0) / line_load)
+    width = half_width(line_load, contact.radius[phases], contact.modulus)
+    if stiffness is None:
+        slides, yields = contact.sliding[phases], np.diagonal(contact.matrix[phases], axis1=1, axis2=2)
+    else:
+        slides, opening = sliding(contact, phases, stiffness), contact.opening[phases]
+        yields = contact.alone[phases] + np.einsum("pcf,fg,pcg->pc", opening, stiffness, opening)
+    yields = yields + sum(contact.coefficients) * (np.log(2 / width) + 0.5)
+    return np.minimum(slides, MOST * np.maximum(yields, 0.0) / line_load)
 
 
 def left_out(contact, line, closing, beyond):

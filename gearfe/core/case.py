@@ -9,6 +9,7 @@ from typing import Any, Self, TypedDict
 import numpy as np
 
 from ..geometry.aliases import Floats
+from ..geometry.checks import is_finite, shown
 from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import Crack, check_apart
 from ..geometry.damage.hollow import warning_together
@@ -19,7 +20,7 @@ from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.lines import FACES
 from ..geometry.tooth.flank_form import FlankForm
 from ..geometry.tooth.modified import Flank
-from .checks import is_number, numbers
+from .checks import numbers
 from .frozen import Frozen
 from .material import Material
 from .supports.held import REFUSE, supports_of
@@ -122,10 +123,10 @@ class Case:
         forces, materials = tuple(forces_of(pair, self.force, self.torque)), two_materials(self.material)
         for value in forces:
             check_load(pair, value, materials)
-        if not is_number(self.groove):
-            raise ValueError(f"groove = {self.groove!r}, but give the width of the relief groove, a number [mm]")
-        if self.face not in (None, *FACES):
-            raise ValueError(f"face = {self.face!r}, but it must be one of {', '.join(FACES)}")
+        if not (is_finite(self.groove) and self.groove >= 0):
+            raise ValueError(f"groove = {shown(self.groove)}, but give the width of the relief groove, 0 or more [mm]")
+        if self.face is not None and (not isinstance(self.face, str) or self.face not in FACES):
+            raise ValueError(f"face = {shown(self.face)}, but it must be one of {', '.join(FACES)}")
         if self.face in FACES[1:] and not pair.gear_1.beta:
             message = f"face = {self.face!r}, but the gears have no helix angle (beta = 0): their teeth are straight"
             warnings.warn(message, stacklevel=4)

@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Collection
-from numbers import Integral
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.checks import is_number, is_whole
+from ..geometry.checks import LARGEST, WrongTypeError, is_number, is_whole, shown
 
 MOST = 2**63  # largest whole number that an array holds, plus 1
 COARSEST = 0.2  # at 0.4 sections are off by 0.2 %, at 0.2 by 0.5 %; below, the error grows without order (25 % at 1e-9)
@@ -18,8 +18,10 @@ FINEST = 64.0  # edges 64 times shorter: beyond, k changes by less than the erro
 def number(name: str, value: Any) -> float:
     """Return the number as a float; ValueError for no number, nan or a truth value. Arrays without axes count."""
     value = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 and not np.ma.is_masked(value) else value
+    if is_whole(value) and not is_number(value):
+        raise ValueError(f"{name} = {shown(value)}, but the maximum is {LARGEST:.2g}")
     if not is_number(value) or math.isnan(value):
-        raise ValueError(f"{name} = {value!r}, but it needs a number")
+        raise (ValueError if isinstance(value, Real) else WrongTypeError)(f"{name} = {shown(value)}, but it needs a number")
     return float(value)
 
 
@@ -32,24 +34,27 @@ def whole(name: str, value: Any, least: float = -math.inf, most: int = MOST) -> 
         If it is another kind of number, ``24.0``, smaller or larger.
     """
     if is_whole(value) and value > most:
-        raise ValueError(f"{name} = {str(value)[:40]}, but the maximum is {most}")
+        raise ValueError(f"{name} = {shown(value)}, but the maximum is {most}")
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         close = is_number(value) and math.isfinite(value) and value == int(value) and value >= least
-        remedy = f": give {name} = {int(value)}" if close else "" if least == -math.inf else f" from {least} on"
-        raise ValueError(f"{name} = {value!r}, but it is a whole number{remedy}")
+        remedy = (
+            f": give {name.rpartition(': ')[2]} = {int(value)}" if close else "" if least == -math.inf else f" from {least} on"
+        )
+        kind = ValueError if is_number(value) else WrongTypeError
+        raise kind(f"{name} = {shown(value)}, but it is a whole number{remedy}")
     return int(value)
 
 
 def one_of(name: str, value: Any, known: Collection[str]) -> None:
     """Raise ValueError unless the value is one of the known ones."""
-    if value not in known:
-        raise ValueError(f"{name} = {value!r}, but it must be one of {', '.join(known)}")
+    if not isinstance(value, str) or value not in known:
+        raise ValueError(f"{name} = {shown(value)}, but it must be one of {', '.join(known)}")
 
 
 def truth(name: str, value: Any) -> bool:
     """Return `value` if it is true or false; text and numbers are rejected, since ``bool("no")`` is true."""
     if not isinstance(value, (bool, np.bool_)):
-        raise ValueError(f"{name} = {value!r}, but give True or False")
+        raise WrongTypeError(f"{name} = {shown(value)}, but give True or False")
     return bool(value)
 
 
@@ -61,13 +66,13 @@ def numbers(name: str, value: Any, unit: str) -> NDArray:
         raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}") from error
     if np.ma.is_masked(value):
         raise ValueError(f"{name} has masked values: give numbers without holes{unit}")
-    plain = array.dtype.kind in "iuf" and not _has_truth(value)
+    plain = array.dtype.kind in "iuf" and not has_truth(value)
     if not plain and not (array.dtype.kind == "O" and array.size and all(is_number(element) for element in array.ravel())):
         raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}, not {_kind(value)}")
     return array.astype(float)
 
 
-def _has_truth(value):
+def has_truth(value):
     """Whether a truth value hides among numbers of a list."""
     return isinstance(value, (list, tuple)) and any(isinstance(element, (bool, np.bool_)) for element in value)
 

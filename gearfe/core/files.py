@@ -25,12 +25,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.lib import format as npy
 
+from .checks import whole
 from .matlab_file import MOST_PACKED, variables
 
 # errors of files that are no archive of arrays, or one of an unknown type
 NO_ARCHIVE: tuple[type[Exception], ...] = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, RuntimeError)
 NO_ARCHIVE += (MemoryError, KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError)
 _drawing = threading.Lock()
+MOST_DPI = 2400  # dots per inch of a picture
 PART = ".part-"  # beginning of the names of temporary files
 
 CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # control characters that no text table contains
@@ -122,9 +124,16 @@ def suffix_of(path, kind, *, reading=False):
     suffix = Path(path).suffix.lower()
     if suffix not in known:
         raise ValueError(f"{path}: no format for {suffix or 'a file without a suffix'!r}; use one of {', '.join(known)}")
-    if reading and os.path.exists(path) and not os.path.isfile(path):  # a pipe or a device may never end
-        raise ValueError(f"cannot read {path}: it is no regular file")
+    if reading:
+        check_regular(path)
     return suffix
+
+
+def check_regular(path):
+    """Raise ValueError for what is there and no regular file: a pipe or a device may never end."""
+    check_path("path", path)
+    if "\0" in os.fsdecode(path) or (os.path.exists(path) and not os.path.isfile(path)):
+        raise ValueError(f"cannot read {path}: it is no regular file")
 
 
 def save(path, kind, content):
@@ -142,6 +151,7 @@ def save_figure(figure, path, dpi):
     """Draw a matplotlib figure into a file, unless `path` is None; gives the figure back."""
     if path is not None:
         suffix_of(path, "picture")
+        whole("dpi", dpi, 1, MOST_DPI)
         for text in figure.findobj(lambda artist: hasattr(artist, "set_parse_math")):
             words = text.get_text().encode(errors="replace").decode()  # the name of a file may not be UTF-8
             if words != text.get_text():
@@ -202,6 +212,7 @@ def write_json(name, content):
 
 def read_text(path):
     """Lines of a text file: in UTF-8, in UTF-16, or, with a warning, in Windows-1252, which holds Latin-1."""
+    check_regular(path)
     try:
         content = Path(path).read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
@@ -266,7 +277,7 @@ def read_mat(path):
 
 @contextlib.contextmanager
 def _opened(path):
-    check_path("path", path)
+    check_regular(path)
     try:
         with open(path, "rb") as file:
             yield file

@@ -68,6 +68,6 @@ class Material:
 
 def check_state(state: str) -> str:
     """Return `state`, or raise ValueError if it is not a plane state."""
-    if state not in ("plane strain", "plane stress"):
+    if not isinstance(state, str) or state not in ("plane strain", "plane stress"):
         raise ValueError(f"state = {state!r}, but it must be 'plane strain' or 'plane stress'")
     return state

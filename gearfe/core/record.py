@@ -60,11 +60,26 @@ def settle_numbers(record: Any, what: str, names: str, unit: str = "", **limits:
         settle(record, **{name: ranged(f"{what}: {name}", getattr(record, name), unit, **limits)})
 
 
+def check_rows(record: Any, names: str) -> None:
+    """Raise ValueError unless the arrays of these fields, those that are None left out, have as many rows as the first."""
+    rows = {name: np.shape(getattr(record, name))[:1] for name in names.split() if getattr(record, name) is not None}
+    first = next(iter(rows.values()))
+    if not first or first == (0,) or set(rows.values()) != {first}:
+        stated = ", ".join(f"{name} {shape[0] if shape else 'none'}" for name, shape in rows.items())
+        raise ValueError(f"{type(record).__name__}: give arrays with as many rows, one at least; here: {stated}")
+
+
 def check_named(what: str, name: Any, known: Collection[Any]) -> None:
     """Raise ValueError, with the nearest name, if a name is not `known`."""
     if name not in known:
         near = get_close_matches(str(name), list(map(str, known)), 1, 0.0)
         raise ValueError(f"{what} {name!r}, but there is {', '.join(map(str, known))}; nearest: {', '.join(map(repr, near))}")
+
+
+def check_keys(what: str, given: Collection[Any], keys: Collection[str]) -> None:
+    """Raise ValueError if one of the `keys` is missing."""
+    if missing := [key for key in keys if key not in given]:
+        raise ValueError(f"{what} of {missing[0]!r} is missing: give it for {', '.join(keys)}")
 
 
 def check_text(what: str, name: Any) -> None:

@@ -32,6 +32,11 @@ def listening(listener: Callable[[str, float], object]) -> Iterator[None]:
         _range.reset(token)
 
 
+def is_heard() -> bool:
+    """Whether a listener gets the progress of the present work."""
+    return _range.get() is not None
+
+
 @contextlib.contextmanager
 def part(text: str, low: float, high: float) -> Iterator[None]:
     """Declare the block as the work from `low` to `high`, both 0 to 1; an empty text keeps the former one."""

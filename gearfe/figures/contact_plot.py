@@ -46,6 +46,8 @@ def plot_contact(
     title : str
         Title: scene, pair, case.
     """
+    if phase is not None and not -len(contact.cells) <= phase < len(contact.cells):
+        raise ValueError(f"phase = {phase}, but there are {len(contact.cells)} phases, numbered from 0")
     figure, (top, bottom) = blank((9, 5.5), 2, 1, sharex=True, height_ratios=[3, 2])
     shown = range(len(contact.cells)) if phase is None else [phase]
     drawn = _draw_lines(top, pair, [contact.cells[i] for i in shown])

@@ -10,6 +10,7 @@ from .stiffness_plots import periodic, told
 def plot_transmission_error(found, path=None, title=None, plain=None):
     """Draw a `gearfe.stiffness.transmission_error.TransmissionError`; save to `path` (png, svg, pdf) if given.
 
+    Each curve is drawn without its mean, which the legend states.
     The `title` is by default teeth, damage and width, see `gearfe.figures.stiffness_plots.told`. With `plain`, that of the same
     pair with plain involutes, its peak-to-peak is drawn too.
     """
@@ -20,12 +21,13 @@ def plot_transmission_error(found, path=None, title=None, plain=None):
     colours = colormaps["plasma"](np.linspace(0.0, 0.62, order.size))  # no paler: light loads are lines on white, too
     for i, colour in zip(order.tolist(), colours, strict=True):
         phase, te = _closed(found, found.te[i])
-        top.plot(phase, 1e6 * te, color=colour, label=f"{found.force[i]:g} N")
+        mean = 1e6 * found.te[i].mean()
+        top.plot(phase, 1e6 * te - mean, color=colour, label=f"{found.force[i]:g} N (mean {mean:.3g} µm)")
     phase, te = _closed(found, found.unloaded)
-    top.plot(phase, 1e6 * te, color="black", linestyle=":", label="unloaded")
+    top.plot(phase, 1e6 * (te - found.unloaded.mean()), color="black", linestyle=":", label="unloaded")
     top.set_title(told(found.curves[0], load=False) if title is None else title, fontsize=10)
     top.set_xlabel("mesh phase (0: a pair enters, 1: one base pitch later)")
-    top.set_ylabel("transmission error [µm]")
+    top.set_ylabel("transmission error less its mean [µm]")
     top.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     rising, swing = order[::-1], 1e6 * found.peak_to_peak
     bottom.plot(

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..core.files import save_figure
 from ..geometry.aliases import Floats, StrPath
-from .look import COLOURS, blank
+from .look import COLOURS, MARKS, blank, look
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,6 +43,8 @@ def plot_spectra(
     title : str
         What is shown: scene, case, channel.
     """
+    if not spectra:
+        raise ValueError("spectra: give one at least")
     figure, rows = blank((9, 1 + 2 * len(spectra)), len(spectra), 1, sharex=True, sharey=True, squeeze=False)
     rows = rows[:, 0]
     largest = max(curve.values.max() for curve in spectra.values())
@@ -76,6 +78,39 @@ def _apart(places, least):
         push = np.where(gaps > 0, gaps / 2, 0.0)
         shifted += np.append(0.0, push) - np.append(push, 0.0)
     return dict(zip(names, shifted.tolist(), strict=True))
+
+
+def plot_averages(
+    averages: Mapping[str, tuple[Floats, Floats]], path: StrPath | None = None, *, unit: str = "", title: str = ""
+) -> "Figure":
+    """Draw synchronous averages and their difference signals over the angle of the shaft, by record; save to `path` if given."""
+    figure, rows = blank((9, 0.5 + 2.4 * len(averages)), len(averages), 2, sharex=True, sharey="col", squeeze=False)
+    for pair, (name, shown) in zip(rows, averages.items(), strict=True):
+        for axes, values, told in zip(pair, shown, ("average", "difference signal"), strict=True):
+            angle = 360 * np.arange(values.size) / values.size
+            axes.plot(angle, values, linewidth=0.8, color=COLOURS[0])
+            axes.set_title(f"{name}: {told}", fontsize=9)
+            axes.set_ylabel(f"[{unit}]")
+        most = int(np.argmax(np.abs(shown[1])))
+        pair[1].annotate(f"{angle[most]:.0f}°", (angle[most], shown[1][most]), fontsize=8, color=COLOURS[1])
+    for axes in rows[-1]:
+        axes.set(xlabel="angle of the shaft [degrees]", xlim=(0, 360))
+    if title:
+        figure.suptitle(title, fontsize=10)
+    return save_figure(figure, path, dpi=120)
+
+
+def plot_trend(rows: Mapping[str, Mapping[str, float]], path: StrPath | None = None) -> "Figure":
+    """Draw indicators of records in the order of their measurement, relative to the first record; save to `path` if given."""
+    figure, axes = blank((9, 4))
+    names = list(next(iter(rows.values())))
+    for number, name in enumerate(names):
+        values = np.array([row.get(name, np.nan) for row in rows.values()])
+        axes.semilogy(values / values[0], label=name, marker=MARKS[number % len(MARKS)], **look(number))
+    axes.set_xticks(range(len(rows)), list(rows), rotation=60, fontsize=7, ha="right")
+    axes.set_ylabel("value over that of the first record")
+    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), fontsize=8)
+    return save_figure(figure, path, dpi=120)
 
 
 def plot_kurtogram(kurtogram: "Kurtogram", path: StrPath | None = None, title: str = "") -> "Figure":
@@ -135,6 +170,8 @@ def plot_phase(
     """Draw a phase portrait, `gearfe.phase_portrait`, with the points of a Poincare section; save to `path` if given."""
     figure, axes = blank((5, 4))
     axes.plot(*portrait, linewidth=0.4, color=COLOURS[0])
+    if section is not None and np.shape(section)[1:] != (2,):
+        raise ValueError(f"section of shape {np.shape(section)}: give displacement and velocity of each point (n, 2)")
     if section is not None:
         axes.plot(*np.transpose(section), ".", color=COLOURS[1], markersize=5, label="Poincaré section")
         axes.legend(fontsize=8)

@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import BivariateSpline, PPoly
 
+from ..core.checks import truth
+
 MOST = 512 * 2**20  # memory of the results kept [bytes]
 
 
@@ -115,7 +117,7 @@ def solved_gears(cache: "bool | SolvedGears") -> SolvedGears:
     """Return the cache to use: that of this process for True, an empty one for False, a `SolvedGears` unchanged."""
     if isinstance(cache, SolvedGears):
         return cache
-    return PROCESS if cache else SolvedGears()
+    return PROCESS if truth("cache", cache) else SolvedGears()
 
 
 def memory(value) -> int:

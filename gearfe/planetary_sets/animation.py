@@ -51,8 +51,6 @@ def animate_planetary_set(
         If the set cannot be meshed gear by gear, the file cannot be written, or an argument is out of range.
     """
     check_moving(path)
-    if not isinstance(curves, SetCurves):
-        raise ValueError(f"curves = {curves!r}, but give the result of planetary_stiffness")
     if magnified is not None:
         ranged("magnified", magnified, above=0.0)
     whole("rate", rate, 1)

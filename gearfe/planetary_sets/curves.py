@@ -75,6 +75,15 @@ class SetCurves:
     ring_moved: Floats
     meta: dict[str, Any] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        """Check that all meshes have the same positions and planets."""
+        if self.force.ndim != 3 or not self.force.shape == self.k.shape == self.k_alone.shape == (
+            2,
+            self.position.size,
+            self.force.shape[2],
+        ):
+            raise ValueError("force, k and k_alone need the shape (2, positions, planets)")
+
     def __repr__(self):
         """One line: planets, positions, stiffness of both kinds of mesh, load factor."""
         mean = [one[one > 0].mean() / NEWTON_PER_UM for one in self.k]

@@ -13,7 +13,6 @@ from ..geometry.mesh.both_flanks import both_flanks
 from ..geometry.pair.contacts import contacts
 from ..geometry.tooth.profile import arc_at
 from .case import PlanetaryCase
-from .curves import SetCurves
 from .rim_supports import RimSupports
 from .standing import Standing, directions, standing, tooth_angles
 
@@ -35,8 +34,6 @@ def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
     ValueError for the reasons of `check_meshable`, if there is no such position, or if a mesh is unloaded, so that the rotation
     of its planet is unknown.
     """
-    if not isinstance(curves, SetCurves):
-        raise ValueError(f"curves = {curves!r}, but give the result of planetary_stiffness")
     if whole("at", at, 0) >= curves.position.size:
         raise ValueError(f"at = {at}, but there are {curves.position.size} positions: give 0 to {curves.position.size - 1}")
     case = curves.meta["case"]

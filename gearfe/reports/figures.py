@@ -5,6 +5,7 @@ import numpy as np
 from ..core.units import NEWTON_PER_UM
 from ..figures.look import COLOURS
 from ..figures.stiffness_plots import closed
+from ..stiffness.methods import NAMES
 from .tooth import shown_tooth, towards_flank
 
 DASH = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
@@ -58,8 +59,9 @@ def cases_figure(curves):
 
 
 def _with_curves(figure, curves):
-    for number, (name, curve) in enumerate(curves.items()):
+    for place, (name, curve) in enumerate(curves.items()):
         phase, k = closed(curve)
+        number = NAMES.index(name) if name in NAMES else place  # a method has one colour in all figures
         figure.add_scatter(x=phase, y=k, name=name, line=style(number), hovertemplate="%{y:.4g} N/µm")
     return figure
 

@@ -30,8 +30,15 @@ class Findings:
     @property
     def headline(self):
         """The answer in one sentence, that of the pair of `hurt_pair`, which is named if there are others."""
+        return self._sentence(self.case if self.case in self.scene.pairs[self.hurt_pair].damage else None)
+
+    @property
+    def healthy_headline(self):
+        """The same sentence on the pair without damage."""
+        return self._sentence(None)
+
+    def _sentence(self, case):
         name = self.hurt_pair
-        case = self.case if self.case in self.scene.pairs[name].damage else None
         sentence = self.comparisons[name, case].headline
         return f"{name}: {sentence}" if len(self.scene.pairs) > 1 else sentence[:1].upper() + sentence[1:]
 

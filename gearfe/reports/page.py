@@ -1,28 +1,34 @@
 """`report`: a self-contained page of a scene."""
 
-import base64
 import itertools
-import tempfile
+import math
 import time
+from dataclasses import replace
+from functools import partial
 from importlib import resources
 from pathlib import Path
 
+from ..comparison.harris import harris
+from ..comparison.pattern import render_pattern
 from ..comparison.told_scene import told_details, told_load, told_supports
 from ..core.steps import part
 from ..core.table import Column, Table
+from ..figures.error_plots import plot_transmission_error
 from ..geometry.aliases import StrPath
 from ..scene.load import Scene, scene_names
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import versions
+from ..stiffness.solve import Solve
 from ..strength.render import enlarged, render_stress, rounded_up
 from . import figures
 from .figures import part_of_page
 from .findings import find
-from .template import page_maker
+from .template import page_maker, picture_data
 from .whole_set import set_section
 
 MARK = 10.0  # errors beyond it are emphasised [%]
-PICTURE, REFINE = (1120, 840), 0.7  # size of a picture of stress [px], and refinement of its mesh
+PICTURE = (1120, 840)  # size of a picture of stress [px]
+LOADS = (0.25, 0.5, 1.0, 1.5)  # loads of a Harris map over that of the pair
 
 
 def report(
@@ -61,15 +67,15 @@ def report(
         found = find(scene, case, duration=duration, phases=phases)
     with part("stress pictures", 0.85, 1.0):
         drawing = time.perf_counter()
-        pictures = _pictures(found)
+        pictures, contacts = _pictures(found), _contacts(found)
         sets = set_section(found.sets)
         found.seconds["stress pictures"] = time.perf_counter() - drawing
     cost = [*found.seconds.items(), ("all", time.perf_counter() - started)]
     return write(
-        found=found, scene=found.scene, case=found.case, command=_command(found), pictures=pictures, sets=sets,
-        tooth=_tooth(found), methods=_methods(found), assumed=_assumed(found.scene), version=versions()["gearfe"],
+        found=found, scene=found.scene, case=found.case, command=_command(found), pictures=pictures, contacts=contacts, sets=sets,
+        gears=_gears, tooth=_tooth(found), methods=_methods(found), assumed=_assumed(found.scene), version=versions()["gearfe"],
         cost=Table(("part", Column("time", "s", "{:.1f}")), cost, "What it cost"), duration=duration, total=cost[-1][1],
-        libraries=Table(("library", "version"), list(versions().items()), "Versions"), mark=MARK, refine=REFINE,
+        libraries=Table(("library", "version"), list(versions().items()), "Versions"), mark=MARK,
         draw=_numbered(), figures=figures, told=lambda pair: [told_load(pair), *told_details(pair), *pair.pair.notes],
         supports=told_supports, turning=(resources.files("gearfe.reports") / "page.js").read_text(encoding="utf-8"),
     )  # fmt: skip
@@ -82,21 +88,46 @@ def _numbered():
 
 
 def _pictures(found):
-    """Return pictures of stress, healthy and damaged, as data of the page; without a renderer the missing package."""
+    """Return pictures of stress, healthy and damaged at one phase and scale; without a renderer the missing package."""
     name = found.hurt_pair
-    chosen, out = found.scene.pair(name), []
-    for case in dict.fromkeys([None, found.case if found.case in chosen.damage else None]):
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "stress.png"
-            title = f"{found.scene.name}, {name}, {case or 'healthy'}"
-            try:
-                told = render_stress(chosen, file, case=case, size=PICTURE, refine=REFINE, title=title)
-            except (RuntimeError, ValueError) as error:
-                out.append({"missing": f"{title}: {error}"})
-                continue
-            data = base64.b64encode(file.read_bytes()).decode()
-        out.append({"data": data, "title": title, "told": told})
-    return out
+    chosen, out, same = found.scene.pair(name), [], {}
+    for case in dict.fromkeys([found.case if found.case in chosen.damage else None, None]):
+        title = f"{found.scene.name}, {name}, {case or 'healthy'}"
+        draw = partial(render_stress, chosen, case=case, size=PICTURE, title=title, **same)
+        out.append(picture_data(draw, title))
+        same = {key: out[-1]["told"][key] for key in ("phase", "top")} if "told" in out[-1] else {}
+    return out[::-1]
+
+
+def _contacts(found):
+    """Return the Harris map and the contact pattern of the healthy pair as pictures."""
+    case = found.scene.case(found.hurt_pair)
+    title = f"{found.scene.name}, {found.hurt_pair}, healthy"
+
+    def map_of_loads(path):
+        error, plain = harris(replace(case, force=[share * case.forces[0] for share in LOADS]), Solve())
+        plot_transmission_error(error, path, title, plain)
+
+    return [
+        picture_data(map_of_loads, f"Transmission error under several loads (Harris map): {title}"),
+        picture_data(partial(render_pattern, case, title=title), f"Contact pattern over a mesh cycle: {title}"),
+    ]
+
+
+def _gears(pair):
+    """Return the `Table` of both gears of a scene's pair, a row for each quantity."""
+    shown = [
+        {
+            "teeth": gear.z, "normal module [mm]": gear.m_n, "normal pressure angle [degrees]": math.degrees(gear.alpha_n),
+            "helix angle [degrees]": math.degrees(gear.beta), "profile shift coefficient": gear.x, "face width [mm]": gear.b,
+            f"{'rim' if gear.internal else 'bore'} diameter [mm]": 2 * (gear.r_rim or gear.r_bore),
+            "Young's modulus [MPa]": material.E, "Poisson's ratio": material.nu,
+        }
+        for gear, material in zip((pair.pair.gear_1, pair.pair.gear_2), pair.materials, strict=True)
+    ]  # fmt: skip
+    columns = ["quantity", Column("pinion", form="{:.6g}"), Column("wheel", form="{:.6g}")]
+    rows = [[name, one, shown[1].get(name)] for name, one in shown[0].items()]
+    return Table(columns, rows + [[name, None, one] for name, one in shown[1].items() if name not in shown[0]], "gears")
 
 
 def _tooth(found):

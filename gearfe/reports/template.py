@@ -1,6 +1,8 @@
-"""A page of one file from its template, with style and plotly in it."""
+"""A page of one file from its template, with style and plotly in it; pictures as its data."""
 
+import base64
 import os
+import tempfile
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -29,3 +31,14 @@ def page_maker(path: str | os.PathLike[str], name: str) -> Any:
         return Path(path)
 
     return write
+
+
+def picture_data(draw, title):
+    """Return what ``draw(path)`` draws as data of the page, with what it returns; without it the reason."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "picture.png"
+        try:
+            told = draw(path=file)
+        except (RuntimeError, ValueError) as error:
+            return {"missing": f"{title}: {error}"}
+        return {"data": base64.b64encode(file.read_bytes()).decode(), "title": title, "told": told}

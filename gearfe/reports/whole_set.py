@@ -1,10 +1,6 @@
 """The section of a report on the planetary set of its scene."""
 
-import base64
-import tempfile
-from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 from ..comparison.told_set import set_headline, set_table, spread, told_set, told_span
@@ -14,9 +10,9 @@ from ..planetary_sets.of_scene import build_set
 from ..planetary_sets.shape import plot_planetary_set
 from ..planetary_sets.solve import planetary_stiffness
 from ..scene.load import Scene
+from .template import picture_data
 
 POSITIONS = 32
-DPI = {"loads": 90, "bent": 110}
 
 
 def find_set(scene: Scene, case: str | None) -> tuple[dict[str, SetCurves], list[str]]:
@@ -40,19 +36,9 @@ def set_section(found: dict[str, SetCurves]) -> list[dict[str, Any]]:
     for name, curves in found.items():
         healthy = found.get("healthy") if name != "healthy" else None
         out.append({
-            "loads": _picture("loads", curves.plot), "bent": _picture("bent", partial(plot_planetary_set, curves, 0)),
+            "loads": picture_data(partial(curves.plot, dpi=90), f"the loads, {name}"),
+            "bent": picture_data(partial(plot_planetary_set, curves, 0, dpi=110), f"the bent set, {name}"),
             "case": name, "headline": set_headline(curves, healthy), "told": told_set(curves.meta["case"]),
             "span": told_span(curves.position), "table": set_table(curves),
         })  # fmt: skip
     return out
-
-
-def _picture(name: str, draw: Callable[..., Any]) -> dict[str, str]:
-    """Return a picture as data of the page, or the reason why there is none."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "set.png"
-        try:
-            draw(file, dpi=DPI[name])
-        except ValueError as error:
-            return {"missing": str(error)}
-        return {"data": base64.b64encode(file.read_bytes()).decode()}

@@ -16,7 +16,7 @@ the source prints are no longer compared.
 
 import re
 
-from .schema import shown
+from ..geometry.checks import shown
 
 OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # words in the effects of an assumption
 

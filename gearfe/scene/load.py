@@ -249,10 +249,11 @@ def _with_backlash(pair: GearPair, wanted: float) -> GearPair:
 def _pair(file, name, rows, gears, materials, forces):
     """Return the `ScenePair` of the checked tables of a scene; `forces` are those of the pairs of a gearbox [N]."""
     row = rows["pair"][name]
-    force = row["force_N"] or forces.get(name)
-    if force is None:
-        raise ValueError(f"{file} [pair.{name}]: missing key 'force_N'; expected a number in N")
     names = row["gear_1"], row["gear_2"]
+    torque = row["torque_Nm"]
+    force = row["force_N"] or (1e3 * torque / gears[names[0]].r_b if torque else forces.get(name))
+    if force is None:
+        raise ValueError(f"{file} [pair.{name}]: missing key 'force_N' or 'torque_Nm'; expected a number in N or N m")
     with located(file, f"pair.{name}", row):
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
         if row["backlash_um"] is not None:

@@ -33,6 +33,9 @@ def new_scene(
     crack: tuple[float, float] | None = None,
     tip_relief_um: float | None = None,
     tip_length_mm: float | None = None,
+    x: tuple[float, float] = (0.0, 0.0),
+    alpha_deg: float = 20.0,
+    bore_mm: tuple[float, float] | None = None,
 ) -> Path:
     """Write a scene file with comments: a gear pair with a case of damage, ready to run and to be changed.
 
@@ -58,6 +61,12 @@ def new_scene(
         Length [mm] and angle to the centre-line [degrees] of the pinion's root crack; default: level 0.3 at 45 degrees.
     tip_relief_um, tip_length_mm : float, optional
         Linear tip relief of both gears [um], and the length of roll below the tip over which it runs [mm]: give both.
+    x : (float, float)
+        Profile shift coefficients of pinion and wheel.
+    alpha_deg : float
+        Normal pressure angle [degrees].
+    bore_mm : (float, float), optional
+        Bore diameters of pinion and wheel, of a ring its rim diameter [mm]; default: half of the root diameter, an assumption.
 
     Returns
     -------
@@ -77,17 +86,26 @@ def new_scene(
     if not path.name.isprintable():
         raise ValueError(f"{path.name!r}: give the scene a name of letters that can be printed")
     teeth = teeth or ((21, 63) if ring else (21, 31))
-    for name, pair_of in {"teeth": teeth, "crack": crack or (1.0, 1.0)}.items():
+    pairs = {"teeth": teeth, "crack": crack or (1.0, 1.0), "x": x, "bore_mm": bore_mm or (1.0, 1.0)}
+    for name, pair_of in pairs.items():
         if not isinstance(pair_of, (tuple, list)) or len(pair_of) != 2 or not all(map(is_number, pair_of)):
             raise ValueError(f"{name} = {pair_of!r}, but give two numbers")
     module, helix_deg, width = number("module", module), number("helix_deg", helix_deg), number("width", width)
     torque_Nm = None if torque_Nm is None else number("torque", torque_Nm)
-    spur: dict[str, Any] = {"m_n_mm": float(module), "alpha_n_deg": 20.0, "b_mm": float(width), "x": 0.0}
-    pinion = {"z": teeth[0], **spur, "beta_deg": float(helix_deg), **RACK}
-    wheel = {"z": teeth[1], **spur, "beta_deg": (helix_deg if ring else -helix_deg) + 0.0, **(RING if ring else RACK)}
+    spur: dict[str, Any] = {"m_n_mm": float(module), "alpha_n_deg": number("alpha_deg", alpha_deg), "b_mm": float(width)}
+    pinion = {"z": teeth[0], **spur, "x": float(x[0]), "beta_deg": float(helix_deg), **RACK}
+    wheel = {
+        "z": teeth[1],
+        **spur,
+        "x": float(x[1]),
+        "beta_deg": (helix_deg if ring else -helix_deg) + 0.0,
+        **(RING if ring else RACK),
+    }
     transverse = module / math.cos(math.radians(helix_deg))  # the root circle of an external gear lies 1.25 modules inside
     pinion["r_bore_mm"], bore = (round(0.5 * (0.5 * transverse * z - 1.25 * module), 1) for z in teeth)
     held = {"r_rim_mm": round(0.5 * transverse * teeth[1] + 5 * module, 1)} if ring else {"r_bore_mm": bore}
+    if bore_mm:
+        pinion["r_bore_mm"], held = 0.5 * bore_mm[0], dict.fromkeys(held, 0.5 * bore_mm[1])
     stated: dict[str, Any] = {
         "title": f"Pair {teeth[0]}/{teeth[1]}, module {module:g} mm", "source": "own gear pair",
         "material": {"steel": {"E_MPa": 206000.0, "nu": 0.3}},
@@ -97,9 +115,11 @@ def new_scene(
     pair = scene_of(path.name, stated).pair().pair
     force, told_force = _force(pair.gear_1, width, torque_Nm)
     stated["pair"]["stage"]["force_N"] = force
-    radii = f"bore {pinion['r_bore_mm']} mm (pinion) and {'rim' if ring else 'bore'} {next(iter(held.values()))} mm (wheel), held"
+    kinds = ("bore radius", "rim radius" if ring else "bore radius")
+    radii = f"{kinds[0]} {pinion['r_bore_mm']} mm (pinion) and {kinds[1]} {next(iter(held.values()))} mm (wheel), held"
     values = {"gear.pinion.r_bore_mm": pinion["r_bore_mm"]} | {f"gear.wheel.{key}": value for key, value in held.items()}
-    stated["assumption"] = [{"what": radii, "why": "a start: give the true ones", "holds": values}]
+    if not bore_mm:
+        stated["assumption"] = [{"what": radii, "why": "a start: give the true ones", "holds": values}]
     size = {"length_mm": crack[0], "angle_deg": crack[1]} if crack else {"level": 0.3, "angle_deg": 45.0}
     stated["crack"] = [{"case": "cracked", "gear": "pinion", **size}]
     numbers = _numbers(pair, force)

@@ -6,7 +6,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from .schema import LISTS, NAMES, REQUIRED, KeyTable, scene_schema, schema_of, shown
+from ..geometry.checks import shown
+from .schema import LISTS, NAMES, REQUIRED, KeyTable, scene_schema, schema_of
 
 LARGEST, MOST = 1e30, 2**63  # no length, force or stiffness is larger, in any unit; whole numbers that arrays can hold
 PLAIN = {"boolean": bool, "values": dict}  # types of keys that are neither numbers nor texts
@@ -125,8 +126,6 @@ def unknown(name: Any, names: Iterable[str]) -> str:
 
     near = get_close_matches(str(name), names := list(names), 1)
     hint = f" (nearest: {near[0]!r})" if near else ""
-    if name == "torque_Nm" and "force_N" in names:
-        hint = " (force_N is the torque of gear_1 in N m times 1000, over its base radius in mm)"
     if name in ("damaged_planet", "planet") and {"floating", "tangential_um"} & set(names):
         hint = ' (former key, counted from 0: give body = "planet1", the first, in the table of the damage or pin)'
     return f"unknown key {shown(name)}{hint}; expected {', '.join(names)}"

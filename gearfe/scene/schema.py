@@ -14,8 +14,9 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
+from ..geometry.checks import shown
+
 REQUIRED = object()
-SHOWN = 60  # characters of a value in a message
 LISTS = {  # type of list: type of its entries
     "numbers": "number", "strings": "string", "tables": "values", "gears": "gear", "bearings": "bearing",
 }  # fmt: skip
@@ -185,15 +186,6 @@ def _key(name, stated):
 
 def _frozen(value):
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
-
-
-def shown(value: Any) -> str:
-    """Return a value for a message, at most a line long."""
-    try:
-        text = repr(value)
-    except ValueError:  # Python writes no whole numbers of more than 4300 digits
-        return "a number of thousands of digits"
-    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 
 
 def in_words(kind: str, thing: Any, *names: str) -> str:

@@ -187,6 +187,6 @@ def _forces(file, train, rows, gears):
             force = abs(link.ratio * torque) / (stage.n_planets * gears[stage.gears[0]].r_b) * 1e3
             out |= dict.fromkeys(stage.pairs, force)
     for name, force in out.items():
-        if rows["pair"][name]["force_N"] is not None:
-            raise ValueError(f"{file} [pair.{name}] force_N: it is {force:.6g} N by the torque of the gearbox; leave it out")
+        if rows["pair"][name]["force_N"] is not None or rows["pair"][name]["torque_Nm"] is not None:
+            raise ValueError(f"{file} [pair.{name}] force_N or torque_Nm: the gearbox gives {force:.6g} N; leave both out")
     return out

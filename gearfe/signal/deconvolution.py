@@ -9,7 +9,7 @@ from scipy.signal import correlate, lfilter
 from ..core.checks import whole
 from ..geometry.aliases import Floats
 from .given import hertz
-from .series import Signal, expect_signal
+from .series import Signal
 
 RIDGE = 1e-9  # power added to the signal, relative: keeps the normal equations regular at frequencies without power
 
@@ -56,7 +56,6 @@ def deconvolve(
     - R. A. Wiggins, Geoexploration 16 (1978) 21-35; H. Endo, R. B. Randall, Mech. Syst. Signal Process. 21(2) (2007) 906-919.
     - G. L. McDonald, Q. Zhao, M. J. Zuo, Mech. Syst. Signal Process. 33 (2012) 237-255, eqs. 15-23.
     """
-    expect_signal(signal)
     x, length = signal.values - signal.values.mean(), whole("length", length, 2)
     apart = [0]
     if frequency is not None:

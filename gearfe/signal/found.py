@@ -12,6 +12,9 @@ TIMES, ANGLES, SHAFTS = ("time", "t", "zeit", "temps"), ("angle", "shaft angle")
 KEYS = (*RATES, *SHAFTS, "unit")
 
 
+TOLD = 40  # channels in a message
+
+
 @dataclass(slots=True)
 class Found:
     """Channels and metadata of one file."""
@@ -81,7 +84,8 @@ class Found:
     def told(self) -> str:
         """Return the channels with their units, and other contents, for messages."""
         channels = [f"{name!r}{f' [{self.units[name]}]' if self.units.get(name) else ''}" for name in self.channels()]
-        return ", ".join(channels + self.other) or "nothing"
+        told = channels + self.other
+        return ", ".join(told[:TOLD]) + f" and {len(told) - TOLD} more" * (len(told) > TOLD) or "nothing"
 
 
 def plain(name: str) -> str:

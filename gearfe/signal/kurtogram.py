@@ -9,7 +9,7 @@ from scipy.signal import fftconvolve, firwin, upfirdn
 from ..core.checks import one_of, whole
 from ..geometry.aliases import Floats
 from .given import oscillation
-from .series import Signal, expect_signal
+from .series import Signal
 
 HALF_TAPS, THIRD_TAPS = 33, 49  # filter taps for halves and thirds of a band; both lose 16 samples at their ends
 ANALYTIC_TAPS = 1025  # limit of taps, also an eighth of the record: samples lost at the ends
@@ -83,7 +83,6 @@ def fast_kurtogram(signal: Signal, levels: int | None = None, *, filters: str = 
     ----------
     J. Antoni, Mech. Syst. Signal Process. 21(1) (2007) 108-124.
     """
-    expect_signal(signal)
     x = _oscillation(signal)
     deepest = math.floor(math.log2(x.size / FEWEST)) if x.size >= FEWEST else 0
     levels = deepest if levels is None else whole("levels", levels, 0)

@@ -11,7 +11,7 @@ from scipy.interpolate import make_interp_spline
 from ..core.checks import whole
 from ..geometry.aliases import Floats
 from .given import samples
-from .series import Signal, expect_signal
+from .series import Signal
 from .spectrum import Spectrum, amplitudes
 
 MOST = 10**8  # limit of samples per revolution
@@ -26,7 +26,6 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
     no frequency is folded back. ValueError without a shaft (`angle` or `shaft_frequency`), with less than one turn, a speed near
     zero, or too few samples per turn.
     """
-    expect_signal(signal)
     angle = signal.shaft_angle / (2 * math.pi)
     angle = angle - angle[0]
     step = np.diff(angle)
@@ -113,7 +112,6 @@ def synchronous_average(signal: Signal, samples_per_turn: int | None = None, *, 
     ----------
     P. D. McFadden, Mech. Syst. Signal Process. 1(1) (1987) 83-95.
     """
-    expect_signal(signal)
     turns = by_turn(signal, samples_per_turn)
     periods = turns.shape[0] // whole("turns_per_period", turns_per_period, 1)
     if periods < 1:

@@ -135,12 +135,6 @@ class Signal:
         return out | of_lines(lines, mesh_frequency, fault_frequency, tolerance=tolerance, harmonics=harmonics)
 
 
-def expect_signal(signal: object) -> None:
-    """Raise TypeError, with the way to make a signal, if the argument is none."""
-    if not isinstance(signal, Signal):
-        raise TypeError(f"{type(signal).__name__} in place of a signal: give gf.Signal(values, rate, unit)")
-
-
 def decimate(signal: Signal, rate: float) -> Signal:
     """Return the signal at a lower rate, after an anti-aliasing filter.
 
@@ -158,7 +152,6 @@ def decimate(signal: Signal, rate: float) -> Signal:
     ValueError
         If the rate is higher than that of the signal, or no such ratio.
     """
-    expect_signal(signal)
     hertz("rate", rate)
     ratio = Fraction(rate / signal.rate).limit_denominator(1000) if 0 < rate <= signal.rate else Fraction(0)
     if not ratio or abs(ratio * signal.rate / rate - 1) > 1e-9:
@@ -195,7 +188,6 @@ def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
     ValueError
         If `times` is no whole number from 1 on, `above` is not between 0 and half of the rate, or `unit` is an empty text.
     """
-    expect_signal(signal)
     whole("times", times, 1)
     hertz("above", above)
     if not 0 < above < signal.rate / 2:

@@ -173,6 +173,8 @@ def _aligned(path, found, signals):
     starts = {name: found.starts.get(name, 0.0) for name in signals}
     if len(set(starts.values())) == 1:
         return signals
+    if not starts:
+        raise ValueError("columns: give one at least")
     first = max(starts.values())
     last = min(start + signals[name].duration for name, start in starts.items())
     out = {}

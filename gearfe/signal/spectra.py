@@ -9,7 +9,7 @@ from scipy.signal import welch
 
 from ..core.checks import is_number
 from .given import band_of, window_values
-from .series import Signal, expect_signal
+from .series import Signal
 from .spectrum import Spectrum, amplitudes, noise_bins
 
 
@@ -48,7 +48,6 @@ def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spect
     >>> sine.values[[0, 50]].round(6).tolist(), sine.resolution, sine.bandwidth
     ([2.0, 3.0], 1.0, 1.5)
     """
-    expect_signal(signal)
     return amplitudes(signal.values, signal.rate, window, signal.unit, signal.name, "Hz")
 
 
@@ -82,7 +81,6 @@ def power_spectral_density(
     ----------
     P. D. Welch, IEEE Trans. Audio Electroacoust. 15(2) (1967) 70-73.
     """
-    expect_signal(signal)
     n = signal.values.size
     size = (
         max(n // 16, min(n, 8))
@@ -108,7 +106,6 @@ def analytic(signal, band=None):
     The band is cut between bins of the discrete Fourier transform, as `scipy.signal.envelope` does: exact for a record that
     closes; any other rings at its ends, for about ``1 / (high - low)``.
     """
-    expect_signal(signal)
     low, high = band_of(band, signal.rate, signal.name)
     n = signal.values.size
     frequency = fftfreq(n, 1 / signal.rate)

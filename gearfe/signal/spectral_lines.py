@@ -5,10 +5,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..core.checks import number
+from ..core.checks import number, whole
 from .given import hertz
 from .spectrum import Spectrum
 
+MOST_LINES = 10_000  # limit of harmonics, and of side lines of each
 HANN = 1.5  # equivalent noise bandwidth of its window, in bins
 BINS = 2  # bins on either side of an expected frequency in which the line is searched
 
@@ -60,8 +61,8 @@ def expected_lines(
     spacings = {name: value for name, value in frequencies.items() if value is not None}
     for name, value in {"f_m": mesh_frequency, **spacings}.items():
         hertz(name, value)
-    if count < 0 or harmonics < 1:
-        raise ValueError(f"count = {count}, harmonics = {harmonics}: give count >= 0, harmonics >= 1")
+    whole("count", count, 0, MOST_LINES)
+    whole("harmonics", harmonics, 1, MOST_LINES)
     lines = {}
     for n in range(1, harmonics + 1):
         mesh = _times(n, "f_m")

@@ -48,7 +48,7 @@ class Way(NamedTuple):
     def cells(self, line: str, count: int | None = None) -> list[str]:
         """Cells of a row: with a known `count` also the empty ones at its end, otherwise separators at the end are dropped."""
         whole = line if self.separator is None else line.rstrip(f"{self.separator} ")
-        if self.separator is not None and '"' in line:  # a separator between quotes ends no cell
+        if self.separator is not None and '"' in line and len(line) <= csv.field_size_limit():  # between quotes no cell ends
             cells = [cell.strip() for cell in next(csv.reader([whole], delimiter=self.separator))]
         else:
             cells = [cell.strip().strip('"').strip() for cell in whole.split(self.separator)]

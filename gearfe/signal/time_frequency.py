@@ -10,7 +10,7 @@ from scipy.signal import ShortTimeFFT
 from ..core.checks import whole
 from ..geometry.aliases import Floats
 from .given import oscillation, window_values
-from .series import Signal, expect_signal
+from .series import Signal
 from .spectrum import Spectrum
 
 FLOOR = 1e-12  # amplitudes below this part of the largest count as zero in logarithms
@@ -61,7 +61,6 @@ def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[
     ValueError
         If `size` is no whole number from 8 to half of the samples, or scipy does not know the window.
     """
-    expect_signal(signal)
     n = signal.values.size
     size = 2 ** round(np.log2(8 * n) / 2) if size is None else whole("size", size, 1)
     if not 8 <= size <= n // 2:
@@ -98,7 +97,6 @@ def cepstrum(signal: Signal) -> Spectrum:
     B. P. Bogert, M. J. R. Healy, J. W. Tukey, Proc. Symp. Time Series Analysis (1963) 209-243; R. B. Randall, Mech. Syst. Signal
     Process. 97 (2017) 3-19.
     """
-    expect_signal(signal)
     x = oscillation(signal.values, f"{signal.name} is constant: it has no cepstrum")
     amplitude = np.abs(rfft(x))
     values = irfft(np.log(np.maximum(amplitude, FLOOR * amplitude.max())), x.size)[: x.size // 2 + 1]

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.extras import missing
 from ..core.files import save, save_as
+from ..core.record import check_rows
 from ..core.units import NEWTON_PER_UM
 from ..figures.inline import line_svg
 from ..figures.stiffness_plots import plot_curves
@@ -66,6 +67,10 @@ class StiffnessCurve:
     meta: dict[str, Any] = field(default_factory=dict)
     unloaded: Floats | None = None
     support_deflection: Floats | None = None
+
+    def __post_init__(self) -> None:
+        """Check that there is a row for each phase."""
+        check_rows(self, "phase k k_tangent deflection force pressure error unloaded support_deflection")
 
     def __repr__(self):
         """One line: method, phases, load, the range of k."""

@@ -35,7 +35,7 @@ def read_fields(path):
     try:
         meta = json.loads(lines[1].removeprefix("# meta: "))
         table = np.array([[float(cell) for cell in line.split(",")] for line in lines[3:]])
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: damaged table: {error}") from error
     header = lines[2].split(",")
     data = _columns(path, header, table)

@@ -128,7 +128,7 @@ def _check(side: str, one: object) -> None:
     sections = having("name", "section")
     home = getattr(one, "__name__", None) if isinstance(one, ModuleType) else getattr(one, "__module__", None)
     for name in SUMS:
-        if one == name or home == METHODS[name].home:
+        if (isinstance(one, str) and one == name) or home == METHODS[name].home:
             raise ValueError(f"{side} = {one!r}: {name} is " + NO_FLEXIBILITY.format(name, sections))
     named = isinstance(one, str) and one in METHODS and METHODS[one].kind == "section"
     if not (named or callable(one) or callable(getattr(one, "matrix", None))):

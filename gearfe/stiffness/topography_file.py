@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 from ..core.checks import one_of
+from ..core.files import check_regular
 
 UNITS = {"um": 1e-3, "mm": 1.0}
 
@@ -34,6 +35,7 @@ def read_topography(path: str | os.PathLike[str], unit: str = "um") -> Topograph
         If the file is not such a table; the message names the line.
     """
     one_of("unit", unit, UNITS)
+    check_regular(path)
     try:
         with Path(path).open(encoding="utf-8-sig", newline="") as file:
             rows = [row for row in csv.reader(file) if row]

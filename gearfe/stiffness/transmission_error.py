@@ -95,10 +95,10 @@ class TransmissionError:
 
 def transmission_error(
     pair: GearPair | Case,
-    forces: Loads | None = None,
+    forces: float | Loads | None = None,
     material: Materials = None,
     *,
-    torque: Loads | None = None,
+    torque: float | Loads | None = None,
     **options: Unpack[StiffnessOptions],
 ) -> TransmissionError:
     """Compute the loaded transmission error of a gear pair over the mesh cycle under several loads, which share one solve.
@@ -110,10 +110,10 @@ def transmission_error(
     Parameters
     ----------
     pair : GearPair or Case
-    forces : sequence of float
+    forces : float or sequence of float
         Forces along the line of action [N]; default those of the case.
     material : Material or (Material, Material)
-    torque : sequence of float, optional
+    torque : float or sequence of float, optional
         Instead of `forces`: torques on the pinion [N m].
     **options
         Options of `mesh_stiffness`: ``flanks``, ``method``, ``phases``, ``pose`` and so on.

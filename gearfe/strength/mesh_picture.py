@@ -72,6 +72,8 @@ def render_mesh(
 
 def _camera(parts, close_up):
     """Focus, direction of view and half height [mm] of the picture."""
+    if not len(parts):
+        raise ValueError("parts: give one at least")
     if close_up is None:
         points = np.hstack([part.points for part in parts])
         low, high = points.min(axis=1), points.max(axis=1)

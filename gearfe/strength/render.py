@@ -42,6 +42,7 @@ def render_stress(
     size: tuple[int, int] = (1400, 1050),
     refine: float = 1.0,
     title: str = "",
+    top: float | None = None,
 ) -> dict[str, Any]:
     """Draw von Mises stress of loaded gears to a file (works without a display), or write it as a VTK file.
 
@@ -65,11 +66,14 @@ def render_stress(
         Divides the edge lengths.
     title : str
         First line of the text in the picture.
+    top : float, optional
+        End of the colour scale [MPa]; default: the largest stress on the fillets, rounded up.
 
     Returns
     -------
     dict
-        Contents of the picture: ``phase``, ``largest`` and ``root`` (von Mises stress anywhere and on the loaded fillets) [MPa],
+        Contents of the picture: ``phase``, ``top`` (end of the colour scale [MPa]),
+        ``largest`` and ``root`` (von Mises stress anywhere and on the loaded fillets) [MPa],
         ``root_error`` (its estimated error [MPa], in three dimensions only: `gearfe.strength.holed.root_error`),
         ``enlarged`` (magnification of displacements), ``load`` [N] (on the tooth shown; in a plane on the pair), ``text``.
 
@@ -87,6 +91,7 @@ def render_stress(
     with part("", 0.0, 0.85):
         fields, told = (_tooth if wide else _gears)(shown, phase, refine)
     told |= {"root": max(field.root for field in fields), "largest": max(float(field.mises.max()) for field in fields)}
+    told["top"] = top or rounded_up(max(field.root for field in fields if field.opening > 0 or not told["enlarged"]))
     told["text"] = _text(title or (case or ""), told)
     if suffix == ".vtu":
         write_vtu(path, fields)
@@ -174,7 +179,7 @@ def _picture(path, size, text, top):
 
 def _label(plotter, text, position, size):
     """Add a text on white; its style."""
-    plotter.add_text(text, position=position, viewport=True, color="black", font_size=1)
+    plotter.add_text(text.encode(errors="replace").decode(), position=position, viewport=True, color="black", font_size=1)
     style = plotter.actors[next(reversed(plotter.actors))].prop
     style.SetFontSize(round(size))
     style.SetBackgroundColor(1.0, 1.0, 1.0)
@@ -233,7 +238,7 @@ def _draw_gears(pair, fields, told, path, size):
     scale, shown, focus = told["enlarged"], fields, (0.9 * pair.gear_1.m_n, pair.pitch_radius_1)
     if scale:
         shown = [field for field in fields if field.opening > 0]
-    with _picture(path, size, told["text"], rounded_up(max(field.root for field in shown))) as (plotter, look):
+    with _picture(path, size, told["text"], told["top"]) as (plotter, look):
         for k, field in enumerate(shown):
             plotter.add_mesh(_grid(field, scale), name=f"stress {k}", lighting=False, **look)
             plotter.add_mesh(_lines(field, scale, lift=0.02), color="black", line_width=2, lighting=False)
@@ -279,7 +284,7 @@ def _draw_tooth(pair, fields, told, path, size):
     focus = plane.T @ ((low + high) / 2)
     wide, tall = (high - low) / (0.76, 0.76)  # text above, colour bar on the right
     size = size[0], round(size[0] * min(max(tall / wide, 0.5), size[1] / size[0]))
-    with _picture(path, size, told["text"], rounded_up(told["root"])) as (plotter, look):
+    with _picture(path, size, told["text"], told["top"]) as (plotter, look):
         plotter.add_mesh(surface, name="stress", smooth_shading=True, ambient=0.55, diffuse=0.5, specular=0.0, **look)
         kept = (np.abs(angle) < 0.5) & (deep > -DEEP)
         plotter.add_mesh(_lines(field, scale, kept), color="black", line_width=2, lighting=False)

@@ -5,12 +5,12 @@ import warnings
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
-from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..aliases import Floats
+from ..checks import is_finite, shown
 from ..renamed import renamed
 from ..tooth.gear import Gear, shortened
 from ..tooth.involute import inv, inverse_inv
@@ -75,8 +75,8 @@ class GearPair:
             raise ValueError(f"z = {pinion.z} does not fit into a ring of z = {wheel.z}: the ring needs more teeth")
         if self.a is None:
             object.__setattr__(self, "a", free_centre_distance(pinion, wheel))
-        elif not isinstance(self.a, Real) or not math.isfinite(self.a):
-            raise ValueError(f"a = {self.a!r}, but a centre distance is a finite length [mm]")
+        elif not is_finite(self.a):
+            raise ValueError(f"a = {shown(self.a)}, but a centre distance is a finite length [mm]")
         object.__setattr__(self, "a", float(self.a))
         self._check_distance()
         if wheel.internal:

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from ..checks import is_whole
+from ..checks import is_finite, is_whole, shown
 from ..tooth.gear import Gear
 from ..tooth.involute import inv
 from .gear_pair import GearPair, free_centre_distance
@@ -41,8 +41,8 @@ class PlanetarySet:
             raise ValueError(f"n_planets = {self.n_planets!r}, but a set has a whole number of planets, at least 1")
         if self.a is None:
             object.__setattr__(self, "a", free_centre_distance(self.sun, self.planet))
-        if not (math.isfinite(self.a) and self.a > max(self.ring.r_b - self.planet.r_b, self.sun.r_b + self.planet.r_b)):
-            raise ValueError(f"a = {self.a} mm: the base circles do not allow a mesh at this centre distance; increase a")
+        if not (is_finite(self.a) and self.a > max(self.ring.r_b - self.planet.r_b, self.sun.r_b + self.planet.r_b)):
+            raise ValueError(f"a = {shown(self.a)} mm: the base circles do not allow a mesh at this centre distance; increase a")
         GearPair(self.sun, self.planet, self.a)
         closing = self.closing_shift()
         if abs(closing - self.ring.x) > 2e-3:

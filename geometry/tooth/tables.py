@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from ..checks import shown
 from .gear import Gear
 
 
@@ -11,8 +12,8 @@ def numbers(name: str, values: Any) -> list[float]:
     """Return a row of finite numbers as a list; ValueError if something else is given."""
     try:
         out = np.asarray(values, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} = {values!r}, but give a sequence of numbers [mm]") from error
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"{name} = {shown(values)}, but give a sequence of numbers [mm]") from error
     if out.ndim != 1 or not np.isfinite(out).all() or np.ma.is_masked(values):
         raise ValueError(f"{name} needs one row of finite numbers [mm], without holes")
     return out.tolist()

@@ -23,6 +23,9 @@ def test_bash_completes_verbs_options_choices_and_scenes(capsys):
     assert completed(script, "gearfe", "stiffness", "x", "--pha") == ["--phases"]
     assert completed(script, "gearfe", "render", "x", "--what", "") == ["stress", "contact", "pattern"]
     assert completed(script, "gearfe", "completion", "z") == ["zsh"]
+    assert completed(script, "gearfe", "te", "planetary_pitting", "--case", "mi") == ["mild", "mild_rows"]
+    assert completed(script, "gearfe", "te", "planetary_pitting", "--pair", "p") == ["planet_ring"]
+    assert completed(script, "gearfe", "te", "planetary_pitting", "--method", "fe") == ["fe", "fe3d"]
 
 
 def test_zsh_reads_the_same_completions(capsys):

@@ -9,6 +9,7 @@ import sys
 import pytest
 
 from gearfe.app.cli import main
+from gearfe.app.cli.progress import _log
 from gearfe.core.steps import listening, part, steps
 
 
@@ -74,3 +75,11 @@ def test_a_terminal_shows_the_time_left(tmp_path):
     assert run.returncode == 0
     assert re.search(rb"0:\d\d:\d\d\x1b\[0m gone, left", text), "a long description takes the clock's place"
     assert b"estimate of the" in text
+
+
+def test_a_pipe_gets_a_line_at_intervals(capsys):
+    step = _log("sweep", interval=0.0)
+    step("block 2 of 8", 0.25)
+    assert "gearfe: block 2 of 8: 25 % after 0 s, about 0 s left" in capsys.readouterr().err
+    _log("sweep")("block 2 of 8", 0.25)
+    assert capsys.readouterr().err == ""

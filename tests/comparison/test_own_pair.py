@@ -53,9 +53,9 @@ def test_a_model_that_is_a_tenth_too_stiff_is_told_so():
     [
         ({"force": 10.0}, "needs its load and material"),
         ({"force": 10.0, "torque": 1.0, "material": gf.Material()}, "give one of them"),
-        ({"force": [10.0, 20.0], "material": gf.Material()}, "one load"),
+        ({"force": [10.0, 20.0], "material": gf.Material()}, r"force = \[10.0, 20.0\], but it needs a number"),
         ({"force": 10.0, "material": gf.Material(), "case": "mild"}, "no scene and no case"),
-        ({"force": 10.0, "material": gf.Material(), "damage": gf.Crack(level=0.3)}, "give damage by gear"),
+        ({"force": 10.0, "material": gf.Material(), "damage": gf.Crack(level=0.3)}, "damage = Crack.*, but give a dict"),
     ],
 )
 def test_what_is_missing_is_said(given, said):

@@ -17,16 +17,17 @@ def response(forces, notes=None):
     channels = {f"force planet_ring{i + 1}": force(time) for i, force in enumerate(forces)}
     meshes = tuple(SimpleNamespace(name=name.removeprefix("force ")) for name in channels)
 
-    class Made:
+    class Made(gf.Response):
+        def __init__(self):
+            object.__setattr__(self, "time", time)
+
         stated = {"carrier frequency [Hz]": F_C} if notes is None else notes
         machine = SimpleNamespace(turned=lambda t: t, meshes=meshes, notes=stated)
 
         def __getitem__(self, name):
             return channels[name]
 
-    made = Made()
-    made.time = time
-    return made
+    return Made()
 
 
 def amplitudes(signal, frequencies):

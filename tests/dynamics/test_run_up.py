@@ -84,7 +84,7 @@ def test_what_is_no_profile_is_refused():
         ([0.0, 0.0], [1.0, 2.0], "sort the history by time"),
         ([0.0, 1.0], [1.0, -2.0], "0 or more"),
         ([0.0, 1.0], [1.0], "as many times"),
-        ([0.0, np.nan], [1.0, 1.0], "finite"),
+        ([0.0, np.nan], [1.0, 1.0], "times = nan"),
     ):
         with pytest.raises(ValueError, match=message):
             gf.with_speed(machine, times, factors)

@@ -183,7 +183,7 @@ def test_a_run_of_hours_is_refused_before_it_starts(monkeypatch):
         return replace(run, stats=run.stats | {"seconds": 1e-3 * every})
 
     monkeypatch.setattr(step_control, "fixed_steps", timed)
-    with pytest.raises(ValueError, match=r"hours of computing.*give a shorter duration, or state step="):
+    with pytest.raises(ValueError, match=r"hours of computing.*give a shorter duration, or a longer step="):
         simulate(two_masses(), 1e9, rate=1e-7)
 
 

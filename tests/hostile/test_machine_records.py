@@ -126,7 +126,7 @@ RECORDS = {
         (lambda v: gf.Member(v, 1.0, 1e8, 0.03), (0.0, -1.0, NAN, "1")),
     ],
     "inertia": [(lambda v: gf.Member(1.0, v, 1e8, 0.03), (0.0, -1.0, NAN))],
-    "bearing|stiffness": [
+    "bearing|stiffness|tilt|housing|support": [
         (lambda v: gf.Member(1.0, 1.0, v, 0.03), (-1.0, NAN, INF)),
         (lambda v: pitted(bearing=v), (-1.0, NAN)),
         (lambda v: herringbone(bearing=v), (-1.0, NAN)),
@@ -135,7 +135,7 @@ RECORDS = {
         (lambda v: herringbone(housing=v), (-1.0, NAN)),
         (lambda v: pair(support={"x": v}), (-1.0, NAN)),
     ],
-    "torsion|stiffness": [
+    "torsion|stiffness|drive|hold": [
         (lambda v: gf.Member(1.0, 1.0, 1e8, 0.03, v), (-1.0, NAN)),
         (lambda v: pitted(drive=v), (-1.0, NAN)),
         (lambda v: herringbone(drive=v), (-1.0, NAN)),

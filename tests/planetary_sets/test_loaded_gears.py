@@ -127,7 +127,7 @@ def test_bad_arguments_of_decks_and_pictures_are_refused(tmp_path):
             gf.plot_planetary_set(found, magnified=magnified)
     with pytest.raises(ValueError, match=r"no format for '\.txt'"):
         gf.plot_planetary_set(found, 0, tmp_path / "bent.txt")
-    with pytest.raises(ValueError, match="the result of planetary_stiffness"):
+    with pytest.raises(ValueError, match="give a SetCurves"):
         gf.plot_planetary_set(case())
     for options in ({"per_width": 0}, {"per_width": math.nan}, {"penalty": -1}, {"refine": 0}):
         with pytest.raises(ValueError, match=f"{next(iter(options))} = "):

@@ -144,7 +144,11 @@ def test_moving_pictures_that_cannot_be_are_refused(tmp_path):
     for name, value in (("magnified", 0), ("magnified", math.inf), ("rate", 0), ("rate", 2.5)):
         with pytest.raises(ValueError, match=f"{name} = "):
             gf.animate_planetary_set(found, tmp_path / "x.gif", **{name: value})
-    for path, message in (("x.mp4", r"ends in \.gif"), ("none/x.gif", "cannot write"), (3, r"ends in \.gif")):
+    for path, message in (
+        ("x.mp4", r"ends in \.gif"),
+        ("none/x.gif", "cannot write"),
+        (3, "path = 3, but give a text or a path"),
+    ):
         with pytest.raises(ValueError, match=message):
             gf.animate_planetary_set(found, tmp_path / path if isinstance(path, str) else path)
     assert not list(tmp_path.iterdir())

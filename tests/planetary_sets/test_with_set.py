@@ -169,7 +169,7 @@ def test_machines_and_sets_that_do_not_fit_are_refused():
         ((made, uneven, "lumped"), "not equally spaced"),
         ((made, gf.planetary_stiffness(given, [0.3]), "lumped"), "not equally spaced"),
         ((made, found, None), "ring = None"),
-        ((made, 3, "lumped"), "give a Machine"),
+        ((made, 3, "lumped"), "give a SetCurves"),
         ((machine(unequal(0, 50)), found, "lumped"), "3 planets in the set"),
         ((machine(unequal(0, 26, 53, 79)), found, "lumped"), "3 planets in the set"),
         ((other, found, "lumped"), "does not lie as in the set"),

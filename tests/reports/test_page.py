@@ -32,10 +32,10 @@ def test_page_is_one_file_with_all_its_parts(page):
     assert page.stat().st_size < 15e6
     own = re.sub(r"<script>/\*\*.*?</script>", "", text, flags=re.DOTALL)  # without plotly itself
     assert not re.findall(r"<(?:script|img|link|iframe)[^>]*(?:src|href)=\"(?!data:)[^\"]*", own), "loads something"
-    for part in ("assumed", "errors", "stress", "tooth", "made"):
+    for part in ("assumed", "errors", "stress", "contact", "tooth", "made"):
         assert f'<section id="{part}">' in text
     assert HOSTILE not in text
-    assert "No picture of" in own or own.count("data:image/png;base64,") == 2
+    assert "No picture of" in own or own.count("data:image/png;base64,") == 4
     assert "cracked" in text
     assert "gearfe report own.toml --case cracked -o page.html" in text
     assert "N along the line of action, " in text
@@ -52,8 +52,9 @@ def test_numbers_of_the_page_are_those_of_compare(page):
 
 def test_first_sentence_is_the_answer(page):
     text = page.read_text(encoding="utf-8")
-    said = gf.compare(page.parent / "own.toml", case="cracked", phases=12).headline
-    assert re.search(r'</h1>\s*<p class="answer">(.*?)</p>', text)[1] == f"{said}."
+    healthy, hurt = (gf.compare(page.parent / "own.toml", case=case, phases=12).headline for case in (None, "cracked"))
+    found = re.search(r'</h1>\s*<p class="answer">(.*?)</p>', text)[1]
+    assert found == f"{healthy[:1].upper()}{healthy[1:]}.<br>{hurt}."
 
 
 def test_tooth_is_pressed_as_its_scene_says(tmp_path, monkeypatch):

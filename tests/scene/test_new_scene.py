@@ -2,6 +2,7 @@ import math
 import re
 
 import pytest
+from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.app.cli import main
@@ -136,3 +137,22 @@ def test_a_case_of_damage_is_not_called_as_health_is(tmp_path, name):
     file.write_text(file.read_text().replace('case = "cracked"', f'case = "{name}"', 1))
     with pytest.raises(ValueError, match=f"case = '{name}': this names gears without damage"):
         gf.load_scene(file)
+
+
+def test_shift_pressure_angle_and_bores_of_a_new_scene(tmp_path):
+    gf.new_scene(tmp_path / "a.toml", teeth=(24, 43), module=3.0, x=(0.2, -0.1), alpha_deg=22.5, bore_mm=(30.0, 50.0))
+    scene = gf.load_scene(tmp_path / "a.toml")
+    one, two = scene.gears.values()
+    assert (one.x, two.x, one.r_bore, two.r_bore, scene.assumptions) == (0.2, -0.1, 15.0, 25.0, ())
+    assert_allclose([one.alpha_n, two.alpha_n], math.radians(22.5), rtol=1e-15)
+
+
+def test_a_pair_states_its_torque_or_its_force(tmp_path):
+    gf.new_scene(tmp_path / "a.toml", torque_Nm=80.0)
+    text = re.sub("(?m)^force_N = .*$", "torque_Nm = 80", (tmp_path / "a.toml").read_text())
+    (tmp_path / "b.toml").write_text(text)
+    want, found = (gf.load_scene(tmp_path / name).pair().force for name in ("a.toml", "b.toml"))
+    assert_allclose(found, want, rtol=1e-6)
+    (tmp_path / "c.toml").write_text(text.replace("\ntorque_Nm = 80", "\nforce_N = 10.0\ntorque_Nm = 80"))
+    with pytest.raises(ValueError, match="exclude each other"):
+        gf.load_scene(tmp_path / "c.toml")

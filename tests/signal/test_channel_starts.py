@@ -99,7 +99,7 @@ def test_a_tachometer_on_another_shaft_serves_with_the_ratio():
         assert_allclose(found.frequency[np.argmax(found.values)], 36, atol=0.05)
         assert found.values.max() > 0.9
     for ratio in (0, -1.0, np.nan, "29/95", True):
-        with pytest.raises(ValueError, match=r"ratio = .*the speed of the gear's shaft over that of the tachometer's"):
+        with pytest.raises(ValueError, match=r"ratio = .*(but it needs a number|the gear's shaft over that of the tachometer's)"):
             gf.with_tachometer(acc, clock, ratio=ratio)
 
 

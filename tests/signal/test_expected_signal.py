@@ -20,5 +20,5 @@ pytestmark = pytest.mark.quick
     ],
 )
 def test_a_list_is_answered_with_the_way_to_make_a_signal(function):
-    with pytest.raises(TypeError, match=r"list in place of a signal: give gf.Signal\(values, rate, unit\)"):
+    with pytest.raises(TypeError, match=r"signal = \[1.0, 2.0, 3.0\], but give a Signal: gf.Signal\(values, rate, unit\)"):
         function([1.0, 2.0, 3.0])

@@ -42,7 +42,7 @@ def test_expected_lines_stay_above_zero_and_count_harmonics():
     [
         ((0.0,), "f_m = 0.0, but give a positive number of Hz"),
         ((280.0, -40.0), "f_fault = -40.0, but"),
-        ((280.0, 40.0, math.inf), "f_carrier = inf, but"),
+        ((280.0, 40.0, math.inf), "carrier_frequency = inf, but"),
         ((280.0, 40.0, None, -1), "count = -1"),
     ],
 )

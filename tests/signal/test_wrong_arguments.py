@@ -90,5 +90,5 @@ def test_windows_without_values_are_refused(function, window):
 
 @pytest.mark.parametrize("resolution", [5e-324, 10**400, 1e-300])
 def test_resolution_finer_than_any_record(resolution):
-    with pytest.raises(ValueError, match=r"resolves 0\.25 to 500 Hz"):
+    with pytest.raises(ValueError, match=r"resolves 0\.25 to 500 Hz|the maximum is"):
         gf.power_spectral_density(RECORD, resolution=resolution)

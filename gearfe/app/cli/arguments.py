@@ -151,7 +151,12 @@ def main(argv=None):
     add("--animate FILE", "animate the deformed set over a mesh cycle or --cycles: .gif")
     _assumptions(add)
     add = verb("signal", signals.signal, "analyse measured signals: spectral lines, indicators, kurtogram, squared envelope")
-    add("file FILE", f"signal as {', '.join(SIGNALS)}; several: cases, the first healthy", nargs="+")
+    add(
+        "file FILE",
+        f"signal as {', '.join(SIGNALS)}; several: cases, the first healthy; a folder: trend over its records",
+        nargs="+",
+    )
+    add("-o --output FOLDER", "write all analyses as pictures and tables, and a page with the verdict, into this folder")
     add("--list", "only list the channels of the files")
     add("--rate HZ", "sampling rate, if the file does not state it", type=float)
     add("--unit U", "unit, if the file does not state it")
@@ -161,6 +166,7 @@ def main(argv=None):
     add("--start S", "begin of the part of each record that is analysed [s] (default: 0)", default=0.0)
     add("--stop S", "end of that part [s] (default: that of the record)", default=float("inf"))
     add("--scene SCENE", "scene whose machine gives the line frequencies of the last spectrum")
+    add("--case NAME", "case of damage of --scene: simulates the healthy and the damaged machine for comparison; needs --gear")
     add("--gear NAME", "gear of --scene; gives the frequencies and the number of teeth that are not stated")
     add("--mesh HZ", "mesh frequency [Hz]", type=float)
     add("--fault HZ", "fault frequency [Hz]", type=float)
@@ -205,6 +211,22 @@ def main(argv=None):
     add("--teeth Z", "tooth numbers of pinion and wheel (default: 21 31; with a ring 21 63)", nargs=2, type=int)
     add("--module MM", "normal module [mm] (default: 2)", default=2.0)
     add("--helix DEG", "helix angle of the pinion [degrees] (default: 0)", default=0.0)
+    add("--alpha DEG", "normal pressure angle [degrees] (default: 20)", default=20.0)
+    add(
+        "--x",
+        "profile shift coefficients of pinion and wheel (default: 0 0)",
+        nargs=2,
+        metavar="X",
+        type=float,
+        default=(0.0, 0.0),
+    )
+    add(
+        "--bore",
+        "bore diameters of pinion and wheel, of a ring its rim diameter [mm] (default: half of the root diameters)",
+        nargs=2,
+        metavar="MM",
+        type=float,
+    )
     add("--width MM", "face width [mm] (default: 20)", default=20.0)
     add("--torque NM", "pinion torque [N m] (default: 100 N per mm of face width)", type=float)
     add(

@@ -2,6 +2,8 @@
 
 from importlib import resources
 
+from ...stiffness.methods import NAMES
+
 BASH = """\
 # gearfe: completion of verbs, options and scenes.  eval "$(gearfe completion bash)"
 _gearfe() {{
@@ -14,6 +16,16 @@ _gearfe() {{
   case "${{COMP_WORDS[1]}} $before" in
 {choices}
   esac
+  local scene="${{COMP_WORDS[2]}}" key=""
+  [ -f "$scene" ] || scene="{folder}/$scene.toml"
+  case "$before" in
+    --case) key='s/^ *case *= *"([^"]*)".*/\\1/p' ;;
+    --pair) key='s/^.pair[.]([^]]*)].*/\\1/p' ;;
+  esac
+  if [ -n "$key" ]; then
+    COMPREPLY=($(compgen -W "$(sed -nE "$key" "$scene" 2> /dev/null | sort -u)" -- "$word"))
+    return
+  fi
   case "${{COMP_WORDS[1]}}" in
 {options}
   esac
@@ -30,8 +42,8 @@ ZSH += "autoload -Uz compinit bashcompinit\n(( $+functions[compdef] )) || compin
 
 def script(shell, verbs):
     """Completion script for `shell`, ``bash`` or ``zsh``, of argparse's parsers by verb."""
-    places = (resources.files("gearfe.scene.scenes")).iterdir()
-    scenes = sorted(place.name.removesuffix(".toml") for place in places if place.name.endswith(".toml"))
+    folder = resources.files("gearfe.scene.scenes")
+    scenes = sorted(place.name.removesuffix(".toml") for place in folder.iterdir() if place.name.endswith(".toml"))
     options, choices, with_scene = [], [], []
     for name, parser in verbs.items():
         flags = [text for action in parser._actions for text in action.option_strings]
@@ -39,10 +51,11 @@ def script(shell, verbs):
         options.append(f'    {name}) found="{" ".join([*plain, *flags])}" ;;')
         with_scene += [name for action in parser._actions if action.dest == "scene"]
         for action in parser._actions:
-            if action.choices and action.option_strings:
+            values = action.choices or (NAMES if action.dest == "method" and name != "dynamics" else ())
+            if values and action.option_strings:
                 when = "|".join(f'"{name} {text}"' for text in action.option_strings)
-                values = " ".join(map(str, action.choices))
+                values = " ".join(map(str, values))
                 choices.append(f'    {when}) COMPREPLY=($(compgen -W "{values}" -- "$word")); return ;;')
     parts = {"verbs": " ".join(verbs), "choices": "\n".join(choices), "options": "\n".join(options)}
-    bash = BASH.format(**parts, with_scene="|".join(with_scene), scenes=" ".join(scenes))
+    bash = BASH.format(**parts, with_scene="|".join(with_scene), scenes=" ".join(scenes), folder=folder)
     return bash if shell == "bash" else ZSH + bash

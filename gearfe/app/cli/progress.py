@@ -1,17 +1,36 @@
-"""Progress bar on a terminal while a verb works; only notes in a pipe."""
+"""Progress bar on a terminal while a verb works; in a pipe a line at intervals."""
 
 import contextlib
 import sys
+import time
 
-from ...core.steps import listening
+from ...core.steps import is_heard, listening
 from .shell import harmless, tell
+
+INTERVAL = 30.0  # s between two lines in a pipe
+
+
+def _log(text, interval=INTERVAL):
+    """Return a listener that prints at most a line per interval: what is done, elapsed and remaining time."""
+    started = last = time.monotonic()
+
+    def step(what, done):
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= interval:
+            last, gone = now, now - started
+            left = f", about {gone * (1 - done) / done:.0f} s left" if done > 0 else ""
+            tell(f"{what or text}: {100 * done:.0f} % after {gone:.0f} s{left}")
+
+    return step
 
 
 @contextlib.contextmanager
 def working(text):
-    """Show a bar with elapsed and remaining seconds, on a terminal only; returns a function that prints a note."""
+    """Show a bar with elapsed and remaining seconds, in a pipe lines; returns a function that prints a note."""
     if sys.stderr is None or not sys.stderr.isatty():
-        yield tell
+        with contextlib.nullcontext() if is_heard() else listening(_log(text)):
+            yield tell
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn

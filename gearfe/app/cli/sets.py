@@ -29,6 +29,8 @@ def planetary_set(arguments):
         healthy = planetary_stiffness(build_set(scene), at, refine=refine, error=False) if arguments.case else None
         found = planetary_stiffness(case, at, refine=refine)
     print(f"{scene.title}\n\n{set_headline(found, healthy)}\n\n{told_set(case)};\n{told_span(at)}\n\n{set_table(found)}")
+    if healthy:
+        print(f"\nthe same set healthy, {told_span(at)}\n\n{set_table(healthy)}")
     _print_assumptions(scene, arguments.assumptions)
     if arguments.output:
         found.save(arguments.output)

@@ -1,6 +1,10 @@
 """Verb ``gearfe signal``: channels of files, their spectra, and the condition indicators of a gear."""
 
+import os
+import shlex
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 
 def signal(arguments):
@@ -22,6 +26,11 @@ def signal(arguments):
         raise ValueError("--speeds estimates the speed of a gear from its mesh lines: give --teeth, and no --tacho")
     if arguments.pulses < 1:
         raise ValueError(f"--pulses {arguments.pulses}: give 1 or more pulses per revolution")
+    if any(os.path.isdir(file) for file in arguments.file):
+        _trend(arguments)
+        return
+    if arguments.case is not None and (arguments.gear is None or arguments.teeth is None):
+        raise ValueError("--case simulates the machine of a gear: give --scene, --gear and --case")
     with working("reading"):
         with part("", 0.0, 0.5):
             signals = _read(arguments)
@@ -30,20 +39,87 @@ def signal(arguments):
     for record in signals.values():
         print(_told(record))
     _print_analysis(analysed, arguments)
+    tables = {"indicators": analysed.indicators_table()}
     if arguments.scene is not None:
         from ...comparison.named_lines import named_table
         from ...scene.load import load_scene
 
         table, named = named_table(list(analysed.spectra.values())[-1], load_scene(arguments.scene))
+        tables[named] = table
         print(f"\n{named}\n\n{table}")
-    if arguments.teeth is not None:
-        from ...signal.gear_indicators import gear_indicator_table, tabulate_gear_indicators
+    verdict, extra = _of_gear(signals, arguments, tables) if arguments.teeth is not None else ("", {})
+    if arguments.output:
+        from ...reports.workbench import signal_workbench
 
-        table = gear_indicator_table(signals, arguments.teeth)
-        print(f"\ngear of {arguments.teeth} teeth, from its synchronous average (TSA)\n\n{tabulate_gear_indicators(table)}")
+        options = {"teeth": arguments.teeth, "fault": arguments.fault, "verdict": verdict, "tables": tables}
+        with working("pictures and tables"):
+            page = signal_workbench(signals, arguments.output, simulated=extra, command=_command(), **options)
+        print(f"written: {page}")
     _draw(list(signals.values())[-1], arguments)
     if arguments.orders:
         _draw_orders(signals, arguments)
+
+
+def _of_gear(signals, arguments, tables):
+    """Print indicators of a gear and the verdict on it, and add the tables; returns the verdict and simulated records."""
+    from ...comparison.vibration import simulated_gear
+    from ...scene.load import load_scene
+    from ...signal.gear_indicators import gear_indicator_table, tabulate_gear_indicators
+    from ...signal.tooth_verdict import tooth_verdict
+    from .progress import working
+
+    simulated = {}
+    if arguments.case is not None:
+        with working("simulated machine"):
+            simulated = simulated_gear(load_scene(arguments.scene), arguments.case, arguments.gear)
+    parts = {"": signals, ", simulated mesh force": simulated}
+    for told, records in parts.items():
+        if records:
+            table = tabulate_gear_indicators(gear_indicator_table(records, arguments.teeth))
+            tables[heading := f"gear of {arguments.teeth} teeth, from its synchronous average (TSA){told}"] = table
+            print(f"\n{heading}\n\n{table}")
+    healthy, *others = signals.values()
+    try:
+        verdict = tooth_verdict(others[-1] if others else healthy, arguments.teeth, healthy if others else None)
+    except ValueError as error:
+        print(f"\nno verdict: {error}")
+        return "", simulated
+    print(f"\n{verdict.told(arguments.teeth)}")
+    return verdict.told(arguments.teeth), simulated
+
+
+def _command():
+    """Return the command line as it was given."""
+    return shlex.join(["gearfe", *sys.argv[1:]])
+
+
+def _trend(arguments):
+    """Print the indicators of all records of folders in the order of their names, and save them."""
+    from ...core.files import suffixes
+    from ...figures.vibration_plots import plot_trend
+    from ...reports.workbench import trend_table
+    from ...signal.gear_indicators import gear_indicator_table
+    from .progress import working
+
+    known = tuple(suffixes("signal", reading=True))
+    folders = [Path(folder) for folder in arguments.file]
+    arguments.file = [str(one) for folder in folders for one in sorted(folder.iterdir()) if one.name.lower().endswith(known)]
+    if not arguments.file:
+        raise ValueError(f"{', '.join(map(str, folders))}: no records; give a folder with {', '.join(known)}")
+    with working("reading"):
+        signals = _read(arguments)
+    rows = {name: {"rms": (of := one.indicators())["rms"], "kurtosis": of["kurtosis"]} for name, one in signals.items()}
+    if arguments.teeth is not None:
+        of_gear = gear_indicator_table(signals, arguments.teeth)
+        rows = {name: row | {key: of_gear[name][key] for key in ("FM4", "NA4", "energy ratio")} for name, row in rows.items()}
+    table = trend_table(rows)
+    print(table)
+    if arguments.output:
+        folder = Path(arguments.output)
+        folder.mkdir(parents=True, exist_ok=True)
+        table.save(folder / "trend.csv")
+        plot_trend(rows, folder / "trend.png")
+        print(f"written: {folder / 'trend.csv'}, {folder / 'trend.png'}")
 
 
 def _of_scene(arguments):

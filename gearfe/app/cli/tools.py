@@ -32,6 +32,7 @@ def new(arguments):
     options |= {"torque_Nm": arguments.torque, "crack": arguments.crack}
     amount, length = arguments.tip_relief or (None, None)
     options |= {"width": arguments.width, "ring": arguments.ring, "tip_relief_um": amount, "tip_length_mm": length}
+    options |= {"alpha_deg": arguments.alpha, "x": tuple(arguments.x), "bore_mm": arguments.bore}
     file = new_scene(arguments.output, **options)
     print(f"written: {file}\n\n  gearfe check {file}\n  gearfe compare {file} --case cracked")
 

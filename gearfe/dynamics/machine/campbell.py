@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import whole
+from ...core.checks import numbers, whole
 from ...core.record import ranged
 from ...geometry.aliases import Floats
 from .modes import natural_frequencies
@@ -88,7 +88,7 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     >>> [(crossing.order, round(crossing.speed, 3), round(crossing.frequency, 1)) for crossing in diagram.crossings]
     [('2 mesh', 1.592, 1591.5), ('mesh', 3.183, 1591.5)]
     """
-    speed = np.asarray(speeds, dtype=float)
+    speed = numbers("speeds", speeds, " over that of the machine")
     if speed.ndim != 1 or speed.size < 2 or not (np.isfinite(speed).all() and (speed >= 0).all() and (np.diff(speed) > 0).all()):
         raise ValueError("speeds: give two or more over that of the machine, 0 or more and rising")
     if speed[-1] > FASTEST:

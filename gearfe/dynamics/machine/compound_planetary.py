@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...core.record import ranged
+from ...core.record import check_keys, ranged
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.renamed import renamed
 from .gear_mesh import GearMesh
@@ -14,7 +14,7 @@ from .layout import Body, Layout, around, through
 from .loads import Load
 from .member import gear_member
 from .mesh_curves import Stiffness
-from .planetary import teeth_damaged
+from .planetary import angles_of_planets, teeth_damaged
 from .scene_curves import Meshed, scene_machine
 from .stages import Stage
 from .tables import Machine
@@ -189,6 +189,9 @@ def compound_planetary(
         finite, the phases of a damaged tooth's curve do not rise, or a field of `GearMesh` is out of range.
     """
     speed, torque = ranged("speed", speed, " rad/s"), ranged("torque", torque, " N m")
+    check_keys("pair", pairs, KINDS)
+    check_keys("stiffness", stiffness, KINDS)
+    n_planets = len(angles_of_planets(n_planets))
     turn = carrier_speed(pairs, speed)
     suns = pairs["sun1_p"].gear_1, pairs["sun2_b"].gear_1
     rates = -turn * suns[0].z / (2 * math.pi), (speed - turn) * suns[1].z / (2 * math.pi)

@@ -64,6 +64,8 @@ class ForceLaw:
 
     def __post_init__(self) -> None:
         """Make the table; ValueError if loads, phases or depths do not rise."""
+        if not self.depth.shape == self.tangent.shape == self.pairs.shape == (self.phase.size, self.load.size):
+            raise ValueError("a force law needs depth, tangent stiffness and pairs of the shape (phases, loads)")
         if self.load.size < 2 or not (np.diff(self.load) > 0).all() or not self.load[0] > 0:
             raise ValueError(f"loads {self.load} N: a force law needs two or more, all different and above 0")
         if self.phase.size < 2 or not (np.diff(self.phase) > 0).all():

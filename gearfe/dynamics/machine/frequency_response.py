@@ -3,10 +3,12 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...core.checks import numbers, one_of
 from ...geometry.renamed import renamed
 from .tables import Machine
 
 KINDS = {"receptance": 0, "mobility": 1, "accelerance": 2}  # derivatives by time
+HIGHEST = 1e9  # frequency [Hz]: beyond any mode, and squares stay finite
 
 
 @renamed(heard="output", driven="input")
@@ -61,11 +63,10 @@ def frequency_response(
     >>> round(float(frequency_response(disc, [1e4], "disc.x", "disc.x", kind="accelerance")[0].real), 4)
     0.5
     """
-    if kind not in KINDS:
-        raise ValueError(f"kind = {kind!r}, but it must be one of {', '.join(KINDS)}")
-    f = np.atleast_1d(np.asarray(frequencies, dtype=float))
-    if f.ndim != 1 or not (np.isfinite(f).all() and (f >= 0).all()):
-        raise ValueError("frequencies: give a row of finite numbers of Hz, 0 or more")
+    one_of("kind", kind, KINDS)
+    f = np.atleast_1d(numbers("frequencies", frequencies, " [Hz]"))
+    if f.ndim != 1 or not ((f <= HIGHEST).all() and (f >= 0).all()):
+        raise ValueError(f"frequencies: give a row of numbers, 0 or more and at most {HIGHEST:g} Hz")
     out, at = _row(machine, output), _row(machine, input)
     K, C, _, _ = machine.linear(machine.working())
     scale = 1 / np.sqrt(machine.mass)  # scaled, so that displacements and angles have one magnitude
@@ -84,7 +85,7 @@ def _row(machine, given):
     if isinstance(given, str):
         rows = [mesh.row for mesh in machine.meshes if mesh.name == given]
         return rows[0] if rows else machine.row(given)
-    row = np.asarray(given, dtype=float)
+    row = numbers("a row", given, "")
     if row.shape != (len(machine.dofs),) or not np.isfinite(row).all():
         raise ValueError(f"a row of shape {row.shape}: give {len(machine.dofs)} finite numbers, one per degree of freedom")
     return row

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...core.checks import truth, whole
 from ...core.record import settle, settle_numbers, settle_row
 from ...geometry.aliases import Floats
-from ...geometry.checks import is_finite
+from ...geometry.checks import is_finite, shown
 from ...geometry.renamed import renamed
 from ...stiffness.curve import StiffnessCurve
 from .contact_law import LAWS, Law, law_of
@@ -107,7 +107,11 @@ class GearMesh:
         settle_numbers(self, what, "damping damping_per_stiffness zeta depth gap film", least=0.0)
         settle_numbers(self, what, "power", least=1.0)
         settle_numbers(self, what, "backlash", least=0.0, finite=False)
-        settle(self, push=truth(f"{what}: push", self.push), contact=self.law or law_of(self.power, self.depth))
+        settle(
+            self, push=truth(f"{what}: push", self.push), contact=law_of(self.power, self.depth) if self.law is None else self.law
+        )
+        if not callable(getattr(self.contact, "force", None)):
+            raise ValueError(f"{what}: law = {shown(self.law)}, but give a row of gearfe.dynamics.machine.contact_law.LAWS")
         self._check_teeth()
         self._check_contact()
         settle(self, cycle=cycle_table(self.stiffness))

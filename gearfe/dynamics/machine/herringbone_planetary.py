@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.record import ranged
+from ...core.record import check_keys, ranged
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
 from .gear_mesh import GearMesh
@@ -97,6 +97,7 @@ def herringbone_planetary(
         out of range.
     """
     pairs, n = {"sun_planet": stage.sun_planet, "planet_ring": stage.planet_ring}, stage.n_planets
+    check_keys("stiffness", stiffness, pairs)
     sun, torque = pairs["sun_planet"].gear_1, ranged("torque", torque, " N m")
     layout, apart = _halves(stage, members or _solid(stage, density)), 5e-4 * (sun.b + groove)
     springs = _supports(layout, stage, (bearing, tilt, housing, drive, zeta))
@@ -187,6 +188,7 @@ def _supports(layout, stage, options):
 def _neck(layout, name, gear, options):
     """Springs of the hollow shaft under the relief groove, between the faces of both halves."""
     width, G, apart, zeta = options
+    width, G = ranged("groove", width, " mm", above=0.0), ranged("shear_modulus", G, " Pa", above=0.0)
     outer, inner, length = 1e-3 * gear.r_f, 1e-3 * gear.r_bore, 1e-3 * width
     area, second = math.pi * (outer**2 - inner**2), math.pi / 4 * (outer**4 - inner**4)
     bend = 2.6 * G * second / length

@@ -78,7 +78,7 @@ def cycle_table(stiffness: Stiffness) -> PhaseTable:
         phase, values = phase[order], np.asarray(stiffness.k, dtype=float)[order]
         if not np.allclose(phase, np.arange(phase.size) / phase.size, atol=1e-9):
             values = np.interp(np.arange(FINE) / FINE, phase, values, period=1.0)
-    if values.ndim != 1 or not np.isfinite(values).all() or (values < 0).any():
+    if values.ndim != 1 or not values.size or not np.isfinite(values).all() or (values < 0).any():
         raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
     if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # bent where pairs come in
         return table(values, 0.0, 1.0 / values.size, periodic=True)

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from ...geometry.aliases import Floats
+from ...geometry.checks import is_finite, shown
 from ...stiffness.curve import StiffnessCurve
 from .mesh_curves import Samples
 
@@ -70,9 +71,9 @@ def harmonics(error: Any, frequency: float, phase: float) -> list[tuple[float, f
         If it is none of these, or not over whole mesh cycles.
     """
     if np.ndim(error) == 0 and not isinstance(error, Samples):
-        if isinstance(error, (bool, str)) or not np.isfinite(error):
+        if not is_finite(error):
             raise ValueError(
-                f"profile = {error!r}, but give an amplitude [m], samples over a mesh cycle, or Samples(phase, error)"
+                f"profile = {shown(error)}, but give an amplitude [m], samples over a mesh cycle, or Samples(phase, error)"
             )
         return [(float(error), frequency, 2 * np.pi * (phase % 1.0))] if error else []
     first, cycles, values = _samples(error)

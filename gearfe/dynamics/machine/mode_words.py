@@ -41,6 +41,8 @@ def mode_words(machine: Machine, energy: ModalEnergy, mode: int) -> str:
     >>> [mode_words(machine, energy, i) for i in (0, 1)]
     ['rotation of the train as a whole', 'torsion: motor against load; strain energy 100 % in coupling']
     """
+    if not -len(energy.frequencies) <= mode < len(energy.frequencies):
+        raise ValueError(f"mode = {mode}, but the machine has {len(energy.frequencies)} modes, numbered from 0")
     if energy.frequencies[mode] == 0:
         return "rotation of the train as a whole"
     parts = {dof: energy.kinetic[dof][mode] for dof in machine.dofs}

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.checks import numbers, whole
-from ...core.record import check_named, ranged
+from ...core.record import check_keys, check_named, ranged
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
 from ...geometry.renamed import renamed
@@ -27,6 +27,8 @@ from .scene_curves import Meshed
 from .stages import Stage
 from .tables import Machine
 from .tooth_damage import ToothDamage
+
+MOST_PLANETS = 100  # limit of the planets in a stage
 
 
 @renamed(places="planet_angles")
@@ -86,6 +88,7 @@ def planetary(
         field of `GearMesh` is out of range.
     """
     angles = angles_of_planets(n_planets, planet_angles)
+    check_keys("stiffness", stiffness, ("sun_planet", "planet_ring"))
     names = [f"planet{i + 1}" for i in range(n_planets)]
     planets = [planet] * n_planets if isinstance(planet, Member) else list(planet)
     if len(planets) != n_planets:
@@ -121,7 +124,7 @@ def angles_of_planets(n_planets: int, planet_angles: Sequence[float] | None = No
     ValueError
         If `n_planets` is no whole number >= 1, or `planet_angles` are not as many finite angles, all of them different.
     """
-    whole("n_planets", n_planets, 1)
+    whole("n_planets", n_planets, 1, MOST_PLANETS)
     if planet_angles is None:
         return 2 * math.pi * np.arange(n_planets) / n_planets
     angles = numbers("planet_angles", planet_angles, " [rad]")

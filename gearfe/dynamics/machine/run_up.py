@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from ...core.checks import numbers
 from .speed import Speed
 from .tables import Machine
 
@@ -39,4 +40,6 @@ def with_speed(machine: Machine, times: Sequence[float], factors: Sequence[float
     >>> float(machine.turned(1.0))  # the mean factor is 0.7
     0.7
     """
-    return replace(machine, speed=Speed(tuple(map(float, times)), tuple(map(float, factors))))
+    return replace(
+        machine, speed=Speed(tuple(numbers("times", times, " [s]").ravel()), tuple(numbers("factors", factors, "").ravel()))
+    )

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...core.checks import numbers
 from ...core.memory import free_memory
 from ..machine.tables import Machine
 from .reference import SOLVERS
@@ -19,6 +20,14 @@ def check_initial(machine, state):
             f"initial: the flanks of a mesh would be {deep:.3g} m in or off each other and move at {fast:.3g} m/s, but give less "
             f"than {DEEPEST:g} m and {FASTEST:g} m/s: displacements in m and rad, velocities in m/s and rad/s"
         )
+
+
+def initial_state(machine, initial):
+    """Return displacements and velocities ``(n,)`` each; ValueError unless they are finite numbers, one per degree of freedom."""
+    parts = [numbers("initial", part, "") for part in initial] if isinstance(initial, (list, tuple, np.ndarray)) else []
+    if [part.shape for part in parts] != 2 * [(len(machine.dofs),)] or not np.isfinite(parts).all():
+        raise ValueError(f"initial: give displacements and velocities, {len(machine.dofs)} finite numbers each")
+    return parts
 
 
 def check_memory(machine, duration, count, filtered):

@@ -12,12 +12,13 @@ from numpy.typing import ArrayLike
 from ...core.checks import truth, whole
 from ...core.record import ranged
 from ...core.threads import single
+from ...core.time_limit import check_time
 from ..machine.tables import Machine
 from .fixed_step import fixed_steps
 from .law_range import compared
 from .reference import reference
 from .response import Response, all_channels
-from .run_checks import check_initial, check_memory, check_run
+from .run_checks import check_initial, check_memory, check_run, initial_state
 from .step_control import (
     WANTED_OPEN,
     Estimate,
@@ -38,7 +39,9 @@ FINER = 3  # number of times that the step of a whole run is halved if contact i
 ALLOWED = 2 * WANTED_OPEN  # allowed difference with contact loss, as a part of the range
 WHOLE = 1e-3  # allowed difference of a whole run with requested error, as a part of the range
 COARSE = 0.1  # estimate of a given step above which a warning is issued, as a part of the range
-SLOW, ENDLESS = 5.0, 7200.0  # expected computing time of a whole run [s]: above these it is reported, and rejected
+SLOW = 5.0  # expected computing time of a whole run [s]: above, it is reported
+TRIED = 100_000  # steps of a run that is timed before one of `MANY` is begun
+MANY = 100 * TRIED
 NUDGE, GROWN = 1e-9, 1e-2  # disturbance of the initial state, and the size that it may reach, as parts of the range
 
 
@@ -119,7 +122,7 @@ def simulate(
     Raises
     ------
     ValueError
-        If an input is impossible, or a run with automatic step would take hours (`ENDLESS`).
+        If an input is impossible, or the run would take longer than the limit of `gearfe.core.time_limit`.
     RuntimeError
         If the response grows beyond all bounds, or the reference integrator fails.
 
@@ -158,10 +161,7 @@ def simulate(
     if initial is None:
         state = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     else:
-        state = np.concatenate([np.asarray(part, dtype=float) for part in initial])
-    if state.shape != (2 * len(machine.dofs),) or not np.isfinite(state).all():
-        raise ValueError(f"initial: give displacements and velocities, {len(machine.dofs)} finite numbers each")
-    if initial is not None:
+        state = np.concatenate(initial_state(machine, initial))
         check_initial(machine, state)
     if rate is not None:
         count = math.floor(duration * rate * (1 + 1e-12))
@@ -185,12 +185,28 @@ def simulate(
     return compared(replace(out, stats=out.stats | seconds))
 
 
+def check_duration(duration, cost):
+    """Return the seconds of a run at a `cost` for each second of motion; ValueError if they are above the limit."""
+    what, remedy = (
+        f"duration = {duration:g} s, {cost:.2g} s for each second of motion",
+        "give a shorter duration, or a longer step=",
+    )
+    check_time(what, cost * duration, remedy)
+    return cost * duration
+
+
 def _reference(machine, duration, count, state, method, rtol, start, filtered):
-    """Return `reference`, its channels filtered if requested."""
+    """Return `reference`, its channels filtered if requested; a long run is timed on its first steps before it is begun."""
+    span = TRIED / 100 * default_step(machine)
+    if span < duration / 100:
+        started = time.perf_counter()
+        reference(machine, span, 1, state, method, rtol, start)
+        check_duration(duration, (time.perf_counter() - started) / span)
     if not filtered:
         return reference(machine, duration, count, state, method, rtol, start)
     counts = stages(FINE * math.ceil(duration / count / default_step(machine) * (1 - 1e-9)))
     every = math.prod(counts)
+    check_memory(machine, duration, count * every, filtered)
     whole = reference(machine, duration, count * every, state, method, rtol, start)
     return replace(whole.part(slice(None, None, every)), filtered=thinned([all_channels(whole)], counts))
 
@@ -205,12 +221,7 @@ class _Runs:
 
     def _watch(self, cost):
         """Report how long the whole run takes, from the seconds that one simulated second takes; refuse one that takes hours."""
-        seconds = cost * self.duration
-        if seconds > ENDLESS:
-            raise ValueError(
-                f"duration = {self.duration:g} s: about {seconds / 3600:.2g} hours of computing at the step that this machine "
-                f"needs, {cost:.2g} s for each second of motion: give a shorter duration, or state step= and it is run"
-            )
+        seconds = check_duration(self.duration, cost)
         if seconds > SLOW:
             self.tell(f"{self.duration:.3g} s of motion at this step: about {seconds:.2g} s")
 
@@ -228,6 +239,10 @@ class _Runs:
     def given(self, every, error):
         """Run of steps that the caller chose, with their estimate unless `error` is False."""
         started, every = time.perf_counter(), self.steps(every)
+        if every * self.count > MANY:
+            span = self.duration * TRIED / (every * self.count)
+            tried = fixed_steps(self.machine, span, TRIED, self.state, every=TRIED, start=self.start)
+            self._watch(tried.stats["seconds"] / span)
         out = self(every)
         if error is False:
             return out

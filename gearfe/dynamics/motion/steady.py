@@ -8,15 +8,20 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...core.record import ranged
 from ...core.threads import single
 from ..machine.contact_law import closed
 from ..machine.tables import Machine
 from . import excitation, propagator
 from .response import Response
+from .run_checks import initial_state
 from .step_control import chosen_step
 
 DISTURBED = 1e-5  # size of disturbances of the initial state of a nonlinear motion, as a part of the size of the motion
 STABLE = 1e-6  # above 1: a multiplier this large still counts as 1 (rigid-body motion, no damping)
+
+
+MOST_STEPS = 10_000_000  # largest number of steps in a period
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,9 +116,10 @@ def steady_state(
         If Newton's method does not settle.
     """
     started = time.perf_counter()
-    period = common_period(machine) if period is None else period
+    period = common_period(machine) if period is None else ranged("period", period, " s", above=0.0)
+    dt = None if dt is None else ranged("dt", dt, " s", above=0.0)
     flow = _Flow(machine, period, dt)
-    q, v = (machine.rest(), np.zeros(len(machine.dofs))) if initial is None else initial
+    q, v = (machine.rest(), np.zeros(len(machine.dofs))) if initial is None else initial_state(machine, initial)
     z = flow.plan.inverse @ np.concatenate([q, v])
     for done in range(iterations + 1):
         states, stats = flow(z)
@@ -141,6 +147,8 @@ class _Flow:
 
     def __init__(self, machine, period, dt):
         steps = math.ceil(period / (dt or chosen_step(machine, period)[0]) * (1 - 1e-12))
+        if steps > MOST_STEPS:
+            raise ValueError(f"period = {period:g} s: {steps:.3g} steps, but the maximum is {MOST_STEPS:g}: give a longer dt")
         self.machine, self.times = machine, np.linspace(0.0, period, 2 * steps + 1)
         self.plan = propagator.plan(machine, period / steps / 2, machine.working())
         self.flat = excitation.flatten(machine, np.linspace(0.0, period, 16 * steps + 1))

@@ -7,6 +7,8 @@ from numpy.typing import ArrayLike
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.signal import cont2discrete, lfilter, ss2tf
 
+from ...core.checks import numbers
+from ...geometry.checks import shown
 from ...signal.series import Signal
 
 
@@ -64,7 +66,11 @@ def through_frf(force: Signal, frequency: ArrayLike, response: ArrayLike, unit: 
     ValueError
         If the frequencies do not rise, or there are not as many values.
     """
-    at, values = np.asarray(frequency, dtype=float), np.asarray(response, dtype=complex)
+    at = numbers("frequency", frequency, " [Hz]")
+    try:
+        values = np.asarray(response).astype(complex)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"response = {shown(response)}, but give numbers, real or complex") from error
     if at.ndim != 1 or at.shape != values.shape or at.size < 2 or not (np.diff(at) > 0).all() or at[0] < 0:
         raise ValueError(f"frequency response of shapes {at.shape} and {values.shape}: give as many values as rising frequencies")
     lines = rfftfreq(force.values.size, 1 / force.rate)

@@ -12,6 +12,7 @@ from scipy.sparse import coo_array, csc_array, hstack, issparse, tril
 
 from ...core.memory import free_memory
 from ...core.steps import reached
+from ...core.time_limit import check_time
 
 A, L, P = 0, 4, 7  # systems that CHOLMOD solves: the whole matrix, the lower factor, the permutation
 # Size of right-hand sides given to cvxopt at once [bytes]. It counts the bytes of a column in 32 bits: from 2**31 on it reads
@@ -86,6 +87,7 @@ def plan(unknowns, *, columns=0, free=None):
             f"{n} unknowns need about {cost.memory / 1e9:.3g} GB and {float(f'{cost.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "
             f"are free: coarsen the mesh (a smaller refine), or use a machine with more memory"
         )
+    check_time(f"{n} unknowns", seconds, "coarsen the mesh (a smaller refine)")
     return cost
 
 

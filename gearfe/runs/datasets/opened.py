@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...core.extras import needing
 from ...core.files import written
 from ...geometry.aliases import StrPath
-from ..store.folder import read_about
+from ..store.folder import COUNT, read_about
 from ..store.shards import arrow, fields_of, frame, opened, read, shard_names
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FORMAT = "gearfe data set 1"
 WINDOWS = "windows"  # folder of the files
-SHAPE = {"title": str, "conditions": int, "plan": dict, "units": dict, "made": dict}  # types of the entries of its note
+SHAPE = {"title": str, "conditions": COUNT, "plan": dict, "units": dict, "made": dict}  # types of the entries of its note
 FAILED = "failed"  # folder of the errors of conditions that could not be simulated
 MOST_MAT = 2**31 - 2**20  # bytes of an array in a MATLAB 5 file
 

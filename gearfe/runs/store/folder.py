@@ -1,7 +1,8 @@
 """A folder with a note of what is in it: files that are whole or not there, one writer at a time.
 
-A folder holds ``about.json`` (what made its files), the files, and ``.lock``. A file is written under another name, flushed to
-the disk and then renamed, so that a process that is killed, or a disk that runs full, leaves either the whole file or none.
+A folder holds ``_about.json`` (what made its files), the files, and ``.lock``. The underscore hides it from readers of Parquet.
+A file is written under another name, flushed to the disk and then renamed, so that a process that is killed, or a disk that runs
+full, leaves either the whole file or none.
 """
 
 import contextlib
@@ -11,10 +12,12 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from ...core.checks import whole
 from ...core.files import PART, check_path, written
 from ...geometry.aliases import StrPath
 
-ABOUT, LOCK = "about.json", ".lock"
+COUNT = object()  # a whole number from 1 on, in the shape of a note
+ABOUT, FORMER, LOCK = "_about.json", "about.json", ".lock"
 
 
 def durable(path: StrPath, content: bytes) -> None:
@@ -87,7 +90,7 @@ def read_about(folder: StrPath, form: str, shape: Mapping[str, Any]) -> dict[str
     lacks a key or has one of another type; nothing in it is touched.
     """
     check_path("folder", folder)
-    file = Path(folder) / ABOUT
+    file = next((one for one in (Path(folder) / ABOUT, Path(folder) / FORMER) if one.is_file()), Path(folder) / ABOUT)
     if not Path(folder).is_dir():
         raise ValueError(f"no folder {folder}")
     if not file.is_file():
@@ -111,6 +114,11 @@ def _check_shape(note, shape, place=""):
     for name, kind in shape.items():
         if isinstance(kind, Mapping):
             _check_shape(note.get(name), kind, f"{place}{name}.")
+        elif kind is COUNT:
+            whole(f"{place}{name}", note.get(name), 1)
+        elif isinstance(kind, list):  # of tables
+            for row in note[name] if isinstance(note.get(name), list) else [None]:
+                _check_shape(row, {}, f"{place}{name}.")
         elif type(note.get(name)) is not kind:
             raise ValueError(f"{place}{name} = {_short(note.get(name))}, but expected {kind.__name__}")
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...core.extras import needing
 from ...geometry.aliases import StrPath
-from ...scene.schema import shown
+from ...geometry.checks import shown
 from .folder import durable
 
 if TYPE_CHECKING:
@@ -68,8 +68,10 @@ def where_of(where: Any, names: Sequence[str]) -> Any:
     ``{"status": "done", "level": (0.1, 0.3), "case": ["a", "b"]}``: a value, a range as a tuple of two, or a list of values.
     ValueError if there is no such column, or it holds no such values.
     """
-    if not isinstance(where, Mapping):
+    if where is None or isinstance(where, arrow().dataset.Expression):
         return where
+    if not isinstance(where, Mapping):
+        raise ValueError(f"where = {shown(where)}, but give a dict by column, or an expression of pyarrow")
     field, out = arrow().dataset.field, None
     for name, value in where.items():
         if name not in names:

@@ -175,7 +175,7 @@ class Surrogate:
             space = space_of(GearPair(gears[0], gears[1], meta["a"]), inputs)
             out = cls(space, archive["powers"], archive["weights"], meta["error"], archive["worst"], meta["meta"])
             _check_shapes(out)
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+        except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
             raise ValueError(f"{path} is no surrogate written by gearfe: {error}") from error
         return out
 

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
+from ...geometry.checks import shown
 from ...scene.reading import LARGEST, checked
-from ...scene.schema import schema_of, shown
+from ...scene.schema import schema_of
 from . import samples
 
 RUNS = "gearfe.runs"
@@ -51,16 +52,23 @@ def also(file, where, value):
     return checked(RUNS, "also", file, where, {"also": value["also"]})["also"]
 
 
+def _whole(values, steps):
+    """Return values as whole numbers if both ends and all of them are, for numbers of teeth."""
+    near = [round(value) for value in values]
+    ends = isinstance(steps["from"], int) and isinstance(steps["to"], int)
+    return near if ends and all(abs(a - b) < 1e-9 * max(1, abs(a)) for a, b in zip(values, near, strict=True)) else values
+
+
 def _listed(file, key, value):
     """Values of one key of the grid."""
     where = f"vary {key}"
     if isinstance(value, dict):
         steps = checked(RUNS, "steps", file, where, value)
         if steps["spacing"] == "even":
-            return np.linspace(steps["from"], steps["to"], steps["count"]).tolist()
+            return _whole(np.linspace(steps["from"], steps["to"], steps["count"]).tolist(), steps)
         if not min(steps["from"], steps["to"]) > 0:
             raise ValueError(f"{file} [{where}]: logarithmic steps need from > 0 and to > 0")
-        return np.geomspace(steps["from"], steps["to"], steps["count"]).tolist()
+        return _whole(np.geomspace(steps["from"], steps["to"], steps["count"]).tolist(), steps)
     if not isinstance(value, (list, tuple)) or not value:
         raise ValueError(f"{file} [{where}] = {shown(value)}: give a list of values, or from, to and count")
     check_values(f"{file} [{where}]", value)

@@ -124,12 +124,15 @@ def curve_bands(
     ValueError
         If curves have other phases, or there is none.
     """
+    parts = np.atleast_1d(numbers("percentiles", percentiles, " [%]"))
+    if parts.ndim != 1 or not ((parts >= 0) & (parts <= 100)).all():
+        raise ValueError(f"percentiles = {percentiles}, but give numbers from 0 to 100")
     curves = runs.curves([name], where)
     curves = curves.isel(number=curves["status"].to_numpy() == "done")
     if not curves.sizes["number"] or "phase" in curves.data_vars:
         raise ValueError("percentiles need curves at the same phases: choose cases of one geometry and span by where")
-    bands = curves[[name]].quantile(np.asarray(percentiles) / 100, dim="number", keep_attrs=True, skipna=False)
-    return bands.rename(quantile="percentile").assign_coords(percentile=list(percentiles)).dropna("place")
+    bands = curves[[name]].quantile(parts / 100, dim="number", keep_attrs=True, skipna=False)
+    return bands.rename(quantile="percentile").assign_coords(percentile=parts).dropna("place")
 
 
 def roc_auc(healthy: Any, damaged: Any) -> float:
@@ -161,8 +164,8 @@ def roc_auc(healthy: Any, damaged: Any) -> float:
     0.8888888888888888
     """
     undamaged, hurt = numbers("healthy", healthy, ""), numbers("damaged", damaged, "")
-    if not undamaged.size or not hurt.size:
-        raise ValueError("values of healthy and damaged gears: give one of each at least")
+    if undamaged.ndim != 1 or hurt.ndim != 1 or not undamaged.size or not hurt.size:
+        raise ValueError("values of healthy and damaged gears: give a row of each, one value at least")
     return float(stats.mannwhitneyu(hurt, undamaged).statistic / (undamaged.size * hurt.size))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...core.extras import needing
 from ...geometry.aliases import StrPath
-from ..store.folder import read_about
+from ..store.folder import COUNT, read_about
 from ..store.shards import ShardColumn, fields_of, frame, opened, read, shard_names
 from .study import inputs_of
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     import xarray
 
 FORMAT = "gearfe sweep 1"
-STUDY = {"kind": str, "pair": str, "case": str, "options": dict, "axes": list, "sample": dict, "seed": int, "block": int}
-SHAPE = {"title": str, "cases": int, "study": STUDY, "made": dict}  # types of the entries of its note
+STUDY = {"kind": str, "pair": str, "case": str, "options": dict, "axes": [dict], "sample": dict, "seed": int, "block": COUNT}
+SHAPE = {"title": str, "cases": COUNT, "study": STUDY, "made": dict}  # types of the entries of its note
 
 
 @dataclass(frozen=True, slots=True)

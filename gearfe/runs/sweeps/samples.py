@@ -8,8 +8,8 @@ from scipy import stats
 from scipy.stats import qmc
 
 from ...core.checks import is_number
+from ...geometry.checks import shown
 from ...scene.reading import LARGEST
-from ...scene.schema import shown
 
 WIDEST = 10.0  # standard deviation of a logarithm: two thirds of the values over nine decades
 LEAST = 1e-9  # part of a distribution that must lie within its limits: below, its values are rounding

@@ -149,7 +149,7 @@ def test_other_folders_are_refused_and_left_alone(made, plan, tmp_path):
     with pytest.raises(ValueError, match="holds other files"):
         gf.dataset(plan, tmp_path, workers=1)
     assert [one.name for one in tmp_path.iterdir()] == ["letter.txt"]
-    about = json.loads((made.folder / "about.json").read_text())
+    about = json.loads((made.folder / "_about.json").read_text())
     assert about["conditions"] == 4
     with pytest.raises(ValueError, match="no column 'colour'"):
         made.labels({"colour": 1})

@@ -115,10 +115,10 @@ def test_another_study_version_or_shard_is_noticed(undisturbed, tmp_path, monkey
     with pytest.raises(RuntimeError, match="a worker has gearfe of source"):
         gf.sweep(small, tmp_path / "runs", workers=1, mixed=True)
     monkeypatch.undo()
-    about = json.loads((tmp_path / "runs" / "about.json").read_text())
-    (tmp_path / "runs" / "about.json").write_text(json.dumps(about | {"made": about["made"] | {"source": "0" * 12}}))
+    about = json.loads((tmp_path / "runs" / "_about.json").read_text())
+    (tmp_path / "runs" / "_about.json").write_text(json.dumps(about | {"made": about["made"] | {"source": "0" * 12}}))
     assert len(gf.sweep(small, tmp_path / "runs", workers=1, mixed=True)) == 2
-    (tmp_path / "runs" / "about.json").write_text(json.dumps(about))
+    (tmp_path / "runs" / "_about.json").write_text(json.dumps(about))
     half = shards.encoded(shards.read(tmp_path / "runs").slice(0, 1))
     (tmp_path / "runs" / "other.parquet").write_bytes((tmp_path / "runs" / "block-000000.parquet").read_bytes())
     with pytest.raises(ValueError, match=r"block-000000\.parquet and other\.parquet with the same rows"):
@@ -161,3 +161,14 @@ def test_verb_plans_sweeps_and_goes_on(tmp_path, capsys):
     (tmp_path / "s.toml").write_text((tmp_path / "s.toml").read_text().replace("7.0", "7.1"))
     assert main(verb) == 1
     assert "another study, begun with axes.0.gear.sun.r_bore_mm.1 = 7.0, not 7.1" in capsys.readouterr().err
+
+
+def test_steps_between_whole_numbers_are_numbers_of_teeth(tmp_path):
+    study = {
+        "scene": "planetary_pitting", "pair": "sun_planet", "options": {"method": "textbook", "phases": 4},
+        "vary": {"gear.planet.z": {"from": 30, "to": 31, "count": 2}},
+    }  # fmt: skip
+    table = gf.sweep(study, tmp_path / "runs", workers=1).table()
+    assert table["status"].tolist() == ["done"] * 2
+    assert table["gear.planet.z"].tolist() == [30, 31]
+    assert len(pd.read_parquet(tmp_path / "runs")) == 2

@@ -1,0 +1,268 @@
+"""Border of gearfe: arguments of public functions and records are compared with annotations, and become plain numbers.
+
+Numbers of any type become floats, lists become arrays where arrays are expected. Masked values, truth values as numbers, nan,
+and in functions infinity without an infinite default are rejected. What a value means is checked by the function itself.
+"""
+
+import dataclasses
+import functools
+import inspect
+import math
+import os
+import sys
+import types
+import typing
+from collections.abc import Callable, Collection, Iterable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..geometry.checks import WrongTypeError, shown
+from .checks import has_truth, number, truth, whole
+
+
+def _number(name, value):
+    """Return a number as a float, or as the int that it is."""
+    out = number(name, value)
+    return value if type(value) is int else out
+
+
+PLAIN = {float: _number, int: whole, bool: truth}
+WORDS = {float: "a number", int: "a whole number", bool: "True or False", str: "a text", type(None): "None"}
+WORDS[os.PathLike] = "a path"
+RESULTS = ("Contact3D", "Kurtogram", "Spectrogram", "Spectrum")  # results that are no public names
+NUMERIC = {"f": "iuf", "i": "iu"}  # kinds of arrays that arrays of floats and of whole numbers are made of
+
+
+class _Rule(NamedTuple):
+    """Words for a type, and a function that returns a value of it, or raises ValueError."""
+
+    words: str
+    settled: Callable[[str, Any], Any]
+
+
+class _Named(type):
+    """A class that is known by name: its module is loaded by those who have an instance."""
+
+    def __instancecheck__(cls, value):
+        return any(base.__name__ == cls.__name__ for base in type(value).__mro__)
+
+
+class _Public(dict[str, Any]):
+    """Names of annotations that only a type checker imports: public names of gearfe."""
+
+    def __missing__(self, name):
+        package = sys.modules[__name__.partition(".")[0]]
+        if name in package.__all__:
+            return getattr(package, name)
+        if name in RESULTS:
+            return _Named(name, (), {})
+        raise KeyError(name)
+
+
+@functools.cache
+def bordered(public: Any, name: str) -> Any:
+    """Return a public function that checks its arguments first; records are checked where they are built, and stay themselves."""
+    if inspect.isfunction(public):
+        out = _checked(public, name)
+        out.__module__, out.__qualname__ = "gearfe", name  # other processes find it there
+        return out
+    if "__init__" in vars(public) and not issubclass(public, BaseException):
+        public.__init__ = _checked(public.__init__, name, record=True)
+    return public
+
+
+def _checked(function, called, record=False):
+    rules: list[Any] = []
+
+    @functools.wraps(function)
+    def checked(*args, **options):
+        if not rules:
+            rules.extend(_rules(function, called))
+        places, named = rules
+        try:
+            given = [_settled(*rule, value, record) for rule, value in zip(places, args, strict=False)]
+            stated = {key: _settled(*named[key], value, record) if key in named else value for key, value in options.items()}
+        except ValueError as misfit:
+            if record:  # its own message has the unit and the range
+                _own_message(function, args, options, type(misfit))
+            raise
+        return function(*given, *args[len(places) :], **stated)
+
+    return checked
+
+
+def _own_message(function, args, options, kind):
+    """Raise the error of a record's own check as one of this `kind`; return if it has none."""
+    try:
+        function(*args, **options)
+    except ValueError as error:
+        raise kind(error) from None
+    except (TypeError, AttributeError, LookupError, ArithmeticError):
+        pass
+
+
+def _settled(name, rule, default, value, infinite):
+    """Argument to be passed on; the default is valid whatever its annotation. Records decide whether they may be `infinite`."""
+    if value is default:
+        return value
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        raise ValueError(f"{name} has masked values: give numbers without holes")
+    if rule is None:
+        return value
+    out = rule.settled(name, value)
+    if type(out) is float and not math.isfinite(out) and not infinite and default != math.inf:
+        raise ValueError(f"{name} = {out}, but give a finite number")
+    return out
+
+
+def _rules(function, called):
+    """Name, rule and default of the parameters by place, and of all by name."""
+    places, named = [], {}
+    for parameter in inspect.signature(function).parameters.values():
+        hint = _hint(function, parameter.annotation)
+        row = (f"{called}: {parameter.name}", None if hint is None else _rule(hint), parameter.default)
+        if parameter.kind in (parameter.POSITIONAL_ONLY, parameter.POSITIONAL_OR_KEYWORD):
+            places.append(row)
+        if parameter.kind in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD):
+            named[parameter.name] = row
+        if parameter.kind is parameter.VAR_KEYWORD and hint is not None:
+            table = next(iter(typing.get_args(hint)), hint)
+            hints = typing.get_type_hints(table) if hasattr(table, "__total__") else {}
+            named |= {key: (f"{called}: {key}", _rule(value), parameter.empty) for key, value in hints.items()}
+    return places, named
+
+
+def _hint(function, annotation):
+    """Annotation as a type, or None if there is none, or its names are not public."""
+    if annotation is inspect.Parameter.empty:
+        return None
+    holder = types.SimpleNamespace(__annotations__={"it": annotation})
+    try:
+        return typing.get_type_hints(holder, function.__globals__, _Public())["it"]
+    except NameError:
+        return None
+
+
+def _rule(hint):
+    """Rule of a type; None if anything may be given."""
+    origin, inner = typing.get_origin(hint), typing.get_args(hint)
+    if hint is Any:
+        return None
+    if hint in PLAIN:
+        return _Rule(WORDS[hint], PLAIN[hint])
+    if origin in (typing.Union, types.UnionType):
+        like = any(str(one).startswith(("numpy._typing", "<class 'numpy._typing")) for one in inner)  # functions read these
+        return None if like else _any_of([_rule(one) for one in inner])
+    if origin is np.ndarray:
+        return _Rule("an array of real numbers", functools.partial(_array, "i" if "int" in str(inner[1]) else "f"))
+    if not isinstance(origin, type):
+        return _instance(hint) if isinstance(hint, type) and not getattr(hint, "_is_protocol", False) else None
+    if issubclass(origin, Mapping):
+        return _mapping(inner)
+    if origin is tuple and inner[-1:] != (...,):
+        return _row([_rule(one) for one in inner])
+    if issubclass(origin, Iterable):
+        return _sequence(_rule(inner[0]), Iterable if origin is Iterable else Collection)
+    return _Rule("a function", functools.partial(_is_a, Callable, "a function")) if origin is Callable else _instance(origin)
+
+
+def _any_of(rules):
+    if None in rules:
+        return None
+
+    classes_first = sorted(rules, key=lambda rule: "number" in rule.words)  # some classes are rows of numbers
+
+    def settled(name, value):
+        misfit = None
+        for rule in classes_first:
+            try:
+                return rule.settled(name, value)
+            except ValueError as error:  # that of an element, or of a value whose type fits, says more
+                general = isinstance(error, WrongTypeError) and str(error).startswith(f"{name} = ")
+                misfit = misfit if general else error
+        raise misfit or _wrong(name, value, words)
+
+    words = " or ".join(dict.fromkeys(rule.words for rule in rules))
+    return _Rule(words, settled)
+
+
+def _instance(kind):
+    """Rule of a class; its message shows how a record is made."""
+    words = WORDS.get(kind, f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}")
+    made = inspect.signature(kind).parameters.values() if dataclasses.is_dataclass(kind) else ()
+    needs = ", ".join(one.name for one in made if one.default is one.empty)
+    return _Rule(words, functools.partial(_is_a, kind, f"{words}: gf.{kind.__name__}({needs})" if needs else words))
+
+
+def _is_a(kind, words, name, value):
+    if not isinstance(value, kind):
+        raise _wrong(name, value, words)
+    return value
+
+
+def _array(kind, name, value):
+    try:
+        out = np.asarray(value)
+        if not out.ndim or has_truth(value) or out.dtype.kind not in NUMERIC[kind]:
+            raise ValueError
+    except ValueError:
+        raise _wrong(name, value, "an array of real numbers") from None
+    return out.astype(float, copy=False) if kind == "f" else out
+
+
+def _sequence(rule, kind):
+    words = f"a sequence, each {rule.words}" if rule else "a sequence"
+
+    def settled(name, value):
+        if (
+            not isinstance(value, kind)
+            or isinstance(value, (str, bytes, Mapping, set, frozenset))
+            or not getattr(value, "ndim", 1)
+        ):
+            raise _wrong(name, value, words)
+        if rule and type(value) in (list, tuple):
+            return type(value)([rule.settled(name, one) for one in value])
+        if rule and isinstance(value, np.ndarray) and (value.dtype.kind not in "iuf" or "number" not in rule.words):
+            raise _wrong(name, value, words)
+        return value
+
+    return _Rule(words, settled)
+
+
+def _row(rules):
+    words = f"a sequence of {len(rules)}"
+
+    def settled(name, value):
+        if (
+            isinstance(value, (str, bytes, Mapping, set, frozenset))
+            or not isinstance(value, Collection)
+            or not _is_row(value, len(rules))
+        ):
+            raise _wrong(name, value, words)
+        return tuple(rule.settled(name, one) if rule else one for rule, one in zip(rules, value, strict=True))
+
+    return _Rule(words, settled)
+
+
+def _is_row(value, size):
+    return getattr(value, "ndim", 1) == 1 and len(value) == size
+
+
+def _mapping(inner):
+    rule = _rule(inner[1])
+
+    def settled(name, value):
+        if not isinstance(value, Mapping):
+            raise _wrong(name, value, "a dict")
+        for key, one in value.items() if rule else ():
+            if one is not None:  # None is as good as missing, one record as good as a list of it
+                alone = rule.words.startswith("a sequence") and dataclasses.is_dataclass(one)
+                rule.settled(f"{name}[{key!r}]", [one] if alone else one)
+        return value
+
+    return _Rule("a dict", settled)
+
+
+def _wrong(name, value, words):
+    return WrongTypeError(f"{name} = {shown(value)}, but give {words}")

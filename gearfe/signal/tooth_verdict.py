@@ -1,0 +1,102 @@
+"""Verdict on a local tooth fault of a gear, from the synchronous average of a record."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from .gear_indicators import gear_indicators
+from .orders import residual_signal, synchronous_average
+from .series import Signal
+
+SIGMAS = 6.0  # standard deviations of the kurtosis of noise above 3; white noise exceeds it in less than 0.1 % of averages
+RISE = 1.5  # times the FM4 of the healthy record
+FEWEST = 4  # revolutions, two for each half of the record
+
+
+class ToothVerdict(NamedTuple):
+    """Verdict on a local tooth fault.
+
+    Attributes
+    ----------
+    level : {"likely", "possible", "not seen"}
+        "likely" if FM4 is above `limit` in the whole record and in both halves, and the largest impulse keeps its angle.
+        "possible" if only the whole record exceeds the limit.
+    FM4, limit : float
+        Kurtosis of the difference signal, and the value that a fault exceeds.
+    healthy : float
+        FM4 of the healthy record; nan without one.
+    angle : float
+        Angle of the largest impulse from the first sample, or from the mark of the tachometer [rad].
+    apart : float
+        Difference of this angle between the two halves of the record [rad].
+    revolutions : int
+    """
+
+    level: str
+    FM4: float
+    limit: float
+    healthy: float
+    angle: float
+    apart: float
+    revolutions: int
+
+    def told(self, teeth: int) -> str:
+        """Return the verdict in sentences, with what would change it."""
+        against = "" if math.isnan(self.healthy) else f" against {self.healthy:.3g} of the healthy record"
+        text = f"tooth fault of the {teeth}-tooth gear: {self.level}; FM4 {self.FM4:.3g}{against}, limit {self.limit:.3g}"
+        if self.level == "not seen":
+            return (
+                f"{text}. A fault smaller than the noise of {self.revolutions} averaged revolutions is not seen: record longer."
+            )
+        place = f", once per revolution, at {math.degrees(self.angle):.0f} degrees"
+        if self.level == "likely":
+            return f"{text}{place}. The verdict changes if another record of the gear has FM4 below the limit or another angle."
+        halves = f"its halves differ: the largest impulse moves by {math.degrees(self.apart):.0f} degrees"
+        return f"{text}, but {halves}. An impulse that is not bound to the gear, or a short record, does this: record longer."
+
+
+def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> ToothVerdict:
+    """Judge whether a gear has a local tooth fault, from the synchronous average of a record with the angle of its shaft.
+
+    ::
+
+        limit = max(3 + SIGMAS sqrt(24 / n), RISE FM4_healthy)
+
+    FM4 of n samples of white noise has the mean 3 and the variance 24 / n. The angles of the largest impulse in the difference
+    signals of both halves of the record must agree within one tooth.
+
+    Parameters
+    ----------
+    record : Signal
+        With `angle` or `shaft_frequency` of the gear's shaft.
+    teeth : int
+    healthy : Signal, optional
+        Record of the healthy gear with its shaft.
+
+    Raises
+    ------
+    ValueError
+        As `gearfe.synchronous_average` and `gearfe.gear_indicators`, or if the record has fewer than `FEWEST` revolutions.
+    """
+    average, revolutions = synchronous_average(record)
+    if revolutions < FEWEST:
+        raise ValueError(f"{record.name}: {revolutions} revolutions, but a verdict needs {FEWEST} or more")
+    known = math.nan if healthy is None else gear_indicators(synchronous_average(healthy)[0], teeth)["FM4"]
+    halves = _halves(record, average.size, revolutions)
+    limit = 3 + SIGMAS * math.sqrt(24 / average.size)
+    limit = limit if math.isnan(known) else max(limit, RISE * known)
+    values = [gear_indicators(one, teeth)["FM4"] for one in (average, *halves)]
+    angles = [2 * math.pi * int(np.argmax(np.abs(residual_signal(one, teeth, sidebands=1)))) / one.size for one in halves]
+    apart = abs((angles[0] - angles[1] + math.pi) % (2 * math.pi) - math.pi)
+    seen, both = values[0] > limit, min(values[1:]) > limit and apart < 2 * math.pi / teeth
+    angle = 2 * math.pi * int(np.argmax(np.abs(residual_signal(average, teeth, sidebands=1)))) / average.size
+    level = "likely" if seen and both else "possible" if seen else "not seen"
+    return ToothVerdict(level, values[0], limit, known, angle, apart, revolutions)
+
+
+def _halves(record, count, revolutions):
+    """Averages of both halves of the whole revolutions of a record."""
+    turned = (record.shaft_angle - record.shaft_angle[0]) / (2 * math.pi)
+    middle = int(np.searchsorted(turned, revolutions // 2))
+    return [synchronous_average(part, count)[0] for part in (record[: middle + 1], record[middle:])]

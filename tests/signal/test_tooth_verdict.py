@@ -1,0 +1,56 @@
+"""The verdict on a tooth: seen where a tooth is hurt, at its angle, and rarely where none is."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.signal.gear_indicators import gear_indicators
+from gearfe.signal.tooth_verdict import SIGMAS, tooth_verdict
+
+TEETH, TURNING, RATE = 23, 20.0, 10240.0
+
+
+def record(seed, impulse=0.0, at=3.8, seconds=2.0, *, bound=True):
+    rng = np.random.default_rng(seed)
+    angle = 2 * np.pi * TURNING * np.arange(round(seconds * RATE)) / RATE
+    x = np.cos(TEETH * angle) + 0.3 * np.cos(angle) + 0.2 * rng.standard_normal(angle.size)
+    place = np.mod(angle - at + math.pi, 2 * np.pi) - math.pi
+    turns = np.floor(angle / (2 * np.pi))
+    burst = impulse * np.exp(-((place / 0.04) ** 2)) * np.cos(90 * place)
+    x += burst if bound else np.where(turns == 7, 30 * burst, 0.0)
+    return gf.Signal(x, RATE, "m/s^2", shaft_frequency=TURNING)
+
+
+def test_a_hurt_tooth_is_found_at_its_angle():
+    found = tooth_verdict(record(1, impulse=1.0), TEETH, record(2))
+    assert found.level == "likely"
+    assert_allclose(found.angle, 3.8, atol=0.03)
+    assert "at 218 degrees" in found.told(TEETH)
+    assert f"FM4 {found.FM4:.3g} against {found.healthy:.3g}" in found.told(TEETH)
+
+
+def test_one_impulse_of_a_record_is_no_likely_fault():
+    found = tooth_verdict(record(1, impulse=1.0, bound=False), TEETH)
+    assert found.level == "possible"
+    assert "record longer" in found.told(TEETH)
+
+
+def test_healthy_gears_are_not_called_faulty():
+    levels = [tooth_verdict(record(seed), TEETH, record(1000 + seed)).level for seed in range(40)]
+    assert levels == ["not seen"] * 40
+
+
+def test_noise_rarely_exceeds_the_limit():
+    rng, n = np.random.default_rng(0), 256
+    mesh = np.cos(TEETH * 2 * np.pi * np.arange(n) / n)
+    limit = 3 + SIGMAS * math.sqrt(24 / n)
+    above = sum(gear_indicators(mesh + 0.05 * rng.standard_normal(n), TEETH)["FM4"] > limit for _ in range(2000))
+    assert above <= 2  # less than 0.1 %
+
+
+def test_a_verdict_needs_revolutions():
+    with pytest.raises(ValueError, match="3 revolutions, but a verdict needs 4"):
+        tooth_verdict(record(1, seconds=0.16), TEETH)
