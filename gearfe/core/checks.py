@@ -41,7 +41,7 @@ def whole(name: str, value: Any, least: float = -math.inf, most: int = MOST) -> 
             f": give {name.rpartition(': ')[2]} = {int(value)}" if close else "" if least == -math.inf else f" from {least} on"
         )
         kind = ValueError if is_number(value) else WrongTypeError
-        raise kind(f"{name} = {shown(value)}, but it is a whole number{remedy}")
+        raise kind(f"{name} = {shown(value)}, but it must be a whole number{remedy}")
     return int(value)
 
 

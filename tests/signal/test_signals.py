@@ -112,7 +112,7 @@ def test_displacement_from_acceleration(n):
     assert found.unit == "m"
     assert_allclose(found.values, sine(3e-6, 480.0, n, rate), atol=1e-15)
     for arguments, said in (
-        ((0, 10.0), "times = 0, but it is a whole number from 1 on"),
+        ((0, 10.0), "times = 0, but it must be a whole number from 1 on"),
         ((2, 0.0), "above = 0.0, but give a positive number of Hz"),
         ((2, 3000.0), "above = 3000.0 Hz, but give one between 0 and"),
     ):
