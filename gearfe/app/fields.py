@@ -163,5 +163,7 @@ def _value(field, value):
     if not number or not abs(value) < math.inf or (field.whole and value != int(value)):
         raise ValueError(f"{stated}: expected a {'whole' if field.whole else 'finite'} number")
     if not field.low <= value <= field.high:
-        raise ValueError(f"{stated}, but this page takes {field.low:g} to {field.high:g}: for others use gearfe in Python")
+        raise ValueError(
+            f"{stated}, but this page accepts {field.low:g} to {field.high:g}: for other values use gearfe in Python"
+        )
     return int(value) if field.whole else float(value)

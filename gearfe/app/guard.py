@@ -72,7 +72,8 @@ class Guard:
             await self.app(scope, receive, safe)
             return
         read, more = 0, scope["method"] == "POST"
-        while more and read <= DRAINED:  # a client that is still writing would not read the answer
+        # read the rest of the request, because a client that still writes does not read the answer
+        while more and read <= DRAINED:
             message = await receive()
             read, more = read + len(message.get("body", b"")), message.get("more_body", False)
         kind = [(b"content-type", b"application/json"), (b"connection", b"close")]

@@ -105,7 +105,7 @@ def _refused(text, status=200):
 
 
 def _no_number(name):
-    raise ValueError(f"{name} is no number: give a finite one")
+    raise ValueError(f"{name} is not a number: give a finite number")
 
 
 def _text(text, kind="application/json"):

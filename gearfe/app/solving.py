@@ -157,7 +157,7 @@ def spectrum(state: dict[str, Any]) -> dict[str, Any]:
     from ..comparison.vibration import analysis, in_words, responses
 
     if not state["speed"]:
-        raise ValueError("speed of the pinion = 0 rpm, but a vibration needs one: give it a speed under Load")
+        raise ValueError("speed of the pinion = 0 rpm, but a vibration needs a speed: enter it under Load")
     with own_warnings() as caught:
         scene = scene_from(state)
         analysed = analysis(responses(scene, CASE if scene.pair().damage else None, duration=SECONDS))

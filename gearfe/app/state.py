@@ -14,10 +14,10 @@ from ..scene.study_tables import trimmed
 from .fields import FIELDS, SIDES, START, checked_state, key_at
 
 CASE, PAIR = "damaged", "stage"
-RUN = {"model", "speed_rpm", "torque_Nm"}  # keys of a machine that the page has
+RUN = {"model", "speed_rpm", "torque_Nm"}  # keys of a machine that have a field on the page
 SPRUNG = ("flank", "support")  # tables of a gear
-LEFT = (("gear", "gear_1", "gear_2", "pair", "case", "material"), ("pair", "case"))  # keys that name tables; those of damage
-CLOSE = 1e-9  # numbers are the same within it: a torque is computed from a force
+LEFT = (("gear", "gear_1", "gear_2", "pair", "case", "material"), ("pair", "case"))  # keys that name tables; tables of damage
+CLOSE = 1e-9  # relative tolerance of equal numbers, because torques are computed from forces
 
 
 class SeveralError(ValueError):

@@ -54,7 +54,8 @@ class Worker:
     def __init__(self, context: Any, memory: int):
         self.pipe, other = context.Pipe()
         self.process = context.Process(target=_work, args=(other, memory), daemon=True, name="gearfe solver")
-        self.starting = threading.Thread(target=self._start, args=(other,), daemon=True)  # a second: the page loads meanwhile
+        # starting takes about a second, during which the page loads
+        self.starting = threading.Thread(target=self._start, args=(other,), daemon=True)
         self.starting.start()
         self.ready, self.ended = False, ""
 
@@ -124,7 +125,7 @@ class Pool:
         self.waiting: list[Task] = []
         self.running: set[asyncio.Task] = set()
         self.expected = dict(SLOW)
-        self.slow = 0  # tasks under way that take seconds
+        self.slow = 0  # number of running tasks that take seconds
 
     async def ask(self, lane: str, kind: str, given: dict[str, Any], tell: Callable[[dict], Awaitable[object]]) -> bytes:
         """Answer to a task in JSON.

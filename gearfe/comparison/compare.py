@@ -98,7 +98,7 @@ def compare(
     named = own_models(models, taken=(REFERENCE, *FORMULATIONS))
     returns = {} if isinstance(scene, (Case, GearPair, type(None))) else returns_of(_loaded(scene), *key)
     plan, cycles = _beside(key, chosen, phases, returns)
-    for method in methods:  # loading of libraries does not count
+    for method in methods:  # load libraries before the times are measured
         METHODS[method].load()
     with gmsh_session():
         pass

@@ -24,7 +24,7 @@ from ..stiffness.phases import phase_array
 from ..stiffness.solve import Solve, solve
 
 ALONE = {"single": "carries alone", "double": "carries with one neighbour", "triple": "carries with two neighbours"}
-LARGEST = "most at a phase"  # row of the phase at which most is lost
+LARGEST = "most at a phase"  # row of the phase with the largest loss
 
 
 def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
@@ -158,7 +158,7 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
     '2 mm crack at 60 degrees: the mesh is 15.8 ± 0.3 % softer where the cracked tooth carries alone; 9.5 % on average'
     """
     alone = next((name for name in ALONE if name in found), None)
-    zone = None if kind == "chipped" else alone  # a chipped tooth carries alone where its flank is whole
+    zone = None if kind == "chipped" else alone  # a chipped tooth has single contact where its flank is intact
     where = f"where the {kind} tooth {ALONE[zone]}" if zone else f"as the {kind} tooth passes"
     where = where.replace("carries", "would carry") if kind == "missing" else where
     most = percent_with_doubt(found[zone or LARGEST], doubt.get(zone or LARGEST, math.nan))

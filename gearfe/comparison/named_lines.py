@@ -82,7 +82,8 @@ def _names(scene, top) -> Iterator[tuple[int, float, str]]:
         spacings |= {"carrier": abs(stage.carrier)} if stage.carrier else {}
         for n in range(1, math.floor(top / stage.mesh) + 1):
             for name, spacing in spacings.items():
-                most = min(SIDEBANDS, math.floor(stage.mesh / spacing / 2))  # they meet those of the next harmonic
+                # sidebands of higher order would overlap with those of the next harmonic
+                most = min(SIDEBANDS, math.floor(stage.mesh / spacing / 2))
                 for j in (*range(-most, 0), *range(1, most + 1)):
                     text = f"{n} x mesh frequency {'+' if j > 0 else '-'} {abs(j)} {name}, stage {stage.name}"
                     yield 100 + abs(j), n * stage.mesh + j * spacing, text

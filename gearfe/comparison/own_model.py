@@ -44,9 +44,9 @@ class PairModel:
             raise ValueError(f"PairModel({self.function!r}): give a function f(radius_1, radius_2) -> k [N/m]")
 
 
-# a function of the phase, or what says more of itself
+# a function of the phase, or an object with a label and options
 OneModel = Callable[[Floats], Floats] | PairModel | OwnFlexibility | ModelFile | StrPath
-OwnModel = OneModel | tuple[OneModel, OneModel]  # of a damaged pair and of the healthy one
+OwnModel = OneModel | tuple[OneModel, OneModel]  # models of the damaged and of the healthy pair
 
 
 def own_models(models, taken=()):

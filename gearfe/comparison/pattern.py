@@ -103,6 +103,6 @@ def face_load_distribution(contact: Contact3D) -> tuple[Floats, Floats]:
     edge = np.linspace(low.min(), high.max(), PLACES + 1)
     z = (edge[1:] + edge[:-1]) / 2
     over = [(low <= at) & (high > at) for at in z]
-    covered = np.array([mask.any() for mask in over])  # not the groove of a herringbone pair
+    covered = np.array([mask.any() for mask in over])  # without the relief groove of a herringbone pair
     load = np.array([float(line[mask].sum()) for mask in over]) / len(contact.cells)
     return z[covered], load[covered]

@@ -66,7 +66,8 @@ def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRo
         raise ValueError(f"ISO 6336-3 is here for external spur pairs with a contact ratio between 1 and 2, but {why}")
     gear = pair.gear_1 if side == "pinion" else pair.gear_2
     z, alpha, dedendum, tip, m_n = gear.z, gear.alpha_n, gear.dedendum, gear.rack_tip_radius, gear.m_n
-    cut = math.pi / 4 - dedendum * math.tan(alpha) - (1 - math.sin(alpha)) * tip / math.cos(alpha)  # E, in modules as all below
+    # E of ISO 6336-3 in modules, as all lengths below
+    cut = math.pi / 4 - dedendum * math.tan(alpha) - (1 - math.sin(alpha)) * tip / math.cos(alpha)
     g, theta = tip - dedendum + gear.x_E, math.pi / 6
     for _ in range(50):
         theta = 2 * g / z * math.tan(theta) - (2 / z * (math.pi / 2 - cut) - math.pi / 3)

@@ -22,8 +22,8 @@ COLUMNS = (
     *(Column(f"load, {name}", "N") for name in ("least", "largest")),
 )
 
-MOST = 10_000  # positions, and cycles that they are spread over
-ENGAGED = 2  # mesh cycles after which the damaged tooth 0 has been through its mesh
+MOST = 10_000  # limits of the number of positions and of cycles
+ENGAGED = 2  # mesh cycles until the damaged tooth 0 has left its mesh
 
 
 def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> Floats:

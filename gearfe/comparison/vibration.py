@@ -29,14 +29,15 @@ from .record_length import resolving_seconds, too_short
 FREE = 1e-3  # remaining part of the initial free vibration at the beginning of a record
 DURATIONS = (1.0, 5.0)  # s, shortest and longest default record
 UNDAMPED = 0.5  # part of the duration that is discarded before it if a free vibration does not decay
-LONGEST = 20.0  # s left out at most
+LONGEST = 20.0  # longest discarded start [s]
 NEAR = 50  # bins on either side that give the noise floor of a line
-QUARTILE = math.sqrt(math.log(2) / math.log(4 / 3))  # median over lower quartile of the amplitudes of noise
-FLOOR = 5.0  # times its noise floor at least is a line; the largest of five bins of noise is so once in some millions
-ROUNDING = 1e-9  # part of the largest motion below which a motion is rounding
+# ratio of the median to the lower quartile of noise amplitudes (Rayleigh distribution)
+QUARTILE = math.sqrt(math.log(2) / math.log(4 / 3))
+FLOOR = 5.0  # least ratio of a line to its noise floor; the largest of five noise bins reaches it once in millions of cases
+ROUNDING = 1e-9  # motions below this part of the largest motion are rounding errors
 RANGE = 1e-4  # smaller lines, relative to the rms of a record, are lost in any recorder (80 dB; 16 bits have 96 dB)
-PULSES = 2  # harmonics of the fault at least in an envelope: pulses of a tooth have many, run-out and misplaced planets one
-RISE = 2.0  # times the healthy machine's at least is a line of a fault
+PULSES = 2  # least number of fault harmonics in an envelope: tooth pulses have many, run-out and misplaced planets have one
+RISE = 2.0  # least ratio of a fault line to the same line of the healthy machine
 OF_GEARS = ("FM4", "NA4", "energy ratio")  # indicators by gear, of `gearfe.signal.gear_indicators`
 WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "shaft frequency", "f_carrier": "carrier frequency"}
 
@@ -193,7 +194,7 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
     in_case = [one for pair in scene.pairs.values() for damages in pair.damage.get(case, {}).values() for one in damages]
     damage = [] if scene.machine.get("contact") == "impact" else in_case
     along = not all(hurt.through for hurt in damage)
-    curves = "ritz3d" if along else "auto"  # one method for what is compared
+    curves = "ritz3d" if along else "auto"  # use one method for all compared cases
     names = ("healthy", *([case] if case else []))
     with part("", 0.0, 0.5):
         machines = {
@@ -248,7 +249,7 @@ def slowest_decay(machine):
     K, C, _, _ = machine.linear(machine.working())
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-K / machine.mass[:, None], -C / machine.mass[:, None]]])
     values = np.linalg.eigvals(A)
-    slow = 1e-6 * np.abs(values).max()  # rotation as a whole, not vibration
+    slow = 1e-6 * np.abs(values).max()  # zero-frequency content is rotation of the body, not vibration
     decays = -values.real[values.imag > slow]
     return float(max(decays.min(), 0.0)) if decays.size and decays.min() > 1e-9 * np.abs(values).max() else 0.0
 
@@ -298,7 +299,7 @@ def _check_moving(response, channel):
 def _fault_lines(machine):
     """Stage of the first faulty gear (without one the last stage), and fault, shaft and carrier frequency [Hz] or None."""
     if not machine.stages:
-        raise ValueError("the machine names no stages, so that no lines are known: give it stages=(Stage(...),)")
+        raise ValueError("the machine has no stages, so that its spectral lines are unknown: give stages=(Stage(...),)")
     main = machine.faults[0] if machine.faults else None
     stage = machine.stages[-1] if main is None else machine.stage_of(main.gear)
     if main is None:

@@ -84,7 +84,7 @@ def bodies_of(case, bands, flexible, ahead=None):
     for gear, (body, _), _, own, _, _ in gears:
         for crack in own:
             if not any(seen_damage(gear, [crack], body, band) for band in bands):
-                raise ValueError(f"crack open from z = {crack.width} mm: no tooth is there, but the groove of {case.groove:g} mm")
+                raise ValueError(f"crack open from z = {crack.width} mm: this is inside the relief groove of {case.groove:g} mm")
         for band in bands:
             check_single(body, seen_damage(gear, own, body, band))
     wanted = [

@@ -96,7 +96,7 @@ class SharedLines:
             if not open_:
                 tangents = self._tangents(forces, load, x, local)
                 return [SharedLoad(*values) for values in zip(forces, approaches.tolist(), tangents, strict=True)]
-        raise RuntimeError(f"load sharing along the contact lines did not settle at {load[open_[0]]:g} N")
+        raise RuntimeError(f"load sharing along the contact lines did not converge at {load[open_[0]]:g} N")
 
     def _started(self, load):
         """First forces of each problem, even over its cells, and what pushes at first: all cells, no faces of cracks."""
@@ -145,7 +145,7 @@ class SharedLines:
         part = total.copy() if at.size == len(total) else total[np.ix_(at, at)]
         factor, fault = dpotrf(part.T, overwrite_a=1, clean=0)
         if fault:
-            raise RuntimeError("bodies too coarse: some load on the contact lines would gain energy; raise refine")
+            raise RuntimeError("the mesh is too coarse: its flexibility is not positive definite; increase refine")
         return at, factor, dpotrs(factor, self.joined.weights[p][at])[0]
 
     def _tangents(self, forces, load, x, local):

@@ -13,9 +13,9 @@ from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.modified import first_touch
 from .pieces import cut
 
-BESIDE = 0.25  # modules from an end face: edge contact
+BESIDE = 0.25  # distance from an end face [m_n] within which edge contact matters
 END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
-GROWTH = 0.6  # growth of the cell length per length, away from the ends
+GROWTH = 0.6  # increase of the cell length per unit length, away from the ends
 BEYOND = 12  # minimum number of cells beyond the path of contact, where gaps open
 CARRYING = 20  # minimum number of loaded cells in a phase if gaps change along the width
 SETTLED = 0.7  # the search for the carrying part of a line ends when a step leaves at least this much of its length
@@ -141,7 +141,8 @@ def carrying(cells, phase, pieces, force, bed):
             continue
         order = at[np.argsort(cells.gap[at])]
         gap, width = cells.gap[order], np.cumsum(cells.width[order])
-        pressed = (force / bed + np.cumsum(cells.gap[order] * cells.width[order])) / width  # approach, were so many to carry
+        # approach if this number of cells carried load
+        pressed = (force / bed + np.cumsum(cells.gap[order] * cells.width[order])) / width
         deep = pressed[np.flatnonzero(pressed >= gap)[-1]]
         loaded = at[cells.gap[at] < deep]
         for k, piece in enumerate(group if loaded.size < CARRYING else ()):

@@ -83,7 +83,8 @@ def leaning(contact, matrices):
     points, out = contact.found, []
     where = np.isfinite(points.gap)
     _, _, way = met(contact, where.nonzero(), points.roll_1[where], 0)
-    sure = np.isfinite(way.rate)  # else the pinion's place faces nothing: a corner of the wheel touches, which is a row of hats
+    # otherwise no flank faces the pinion's point: a corner of the wheel is in contact, which is a row of hats
+    sure = np.isfinite(way.rate)
     where[where], way = sure, Direction(*(values[..., sure] for values in way))
     rate, turns, parts = np.ones(where.shape), np.ones((2, *where.shape)), np.zeros((2, 2, *where.shape))
     rate[where], turns[:, where], parts[:, 0], parts[:, :, where] = way.rate, way.turns, 1.0, way.parts

@@ -157,7 +157,7 @@ class JoinedLines:
         reach = SMOOTH * half_width(load / self.length, self.mean_radius, self.modulus)[self.problem]
         middle = (self.start + self.stop) / 2
         long = np.maximum.reduceat(self.stop, self.first) - self.start[self.first]
-        apart = np.append(0.0, np.cumsum(long + 4 * reach.max())[:-1])  # all lines behind each other
+        apart = np.append(0.0, np.cumsum(long + 4 * reach.max())[:-1])  # all lines in sequence
         shift = (apart - self.start[self.first])[self.line]
         first = np.searchsorted(self.stop + shift, middle + shift - reach, side="right")
         i, j = _ranges(first, np.searchsorted(self.start + shift, middle + shift + reach))

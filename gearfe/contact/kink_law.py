@@ -23,11 +23,11 @@ from .pair_contact import PairContact
 
 LOADS = 2.0 ** np.arange(-5, 4)  # line loads of the table, as multiples of the even one (the load spread evenly over the width)
 PLACES = 9  # places of the table on each side of a kink, within the half width of a contact
-ON = 9  # places of the table from there to where contact leaves the kink
+ON = 9  # places of the table up to the end of contact on the kink
 BESIDE = 1e-6  # the first of these places
 LEAST = 0.05  # no places if contact stays on the kink for less than this part of the widest contact
 SAMPLES = 400  # samples per base pitch, to find how far contact stays on the kink
-SOFT = 80  # line loads over pi E*: more than any pair of teeth approaches
+SOFT = 80  # line loads over pi E*, larger than the approach of any pair of teeth
 
 
 class KinkLaw:
@@ -45,7 +45,7 @@ class KinkLaw:
         forms = tuple(form.at(None) for form in flanks)
         modulus = contact_modulus(materials)
         step = modulus * pair.gear_1.m_n
-        load = step * 2.0 ** round(math.log2(line_load / step))  # rounded, so that equal loads share a table
+        load = step * 2.0 ** round(math.log2(line_load / step))  # loads are rounded so that nearly equal loads share a table
         kept, modifications = solved_gears(cache), tuple(form.flank for form in forms)
         start, end = pair.path
         self.zones = []

@@ -9,9 +9,9 @@ from .rows import hat_rows
 REACH = 1.3  # a contact with a kink within this many half widths of the whole load is resolved hat by hat
 ZONE = 1.8  # half length of the row, in half widths of the whole load
 FINEST, GROWTH = 5e-4, 0.5  # hat length next to a kink [m_n], and growth with the distance from it
-WITHIN = 4.0  # hats per half width
-STEEP = 20.0  # hats at least over what is pressed of a wedge with the angle of the kink
-SHALLOW = 1e-3  # slopes of kinks below which no hat need be shorter
+WITHIN = 4.0  # hat functions per half width of the contact
+STEEP = 20.0  # least number of hats over the contact width of a wedge with the angle of the kink
+SHALLOW = 1e-3  # kinks with a smaller slope need no shorter hats
 
 
 def near_kink(contact, line_load):
@@ -40,7 +40,7 @@ def kink_rows(contact, where, line_load):
     flat, touch = (half_width(line_load, radius[i, column], contact.modulus) for radius in (contact.flat_radius, contact.radius))
     host, middle, kink, slope = _nearest(contact, i, column)
     fine, out = min(flexible.fine for flexible in contact.flexibility), {}
-    wedge = line_load / (contact.modulus * np.maximum(np.abs(slope), SHALLOW))  # about as long as a ridge is pressed
+    wedge = line_load / (contact.modulus * np.maximum(np.abs(slope), SHALLOW))  # approximate contact length of a ridge
     least = np.minimum(FINEST * contact.pair.gear_1.m_n, wedge / STEEP)
     for k, form in enumerate(contact.flanks):
         on_flank = np.flatnonzero(host == k)

@@ -24,11 +24,11 @@ from .sliding import bounded, left_out, sliding
 from .thinned import thinned_teeth
 
 CORNER = 1.0  # contacts within this many half widths of a corner are resolved by hat functions
-BEYOND = 1.5  # such a row reaches at least this many half widths on from its middle
+BEYOND = 1.5  # a row extends at least this number of half widths from its middle
 KINK = 16  # mark of a pair whose contact reaches a kink of a flank; smaller: the corners of a row, bit n - 1 for corner n
 SMOOTH = 0.5  # a corner whose gap is below this part of a smooth contact's parabola is a second contact
 UNKNOWN = ("roll_1", "roll_2", "gap", "coefficient", "radius", "tilt", "turn_1", "turn_2", "fillet")  # properties of a contact
-OVERLAP = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
+OVERLAP = 1e-3  # overlaps of crack faces below this part of the largest opening are ignored
 
 
 def _closing(opening):
@@ -92,7 +92,7 @@ class PairContact:
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
         points, tilt = self.found, bounded(self, line_load)
-        # all beyond the first touch: a light load closes so little that it would drown in the digits of the gaps
+        # gaps are measured from first contact, because a light load closes less than their rounding error
         least = points.gap.min(axis=1)
         reach, beyond = self._reach(line_load), points.gap - least[:, None]
         possible = beyond < reach[:, None]
@@ -241,7 +241,7 @@ class PairContact:
         width = half_width(line_load, np.where(radius > 0, radius, 1.0), self.modulus)
         pressed = sum(self.coefficients) * line_load * (np.log(2 * gear.m_n / width) + 0.5)
         away = np.abs(arc_at(gear, points.corner_roll[0]) - arc_at(gear, points.roll_1))
-        wheel = self.pair.gear_2  # nearer on the side of the corner's own gear: neither gear is preferred
+        wheel = self.pair.gear_2  # the row is finer on the side of the corner's gear, so that neither gear is preferred
         away[1::2] = np.abs(arc_at(wheel, points.corner_roll[1, 1::2]) - arc_at(wheel, points.roll_2))
         excess = points.corner_gap - np.where(possible, points.gap, 0.0)
         with np.errstate(invalid="ignore"):
@@ -251,7 +251,7 @@ class PairContact:
         corner = ((meets & (reached | second)) * (1 << np.arange(4))[:, None, None]).sum(axis=0)
         smooth = (corner > 0) & (points.corner == 0)
         also = (corner > 0) & (points.corner > 0) & (points.nominal > start) & (points.nominal < end) & (-points.gap < pressed)
-        apart = also | (smooth & ~(meets & reached).any(axis=0))  # the flanks touch on the path, besides
+        apart = also | (smooth & ~(meets & reached).any(axis=0))  # the flanks also contact on the path
         further = np.where(meets & reached, away, 0.0).max(axis=0) + BEYOND * width
         zone = np.where(smooth, np.maximum(further, TIP_ZONE * gear.m_n), TIP_ZONE * gear.m_n)
         return corner, zone, np.where(apart, width, 0.0)

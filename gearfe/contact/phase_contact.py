@@ -26,7 +26,7 @@ from .sliding import MOST, cracks_beyond_lines, off_path, slid
 FINEST = 1.5  # length of the shortest cell [Hertz half widths]
 ALIKE = 1e-9  # tolerance for equal halves, of which one is solved [base pitches]
 DEEPEST = 0.01  # search depth for the floor of a pit that covers a whole contact line [m_n]
-ROW = math.sqrt(2)  # ratio of neighbouring forces for which cells are made
+ROW = math.sqrt(2)  # cells are made for forces with this ratio
 REACH = 1.3  # growth of the search radius for gaps if it was too small
 TOGETHER = 16  # phases that are solved at once
 
@@ -90,7 +90,8 @@ class PhaseContact:
         pair, materials, pits, flanks = case.pair, case.materials, case.pits, case.forms
         self.pair, self.pits, self.step, self.extended, self.longer = pair, pits, step, extended, longer
         self.force = force
-        outside = [None if held and held.integral else held for held in case.held or ()]  # other shafts are part of the bodies
+        # shafts that are not integral are already part of the bodies
+        outside = [None if held and held.integral else held for held in case.held or ()]
         self.hubs = [held and held.hub() for held in outside] if any(outside) else None
         self.pair_of = lru_cache(maxsize=None)(partial(pair_at, pair, case.broken))
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
@@ -104,7 +105,7 @@ class PhaseContact:
         self.furthest = max((float(gap[-1]) for _, gap in gaps(pair) if gap.size), default=0.0) if extended else 0.0
         unit = self.modulus * pair.gear_1.m_n * self.width
         self.sized = unit * ROW ** math.ceil(math.log(force / unit, ROW) - 1e-9)
-        # first guess: the half-plane's logarithm over the size of a tooth, and as much for the tooth
+        # initial value: logarithmic deflection of the half-plane over the size of a tooth, and the same for the tooth
         load, self.bed = force / self.width, math.pi * self.modulus / 40
         self.reach = self.sized / self.width / self.bed
         further = self._further(self.least + 80 / (math.pi * self.modulus) * load)

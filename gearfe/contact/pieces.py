@@ -48,7 +48,7 @@ def gaps(pair):
         gap = touching(pair, at + sense * away)[2]
         met = np.flatnonzero(np.isfinite(gap))
         first = met[0] if met.size else gap.size
-        if 0 < first < gap.size - 2:  # touch between two samples: take at least the gap at the sample before
+        if 0 < first < gap.size - 2:  # first contact lies between two samples: use at most the gap at the previous sample
             first -= 1
             gap[first] = max(2 * gap[first + 1] - gap[first + 2], 0.0)
         span = slice(first, met[-1] + 1 if met.size else gap.size)

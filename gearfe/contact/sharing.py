@@ -159,7 +159,7 @@ def line_contact(contacts, load, weight=None, start=None):
         if settled or not np.any(coefficient):
             break
     else:
-        raise RuntimeError(f"load sharing did not settle at line load {load} N/mm; reduce the load or refine the mesh")
+        raise RuntimeError(f"load sharing did not converge at line load {load} N/mm; reduce the load or refine the mesh")
     tangent = weight[touch] @ np.linalg.solve(total[np.ix_(touch, touch)], weight[touch])
     return force, approach, float(tangent)
 

@@ -27,7 +27,7 @@ from ..geometry.tooth.flank_form import FlankForm
 from ..geometry.tooth.profile import fillet, flank, tangent_point
 from ..geometry.tooth.side import place
 
-FOOT = 16.67 / math.pi  # turn of a foot of unit thickness under a unit moment, by E'
+FOOT = 16.67 / math.pi  # rotation of a root section of unit thickness under a unit moment, times E'
 POINTS = 200  # sections between root and tip circle
 UNSURE = 1 / 4  # error of the difference, from finite elements of thinned teeth (``tests/contact/test_thinned_flexibility.py``)
 

@@ -139,7 +139,7 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
             given = (one and partial(one, neighbours=neighbours) for one in (flexible, ahead))
             return bodies_of(case, contacts[0].bands, *given)
 
-        def within(orders):  # gears that bend far bring more teeth into reach than the first guess of their approach did
+        def within(orders):  # large deflections bring more teeth into contact than the initial approach
             return made(max(orders, least))
 
         with part("", 0.0, 0.5):

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from ..geometry.checks import LARGEST, WrongTypeError, is_number, is_whole, shown
 
 MOST = 2**63  # largest whole number that an array holds, plus 1
-COARSEST = 0.2  # at 0.4 sections are off by 0.2 %, at 0.2 by 0.5 %; below, the error grows without order (25 % at 1e-9)
-FINEST = 64.0  # edges 64 times shorter: beyond, k changes by less than the errors of rounding and contact
+COARSEST = 0.2  # section errors: 0.2 % at 0.4, 0.5 % at 0.2, irregular below (25 % at 1e-9)
+FINEST = 64.0  # at finer meshes k changes by less than the errors of rounding and contact
 
 
 def number(name: str, value: Any) -> float:
@@ -41,7 +41,7 @@ def whole(name: str, value: Any, least: float = -math.inf, most: int = MOST) -> 
             f": give {name.rpartition(': ')[2]} = {int(value)}" if close else "" if least == -math.inf else f" from {least} on"
         )
         kind = ValueError if is_number(value) else WrongTypeError
-        raise kind(f"{name} = {shown(value)}, but it is a whole number{remedy}")
+        raise kind(f"{name} = {shown(value)}, but it must be a whole number{remedy}")
     return int(value)
 
 
@@ -65,7 +65,7 @@ def numbers(name: str, value: Any, unit: str) -> NDArray:
     except ValueError as error:
         raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}") from error
     if np.ma.is_masked(value):
-        raise ValueError(f"{name} has masked values: give numbers without holes{unit}")
+        raise ValueError(f"{name} has masked values: give numbers without masked entries{unit}")
     plain = array.dtype.kind in "iuf" and not has_truth(value)
     if not plain and not (array.dtype.kind == "O" and array.size and all(is_number(element) for element in array.ravel())):
         raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}, not {_kind(value)}")

@@ -100,7 +100,7 @@ def check_output(path, kind):
     if isinstance(path, (str, os.PathLike)) and not str(path):
         raise ValueError(f"an empty file name for a {kind}: give one that ends in {', '.join(suffixes(kind))}")
     suffix_of(path, kind)
-    if os.path.isdir(path):  # unlike pathlib's, false for names that no file can have
+    if os.path.isdir(path):  # unlike pathlib, this returns False for invalid names
         raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
     os.unlink(new_file(path))
 
@@ -157,7 +157,8 @@ def save_figure(figure, path, dpi):
             if words != text.get_text():
                 text.set_text(words)
             if "$" in words:
-                text.set_parse_math("\\mathdefault" in words)  # a name of a file is no formula; a number of an axis may be
+                # do not interpret names of files as formulas; axis numbers may be formulas
+                text.set_parse_math("\\mathdefault" in words)
         import matplotlib
 
         embedded = {"pdf.fonttype": 42, "ps.fonttype": 42}  # publishers reject fonts of type 3

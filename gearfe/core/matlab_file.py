@@ -22,10 +22,11 @@ CELL, STRUCT, CHAR, SPARSE = 1, 2, 4, 5
 OPAQUE = 17  # an object of a newer class: its name comes first, and it has no shape
 CLASSES = dict(zip(range(6, 16), ("f8", "f4", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8"), strict=True))
 STORED = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
-TEXTS = {1: "latin-1", 2: "latin-1", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18: "utf-32"}  # encodings of stored characters
+# encodings of characters by storage type
+TEXTS = {1: "latin-1", 2: "latin-1", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18: "utf-32"}
 COMPLEX = 0x08  # bit in the flags of an array
 DEEPEST = 50  # limit of nested structs and cells
-MOST_PACKED = 1032  # bytes that one byte of deflate can become, at most
+MOST_PACKED = 1032  # largest expansion of one byte of deflate [bytes]
 
 
 class Unread(NamedTuple):
@@ -210,7 +211,7 @@ def _rows(text, shape):
     if not count:
         return np.empty(0, dtype="U1")
     rows = math.prod(shape[:-1])
-    if rows == 1:  # a letter outside of the first plane counts twice in the shape
+    if rows == 1:  # a character outside the basic plane counts as two in the shape
         return np.array([text]).reshape(shape[:-1])
     if len(text) != count:
         raise ValueError(f"{len(text)} letters for a text {list(shape)}")
@@ -224,6 +225,6 @@ def _old(data):
 
     try:
         found = loadmat(io.BytesIO(data))
-    except Exception as error:  # scipy trusts the file: what damage raises differs
+    except Exception as error:  # scipy does not check the file, and a damaged file can raise any error
         raise ValueError(f"it has neither a header of MATLAB nor one of MAT 4 ({error})") from error
     return {key: value if isinstance(value, np.ndarray) else SPARSE_TOLD for key, value in found.items() if key[:2] != "__"}

@@ -115,10 +115,13 @@ def write_contact_inp(
         raise ValueError(f"approach = {approach} mm, but the gears are pressed together: give approach > 0")
     if case.face is None:
         if case.damaged:
-            raise ValueError("damage of a section's deck, which has none: give face = 'spur' or 'helical' for three dimensions")
+            raise ValueError(
+                "a deck of a transverse section cannot contain damage: give face = 'spur' or 'helical' for three dimensions"
+            )
         if any(form.wide for form in case.forms or ()):
             raise ValueError(
-                "flanks that change along the width, or misalignment, of a section, which is two-dimensional: give face = 'spur' "
+                "flanks that change along the width, or misalignment, need three dimensions, but this deck is a "
+                "section: give face = 'spur' "
                 "or 'helical' for three dimensions"
             )
         return write_contact_section(path, case, phase, approach, how)

@@ -71,7 +71,7 @@ def export_mesh(
     broken = tuple(one for one in damage if isinstance(one, BROKEN))
     cells = cells or ("tetrahedra" if pits or teeth is not None else "hexahedra")
     if cells not in KINDS:
-        raise ValueError(f"cells = {cells!r}, but they are one of {', '.join(KINDS)}")
+        raise ValueError(f"cells = {cells!r}, but it must be one of {', '.join(KINDS)}")
     part = (_tets if cells == "tetrahedra" else _hexes)(gear, pits, (cracks, broken), teeth, refine)
     _write(path, suffix, part, KINDS[cells])
     return part

@@ -76,7 +76,9 @@ def read_rows(path, heading=None):
     try:
         lines = Path(path).read_text(encoding="ascii").splitlines()
     except FileNotFoundError as error:
-        raise RuntimeError(f"{path} is not there: run 'ccx -i NAME'; if it ran, its output has the reason") from error
+        raise RuntimeError(
+            f"{path} does not exist: run 'ccx -i NAME'; if CalculiX has run, its output states the reason"
+        ) from error
     out, in_part = {}, heading is None
     for row in map(str.split, lines):
         if row and not row[0].isdigit():

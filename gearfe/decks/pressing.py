@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from ..core.checks import one_of
 
-PINION = {"mean": 0.5, "pinion": 1.0, "wheel": 0.0}  # part of the approach that the pinion turns
+PINION = {"mean": 0.5, "pinion": 1.0, "wheel": 0.0}  # share of the pinion in the approach
 PITS = ("cut", "lost", "filled")
 
 

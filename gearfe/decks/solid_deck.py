@@ -14,7 +14,7 @@ from ..geometry.mesh.holes import Holed
 from ..geometry.mesh.solid import Solid
 from ..geometry.tooth.profile import cartesian, flank
 
-MIRROR = np.array([ORDER.index((node, 2 - level)) for node, level in ORDER])  # bottom and top change places
+MIRROR = np.array([ORDER.index((node, 2 - level)) for node, level in ORDER])  # node order with bottom and top exchanged
 MIRRORED = {20: MIRROR, 10: np.array([0, 2, 1, 3, 6, 5, 4, 7, 9, 8])}
 FACES = {  # corners of the faces, in CalculiX's order
     20: ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
@@ -51,7 +51,7 @@ def holed_part(mesh: Holed, strips=()) -> DeckBody:
     """
     nodes, cells, number = second_order(mesh.points, mesh.cells[:, mesh.plug < 0])
     gear = mesh.gear
-    for name in sorted(mesh.faces, reverse=True):  # flanks last, the most exact
+    for name in sorted(mesh.faces, reverse=True):  # flanks last, because their coordinates are exact
         if name.startswith(("outline", "held", "flank ")) and mesh.faces[name].size:
             on_surface = nodes_of(mesh.faces[name], number)
             x, y, z = nodes[:, on_surface]

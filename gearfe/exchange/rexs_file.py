@@ -123,7 +123,7 @@ def _text(path):
                 _check_size(path, archive.getinfo(names[0]).file_size)
                 content = archive.read(names[0])
         except (zipfile.BadZipFile, RuntimeError, NotImplementedError, EOFError, OSError) as error:
-            raise ValueError(f"{path}: not readable as a zip file: {error}") from error
+            raise ValueError(f"{path}: not a readable zip file: {error}") from error
     else:
         _check_size(path, path.stat().st_size)
         content = path.read_bytes()

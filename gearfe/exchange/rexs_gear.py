@@ -35,7 +35,7 @@ class GearReader:
         for key, (attribute, *units) in wanted.items():
             row[key] = self._needed(gear, name, gear.number(attribute, *units), attribute)
         if row["z"] != int(row["z"]):
-            raise ValueError(f"gear {name!r}: number_of_teeth = {row['z']:g}, but it is a whole number")
+            raise ValueError(f"gear {name!r}: number_of_teeth = {row['z']:g}, but it must be a whole number")
         row["z"] = int(row["z"])
         angles = [flank.number("normal_pressure_angle", "deg") for flank in self.flanks(gear).values()]
         angles = [angle for angle in angles if angle is not None]

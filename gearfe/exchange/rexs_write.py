@@ -14,7 +14,7 @@ from ..scene.load import Scene
 from ..stiffness.curve import StiffnessCurve
 from .rexs_file import Component, Relation
 
-VERSION = "1.7"  # read by more programs than 2.0.0
+VERSION = "1.7"  # more programs read this version than 2.0.0
 
 
 def write_rexs(path: StrPath, scene: Scene, curves: Mapping[str, StiffnessCurve] | None = None) -> None:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ..contact.wide_contact import Contact3D
 
-PLACES = 400  # along the width, of the load of a whole cycle
+PLACES = 400  # number of places along the width for the load of a cycle
 
 
 def plot_contact(

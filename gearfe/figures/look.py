@@ -8,7 +8,7 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#5
 GEARS = ("#b9c7d6", "#d6cbb9")  # bodies of pinion and wheel
 DASHES = ("-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)), (0, (3, 1)), (0, (8, 2, 1.5, 2, 1.5, 2)), (0, (1, 3)))
 MARKS = ("o", "s", "^", "D", "v", "P", "X")
-SQUASHED = 0.3  # lowest over largest value from which on an axis from zero would waste the picture
+SQUASHED = 0.3  # ratio of the lowest to the largest value above which the axis does not start at zero
 
 
 def look(number):

@@ -68,7 +68,7 @@ def plot_pair(
         frame = _turned(turns[i]) * [(1, pair.outward)[i], 1]  # a ring's own frame is mirrored in place
         centre = [[0.0], [(0.0, pair.centre_2)[i]]]
         shapes = [frame @ points + centre for points in (outline_points(gear, points=24), _edge(gear))]
-        ahead = (1, -1)[i] * 2 * math.pi / gear.z  # from a tooth to that of the pair ahead
+        ahead = (1, -1)[i] * 2 * math.pi / gear.z  # rotation from a tooth to the tooth of the pair ahead
         marks = [frame @ _turned(ahead * hurt.tooth) @ hurt.outline(gear) + centre for hurt in by_gear[i]]
         for axes in views:
             _fill(axes, shapes, GEARS[i])

@@ -8,7 +8,7 @@ from ..core.files import save_figure
 from ..core.units import NEWTON_PER_UM
 from .look import SQUASHED, blank, look
 
-UNEVEN = ("pitch", "tooth_scale", "eccentricity")  # deviations of flanks from tooth to tooth
+UNEVEN = ("pitch", "tooth_scale", "eccentricity")  # flank deviations that differ between teeth
 
 
 def plot_curves(curves, path=None, title=None):
@@ -77,7 +77,7 @@ def closed(curve):
     places = np.concatenate([whole, whole + meta["eps_alpha"] % 1])  # a pair enters, a pair leaves
     for place in np.sort(places[(places > phase[0]) & (places <= phase[-1])])[::-1]:
         after = int(np.searchsorted(phase, place - 1e-9))
-        if after < phase.size - 1 and abs(phase[after] - place) < 1e-9:  # a pair that enters is there, one that leaves still is
+        if after < phase.size - 1 and abs(phase[after] - place) < 1e-9:  # entering and leaving pairs both count
             after += int(place not in whole)
         before = after - 1
         left = _extended(phase, k, (before - 1, before), place)

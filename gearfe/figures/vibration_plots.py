@@ -50,7 +50,7 @@ def plot_spectra(
     largest = max(curve.values.max() for curve in spectra.values())
     for axes, (name, spectrum) in zip(rows, spectra.items(), strict=True):
         axes.semilogy(spectrum.frequency, spectrum.values, linewidth=0.8, color=COLOURS[0])
-        axes.set_ylim(1e-6 * largest, 2 * largest)  # common axes: the first would decide for all
+        axes.set_ylim(1e-6 * largest, 2 * largest)  # common axes: set limits for all spectra, not only the first
         axes.set_ylabel(f"[{spectrum.unit}]")
         axes.set_title(name, loc="right", fontsize=9, pad=3)
         for value in (lines or {}).values():
@@ -153,7 +153,7 @@ def plot_spectrogram(spectrogram: "Spectrogram", path: StrPath | None = None, ti
 def plot_cepstrum(found: "Spectrum", path: StrPath | None = None, title: str = "") -> "Figure":
     """Draw a cepstrum, `gearfe.cepstrum`, from a thousandth of its length on; save to `path` if given."""
     figure, axes = blank((9, 3))
-    first = max(1, found.values.size // 1000)  # the shape of the whole spectrum stands before
+    first = max(1, found.values.size // 1000)  # skip the beginning of the cepstrum, which contains the shape of the spectrum
     axes.plot(found.frequency[first:], found.values[first:], linewidth=0.7)
     axes.set(xlabel="quefrency [s]", ylabel="cepstrum [-]")
     axes.set_title(title or found.name, fontsize=9)

@@ -56,7 +56,7 @@ def condense(local, dofs, centre, load, stays, held=(), *, leaf):
     part[np.concatenate(sets)] = np.repeat(np.arange(len(sets)), [elements.size for elements in sets])
     number, first, turns = _numbered(dofs, part, n, stays, held, height)
     total = n + 1 + columns  # number of all indices: unknowns, loads, and n for those that are held
-    of_part = first[load.coords[0]].astype(np.min_scalar_type(len(sets)))  # short numbers are sorted several times as fast
+    of_part = first[load.coords[0]].astype(np.min_scalar_type(len(sets)))  # short integers sort several times as fast
     by_part = np.argsort(of_part, kind="stable")
     at, column, force = number[load.coords[0][by_part]], n + 1 + load.coords[1][by_part], load.data[by_part]
     ends = np.append(0, np.cumsum(np.bincount(of_part, minlength=len(sets))))

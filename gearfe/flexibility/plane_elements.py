@@ -29,7 +29,7 @@ def stiffness(slope, weight, arms, lam, mu):
     alike = mu * np.einsum("mccef->mef", outer)
     factor[:, 0, 0] += alike
     factor[:, 1, 1] += alike
-    factor *= np.abs(area)[:, None, None, None, None]  # whichever way round its corners are
+    factor *= np.abs(area)[:, None, None, None, None]  # for either orientation of the corners
     n, m = slope.shape[1], area.size
     reference = ((slope * weight).reshape(2 * n, -1) @ slope.reshape(2 * n, -1).T).reshape(2, n, 2, n).swapaxes(1, 2)
     spread = np.zeros((2, 2, 2, 2, n, 2, n, 2))  # final order of the axes: transposing the sum takes ten times as long

@@ -26,7 +26,7 @@ HAT = 0.4  # half their width [m_n]
 # Least distance from the tip corner at which values are read [m_n]; chosen by the limit of plane strain, checked on a spur pair
 # against hexahedra.
 NEAREST = 0.01
-OFFSET = 0.2  # added to the distance to the tip corner before its logarithm is taken [m_n]
+OFFSET = 0.2  # offset of the distance from the tip corner before taking the logarithm [m_n]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

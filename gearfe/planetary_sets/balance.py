@@ -62,7 +62,7 @@ def balance(problem: Problem) -> tuple[Floats, Floats]:
         settled = _settled(problem, active, unit, most, at_once)
         if settled is not None:
             return settled
-    raise RuntimeError("the loads of the set's meshes did not settle: change the load or the position a little")
+    raise RuntimeError("the loads of the set did not converge: change the load or the position slightly")
 
 
 def _settled(problem, active, unit, most, at_once):
@@ -80,7 +80,7 @@ def _settled(problem, active, unit, most, at_once):
         carried = np.where(active, np.maximum(new, floor), 0.0)  # a face without any load has a force of exactly 0
         if not flips.any() and np.abs(carried - force).max() < SETTLED * unit:
             return new, motion
-        if not at_once:  # first what pulls, then what overlaps
+        if not at_once:  # first remove tensile contacts, then add overlaps
             flips &= np.arange(new.size) == np.argmin(np.where(pulls, new, 0.0) if pulls.any() else np.where(overlaps, free, 0.0))
         force = np.where(flips, floor, carried)
         active = active ^ flips
@@ -123,11 +123,11 @@ def _likely(problem, unit):
             "the flexibility between the contacts of the set is not positive definite: refine the meshes, or give wider pads"
         ) from error
     push = solve_triangular(upper, problem.gap + problem.coefficient / 2 * even, trans="T")
-    # lift the gaps by some motion: the balance makes any constant of G q free of work
+    # shift the gaps by a rigid motion, which does no work because of the balance
     scale = STIFF * np.abs(upper).max()
     system, right = np.vstack([upper, scale * problem.closing.T]), np.append(-push, scale * problem.load)
     force, _ = nnls(system, right, maxiter=50 * n)
     rest = problem.closing.T @ force - problem.load
     if np.abs(rest).max() > 1e-3 * unit:
-        raise RuntimeError("no compressive mesh forces balance this set: a body is unsupported")
+        raise RuntimeError("no compressive mesh forces balance this set: a body has no support")
     return force > 1e-9 * unit

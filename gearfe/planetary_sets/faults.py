@@ -23,7 +23,7 @@ def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, b
     teeth[1] = first - teeth[1]
     pair_flanks = {}
     for k, (side, flank, tooth) in enumerate(zip(("pinion", "wheel"), flanks, teeth, strict=True)):
-        back = -1 if inner and k == 0 else 1  # a tooth that lies behind on one side is ahead on the other
+        back = -1 if inner and k == 0 else 1  # a tooth behind on one side is ahead on the other side
         moved = tuple(back * flank.pitch[t % len(teeth[k])] for t in tooth.tolist()) if flank.pitch else ()
         scaled = tuple(flank.tooth_scale[t % len(teeth[k])] for t in tooth.tolist()) if flank.tooth_scale else ()
         centre = flank.eccentric_tooth if k == 0 else first - flank.eccentric_tooth

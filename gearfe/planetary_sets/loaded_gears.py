@@ -16,7 +16,7 @@ from .case import PlanetaryCase
 from .rim_supports import RimSupports
 from .standing import Standing, directions, standing, tooth_angles
 
-NEAR = 1.5  # times the approach of a mesh: gaps up to there are pressed together
+NEAR = 1.5  # gaps up to this multiple of the approach can close
 
 
 def check_meshable(case: PlanetaryCase) -> None:

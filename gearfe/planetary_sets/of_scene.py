@@ -42,7 +42,7 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
     for name, pair in zip(given.pairs, (outer, inner), strict=True):
         if pair.supports or pair.misalignment:
             raise ValueError(
-                f"{scene.name} [set]: pair {name!r} has shafts, springs or misalignment, which a set does not know: its gears "
+                f"{scene.name} [set]: pair {name!r} has shafts, springs or misalignment, which a set does not support: its gears "
                 "are held by pin_N_per_um, floating and [ring.support]; leave those out"
             )
     file = f"{scene.name}.toml"

@@ -27,7 +27,7 @@ from .pads import Pads, among, by_teeth, pads_on
 from .rim_supports import RimBed, RimSupports, check_support
 from .whole_gear import PLACES, WholeGear, between_teeth, motion
 
-SURE = 1e-9  # below this part of the largest singular value of the pads' balance, the ring can move without force
+SURE = 1e-9  # singular values below this part of the largest mean that the ring can move freely
 
 
 NONE_2, NONE_3 = np.zeros((0, 0)), np.zeros((0, 0, 0))  # empty arrays of a ring without pads

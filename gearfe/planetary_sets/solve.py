@@ -145,7 +145,7 @@ def _position(of: Set, meshes: Meshes, i: int) -> Position:
             return position
         loads, reach = new, np.where(short, 2 * approach, reach)
     if short.any():
-        raise RuntimeError("the teeth of a mesh deflect so much that ever more pairs touch: give shorter cracks or less load")
+        raise RuntimeError("the deflection brings more and more tooth pairs into contact: give shorter cracks or a smaller load")
     return position
 
 

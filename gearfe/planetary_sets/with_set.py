@@ -142,7 +142,7 @@ def _check(machine, mesh, pair, direction):
         raise ValueError("mesh {} has base radii of {} mm, but in the set of {} mm".format(mesh.name, *told))
     if any(abs(x * math.sin(direction) - y * math.cos(direction)) > SAME for x, y in zip(along, across, strict=True)):
         raise ValueError(
-            f"mesh {mesh.name} does not lie as in the set: give the machine's planets the set's angles as `planet_angles`"
+            f"mesh {mesh.name} has another direction than in the set: build the machine with the planet_angles of the set"
         )
     if mesh.damage:
         raise ValueError(f"mesh {mesh.name} has damage besides the set: give it to the PlanetaryCase, and a healthy machine here")

@@ -60,7 +60,7 @@ def find(scene, case=None, *, duration=0.2, phases=64):
     compared = [(name, None) for name in scene.pairs]
     compared += [(name, findings.case) for name, pair in scene.pairs.items() if findings.case in pair.damage]
     moves = bool(scene.machine and duration)
-    done = 0.8 if moves else 1.0  # vibration is the rest of the work
+    done = 0.8 if moves else 1.0  # the remaining share of the progress bar is vibration
     with part("", 0.0, 0.7 * done):
         for name, which in steps(compared, lambda key: f"{key[0]}, {key[1] or 'healthy'}"):
             with _counted(findings, f"stiffness of {name}, {which or 'healthy'}"):

@@ -99,7 +99,7 @@ def _bands(runs, curve):
         return ""
     try:
         bands = curve_bands(runs, curve)
-    except ValueError:  # other phases in other cases
+    except ValueError:  # the cases have different phases
         return ""
     phase, (low, middle, high) = bands["phase"].to_numpy(), bands[curve].to_numpy()
     figure = blank("mesh phase", f"{curve} [{runs.units[curve]}]", **SIZE)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 SIDES = ((1, 2, 3, 0), (0, 3, 2, 1), (0, 1, 3, 2), (0, 2, 1, 3))  # corners of a tet's faces seen from outside, and the one inside
-DEEP = 2.2  # modules of the body below the root circle that are shown
+DEEP = 2.2  # depth of the body below the root circle that is shown [m_n]
 
 
 def surface(cells, points):

@@ -61,7 +61,7 @@ def batch(
     >>> batch([{"x": 2.0}, {"x": -1.0}], work=float.fromhex, workers=0)
     Traceback (most recent call last):
     ...
-    ValueError: workers = 0, but it is a whole number from 1 on
+    ValueError: workers = 0, but it must be a whole number from 1 on
     """
     check_workers(workers)
     work = work or mesh_stiffness

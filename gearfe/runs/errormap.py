@@ -163,7 +163,7 @@ def _one(sample, loads, phases):
         how = replace(how, phases=(inside[1:] + inside[:-1]) / 2)
         truth, curves = solve(case, how), {}
         for name, (method, variants) in CRACKED.items():
-            with contextlib.suppress(ValueError):  # no beam is left: the model has no value here
+            with contextlib.suppress(ValueError):  # the crack leaves no beam, so that the model has no value
                 curves[name] = solve(case, replace(how, method=method, variants=variants))
         rows += [sample | {"load": load} | _errors(truth, curves, i) for i, load in enumerate(loads)]
     return rows

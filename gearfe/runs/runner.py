@@ -19,7 +19,7 @@ from ..core.steps import reached
 from .processes import processes
 
 AHEAD = 2  # jobs submitted per process, so that none waits
-TIMEOUT = "20s"  # for a scheduler to answer
+TIMEOUT = "20s"  # time limit for the answer of a scheduler
 REFRESH = 5.0  # s between two looks at how many workers a scheduler has
 
 
@@ -148,7 +148,7 @@ def _on_cluster(work, jobs, address):
                 result = future.result()
             except KilledWorker:
                 result = None
-            if time.monotonic() - asked > REFRESH:  # workers come and go
+            if time.monotonic() - asked > REFRESH:  # the number of workers can change
                 threads, asked = sum(client.nthreads().values()), time.monotonic()
             for more in send(AHEAD * threads - len(under_way) if threads else 1):
                 ended.add(more)

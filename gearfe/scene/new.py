@@ -17,7 +17,8 @@ HEAD = """\
 # Lines that begin with # and no space are what else it can say: take the # away, and they hold.
 
 """
-RING = {"addendum": 0.8, "dedendum": 1.25, "rack_tip_radius": 0.2}  # a full addendum may reach into the pinion's fillet
+# reduced addendum, because a full one may reach into the pinion's fillet
+RING = {"addendum": 0.8, "dedendum": 1.25, "rack_tip_radius": 0.2}
 RACK = {"addendum": 1.0, "dedendum": 1.25, "rack_tip_radius": 0.38}
 
 

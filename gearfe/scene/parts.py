@@ -196,7 +196,9 @@ def _flank(row, gear):
         if length is None:
             continue
         if not length < whole:
-            raise ValueError(f"{end}_start_length_mm = {length}, but the flank is {whole:.4g} mm of roll long: give a part of it")
+            raise ValueError(
+                f"{end}_start_length_mm = {length}, but the flank is {whole:.4g} mm long in roll length: give a smaller value"
+            )
         fields[f"{end}_start_roll"] = roll + sense * gear.outward * length
     for name, amounts in (("table", "table_removed"), ("wear", "wear")):
         if f"{name}_roll" in fields:

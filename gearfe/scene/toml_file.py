@@ -23,7 +23,7 @@ def read_toml(file: Any) -> dict[str, Any]:
     """Tables of a file (a path, or a resource of the package); ValueError that names it if it is not TOML."""
     try:
         return _renamed(file.name, tomllib.loads(file.read_text(encoding="utf-8-sig")))
-    except (OSError, ValueError, RecursionError) as error:  # ValueError: no UTF-8, no TOML, whole numbers of 4300 digits
+    except (OSError, ValueError, RecursionError) as error:  # ValueError: no UTF-8, no TOML, integers of more than 4300 digits
         raise ValueError(f"{file.name}: not readable as TOML: {error}") from error
 
 

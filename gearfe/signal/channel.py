@@ -70,7 +70,7 @@ def _axis(path, found, channel, names, factors, rate=None):
     if not chosen:
         return None
     if len(chosen) > 1:
-        raise ValueError(f"{path}: {' and '.join(map(repr, chosen))}; keep one of them")
+        raise ValueError(f"{path}: {' and '.join(map(repr, chosen))} exclude each other; give one of them")
     values, unit = found.vectors[chosen[0]], found.units.get(chosen[0], "")
     if not unit and is_number(rate) and len(values) > 1:
         step = float(values[-1] - values[0]) / (len(values) - 1)

@@ -18,7 +18,7 @@ def samples(name: str, values: Any) -> Floats:
     ValueError if they are not a row of two or more finite numbers, or the largest is not between `SMALLEST` and `LARGEST`.
     """
     if np.ma.is_masked(values):
-        raise ValueError(f"{name} has masked values: give numbers without holes")
+        raise ValueError(f"{name} has masked values: give numbers without masked entries")
     try:
         values = np.array(values)
     except ValueError as error:  # rows of different lengths
@@ -29,11 +29,13 @@ def samples(name: str, values: Any) -> Floats:
         )
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
-        raise ValueError(f"{name}: sample {bad[0]} is {values[bad[0]]}; cut or mend the {bad.size} samples that are not finite")
+        raise ValueError(
+            f"{name}: sample {bad[0]} is {values[bad[0]]}; remove or replace the {bad.size} samples that are not finite"
+        )
     values = values.astype(float)
     most = float(np.abs(values).max())
     if most >= LARGEST or 0 < most < SMALLEST:
-        raise ValueError(f"{name}: the largest value is {most:g}, no quantity that is measured: scale it to its unit")
+        raise ValueError(f"{name}: the largest value is {most:g}, not a plausible measured value: scale it to its unit")
     return values
 
 

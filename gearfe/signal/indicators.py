@@ -111,7 +111,7 @@ def _below(mesh_frequency, fault_frequency):
     if not 0 < fault_frequency < mesh_frequency:
         raise ValueError(
             f"fault_frequency = {fault_frequency} Hz, but sidebands need one between 0 and f_m = {mesh_frequency} Hz: "
-            "how often the damaged tooth meshes in a second, not how often any tooth does"
+            "the frequency at which the damaged tooth is in mesh, not the mesh frequency"
         )
 
 

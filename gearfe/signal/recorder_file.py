@@ -170,7 +170,7 @@ def parquet_file(path: StrPath) -> Found:
         name, unit = named(field.name)
         if pa.types.is_timestamp(field.type) or pa.types.is_duration(field.type):
             if column.null_count:
-                raise ValueError(f"{path}: {column.null_count} times of {name!r} are missing; cut or mend these rows")
+                raise ValueError(f"{path}: {column.null_count} times of {name!r} are missing; remove or replace these rows")
             count = column.cast(pa.int64()).to_numpy()
             seconds = (count - count[:1]) * {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[column.type.unit]
             recording.take_clock(path, name, column.type, seconds, 4)

@@ -208,7 +208,7 @@ def channels(path: StrPath, header: str | None = None) -> Found:
         raise ValueError(f"{path}: no vector of real numbers; it has {recording.told()}")
     strange = [name for name, unit in recording.units.items() if not unit.isprintable() or len(unit) > LONGEST]
     if strange:
-        raise ValueError(f"{path}: the unit of {strange[0]!r} is no text one can read: the file is damaged")
+        raise ValueError(f"{path}: the unit of {strange[0]!r} is not readable text: the file is damaged")
     return recording
 
 
@@ -225,6 +225,6 @@ def _choose(path, found, column):
     if column is None and found.hint:
         raise ValueError(f"{path}: {found.hint}, or a column")
     if not names:
-        raise ValueError(f"{path}: no column of values, only {' and '.join(map(repr, found.vectors))}; name one otherwise")
+        raise ValueError(f"{path}: no column of values, only {' and '.join(map(repr, found.vectors))}; rename one of them")
     asked = f"no column {column!r}" if column is not None else f"{len(names)} columns of values"
     raise ValueError(f"{path}: {asked}; it has {found.told()}: give one as column=")

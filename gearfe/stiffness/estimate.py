@@ -3,9 +3,9 @@
 import numpy as np
 
 COARSER = {"fe": 0.5, "ritz": 0.7}  # resolution of the coarser solve, relative to that of the curve
-# Least regularity of the displacement, ``r**EXPONENT`` at the corners of a mesh: the stress is bounded there. The fields of loads
-# are removed, and edges shorten geometrically towards the tip of a crack.
-EXPONENT = 1
+# Least order of convergence of k in the edge length: 2 of finite elements (`fe`). The energy model has polynomials of order 4.
+# The coarser solve of the energy model has polynomials of one order less besides.
+ORDER = {"fe": 2, "ritz": 4}
 SAFETY = 3.0  # P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: where two meshes are compared
 FINER = 2.0  # times finer hats at tip corners; their error falls at least linearly with their length
 STEPS = 16  # fixed phases per base pitch
@@ -30,29 +30,11 @@ def fixed_phases(phase, periodic):
     return np.unique(first[:, None] + np.arange(-reach, reach + 2)) / STEPS
 
 
-def lowered(method, order=None):
-    """Return by which factor the error of a coarser solve is larger than that of the curve, at least.
-
-    With a field of regularity ``r**s`` at the corners of a mesh, edges h and order p, k errs as ``h**(2 s) / p**(4 s)``.
-
-    References
-    ----------
-    I. Babuska, M. Suri, RAIRO Model. Math. Anal. Numer. 21 (1987) 199-238.
-    """
-    orders = 1.0 if order is None else order / coarser_order(order)
-    return COARSER[method] ** (-2 * EXPONENT) * orders ** (4 * EXPONENT)
-
-
-def coarser_order(order):
-    """Return the order of the polynomials of the coarser solve."""
-    return max(order - 1, 2)
-
-
-def estimate(phase, periodic, k, coarse, finer, *, order=None):
+def estimate(phase, periodic, k, coarse, finer, *, energy):
     """Estimated discretisation error of `k` from a coarser solve, and from one with finer hats at tip corners.
 
-    Two solves differ by d and their errors have the ratio g (`lowered`): the smaller error is ``d / (g - 1)``, times `SAFETY`.
-    Because d can vanish by chance, its largest value at the phase itself and at the fixed phases within
+    Edges h and ``h / r`` whose results differ by d have the error ``d / (r**-p - 1)`` at h, with the least order of convergence
+    p; times `SAFETY`. Because d can vanish by chance, its largest value at the phase itself and at the fixed phases within
     `WINDOW` is taken, and at least the mean over the fixed phases within `MEAN`. Of finite elements, whose meshes of different
     size have nothing in common, the window is wider, and that mean is added.
 
@@ -70,8 +52,8 @@ def estimate(phase, periodic, k, coarse, finer, *, order=None):
         Of `fixed_phases`.
     k, coarse, finer : ndarray, shape (n + m,)
         At `phase` and then at its `fixed_phases` [N/m]; of the curve, the coarser solve and the one with finer hats.
-    order : int, optional
-        Order of the polynomials of the energy model; without, the curve is of finite elements.
+    energy : bool
+        Whether this is the energy model, not finite elements.
 
     Returns
     -------
@@ -82,19 +64,18 @@ def estimate(phase, periodic, k, coarse, finer, *, order=None):
     apart = np.abs(phase[:, None] - fixed_phases(phase, periodic))
     if periodic:
         apart = np.abs((apart + 0.5) % 1 - 0.5)
-    name = "fe" if order is None else "ritz"
+    name = "ritz" if energy else "fe"
     largest = np.where(apart <= WINDOW[name] + 1e-9, away[phase.size :], 0.0).max(axis=1)
     within = apart <= MEAN + 1e-9
     mean = (within * away[phase.size :]).sum(axis=1) / within.sum(axis=1)
     largest = np.maximum(largest, away[: phase.size])
-    doubt = largest + mean if order is None else np.maximum(largest, mean)
-    return SAFETY / (lowered(name, order) - 1) * doubt + FINER / (FINER - 1) * np.abs(k - finer)[: phase.size]
+    doubt = np.maximum(largest, mean) if energy else largest + mean
+    return SAFETY / (COARSER[name] ** -ORDER[name] - 1) * doubt + FINER / (FINER - 1) * np.abs(k - finer)[: phase.size]
 
 
 def other_solves(refine, order=None):
     """Options of the coarser solve and of that with finer hats; the energy model has an `order`."""
-    if order is None:
-        coarse = {"refine": COARSER["fe"] * refine}
-    else:
-        coarse = {"refine": COARSER["ritz"] * refine, "order": coarser_order(order)}
+    coarse = (
+        {"refine": COARSER["fe"] * refine} if order is None else {"refine": COARSER["ritz"] * refine, "order": max(order - 1, 2)}
+    )
     return coarse, {"hats": FINER}

@@ -132,7 +132,7 @@ def mesh_cycle(case: Case, how: Solve | None = None, *, curve: Callable[[Case, S
     """
     how = how or Solve()
     n = check_count(how.phases)
-    if how.method == "auto":  # one method for what is compared
+    if how.method == "auto":  # use one method for all compared cases
         how = replace(how, method=how.chosen(case)[0].name)
     how = replace(how, span="cycle")
     both = [_windows(case, side, n) for side in (0, 1)]
@@ -212,7 +212,8 @@ def _windows(case, side, n):
     if not teeth:
         return []
     span = case.pair.eps_alpha + case.overlap()
-    before = math.ceil((neighbours_of(case.pair) + FURTHER + MARGIN) * n)  # damage has an effect on this number of teeth
+    # number of teeth before the damaged one that its damage affects
+    before = math.ceil((neighbours_of(case.pair) + FURTHER + MARGIN) * n)
     length = before + math.ceil(span * n) + before
     entries = sorted(-tooth % z for tooth in teeth)
     breaks = [i for i, entry in enumerate(entries) if (entries[i - len(entries) + 1] - entry - 1) % z * n + n > length]
@@ -232,7 +233,8 @@ def _meetings(case, both, n):
     spans = {span for one in both[0] for two in both[1] for span in _overlaps((one, z_1 * n), (two, z_2 * n), cycles * n)}
     if sum(stop - start for start, stop in spans) > MOST:
         raise ValueError(
-            f"teeth of both gears differ, and the same two meet every {cycles} mesh cycles, more than {MOST:g} phases: give "
+            f"teeth of both gears differ, and the same pair of teeth meets every {cycles} mesh cycles, more "
+            f"than {MOST:g} phases: give "
             "fewer phases, or deviations of one gear"
         )
     return sorted(spans)
@@ -268,7 +270,7 @@ def _solved(curve, case, how, n, samples, position):
     found = [curve(case, replace(how, phases=np.arange(low, high) / n, span="tooth")) for low, high in spans]
     if len(found) > 1 and not all(isinstance(one, StiffnessCurve) for one in found):
         raise ValueError(
-            "a force law over several loads is of single teeth that differ, but here all teeth of a gear do: give one load"
+            "a force law over several loads allows single deviating teeth, but here all teeth of a gear deviate: give one load"
         )
     if len(found) > 1:
         bare = [replace(one, order=one.order[:0], force=one.force[:, :0], pressure=one.pressure[:, :0]) for one in found]

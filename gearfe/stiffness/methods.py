@@ -172,7 +172,7 @@ RING_FOUNDATIONS = {  # treatment of a ring's body by variants `foundation`
 def current(name: Any) -> Any:
     """Return the present name of a method, with a DeprecationWarning for a former one; anything else unchanged."""
     if isinstance(name, str) and name in FORMER:
-        from ..geometry.renamed import warn_renamed  # here: it loads numpy, and the command's help needs none
+        from ..geometry.renamed import warn_renamed  # imported here, because it loads numpy, which the help does not need
 
         warn_renamed(f"method {name!r}", repr(FORMER[name]))
         return FORMER[name]

@@ -18,7 +18,7 @@ from ..geometry.tooth.gear import Gear
 from .methods import METHODS, SUMS, having
 
 GIVEN = ("bulk", "smooth")
-SAME = 1e-8  # relative: influences of two contacts on each other that differ by less are equal
+SAME = 1e-8  # relative tolerance of symmetry
 NO_FLEXIBILITY = (
     "a plain sum of tooth pairs that do not feel each other: it has no flexibility of a gear between its contacts; use it as "
     "method = '{0}', or give one of {1}, a function f(gear, material, radius, tooth) -> (n, n), or a Flexibility"
@@ -218,7 +218,7 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Flo
     """Return the checked result of a user's function: real, finite and symmetric with the shape; else a ValueError."""
     try:
         returned = work()
-    except Exception as error:  # it may raise any error
+    except Exception as error:  # a user's function may raise any error
         raise ValueError(f"{where}: it failed with {type(error).__name__}: {error}") from error
     if isinstance(returned, Components):
         raise ValueError(

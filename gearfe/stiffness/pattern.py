@@ -63,7 +63,7 @@ def contact_pattern(
     """
     case = case_of(pair, force, material, torque=torque, **given)
     if case.several:
-        raise ValueError(f"force = {case.force!r}, but the pattern is that of one force")
+        raise ValueError(f"force = {case.force!r}, but a contact pattern needs a single force")
     check_integral(case, "ritz3d")
     phase = phase_array(phases, "cycle", case.pair, case.overlap())
     return pair_stiffness3d(case, phase)

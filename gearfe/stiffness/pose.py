@@ -9,7 +9,7 @@ from ..geometry.pair.modified import flank_contacts
 
 SHIFT = {"mean": 0.0, "pinion": 0.5, "wheel": -0.5}  # shift of the phase, in approaches over the base pitch
 SETTLED, PART = 1e-7, 1e-3  # largest last change of a phase, and as a part of the shift by the elastic approach (light loads)
-LEAST = 1e-13  # smallest change that is asked for, above the rounding of a phase
+LEAST = 1e-13  # smallest required change, above the rounding of a phase
 MOST = 20  # solves
 
 

@@ -118,7 +118,7 @@ def with_error(row, curves, case, how):
     for fine in curves:
         solved = [solve(fine.meta["force_N"] / width) for solve in solvers]
         k = (fine.meta["force_N"] / (1e-3 * contact.closing) for contact in solved)
-        doubt = estimate(phase, periodic, *k, order=order)
+        doubt = estimate(phase, periodic, *k, energy=order is not None)
         contact = fine.k * (MODEL + solved[0].left_out[: phase.size])
         meta = fine.meta | {"error_of_contact": contact.tolist()}
         out.append(replace(fine, error=doubt + contact, meta=meta))

@@ -54,7 +54,7 @@ def _numbers(path, line, texts, count):
     try:
         out = tuple(float(text) for text in texts)
     except ValueError as error:
-        raise ValueError(f"{path}, row {line}: {error}; a topography has no holes and no texts but its first") from error
+        raise ValueError(f"{path}, row {line}: {error}; every cell must be a number, except the first") from error
     if len(out) != count:
         raise ValueError(f"{path}, row {line}: {len(out)} numbers, but the first row makes it {count}")
     return out

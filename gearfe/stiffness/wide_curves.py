@@ -21,7 +21,7 @@ LESS = 2  # axial degrees less in that estimate
 # least order of convergence of finite elements in the edge length: layers are regular; the quads of a section are not, and from
 # one resolution to the next those at a hat may stay as they are
 ORDER = {"layers": 2, "section": 1}
-# P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 where two meshes are compared (layers), 1.25 where the order was seen (of
+# P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 for two meshes (layers), 1.25 where the order was seen (of
 # sections on three resolutions: tests/flexibility/test_section_error.py)
 SAFETY = {"layers": 3.0, "section": 1.25}
 

@@ -71,7 +71,7 @@ def loaded_phase(case):
     order = case.first_tooth
     if order is None:
         return 0.0
-    if case.missing:  # the pair behind a missing tooth carries the whole load, just before it leaves the path
+    if case.missing:  # the pair behind a missing tooth carries the whole load just before it leaves the path
         return (case.pair.eps_alpha - 1) * 0.9 - order
     phases = -order + case.pair.eps_alpha * (np.arange(64) + 0.5) / 64
     curve = solve(replace(case, damage=None, supports=None), Solve("ritz", phases))

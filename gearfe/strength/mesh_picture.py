@@ -10,8 +10,8 @@ from ..decks.solid_deck import FACES, DeckBody
 from ..figures.look import GEARS
 from .window import plotting
 
-HURT = "#d55e00"  # pits, and the rims of crack faces
-IN_FRONT = -1e5  # units of depth by which rims of cracks are drawn before what hides them
+HURT = "#d55e00"  # colours of pits and of the rims of crack faces
+IN_FRONT = -1e5  # units of depth by which rims of cracks are drawn in front of hiding surfaces
 NEAR = 1.6  # half height of a close-up relative to the size of the damage
 
 
@@ -61,7 +61,7 @@ def render_mesh(
                     line.mapper.SetResolveCoincidentTopologyToPolygonOffset()
                     line.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, IN_FRONT)
         plotter.camera.focal_point = focus
-        plotter.camera.position = focus + (3 if close_up == "pits" else 50) * half * view  # a ring's far side stays behind
+        plotter.camera.position = focus + (3 if close_up == "pits" else 50) * half * view  # hide the far side of a ring
         plotter.camera.up = (0.0, 1.0, 0.0)
         plotter.camera.parallel_projection = True
         plotter.camera.parallel_scale = half
@@ -120,7 +120,7 @@ def _surface(part):
     corners = np.array(FACES[len(part.cells)])
     sides = part.cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1)
     pits = part.faces.get("pits", sides[:, :0])
-    doubled = np.sort(np.hstack([sides, pits]), axis=0)  # a pit's face is there twice then
+    doubled = np.sort(np.hstack([sides, pits]), axis=0)  # faces of pits then occur twice
     _, first, count = np.unique(doubled, axis=1, return_index=True, return_counts=True)
     return _faces(part, sides[:, first[count == 1]])
 

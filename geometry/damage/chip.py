@@ -59,7 +59,7 @@ class Chip:
 
     _nouns: ClassVar[tuple[str, str]] = ("chip", "chips")
     _adjective: ClassVar[str] = "chipped"
-    _removes_contact: ClassVar[None] = None  # the flank is shorter, with a corner at its end
+    _removes_contact: ClassVar[None] = None  # a chip shortens the flank and adds a corner
     through: ClassVar[bool] = True
 
     def __post_init__(self) -> None:

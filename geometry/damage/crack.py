@@ -25,7 +25,7 @@ from .given import finite, tooth_and_side
 
 TANGENTS = {"30deg": math.pi / 6, "60deg": math.pi / 3}  # with the centre-line of the tooth
 STARTS = (*TANGENTS, "root", "middle")
-SLACK = 1e-9  # rounding of the open part of a crack
+SLACK = 1e-9  # tolerance for rounding of the open part of a crack
 SECTOR = 0.9  # part of a pitch within which a sector can be meshed with a polyline
 SHORTEST = 1e-4  # length of the shortest crack [m_n]: k falls by 1e-5, and meshes are not finer
 
@@ -304,7 +304,7 @@ def meshed_path(gear, crack):
     if length < SHORTEST * gear.m_n:
         least = f"leave it out, or give {SHORTEST * gear.m_n:.3g} mm or more"
         raise ValueError(
-            f"crack of {_size(crack)}: {length:.3g} mm long, too short for any mesh at m_n = {gear.m_n:g} mm; {least}"
+            f"crack of {_size(crack)}: {length:.3g} mm long, too short to be meshed at m_n = {gear.m_n:g} mm; {least}"
         )
     return path
 
@@ -328,7 +328,7 @@ def check_apart(gear, cracks):
             if tooth != other_tooth or width[1] <= other_width[0] or other_width[1] <= width[0]:
                 continue
             if side == other_side:
-                raise ValueError(f"two cracks on the {side} side of tooth {tooth}; one is enough")
+                raise ValueError(f"two cracks on the {side} side of tooth {tooth}; give one")
             near = np.abs(_sampled(path)[:, :, None] - _sampled(other)[:, None, :])
             if np.hypot(*near).min() < 0.1 * gear.m_n:
                 raise ValueError(f"two cracks of tooth {tooth} meet: the tooth breaks off; make one of them shorter")

@@ -13,7 +13,7 @@ def finite(noun: str, name: str, value: object) -> float:
 def tooth_and_side(tooth: object, side: object) -> int:
     """Return the number of a tooth; ValueError if it is not a whole number, or the side neither loaded nor unloaded."""
     if not is_whole(tooth):
-        raise ValueError(f"tooth = {tooth!r}, but it is a whole number")
+        raise ValueError(f"tooth = {tooth!r}, but it must be a whole number")
     if not isinstance(side, str) or side not in ("loaded", "unloaded"):
         raise ValueError(f"side = {side!r}, but it must be 'loaded' or 'unloaded'")
     return int(tooth)

@@ -7,7 +7,7 @@ import numpy as np
 from ..tooth.profile import arc_at, cartesian, flank, flank_normal, roll_at_arc
 from .hollow import centre_arc, union_length
 
-GRID = 400  # points of the quadrature across a hollow
+GRID = 400  # quadrature points across a hollow
 
 
 def hollow_frame(gear, one):
@@ -73,7 +73,7 @@ def _below(gear, one, s, z):
     p, q, h = np.einsum("ij,jsz->isz", dual, start)
     dp, dq, dh = (dual @ inward)[:, :, None]
     low, high = one._chord(p, q, dp, dq)
-    tip = np.maximum(gear.outward * (roll - gear.roll_a), 0.0)[:, None]  # beyond the tip the body begins deeper
+    tip = np.maximum(gear.outward * (roll - gear.roll_a), 0.0)[:, None]  # beyond the tip, the surface of the body is deeper
     low = np.maximum(low, tip)
     high = np.minimum(high, (-deep - h) / dh)  # dh < 0: down to the bottom
     ok = high > low

@@ -37,7 +37,7 @@ class MissingTooth:
 
     _nouns: ClassVar[tuple[str, str]] = ("missing tooth", "missing teeth")
     _adjective: ClassVar[str] = "missing"
-    _removes_contact: ClassVar[None] = None  # it removes the whole tooth
+    _removes_contact: ClassVar[None] = None  # a missing tooth has no contact to remove
     through: ClassVar[bool] = True
     side: ClassVar[str] = "loaded"
 

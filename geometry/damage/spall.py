@@ -15,7 +15,7 @@ from .hollow import in_circle, on_line, profile, warning_of
 
 LEAST, LONGEST = 1e-6, 1e6  # sides [mm]
 QUARTER = 8  # parts of a rounded corner that is drawn
-CORNERS = (1, 1), (-1, 1), (-1, -1), (1, -1)  # towards which half side they lie, counter-clockwise
+CORNERS = (1, 1), (-1, 1), (-1, -1), (1, -1)  # signs of the corners, counter-clockwise
 
 
 @dataclass(frozen=True, slots=True)

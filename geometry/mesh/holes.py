@@ -153,7 +153,9 @@ def _attempt(gear, pits, crack, drawn, teeth, size, strips, stretch):
 def _check_place(gear, pits, crack):
     places = {defect.tooth % gear.z for defect in (*pits, *([] if crack is None else [crack]))}
     if len(places) > 1:
-        raise ValueError(f"damage on teeth {sorted(places)}, but holes are cut into one tooth at a time: give those of one")
+        raise ValueError(
+            f"damage on teeth {sorted(places)}, but holes can be cut into one tooth only: give the damage of one tooth"
+        )
     for pit in pits:
         least = centre_arc(gear, pit) - pit.reach[0]
         if least < arc_at(gear, gear.roll_f):
@@ -193,7 +195,7 @@ def _opened(gear, crack, made):
     away = _distance(made.points[:2], path)
     on = (away[walls] < 1e-6 * gear.m_n).all(axis=0)
     if not on.any():
-        raise RuntimeError("the mesh lost the crack: change refine")
+        raise RuntimeError("the mesh does not contain the crack: change refine")
     free = np.setdiff1d(walls[:, on], walls[:, ~on])
     free = free[np.hypot(*(made.points[:2, free] - path[:, -1:])) > 1e-6 * gear.m_n]
     double = np.arange(made.points.shape[1])

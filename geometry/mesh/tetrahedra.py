@@ -97,7 +97,7 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
             mesh.generate(3)
         except Exception as error:  # gmsh itself raises just Exception
             raise UnmeshedError(
-                f"gmsh cannot mesh this solid: {error}; raise refine, or move what nearly touches apart"
+                f"gmsh cannot mesh this solid: {error}; increase refine, or increase the distance of surfaces that nearly touch"
             ) from error
         node_tags, coords, _ = mesh.getNodes()
         place = np.full(int(node_tags.max()) + 1, -1, dtype=np.int64)

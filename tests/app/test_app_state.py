@@ -110,7 +110,7 @@ REFUSED = {
     'z = 21\n[flank.p]\ngear = "pinion"\nprofile_slope_um = 3.0': "flank.pinion.profile_slope_um = 3.0",
     'z = 21\n[[crack]]\ncase = "damaged"\ngear = "pinion"\nlevel = 0.2\ntooth = 5': "2 tables [[crack]]",
     'z = 21\n[machine]\nmodel = "helical_pair"\nspeed_rpm = 100.0\ntorque_Nm = 7.0\nrunout_um = 3.0': "machine helical_pair",
-    "z = 300": "this page takes 6 to 160",
+    "z = 300": "this page accepts 6 to 160",
     'z = 21\n[[pits]]\ncase = "damaged"\ngear = "pinion"\nradius_mm = 21.0\nfirst_mm = 3.0\naxes_mm = [0.5, 0.5]\n'
     "depth_mm = 0.1\nangle_deg = 30.0": "pits.angle_deg = 30.0",
     'z = 21\n[[pits]]\ncase = "damaged"\ngear = "pinion"\nradius_mm = 21.0\nmiddle_mm = 3.0\naxes_mm = [0.5, 0.5]\n'
@@ -123,7 +123,7 @@ def test_what_no_field_holds_is_refused_by_its_name(more):
     text = toml(tables_of(START))
     head, _, tail = more.partition("\n[")
     text = text.replace("z = 21", head, 1) + (f"[{tail}\n" if tail else "")
-    with pytest.raises(ValueError, match=r"new\.toml|page takes") as caught:
+    with pytest.raises(ValueError, match=r"new\.toml|page accepts") as caught:
         read(NEW, text)
     assert REFUSED[more] in str(caught.value)
 

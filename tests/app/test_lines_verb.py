@@ -99,11 +99,11 @@ def test_signals_take_the_frequencies_of_a_gear(tmp_path, capsys):
     assert "mesh frequency + fault frequency" in told
     assert "3 of 3 lines of 10 times the local median are named" in told
     assert main(["signal", str(tmp_path / "a.csv"), "--gear", "idler_out"]) == 1
-    assert "give --scene too" in capsys.readouterr().err
+    assert "give --scene, too" in capsys.readouterr().err
 
 
 CHANGES = [  # what is changed in the tables of two stages, and what is said of it
-    ({"pair": {"slow": {"force_N": 3.0}}}, r"\[pair.slow\] force_N: it is \d.* N by the torque of the gearbox; leave it out"),
+    ({"pair": {"slow": {"force_N": 3.0}}}, r"\[pair.slow\] force_N or torque_Nm: the gearbox gives \d.* N; leave both out"),
     ({"pair": {"slow": {"gear_1": "d", "gear_2": "c"}}}, r"\[pair.slow\]: gear_1 must drive, but power flows from 'c' to 'd'"),
     ({"shaft": {"two": {"gears": ["b", "a"]}}}, r"\[shaft.two\] gears: 'a' is on \[shaft.one\] already"),
     ({"shaft": {"two": {"gears_at_mm": [60.0, 60.0]}}}, r"give each gear a different position"),

@@ -28,7 +28,7 @@ def test_a_duration_that_cannot_be(value, monkeypatch, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (["-o", ""], "an empty name of a folder"),
+        (["-o", ""], "the name of the folder is empty"),
         (["-o", "out", "--scheduler", ""], "scheduler = '', but give the address"),
         (["-o", "out", "--scheduler", " "], "scheduler = ' ', but give the address"),
         (["-o", "out", "--workers", "0"], "workers = 0"),

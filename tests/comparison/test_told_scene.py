@@ -35,7 +35,7 @@ def test_all_of_a_scene_is_told(everything, capsys):
         "2 mm crack at 60 degrees in the pinion's tooth 0; solved by ritz3d: cracks change along the width",
         "5 pits in the pinion's tooth 0",
         "machine: helical_pair, 1500 rpm",
-        "assumed: bore 9.2 mm",
+        "assumed: bore radius 9.2 mm",
     ):
         assert words in text
 

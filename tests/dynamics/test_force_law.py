@@ -117,7 +117,7 @@ def test_what_is_no_law_is_refused():
         gf.ForceLaw.of([one])
     with pytest.raises(ValueError, match="two or more, all different"):
         gf.ForceLaw.of([one, one])
-    with pytest.raises(ValueError, match="does not press the mesh deeper"):
+    with pytest.raises(ValueError, match="is not larger than under the smaller load"):
         gf.ForceLaw.of([curve(200.0, 1e-6, 1e8), curve(100.0, 2e-6, 1e8)])
     with pytest.raises(ValueError, match="same phases"):
         gf.ForceLaw.of([one, curve(200.0, 2e-6, 1e8, phases=9)])

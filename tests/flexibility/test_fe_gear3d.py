@@ -140,7 +140,7 @@ def test_herringbone_halves_have_their_own_cracks(steel):
     assert_allclose(one, two, rtol=1e-7, err_msg="the halves are mirror images")
     assert (one < 0.995 * whole).all()
     assert (one > 1.005 * both).all()
-    with pytest.raises(ValueError, match="but the groove of 1 mm"):
+    with pytest.raises(ValueError, match="relief groove of 1 mm"):
         curve_of(steel, {"pinion": [gf.Crack(level=0.5, width=(4.1, 4.9))]}, **run)
 
 

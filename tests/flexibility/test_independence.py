@@ -7,7 +7,7 @@ import gearfe
 
 HOME = Path(gearfe.__file__).parent
 SECTIONS = {
-    *("core.material", "geometry.kept", "geometry.tooth.gear", "geometry.tooth.profile"),
+    *("core.material", "geometry.aliases", "geometry.kept", "geometry.tooth.gear", "geometry.tooth.profile"),
     *("geometry.damage.chip", "geometry.damage.crack", "geometry.damage.front", "geometry.damage.missing"),  # how they are drawn
     *("flexibility.plane", "flexibility.hertz"),  # teeth solved, interpolation, deflection across the normal; half-plane
     *("flexibility.solid", "flexibility.halfspace", "flexibility.solved"),  # patches of flanks; what was solved before

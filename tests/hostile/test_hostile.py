@@ -255,7 +255,7 @@ def commands(tmp_path):
     yield ["compare", scene, "--cases", "--case", "mild"], ["cases"]
     yield ["compare", scene, "--model", str(tmp_path / "none.csv")], ["cannot read", "none.csv"]
     yield ["signal", str(tmp_path / "none.csv")], ["cannot read"]
-    yield ["signal", str(tmp_path)], ["format", "cannot read"]
+    yield ["signal", str(tmp_path)], ["no records"]
     yield ["signal", "x.xlsx"], ["no format"]
     yield [], ["required"]
     yield ["stifness", scene], ["invalid choice"]

@@ -12,7 +12,7 @@ from test_rim import pads_ends
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements.elasticity import HeldSection
-from gearfe.flexibility.finite_elements.fe import _face_columns
+from gearfe.flexibility.finite_elements.fe import face_columns
 from gearfe.flexibility.finite_elements.solver import factor
 from gearfe.geometry.mesh import section_mesh
 from gearfe.geometry.mesh.both_flanks import _marked
@@ -47,7 +47,7 @@ def direct(gear, cracks, teeth, monkeypatch, support=None):
         at = np.abs(places - cartesian(radius, angle + turn)[:, None]).max(axis=0).argmin()
         x, y = -flank_normal(gear, roll)
         load[2 * at, k], load[2 * at + 1, k] = math.cos(turn) * x + math.sin(turn) * y, math.cos(turn) * y - math.sin(turn) * x
-    load = np.hstack([load, _face_columns(made).toarray()])
+    load = np.hstack([load, face_columns(made).toarray()])
     edge = np.flatnonzero(np.abs(np.hypot(*places) - gear.held) < 1e-9 * gear.held)
     angle, out, moved = np.arctan2(*places[:, edge]), [], np.zeros(load.shape)
     for nodes in (edge, *([edge[support.covers(gear, places[:, edge])]] if support else [])):

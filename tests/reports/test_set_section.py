@@ -58,4 +58,4 @@ def test_what_cannot_be_solved_is_said(tmp_path):
     found, notes = find_set(loaded(tmp_path, SCENE + pits + held), "spalled")
     assert not found
     assert len(notes) == 2
-    assert "springs or misalignment, which a set does not know" in notes[0]
+    assert "springs or misalignment, which a set does not support" in notes[0]

@@ -148,7 +148,7 @@ def test_a_relief_may_start_at_a_length_below_the_tip(tmp_path, gear):
     assert_allclose(form.removed(body.roll_a + inside * 2.0), 0.0, atol=1e-12)
     assert_allclose(form.removed(body.roll_f - inside * 0.75), 0.004, rtol=1e-9)
     path.write_text(own + f"[flank.one]\ngear = '{side}'\n" + lengths.replace("2.0", "200"))
-    with pytest.raises(ValueError, match=r"tip_start_length_mm = 200.*mm of roll"):
+    with pytest.raises(ValueError, match=r"tip_start_length_mm = 200.*mm long in roll length"):
         gf.load_scene(path)
     path.write_text(own + f"[flank.one]\ngear = '{side}'\n" + lengths + "tip_start_diameter_mm = 70\n")
     with pytest.raises(ValueError, match="with 2 starts"):

@@ -17,7 +17,7 @@ ROWS = [
     ([], r"average: values of shape \(0,\)"),
     ([[]], "average: values of shape"),
     (TURN.reshape(2, -1), r"average: values of shape \(2, 256\)"),
-    (1e200 * TURN, "average: the largest value is 1.*, no quantity that is measured"),
+    (1e200 * TURN, "average: the largest value is 1.*, not a plausible measured value"),
     (1e-200 * TURN, "average: the largest value is"),
     (1j * TURN, "average: values .* type complex128"),
     (np.full(512, np.inf), "average: sample 0 is inf"),
@@ -27,7 +27,7 @@ ROWS = [
     (3.0, r"average: values of shape \(\)"),
     ([[1.0], [1.0, 2.0]], "average: give a row of real numbers"),
 ]
-COUNTS = [(24.0, "give teeth = 24$"), (24.5, "it is a whole number"), (True, "teeth = True"), ("24", "teeth = '24'"),
+COUNTS = [(24.0, "give teeth = 24$"), (24.5, "must be a whole number"), (True, "teeth = True"), ("24", "teeth = '24'"),
           (None, "teeth = None"), (-3, "teeth = -3"), (10**30, "teeth = 1000"), (math.nan, "teeth = nan")]  # fmt: skip
 
 

@@ -74,7 +74,7 @@ EVEN = [f"{i / 1000:.3f},{i}" for i in range(20)]
         (with_rows(EVEN, "time [s],a"), {}, "no unit for 'a'; give one"),
         (with_rows(EVEN), {"unit": "g"}, "units N, g for 'a'; give one"),
         (with_rows(EVEN, "time,a [N]"), {}, r"column 'time' has no unit, but must state one of s, ms, us: 'time \[s\]'"),
-        (with_rows(EVEN, "time [s],t [s]"), {}, "no column of values, only 'time' and 't'; name one otherwise"),
+        (with_rows(EVEN, "time [s],t [s]"), {}, "no column of values, only 'time' and 't'; rename one of them"),
         (with_rows(EVEN, "angle [turns],a [N]"), {"rate": 1}, "must state one of rad, deg"),
         (with_rows(["1", "2"], "a [N]"), {}, "states no sampling rate: add a column"),
         (with_rows(EVEN[:5] + EVEN[6:]), {}, r"sample \d+ at 0\.\d+ s does not fit a step"),

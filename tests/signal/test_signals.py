@@ -112,7 +112,7 @@ def test_displacement_from_acceleration(n):
     assert found.unit == "m"
     assert_allclose(found.values, sine(3e-6, 480.0, n, rate), atol=1e-15)
     for arguments, said in (
-        ((0, 10.0), "times = 0, but it is a whole number from 1 on"),
+        ((0, 10.0), "times = 0, but it must be a whole number from 1 on"),
         ((2, 0.0), "above = 0.0, but give a positive number of Hz"),
         ((2, 3000.0), "above = 3000.0 Hz, but give one between 0 and"),
     ):
@@ -123,7 +123,7 @@ def test_displacement_from_acceleration(n):
 @pytest.mark.parametrize(
     ("values", "options", "message"),
     [
-        ([1.0, np.nan, 2.0], {}, "case: sample 1 is nan; cut or mend the 1 samples"),
+        ([1.0, np.nan, 2.0], {}, "case: sample 1 is nan; remove or replace the 1 samples"),
         ([[1.0, 2.0]], {}, r"case: values of shape \(1, 2\)"),
         ([1.0], {}, r"give a row of two or more real numbers"),
         ([1j, 2.0], {}, "real numbers"),
@@ -135,7 +135,7 @@ def test_displacement_from_acceleration(n):
         ([1.0, 2.0], {"rate": 1e-320}, "case: rate = 1e-320"),
         ([1.0, 2.0], {"rate": 10**400}, "case: rate = 10"),
         ([1.0, 2.0], {"shaft_frequency": True}, "case: shaft_frequency = True"),
-        ([1e200, 2.0], {}, r"case: the largest value is 1e\+200, no quantity that is measured"),
+        ([1e200, 2.0], {}, r"case: the largest value is 1e\+200, not a plausible measured value"),
         ([1e-200, 0.0], {}, "case: the largest value is 1e-200"),
         ([], {}, "case: values of shape"),
         ([1.0, 2.0], {"unit": " "}, "case: unit = ' ', but a signal needs one"),

@@ -65,7 +65,7 @@ def test_noise_makes_no_pulses():
 
 def test_refusals():
     tacho = shaft(chirp(10.0, 0.0))
-    with pytest.raises(ValueError, match="pulses = 0, but it is a whole number"):
+    with pytest.raises(ValueError, match="pulses = 0, but it must be a whole number"):
         gf.with_tachometer(tacho, tacho, 0)
     with pytest.raises(ValueError, match="0 pulses through 9 V, but an angle needs 4 or more"):
         gf.with_tachometer(tacho, tacho, level=9.0)

@@ -49,15 +49,15 @@ def test_the_estimate_by_hand():
     """The coarser solve differs at a fixed phase alone, a sixteenth of a pitch before phase 0, over the cycle's end.
 
     Of finite elements, with edges twice as long and order 2, the difference is three times the error, and the safety is 3. The
-    largest and the mean over a base pitch are added. The coarser energy model has edges 1 / 0.7 times as long and order 3, not 4;
-    its mean is the least. Finer hats add twice their difference at the phase.
+    largest and the mean over a base pitch are added; of the energy model that mean is the least. Finer hats add twice their
+    difference at the phase.
     """
     phase, k, coarse, hats = np.array([0.0, 0.5]), *np.zeros((3, 2 + 16))
     coarse[-1], hats[1], hats[-1] = 3.0, 1.0, 1.0
-    found = estimate(phase, True, k, coarse, hats)
+    found = estimate(phase, True, k, coarse, hats, energy=False)
     np.testing.assert_allclose(found, [3.0 + 3.0 / 16, 3.0 + 3.0 / 16 + 2.0], rtol=1e-12)
-    larger = 3 * 3.0 / (0.7**-2 * (4 / 3) ** 4 - 1)
-    found = estimate(phase, True, k, coarse, hats, order=4)
+    larger = 3 * 3.0 / (0.7**-4 - 1)
+    found = estimate(phase, True, k, coarse, hats, energy=True)
     np.testing.assert_allclose(found, [larger, larger / 16 + 2.0], rtol=1e-12)
 
 

@@ -144,8 +144,8 @@ def test_curves_are_written_and_read_back(tmp_path):
     ("given", "message"),
     [
         ({"sun": gf.Support()}, "give supports for 'pinion' and 'wheel'"),
-        ({"pinion": 2e5}, "neither a Support nor a Shaft"),
-        (gf.Support(), "give supports by gear"),
+        ({"pinion": 2e5}, "= 200000.0, but give a Support or a Shaft"),
+        (gf.Support(), "supports = Support.*but give a dict"),
         ({"pinion": OVERHUNG}, "tilts it under a force, with method = 'ritz'"),
     ],
 )

@@ -75,7 +75,7 @@ def gears(name):
 
 
 def pits(name):
-    """The same of the largest loss of stiffness [%] by the pits of a case, by `ritz3d`."""
+    """Return the same for the largest loss of stiffness [%] by the pits of a case, by `ritz3d`."""
     case, scene = PITTED[name], gf.load_scene(name)
     label, one = next(iter(scene.pairs.items()))
     run = {"span": "tooth", "phases": 96, "method": "ritz3d"}
@@ -95,7 +95,7 @@ def pits(name):
 
 
 def read():
-    """Committed rows."""
+    """Return the committed rows."""
     return [(r["scene"], r["pair"], r["change"], float(r["value"])) for r in rows_of(CSV)]
 
 

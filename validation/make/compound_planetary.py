@@ -76,14 +76,14 @@ def _response(case, law=HEARD):
 
 @cache
 def _whole(case, law=HEARD, channel=SENSOR):
-    """A channel as simulated: the angular acceleration of the ring."""
+    """Return a simulated channel, by default the angular acceleration of the ring."""
     one = signal(_response(case, law), SENSOR if channel == HOUSING else channel)
     return through_mode(one, law, frequencies()[0][1]) if channel == HOUSING else one
 
 
 @cache
 def heard(case, law=HEARD, channel=SENSOR):
-    """The same behind an anti-aliasing filter, at the rate of S2."""
+    """Apply an anti-aliasing filter to `_whole` and resample it at the rate of S2."""
     ratio = Fraction(round(RATE), round(SAMPLED))
     values = resample_poly(_whole(case, law, channel).values, ratio.numerator, ratio.denominator)
     length = DRAWN if isinstance(law, Draw) else SECONDS
@@ -275,7 +275,7 @@ SAID_OF = (
 
 
 def runs():
-    """Settings of the simulations."""
+    """Return the settings of the simulations."""
     return {HEARD: told(_response(None)) + f"; then an anti-aliasing filter and {RATE:g} samples per second"}
 
 

@@ -14,12 +14,12 @@ CASES = ("minor", "severe", "multi")
 
 
 def pair():
-    """The pair."""
+    """Return the gear pair of the scene."""
     return scene(NAME).pair().pair
 
 
 def frequencies():
-    """Turning frequency of the pinion and mesh frequency [Hz]."""
+    """Return shaft frequency of the pinion and mesh frequency [Hz]."""
     turn = scene(NAME).machine["speed_rpm"] / 60
     return {"f_r": turn, "f_m": turn * pair().gear_1.z}
 
@@ -40,7 +40,7 @@ def errors_simulated():
 
 
 def errors_measured():
-    """The same for its measurement."""
+    """Return the same for the measurement."""
     return {name: 100 * abs(1 - b / a) for name, a, b in (("f_r", 41.67, 41.23), ("f_m", 708.33, 707.48))}
 
 

@@ -29,7 +29,7 @@ def _found(case, law=OWN, channel=FORCE):
 
 @cache
 def _heard(case, law=OWN, channel=FORCE):
-    """A channel; of a draw with its noise, a part of the standard deviation of the minor case."""
+    """Return a channel; a draw adds noise, relative to the standard deviation of the minor case."""
     one = _clean(case, law, channel)
     if not isinstance(law, Draw):
         return one
@@ -185,7 +185,7 @@ BOTH = (
 
 
 def runs():
-    """Settings of the simulations."""
+    """Return the settings of the simulations."""
     return {OWN: told(_record("healthy")), LINEAR: told(_record("healthy", LINEAR))}
 
 

@@ -83,7 +83,7 @@ def measured_displacement():
 
 @cache
 def _indicators(pitted, crack):
-    """Indicators of the sun's angular acceleration with the pits of a case and a crack, and of the healthy machine."""
+    """Return indicators of the sun's angular acceleration with the pits of a case and a crack, or of the healthy machine."""
     if pitted is None or (pitted, crack) in GROWN:
         found = record_of(GROWN.get((pitted, crack)))
     else:
@@ -92,7 +92,7 @@ def _indicators(pitted, crack):
 
 
 def _grown(pitted, crack):
-    """The machine with the pits of a case and a crack of a level."""
+    """Return the machine with the pits of a case and a crack of a level."""
     damage = {
         name: {
             side: [replace(d, level=crack) if isinstance(d, gf.Crack) else d for d in found]
@@ -215,7 +215,7 @@ def _impulses(errors=ERRING):
 
 
 def _of_turning(indicator):
-    """Function of the errors: an indicator of the sun's angular acceleration by state."""
+    """Make a function of the errors: an indicator of the sun's angular acceleration by state."""
     mesh, fault = speeds()[2:]
     return lambda errors=ERRING: {
         name: signal(record_of(case, errors), TURNING).indicators(mesh, fault)[indicator] for name, case in STATES.items()
@@ -235,7 +235,7 @@ BOTH = "The verdicts use the errors that the scene assumes. The second column ha
 
 
 def runs():
-    """Settings of the simulations."""
+    """Return the settings of the simulations."""
     return {ERRING: told(record_of(None)), PERFECT: told(record_of(None, PERFECT))}
 
 

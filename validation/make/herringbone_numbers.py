@@ -44,7 +44,7 @@ def periods():
 
 
 def mesh_period():
-    """Printed 60 / (n_1 z_1) over the period of the mesh."""
+    """Return the printed 60 / (n_1 z_1) divided by the mesh period."""
     turn, _, mesh, _ = speeds()
     return {"60 / (n_1 z_1) as printed": mesh / (turn * scene(NAME).gears["sun"].z)}
 

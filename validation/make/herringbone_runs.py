@@ -57,7 +57,7 @@ def settled(own):
 
 @cache
 def heard(case, errors=ERRING, channel=TURNING):
-    """A channel; of a draw with its noise, a part of the standard deviation of the healthy one."""
+    """Return a channel; a draw adds noise, relative to the standard deviation of the healthy one."""
     one = clean(case, errors, channel)
     if not isinstance(errors, Draw):
         return one
@@ -67,7 +67,7 @@ def heard(case, errors=ERRING, channel=TURNING):
 
 @cache
 def clean(case, errors, channel):
-    """The same without noise."""
+    """Return the channel without noise."""
     one = signal(record_of(case, errors), RING if channel == HOUSING else channel)
     return through_mode(one, errors, speeds()[2]) if channel == HOUSING else one
 

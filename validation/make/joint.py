@@ -29,7 +29,7 @@ difference by chance is in parentheses. 'none': no input has such a relation. Th
 
 
 def home(name):
-    """Module of the page of a machine."""
+    """Return the module of the page of a machine."""
     return importlib.import_module(f"validation.make.{name}")
 
 
@@ -55,7 +55,7 @@ def said(name):
 
 
 def decides(name, held):
-    """The input whose larger and smaller half of draws differ most, in words."""
+    """Return the input whose larger and smaller half of draws differ most, in words."""
     if held.all() or not held.any():
         return ""
     best, names = 0, []
@@ -93,7 +93,7 @@ def counts(name):
 
 
 def sentence(name):
-    """Counts in words; empty without rows."""
+    """Return the counts in words; empty without rows."""
     every, none, some = counts(name)
     return (
         f"of its {every + none + some} statements {every} {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
@@ -132,7 +132,7 @@ def judges(name):
 
 
 def told(name):
-    """Inputs with their ranges, in words."""
+    """Return the inputs with their ranges, in words."""
     return [f"{joint_inputs.MEANT[word]}: {low:g} to {high:g}" for word, (low, high) in joint_inputs.RANGES[name].items()]
 
 
@@ -162,7 +162,7 @@ SCENES = {"herringbone_machine": "herringbone"}
 
 
 def answer():
-    """The first line."""
+    """Return the first sentence of the page."""
     every, none, some = np.sum([counts(name) for name in joint_inputs.RANGES], axis=0)
     return (
         f"Of {every + none + some} statements of the articles that a simulation decides, each on the channel that its page "

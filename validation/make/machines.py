@@ -40,7 +40,7 @@ GOLDEN_RTOL = 1e-4
 
 
 def module(page):
-    """The functions of a page."""
+    """Return the functions of a page."""
     return importlib.import_module(f"validation.make.{page}")
 
 
@@ -48,7 +48,7 @@ FURTHER = places.SOURCES / "statements.toml"
 
 
 def references(page):
-    """References of its scene that the page computes, and further statements."""
+    """Return the references of its scene that the page computes, and further statements."""
     more = tomllib.loads(FURTHER.read_text(encoding="utf-8"))
     own = [one for one in gf.load_scene(PAGES[page]).references if one.id not in ELSEWHERE]
     rows = [checked("gearfe.scene", "reference", FURTHER.name, f"reference {i + 1}", row) for i, row in enumerate(more[page])]
@@ -80,7 +80,7 @@ def quick_rows(page):
 
 
 def text(page):
-    """The page as Markdown, from its committed rows and its scene."""
+    """Return the page as Markdown, from its committed rows and its scene."""
     scene, home = gf.load_scene(PAGES[page]), module(page)
     rows = table_rows.read(page)
     claim, find, decide = OPENINGS[page](CommittedRows(rows))
@@ -162,11 +162,11 @@ class CommittedRows:
         return [row.ours for row in self.rows.values() if row.id == name]
 
     def printed(self, name):
-        """Printed values of a reference in the order of its rows."""
+        """Return the printed values of a reference in the order of its rows."""
         return [row.printed for row in self.rows.values() if row.id == name]
 
     def counted(self):
-        """Counts of the verdicts."""
+        """Return the counts of the verdicts."""
         return verdicts.counts(list(self.rows.values()))
 
 

@@ -124,7 +124,7 @@ def _settled(meshes, values, ours):
 
 
 def _judged(off):
-    """A difference with its sign and whether it is as small as asked for."""
+    """Return a difference with its sign and whether it is as small as asked for."""
     verb = "within" if abs(off) <= ASKED else "**beyond**"
     return f"{100 * off:+.2f} % apart, {verb} {100 * ASKED:g} %"
 

@@ -14,7 +14,7 @@ ROWS = 128
 
 
 def table():
-    """The example's text: the textbook's total stiffness of the first pair of `planetary_pitting`."""
+    """Return the example's text: the textbook's total stiffness of the first pair of `planetary_pitting`."""
     chosen = gf.load_scene("planetary_pitting").pair()
     phase = np.arange(ROWS) / ROWS
     curve = gf.mesh_stiffness(chosen.pair, chosen.force, chosen.materials, method="textbook", phases=phase)

@@ -37,7 +37,7 @@ def hertz():
 
 
 def base_radii():
-    """Base radii."""
+    """Return the base radii."""
     return {name: scene(NAME).gears[name].r_b for name in ("sun", "planet")}
 
 
@@ -57,7 +57,7 @@ def mesh_period():
 
 
 def fault_frequency():
-    """A damaged sun tooth meets every planet once a turn relative to the carrier."""
+    """Count the planets that a damaged sun tooth meets per revolution relative to the carrier."""
     return {"simulated": speeds()[3]}
 
 
@@ -67,7 +67,7 @@ def fault_interval():
 
 
 def measured_lines():
-    """The nearest bins of the measured spectra to carrier and fault frequency at 1000 rpm."""
+    """Return the nearest bins of the measured spectra to carrier and fault frequency at 1000 rpm."""
     return {name: round(value / BINS) * BINS for name, value in (("carrier", speeds()[1] / 60), ("fault", speeds()[3]))}
 
 

@@ -119,7 +119,7 @@ def main_line(case, path="raised cosine"):
 
 @cache
 def housing_lines(path="raised cosine"):
-    """The same in percent of `main_line`, zero where it is below a millionth of it."""
+    """Return the same in percent of `main_line`, zero where it is below a millionth of it."""
     parts = {case: carrier_lines(case, path) / main_line(case, path) for case in ("healthy", *CASES)}
     return {case: 100 * part if part > 1e-6 else 0.0 for case, part in parts.items()}
 
@@ -171,7 +171,7 @@ def sidebands(law=OWN):
 
 
 def runs():
-    """Settings of the simulations."""
+    """Return the settings of the simulations."""
     return {
         OWN: told(record_of("healthy", True)),
         OWN + STEADY: told(record_of("healthy", False)),

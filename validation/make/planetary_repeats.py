@@ -63,7 +63,7 @@ def about_impacts(law=OWN):
 
 
 def repeated(name, law=OWN):
-    """An indicator of the ring's acceleration by level, three repeats each."""
+    """Return an indicator of the ring's acceleration by level, three repeats each."""
     return {case: [values_of(case, impact, SENSOR, law)[name] for impact in IMPACTS] for case in CASES}
 
 

@@ -75,7 +75,7 @@ def ring_path(foundation=1.0):
 
 @cache
 def signal_of(case, impact, channel=FORCE, law=OWN):
-    """A channel; of a draw with its noise, a part of the standard deviation of the mild case without pulses."""
+    """Return a channel; a draw adds noise, relative to the standard deviation of the mild case without pulses."""
     one = _clean(case, impact, channel, law)
     if not isinstance(law, Draw):
         return one
@@ -93,7 +93,7 @@ def _clean(case, impact, channel, law):
 
 @cache
 def values_of(case, impact, channel=FORCE, law=OWN):
-    """Indicators of a channel."""
+    """Return the indicators of a channel."""
     return signal_of(case, impact, channel, law).indicators(*speeds()[2:])
 
 

@@ -33,6 +33,8 @@ The printed values are the `[[reference]]` rows of the scene files. The statemen
 `validation/sources/statements.toml`. They were added after a first run.
 
 ## All printed numbers
+
+A link leads to the page with the verdict. The other numbers are inputs.
 """  # noqa: E501
 CSV = TABLES / "printed.csv"
 PAGES = {  # pages with the rows of a scene's references
@@ -63,7 +65,7 @@ def counts(rows, article):
 
 
 def lines(rows):
-    """The table."""
+    """Return the table of all printed numbers as Markdown."""
     out = []
     for row in rows:
         which = kind(row)
@@ -71,18 +73,18 @@ def lines(rows):
         if which == "verdict":
             scene, _, name = told.partition(": ")
             home = "herringbone" if name.startswith("stiffness") else PAGES[scene]
-            told = f"judged: `{name.partition(', per ')[0]}` on [{home}.md]({home}.md)"
+            told = f"[{name.partition(', per ')[0]}]({home}.md)"
         elif which == "used":
             places = ", ".join(f"`{one.partition(', per ')[0]}`" for one in dict.fromkeys(told))
-            told = f"input: used, {places}"
+            told = f"used: {places}"
         else:
-            told = f"input: not used, because {told}"
+            told = f"not used: {told}"
         out.append([row["article"], ", ".join(f"{value:.6g}" for value in row["values"]), row["what"], told])
     return Table(("article", "printed", "what", "became of it"), out).markdown()
 
 
 def answer(rows):
-    """The first line."""
+    """Return the first sentence of the page."""
     total = [sum(one) for one in zip(*(counts(rows, name) for name in articles(rows)), strict=True)]
     return (
         f"Of {sum(total)} printed numbers {total[0]} are results, each with a verdict on its page, {total[1]} are inputs that "

@@ -22,8 +22,9 @@ TABLE = re.compile(r"\| zone \|.*?\| seconds [^\n]*\|", re.S)
 
 
 def five_rows():
-    """The rows of sun and planet of the table of ten, healthy and in all cases of damage."""
-    return "\n".join(line for line in error_table().splitlines() if not line.startswith("| planet_ring"))
+    """Return the rows of sun and planet of the table of ten, healthy and in all cases of damage."""
+    head = error_table().split("\n| planet_ring", 1)[0]
+    return head.replace("\n|  |", "\n| sun_planet |")
 
 
 def outputs(text):

@@ -106,7 +106,7 @@ def coverage(rows, solid):
 
 
 def answer(rows, solid):
-    """The first line."""
+    """Return the first sentence of the page."""
     (three, brute), count = sample_three.covered(solid)
     plane = " and ".join(f"{_count(rows, f'{name}_covered')} pairs for `{name}`" for name in ("ritz", "fe"))
     return f"In the section in {plane}, in three dimensions in {three} of {count} for `ritz3d` and {brute} of {count} for `fe3d`."

@@ -111,7 +111,7 @@ def pits(rng, gear):
 
 
 def row(kind, seed):
-    """Stored values of a pair: k, estimates, the finer solution at each phase; why not, if a method refuses."""
+    """Return stored values of a pair: k, estimates, the finer solution at each phase; the message if a method raises."""
     pair, load, damage, phases = drawn(kind, seed)
     case, run = (pair, load * pair.gear_1.b, gf.Material()), {"phases": phases, "damage": damage, "error": True, "cache": False}
     out = {"kind": kind, "pair": named(pair, damage), "load": load, "phase": phases.tolist()}
@@ -127,7 +127,7 @@ def row(kind, seed):
 
 
 def timed(work):
-    """Result of `work` and its CPU seconds."""
+    """Return the result of `work` and its CPU seconds."""
     started = time.process_time()
     found = work()
     return found, time.process_time() - started
@@ -141,7 +141,7 @@ def finest(pair, force, material, damage, phases):
 
 
 def named(pair, damage):
-    """A pair in words."""
+    """Describe a pair in words."""
     one, two = pair.gear_1, pair.gear_2
     text = f"{one.z}/{two.z}{' ring' if two.internal else ''}, {math.degrees(abs(one.beta)):.0f} degrees, "
     text += f"b/m {one.b / one.m_n:.1f}"

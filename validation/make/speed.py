@@ -135,7 +135,7 @@ def _about(truth, per_phase, per_load):
 
 
 def _line(name, size, seconds, error):
-    """A row of `speed_page.table`."""
+    """Return a row of `speed_page.table`."""
     family = name if "crack" in name else name.split(",")[0]
     more = " + ".join(f"{n:,}" for n in size) + " unknowns" if size else ""
     return family, name, seconds, float(error.mean()), float(error.max()), int(name in DEFAULTS), more

@@ -71,7 +71,7 @@ def integrated(name):
 
 @cache
 def herringbone_exact():
-    """The herringbone stage, its motion by DOP853 (rtol 1e-10) and the seconds of the processor it took."""
+    """Return the herringbone stage, its motion by DOP853 (rtol 1e-10) and the seconds of the processor it took."""
     model = stage()
     return model, *_timed(model, "DOP853", 1e-10)
 

@@ -31,7 +31,7 @@ ABOUT = (
 
 
 def case(last=27.0):
-    """A herringbone sun-planet pair, 18/27, with a crack of 30 % and seven pits in each half, and its damage."""
+    """Return a herringbone sun-planet pair, 18/27, with a crack of 30 % and seven pits in each half, and its damage."""
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 2 * WIDTH}
     sun, planet = (
         gf.Gear(z=z, r_bore=0.5 * (z * 1.0403 - 2.5), beta=sense * math.radians(16), **rack) for z, sense in ((18, 1), (27, -1))

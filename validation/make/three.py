@@ -13,7 +13,7 @@ PAIRS = "Hexahedra of pairs over their engagement: [pairs_three.md](pairs_three.
 
 
 def answer():
-    """The first line."""
+    """Return the first sentence of the page."""
     contact, line = outsider_three.worst()
     return (
         f"`ritz3d` is within {100 * contact:.2f} % of CalculiX in contact ({100 * outsider_three.pits_apart():.2f} % in what pits"

@@ -184,7 +184,7 @@ def linear_rows():
 
 
 def read():
-    """Committed rows."""
+    """Return the committed rows."""
     return [
         SourceRow(r["table"], r["case"], float(r["theirs"]), float(r["ours"]), float(r["tolerance"]), r["absolute"] == "True")
         for r in rows_of(CSV)
@@ -192,12 +192,12 @@ def read():
 
 
 def read_contact():
-    """Committed phases, k of `ritz`, k of CalculiX [N/m], as columns."""
+    """Return the committed phases, k of `ritz`, k of CalculiX [N/m], as columns."""
     return np.loadtxt(CONTACT, delimiter=",", skiprows=1, unpack=True)
 
 
 def text():
-    """The page as Markdown, from its committed tables."""
+    """Return the page as Markdown, from its committed tables."""
     tables = reference.load()
     tables["calculix_linear"] = {
         "source": "CalculiX on the decks of gearfe.write_inp, the same mesh and the same Gauss points",
@@ -222,10 +222,13 @@ def text():
         """
         ## Values that others published or computed
 
+        An empty table or tolerance is that of the row above. An empty verdict: within the tolerance.
+
         | table | case | theirs | gearfe | difference | tolerance | verdict |
         |---|---|---|---|---|---|---|
         """
     ]
+    above = ""
     for i, row in enumerate(rows):
         name = "" if i and rows[i - 1].table == row.table else f"{row.table} [{tables[row.table].get('unit', '-')}]"
         if row.absolute:
@@ -233,7 +236,8 @@ def text():
         else:
             away_by = f"{100 * (row.ours / row.theirs - 1):+.3f} %" if row.theirs else f"{row.ours:+.2g}"
             size = f"{100 * row.tolerance:g} %"
-        word = "within" if row.holds else f"**outside**: {REASONS.get(row[:2], 'no reason known')}"
+        word = "" if row.holds else f"**outside**: {REASONS.get(row[:2], 'no reason known')}"
+        size, above = "" if size == above and not name else size, size
         lines.append(f"| {name} | {row.case} | {row.theirs:.6g} | {row.ours:.6g} | {away_by} | {size} | {word} |")
     lines += ["", "Sources:", ""]
     for table in dict.fromkeys(row.table for row in rows):

@@ -27,7 +27,7 @@ def rows():
 
 
 def _told(found):
-    """Counts of the verdicts of a model."""
+    """Return the counts of the verdicts of a model."""
     return verdicts.counts(
         [row for row in found if row.kind in ("model", verdicts.STATEMENT) and row.verdict != verdicts.FORMULA]
     )

@@ -34,7 +34,7 @@ def installed():
 
 
 def pressed(write):
-    """A contact deck in three dimensions, run by CalculiX, as the row of a table.
+    """Run a contact deck in three dimensions with CalculiX and return it as the row of a table.
 
     Parameters
     ----------

@@ -110,5 +110,5 @@ def verdicts(method):
 
 
 def _by(reference, method):
-    """A reference whose note has the method."""
+    """Return a reference whose note has the method."""
     return replace(reference, note=reference.note.replace("`ritz3d`", f"`{method}`"))

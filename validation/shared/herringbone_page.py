@@ -155,7 +155,7 @@ def ten_rows():
 
 
 def judged():
-    """References of S4's table of stiffness, and rows with their verdicts."""
+    """Return the references of S4's table of stiffness, and rows with their verdicts."""
     ours = found()
     references = [one for one in gf.load_scene(SCENE).references if one.id in ours]
     return references, [row for one in references for row in judge(one, ours[one.id])]

@@ -75,7 +75,7 @@ def plateau():
 
 
 def rounding():
-    """Number of reductions in S4's list that those of its analytical column can be, both rounded as printed, in words."""
+    """Count the reductions in S4's list that agree with its analytical column within rounding, in words."""
     k = np.array([row.target / 1e6 for row in _reference("stiffness_analytical").rows]).reshape(2, 5)
     half = 5.0  # N/um: S4 prints 0.01e9 N/m
     low, high = (100 * (1 - (k[:, 1:] + s * half) / (k[:, :1] - s * half)) for s in (1, -1))
@@ -98,7 +98,7 @@ def worst(method):
 
 
 def answer(bears, beyond):
-    """The three sentences that the page opens with; `bears`: of the claim between formulas and finite elements."""
+    """Return the three sentences that the page opens with; `bears`: of the claim between formulas and finite elements."""
     (error, own, listed), (solid, points, beside) = worst("ritz3d"), worst("fe3d")
     return (
         "- S4's finite element column can be fitted with pits that touch each other along the contact line in both halves. "

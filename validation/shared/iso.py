@@ -6,7 +6,7 @@ Q_SERIES = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0
 
 
 def virtual_teeth(gear):
-    """Number of teeth of the virtual spur gear, ``z / (cos(beta_b)**2 cos(beta))`` (ISO 21771:2007, 4.4)."""
+    """Return the number of teeth of the virtual spur gear, ``z / (cos(beta_b)**2 cos(beta))`` (ISO 21771:2007, 4.4)."""
     return gear.z / (math.cos(gear.beta_b) ** 2 * math.cos(gear.beta))
 
 

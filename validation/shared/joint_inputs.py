@@ -48,7 +48,7 @@ class Draw:
 
 
 def draws(page):
-    """A Latin hypercube of `DRAWS` over the logarithms of the ranges of a page."""
+    """Return a Latin hypercube of `DRAWS` over the logarithms of the ranges of a page."""
     low, high = (np.log([ends[i] for ends in RANGES[page].values()]) for i in (0, 1))
     cube = qmc.LatinHypercube(low.size, rng=np.random.default_rng(SEED)).random(DRAWS)
     values = np.exp(low + cube * (high - low))
@@ -56,7 +56,7 @@ def draws(page):
 
 
 def changed(made, draw):
-    """The machine with the loads, springs, damping, errors and backlash of a draw; its stiffness curves stay as they are."""
+    """Return the machine with the loads, springs, damping, errors and backlash of a draw. Stiffness curves are unchanged."""
     springs = []
     for one in made.springs:
         word = one.name.rpartition(" ")[2]
@@ -84,7 +84,7 @@ def noise(draw, name, count):
 
 
 def through_mode(one, draw, mesh):
-    """A signal as a housing with one mode hands it on: of each line the oscillator's answer, as long as the record repeats."""
+    """Return a signal transmitted through a housing with one mode: the steady response to each line of a periodic record."""
     frequency = np.fft.rfftfreq(one.values.size, 1 / one.rate) / (draw["mode_over_f_m"] * mesh)
     answer = 1 / (1 - frequency**2 + 2j * draw["mode_damping"] * frequency)
     return replace(one, values=np.fft.irfft(answer * np.fft.rfft(one.values), one.values.size))

@@ -29,7 +29,7 @@ def planetary_pitting(found):
 
 
 def _telling(found):
-    """Indicators whose three repeats tell the levels apart, as the articles judge each."""
+    """Return the indicators whose three repeats separate the levels, as the articles judge each."""
     rising, others = ("SC by S0's formula", "SC by S1's formula"), ("RMS", "kurtosis", "shape factor")
     yes = [word for word in rising if found.ours("further", f"three repeats: {word} tells{APART}")]
     return yes + [word for word in others if not found.ours("further", f"three repeats: {word} does not tell{APART}")]

@@ -82,7 +82,7 @@ def write(again=False):
 
 
 def _fresh():
-    """The section of the pairs on which nothing was tried."""
+    """Return the section of the pairs on which nothing was tried."""
     lines = [
         FRESH,
         "| method | phases | 50 % | 90 % | largest | at a corner: largest | estimate covers | refused |\n|---" + "|---" * 7,

@@ -45,7 +45,7 @@ def cases():
 
 
 def pair_of(teeth, bores, degrees, width):
-    """A pair of standard gears; of the pinion, cut by a rack, the foot of the flanks is undercut."""
+    """Return a pair of standard gears; of the pinion, cut by a rack, the foot of the flanks is undercut."""
     gears = (
         gf.Gear(z=z, m_n=2.0, alpha_n=math.radians(20), beta=sense * math.radians(degrees), b=width, r_bore=bore)
         for z, bore, sense in zip(teeth, bores, (1, -1), strict=True)
@@ -62,7 +62,7 @@ def ours(name):
 
 
 def ours_row(name):
-    """Result of `ritz3d`, as a row."""
+    """Return the result of `ritz3d`, as a row."""
     return dict(zip(("k", "approach", "carried", "path only"), map(float, ours(name)), strict=True))
 
 
@@ -73,7 +73,7 @@ def deck_of(folder, name, mesh, approach):
 
 
 def row_of(name, mesh):
-    """A run of CalculiX at the approach that `ritz3d` has under the load, to four digits."""
+    """Run CalculiX at the approach that `ritz3d` has under the load, to four digits."""
     approach = float(f"{ours(name)[1]:.4g}")
     row, carried = pressed(lambda folder: deck_of(folder, name, mesh, approach))
     values = {"theirs": row.pop("force") / 1e3 / approach, "theirs there": carried[0][0]}
@@ -86,7 +86,7 @@ def wanted():
 
 
 def stored():
-    """Runs on file, as dicts with their case, mesh and what `ritz3d` finds."""
+    """Return the stored runs, as dicts with their case, mesh and what `ritz3d` finds."""
     theirs, found = kept_rows.stored(TABLE), kept_rows.stored(OURS)
     return [found[name] | {"case": name, "mesh": told(mesh)} | theirs[key] for name, mesh, key in wanted()]
 
@@ -106,7 +106,7 @@ def refresh(again=False):
 
 
 def section():
-    """The section of the page, from the tables alone."""
+    """Return the section of the page, from the tables alone."""
     lines = ["| " + " | ".join(NAMES) + " |\n", "|---" * len(NAMES) + "|\n"]
     for row in stored():
         cells = [row["case"], row["mesh"], f"{row['nodes']:,}", *(f"{row[name]:.6g}" for name in ("k", "path only", "theirs"))]

@@ -53,7 +53,7 @@ class OutsiderCase:
 
 
 def pinion(degrees=15.0):
-    """The small gear of all cases."""
+    """Return the small gear of all cases."""
     return gf.Gear(z=13, x=0.3, r_bore=8.0, beta=math.radians(degrees), **RACK)
 
 
@@ -92,7 +92,7 @@ def cases():
 
 
 def _with_control(name, damage, meshes):
-    """A case with pits cut out; in the same mesh with contact lost there but the material left; and with nothing of them."""
+    """Compute a case with pits cut out, with contact lost there in the same mesh, and without pits."""
     options = {"damage": {"pinion": damage}, "meshes": meshes, "load": PITTED}
     return {f"{name} {end}": OutsiderCase(pair_of(15.0), pits=kind, **options) for kind, end in PITS.items()}
 
@@ -112,7 +112,7 @@ LINE_MESHES = ({"refine": 0.6}, {"refine": 0.8})
 
 
 def line_hat(gear):
-    """Number of the hat under which a line load stands, and its roll length [mm]."""
+    """Return the number of the hat under which a line load stands, and its roll length [mm]."""
     knots = flexibility3d.hats(gear)
     whole = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))
     top = int(whole[len(whole) // 2])
@@ -165,7 +165,7 @@ def contact_row(name, mesh):
 
 
 def ritz3d_row(name):
-    """Result of `ritz3d` in a case: deflection [nm/N], or stiffness [N/um], approach [mm] and what tooth pairs carry."""
+    """Return the result of `ritz3d` in a case: deflection [nm/N], or stiffness [N/um], approach [mm] and tooth forces."""
     if name in lines():
         return {"value": line_deflection(name)}
     case = cases()[name]
@@ -189,7 +189,7 @@ def sharing(case):
 
 
 def told(mesh):
-    """A mesh's options as text."""
+    """Return a mesh's options as text."""
     return ", ".join(f"{key} {value:g}" for key, value in mesh.items())
 
 

@@ -38,7 +38,7 @@ MACHINES = {
 
 
 def text(name, answer, *sections):
-    """A page as Markdown; a section is a text, or lines and texts of several lines, indented or not."""
+    """Return a page as Markdown; a section is a text, or lines and texts of several lines, indented or not."""
     lines = [f"# {QUESTIONS[name]}", "", answer]
     for section in sections:
         lines += ["", *filled([section] if isinstance(section, str) else section)]

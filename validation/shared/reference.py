@@ -105,7 +105,7 @@ def load_trend(line_load):
 
 
 def beam_code():
-    """The ross 62/62 numbers, with its conventions: k, k_hertz [N/m], contact ratio."""
+    """Return the ross 62/62 numbers, with its conventions: k, k_hertz [N/m], contact ratio."""
     gear, theta_f = _ross_gear()
     low, high = math.atan(gear.roll_f / gear.r_b), math.acos(gear.r_b / gear.r_a)
     eps_alpha = gf.GearPair(gear, gear).eps_alpha
@@ -175,7 +175,7 @@ def iso_mesh():
 
 
 def lin_parker(n=3, k_ru=1e9):
-    """The planetary stage of Lin and Parker's Table 1."""
+    """Return the planetary stage of Lin and Parker's Table 1."""
 
     def member(mass, inertia, diameter, turn=0.0):
         r = diameter / 2e3

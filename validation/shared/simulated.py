@@ -16,7 +16,7 @@ PHASES = {"herringbone": 32}  # per mesh cycle of its stiffness curves, which ar
 
 @cache
 def scene(name):
-    """A built-in scene."""
+    """Return a built-in scene."""
     return gf.load_scene(name)
 
 
@@ -56,7 +56,7 @@ def record(made, seconds, rate, settle, start=None):
 
 
 def signal(response, channel):
-    """A channel as a signal."""
+    """Return a channel as a signal."""
     rate = 1 / float(response.time[1] - response.time[0])
     return gf.Signal(np.asarray(response[channel], dtype=float), rate, response.unit(channel), channel)
 
@@ -67,7 +67,7 @@ def spectrum(one):
 
 
 def noisy(one, level):
-    """The signal with Gaussian noise of `level` times its standard deviation."""
+    """Return the signal with Gaussian noise of `level` times its standard deviation."""
     noise = level * one.values.std() * np.random.default_rng(0).standard_normal(one.values.size)
     return replace(one, values=one.values + noise)
 
@@ -78,7 +78,7 @@ def amplitude(found, frequency, tolerance=None):
 
 
 def knocked(made, load, options, seconds):
-    """The machine with the pulses of a scene's ``[machine.impact]`` table on the load named `load`, away from zero."""
+    """Return the machine with the pulses of a scene's ``[machine.impact]`` table on the load named `load`, away from zero."""
     count, loads = math.ceil(seconds / options["pulse_period_s"]), []
     for one in made.loads:
         if one.name == load:
@@ -93,7 +93,7 @@ def knocked(made, load, options, seconds):
 
 
 def told(response):
-    """Settings of a simulation in one sentence, read from its machine and its times."""
+    """Return the settings of a simulation in one sentence, read from its machine and its times."""
     made, time = response.machine, response.time
     step, law = float(time[1] - time[0]), made.law
     impact = law["power"] != 1

@@ -15,7 +15,7 @@ WAVE = 1 + 0.15 * np.cos(2 * math.pi * np.arange(64) / 64) + 0.05 * np.sin(4 * m
 
 
 def tooth(curve, loss, eps):
-    """A damaged tooth's curve: the healthy one less a smooth dip over its engagement."""
+    """Return a damaged tooth's curve: the healthy one less a smooth dip over its engagement."""
     phase = np.arange(-16, math.ceil((eps + 0.25) * 64) + 1) / 64
     dip = np.where((phase > 0) & (phase < eps), np.sin(math.pi * np.clip(phase / eps, 0, 1)) ** 2, 0.0)
     return Samples(phase, cycle_table(curve)(phase % 1.0) * (1 - loss * dip))
@@ -25,7 +25,7 @@ MEMBERS = gf.load_scene("herringbone").machine["bodies"]
 
 
 def stage(damaged=True, **options):
-    """The herringbone stage with a cracked sun tooth; synthetic stiffnesses of the size of a half's."""
+    """Return the herringbone stage with a cracked sun tooth; synthetic stiffnesses of the size of a half's."""
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 30.0, "beta": math.radians(16)}
     sun, planet = gf.Gear(z=18, r_bore=8.0, **rack), gf.Gear(z=27, r_bore=12.0, **rack)
     ring = gf.Gear(z=72, r_rim=90.0, addendum=0.8, rack_tip_radius=0.2, **rack)
@@ -35,7 +35,7 @@ def stage(damaged=True, **options):
 
 
 def spur(damaged):
-    """The stage of `planetary_pitting` with curves by `ritz`; a dip of 20 % instead of its pits."""
+    """Return the stage of `planetary_pitting` with curves by `ritz`; a dip of 20 % instead of its pits."""
     scene = gf.load_scene("planetary_pitting")
     pairs = [scene.pairs[name] for name in ("sun_planet", "planet_ring")]
     curves = [gf.mesh_stiffness(one.case(), phases=64, method="ritz") for one in pairs]
@@ -47,7 +47,7 @@ def spur(damaged):
 
 
 def helical(damaged):
-    """The pair of S3 with its impact law, and a large pit on one pinion tooth."""
+    """Return the pair of S3 with its impact law, and a large pit on one pinion tooth."""
     rack = {"m_n": 2.1, "alpha_n": math.radians(17.5), "beta": math.radians(29)}
     pair = gf.GearPair(gf.Gear(z=17, b=19.8, r_bore=6.0, **rack), gf.Gear(z=60, b=16.9, r_bore=24.0, **rack))
     pits = ((0, [(pair.pitch_radius_1, 8.0, 10.0, 2.0)]),) if damaged else ()
@@ -55,11 +55,11 @@ def helical(damaged):
 
 
 def compound(damaged):
-    """The machine of `compound_planetary`, curves by `ritz`, with its crack of 50 %."""
+    """Return the machine of `compound_planetary`, curves by `ritz`, with its crack of 50 %."""
     return gf.build_machine(gf.load_scene("compound_planetary"), "crack50" if damaged else None, phases=64, method="ritz")
 
 
 def article(case="severe_rows"):
-    """The planetary stage of S0 under its impact law, with friction and pulses on the carrier."""
+    """Return the planetary stage of S0 under its impact law, with friction and pulses on the carrier."""
     scene = gf.load_scene("planetary_pitting")
     return gf.build_machine(replace(scene, machine=scene.machine | {"contact": "impact"}), case)

@@ -49,5 +49,5 @@ def write_runs(name, runs):
 
 
 def read_runs(name):
-    """Settings that `write_runs` wrote."""
+    """Return the settings that `write_runs` wrote."""
     return {row["run"]: row["made with"] for row in rows_of(TABLES / f"{name}_runs.csv")}

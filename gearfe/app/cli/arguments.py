@@ -18,7 +18,7 @@ def _ratio(text):
     try:
         return Fraction(text)
     except (ValueError, ZeroDivisionError):
-        raise argparse.ArgumentTypeError(f"{text!r} is no ratio of speeds: give 29/95 or 0.305") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a speed ratio: give for example 29/95 or 0.305") from None
 
 
 def main(argv=None):

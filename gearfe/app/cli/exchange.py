@@ -56,7 +56,8 @@ def grow(arguments):
     found = [(side, one) for side, damage in (case.damage or {}).items() for one in damage]
     if len(found) != 1 or not isinstance(found[0][1], Crack):
         raise ValueError(
-            f"--case {arguments.case}: {len(found)} kinds of damage, but the growth starts from one crack: give a case of one"
+            f"--case {arguments.case}: {len(found)} kinds of damage, but crack growth starts from one crack: "
+            "choose a case with a single crack"
         )
     side, crack = found[0]
     law = ParisLaw(*arguments.paris, threshold=arguments.threshold) if arguments.paris else None

@@ -19,7 +19,7 @@ import warnings
 # replacements for terminals that have only ASCII
 SPELLED = {"±": "+-", "µ": "u", "·": "*", "°": "deg", "→": "->", "–": "-", "…": "..."}
 
-STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")  # controls, turns of direction
+STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")  # controls, direction marks
 
 
 def harmless(text):
@@ -51,7 +51,7 @@ def spelled(error):
 def tell(text):
     """Print a line to standard error, if there is one."""
     if sys.stderr is not None:
-        with contextlib.suppress(OSError, ValueError):  # closed, or full: there is no other place for the message
+        with contextlib.suppress(OSError, ValueError):  # the stream is closed or the disk is full: the message cannot be shown
             print(harmless(f"gearfe: {text}"), file=sys.stderr, flush=True)
 
 
@@ -60,7 +60,7 @@ def as_options(error, options):
     text, names = str(error), "|".join(map(re.escape, options))
     if not names:
         return text
-    # options --mesh and --fault of the verb `signal`
+    # names of the options --mesh and --fault of `gearfe signal`
     text = re.sub(rf"\b({names})_frequency = ", lambda match: f"--{match[1]} ", text)
     return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda match: f"--{match[1]}", text)
 
@@ -72,7 +72,7 @@ def _end_tidily(number, _):
 
 def run(work, options=()):
     """Call `work`, a function without arguments, and return the exit code. `options`: names of the verb's options."""
-    with contextlib.suppress(ValueError):  # not the main thread
+    with contextlib.suppress(ValueError):  # only the main thread can set signal handlers
         signal.signal(signal.SIGTERM, _end_tidily)
     codecs.register_error("spelled", spelled)
     for stream in (sys.stdout, sys.stderr):

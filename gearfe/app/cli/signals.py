@@ -127,7 +127,7 @@ def _of_scene(arguments):
     if arguments.gear is None:
         return
     if arguments.scene is None:
-        raise ValueError("--gear is a gear of a scene: give --scene too")
+        raise ValueError("--gear names a gear of a scene: give --scene, too")
     from ...dynamics.machine.lines import gear_lines
     from ...scene.load import load_scene
 
@@ -155,7 +155,7 @@ def _told(one):
     whole = np.interp(one.angle[0] + 2 * np.pi * np.arange(int(turns) + 1), one.angle, one.time)
     speed = 1 / np.diff(whole)
     text += f"; shaft: {speed.min():.4g} to {speed.max():.4g} Hz, {turns:.1f} revolutions"
-    smeared = (speed.max() - speed.min()) * turns > speed.mean()  # the first order leaves its bin
+    smeared = (speed.max() - speed.min()) * turns > speed.mean()  # the speed change smears the first order over more than one bin
     return f"{text}; lines are smeared over Hz, but sharp over orders (--orders)" if smeared else text
 
 

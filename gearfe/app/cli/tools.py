@@ -47,7 +47,7 @@ def check(arguments):
 
     drawn = arguments.picture is not None
     if not drawn and (arguments.pair or arguments.case):
-        raise ValueError("--pair and --case choose what is drawn: give --picture FILE too")
+        raise ValueError("--pair and --case choose what is drawn: give --picture FILE, too")
     if drawn:
         check_output(arguments.picture, "picture")
     scene = load_scene(arguments.scene)

@@ -205,7 +205,7 @@ def render(arguments):
     case, title = scene.case(arguments.pair, arguments.case), _title(scene, arguments)
     if arguments.what == "pattern":
         if arguments.phase is not None:
-            raise ValueError("--what pattern is of a whole mesh cycle: leave out --phase, or take --what contact")
+            raise ValueError("--what pattern shows a whole mesh cycle: leave out --phase, or use --what contact")
         with working("contact pattern"):
             print(render_pattern(case, arguments.output, title=title).told())
     elif arguments.what == "contact":
@@ -231,7 +231,7 @@ def mesh(arguments):
 
     _check_outputs(arguments, output="mesh", picture="picture")
     if arguments.close_up and not arguments.picture:
-        raise ValueError("--close-up is of a picture: give --picture FILE too")
+        raise ValueError("--close-up belongs to a picture: give --picture FILE, too")
     case = load_scene(arguments.scene).case(arguments.pair, arguments.case)
     side = ("pinion", "wheel").index(arguments.gear)
     gear = (case.pair.gear_1, case.pair.gear_2)[side]

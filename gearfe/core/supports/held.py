@@ -10,7 +10,7 @@ from .support import UNITS, Support
 
 TWIST = 0.1  # limit of the twist [rad]: round steel at 300 N/mm2 reaches it over 13 diameters of its length
 REFUSE = 0.25  # limit of the approach [modules], see `gearfe.stiffness.plausible`
-FITS = 0.01  # part of the bore by which a shaft may be thicker: a press fit, and rounded numbers
+FITS = 0.01  # relative excess of a shaft over its bore that is accepted (press fits, rounded values)
 
 
 def supports_of(pair, supports, forces=(), face=None):

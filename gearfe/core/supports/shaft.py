@@ -16,7 +16,7 @@ from .support import Support
 if TYPE_CHECKING:
     from ..material import Material
 
-THICKEST = 100  # limit of the ratio of diameters: more is an error of input and too much for the rounding of the solve
+THICKEST = 100  # limit of the ratio of diameters: larger ratios are input errors and cause rounding errors
 NONE = 1e-10  # smaller couplings, relative to the largest possible, are rounding errors
 
 

@@ -59,7 +59,10 @@ def back_phase(pair: GearPair) -> float:
     0.5
     """
     if pair.eps_beta:
-        raise ValueError("back_phase is of spur pairs: along helical teeth front and back flanks meet from different ends")
+        raise ValueError(
+            "back_phase is available for spur pairs only: on helical teeth, contact of front and back flanks "
+            "starts at different ends"
+        )
     part = pair.gear_1.half_thickness(pair.pitch_radius_1) * pair.gear_1.z / math.pi
     return float(2 * pair.pitch_phase + part)
 
@@ -114,7 +117,7 @@ def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machin
 
 def _behind(mesh: GearMesh, own: BackFlanks, damping: float) -> GearMesh:
     """Return the back flanks of a mesh as a separate mesh: time, teeth and errors run the other way."""
-    rest = 1.0 if mesh.push else 1 - mesh.film  # open front flanks keep the damping of the film
+    rest = 1.0 if mesh.push else 1 - mesh.film  # the oil film damping remains when the front flanks are open
     return replace(
         mesh,
         name=f"{mesh.name} back",

@@ -93,7 +93,7 @@ def compound_table(pairs, n_planets, rates=(1.0, 1.0)):
 
     def add(kind, bodies, angle, sense, phase, rate):
         first = (0, 0)
-        if bodies[1] == "ring":  # its teeth are numbered as branch 1 meets them
+        if bodies[1] == "ring":  # the ring's teeth are numbered in the order in which branch 1 meets them
             base = next((row.phase for row in out.values() if row.of.pair == kind), phase)
             z = pairs[kind].gear_2.z
             first = (0, _whole(around(base, z, sense, 2 * math.pi * i / n_planets) - phase, kind))

@@ -31,7 +31,7 @@ def impact_cycle(pair, materials, *, lost=None):
     All pairs are pressed together by the same depth, each with the radius of curvature R at its contact. With `lost`, the part of
     its contact line that tooth 0 lacks as a function of its phase: over its whole engagement, as a damaged tooth's curve.
     """
-    phase = _steps(pair.eps_alpha, lost) + 0.5 / COUNT  # between the ends of engagements, which fall on whole phases
+    phase = _steps(pair.eps_alpha, lost) + 0.5 / COUNT  # offset by half a phase, because engagements end on whole phases
     pair_phase = engaged(pair, phase)
     first = np.abs(pair_phase - phase[:, None]) < 1e-9
     weight = 1.0 if lost is None else np.where(first, 1.0 - np.asarray(lost(phase))[:, None], 1.0)

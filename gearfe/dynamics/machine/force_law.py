@@ -74,7 +74,7 @@ class ForceLaw:
         if not (np.isfinite(closing).all() and (closing > 0).all() and (self.tangent > 0).all()):
             i, j = np.argwhere(~((closing > 0) & (self.tangent > 0)))[0]
             raise ValueError(
-                f"at phase {self.phase[i]:g} a load of {self.load[j]:g} N does not press the mesh deeper than a smaller one: "
+                f"at phase {self.phase[i]:g}, the deflection under {self.load[j]:g} N is not larger than under the smaller load: "
                 "give curves of one pair, solved in the same way"
             )
         settle(self, secant=_table(self))

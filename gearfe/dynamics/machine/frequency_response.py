@@ -75,7 +75,7 @@ def frequency_response(
     for i, w in enumerate(2 * np.pi * f):
         dynamic = K + 1j * w * C - w**2 * np.eye(len(K))
         if np.linalg.cond(dynamic) > 1e15:
-            raise ValueError(f"at {f[i]:g} Hz a force moves the machine without limit: a body is free there, or a mode undamped")
+            raise ValueError(f"the response at {f[i]:g} Hz is infinite: a body is free, or a mode has no damping")
         answer[i] = (1j * w) ** KINDS[kind] * (out * scale) @ np.linalg.solve(dynamic, scale * at)
     return answer
 

@@ -26,7 +26,7 @@ Curve = StiffnessCurve | Samples  # stiffness over the phase
 
 
 Stiffness = float | Floats | Curve | ForceLaw | PhaseTable  # types of stiffness that `GearMesh` accepts
-Change = tuple[float, float, PhaseTable]  # cycles until it returns, the first of them, the change over the phase from there
+Change = tuple[float, float, PhaseTable]  # period [cycles], first cycle, and change over the phase from there
 ALIKE = 1e-6  # tolerance of equal samples of two curves [mesh cycles, cells]
 
 
@@ -80,6 +80,6 @@ def cycle_table(stiffness: Stiffness) -> PhaseTable:
             values = np.interp(np.arange(FINE) / FINE, phase, values, period=1.0)
     if values.ndim != 1 or not values.size or not np.isfinite(values).all() or (values < 0).any():
         raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
-    if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # bent where pairs come in
+    if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # the curve has kinks where pairs enter
         return table(values, 0.0, 1.0 / values.size, periodic=True)
     return smooth_table(values)

@@ -33,7 +33,7 @@ MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it i
     "herringbone_planetary": {"linear": scene_herringbone},
     "gearbox": {"linear": scene_gearbox},
 }
-EVEN = 1e-9  # how far phases may lie from equal distances
+EVEN = 1e-9  # tolerance for equally spaced phases
 ROUGH = 8  # phases per cycle of the curves from which the forces at rest are computed
 STATED = ("herringbone_planetary",)  # models that take masses and inertias from the scene
 

@@ -197,7 +197,7 @@ class Machine:
             return None
         x = self.compressions(self.rest())
         free = gaps > 0
-        for i in np.flatnonzero((gaps > 0) & (x > 0)):  # these carry, and the flanks before them do not
+        for i in np.flatnonzero((gaps > 0) & (x > 0)):  # these flanks carry load, and the flanks before them do not
             free |= (self.G + self.G[i] == 0).all(axis=1)
         touching = np.array([bool(mesh.secants) or not self.curved for mesh in self.meshes])
         return np.where(touching & ~free & (depth(x, self.law) == 0), TOUCH, x)
@@ -235,7 +235,7 @@ class Machine:
             q = q + change
             if np.abs(change * np.sqrt(self.mass)).max() <= 1e-11 * np.abs(q * np.sqrt(self.mass)).max() + 1e-30:
                 return q
-        raise RuntimeError("no state of rest found: the loads do not press the meshes together, or leave a body free")
+        raise RuntimeError("no state of rest found: the loads do not close the meshes, or a body is free")
 
     def with_meshes(self, **changes: Any) -> "Machine":
         """Return the same machine with fields of every mesh replaced, e.g. ``with_meshes(backlash=1e-4)``."""

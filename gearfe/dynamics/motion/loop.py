@@ -137,7 +137,7 @@ def _copy(out, values, first):
 
 
 @compiled
-def _write(states, row, z):  # written out: numba takes 2 s to compile its message on arrays that do not fit
+def _write(states, row, z):  # a loop, because numba takes 2 s to compile its error message for array assignment
     for i in range(z.size):
         states[row, i] = z[i]
 
@@ -208,7 +208,7 @@ def _run(given, z, clock, states, counts, acting):
     none, doubt, fresh = np.zeros(m), np.zeros(m), False  # `fresh`: the first forces are those of the end before
     y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
     side, edge, level = np.zeros(m), 0, 0
-    nil, one = np.int64(0), np.int64(1)  # typed constants: numba compiles a function again for every literal
+    nil, one = np.int64(0), np.int64(1)  # typed constants, because numba compiles a function for every literal
     lookup(flat, now, nil, one, start, h, 0.0, 0.0)
     losses(side, x0, now, nil, laws)
     _write(states, nil, z)

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numba.core import event
 
-compiled = njit(error_model="numpy")  # at the first call
+compiled = njit(error_model="numpy")  # compiled at the first call
 
 
 def kept(function):
@@ -20,11 +20,11 @@ def kept(function):
     """
     try:
         dispatcher = njit(cache=True, error_model="numpy")(function)
-    except RuntimeError:  # no such folder: it is compiled by each process
+    except RuntimeError:  # without a cache folder each process compiles
         return compiled(function)
     if dispatcher is function:
         return _not_compiled
-    dispatcher._cache._cache_file._source_stamp = _stamp()  # numba itself looks at the function's own file alone
+    dispatcher._cache._cache_file._source_stamp = _stamp()  # numba checks only the file of the function itself
     return dispatcher
 
 

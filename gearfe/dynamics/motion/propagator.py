@@ -27,9 +27,9 @@ from ..machine.contact_law import closed
 from ..machine.modes import modal, natural_frequencies
 
 UNSTABLE = "the machine is unstable (a parametric resonance without enough damping), or the step is too long"
-LEVELS, DEEPER = 6, 8  # most halvings of a step: about changes of contact; where the step is adapted
+LEVELS, DEEPER = 6, 8  # largest number of halvings of a step: near contact changes, and with an adapted step
 LOCAL = 1e-5  # `Plan.allowed` at the default step, as a part of the largest mesh force
-STEPS = 80  # per mesh cycle, at first
+STEPS = 80  # initial number of steps per mesh cycle
 SHARE = 0.35  # initial step, as a part of the period of the stiffest mesh
 CONDITION = 1e8  # condition number of the eigenvectors above which the linear part is a full matrix
 

@@ -13,7 +13,8 @@ from .response import Response, acceleration
 
 SOLVERS = ("RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA")
 EVENTS = 100_000  # limit of contact changes in one run
-LOOKS = np.concatenate([[0.0], 2.0 ** np.arange(-20, -4), np.arange(2, 17) / 16])  # parts of a step: a flight may be as short
+# parts of a step at which contact is checked, because separation may be short
+LOOKS = np.concatenate([[0.0], 2.0 ** np.arange(-20, -4), np.arange(2, 17) / 16])
 TOGETHER = 1e-12  # contact changes closer in time than this part of a run are one
 
 
@@ -65,7 +66,7 @@ class _Run:
     def __init__(self, machine, duration, count, state, method, rtol, start):
         self.machine, self.n, self.law = machine, len(machine.dofs), machine.law
         highest = machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0)
-        unit = max(2 * math.pi * highest, 1.0)  # velocities of the size of the displacements
+        unit = max(2 * math.pi * highest, 1.0)  # scale velocities to the size of displacements
         self.scale = scale = np.concatenate([np.sqrt(machine.mass) * unit, np.sqrt(machine.mass)])
         rest = machine.rest()
         size = np.abs(scale * np.concatenate([rest, 0 * rest])).max() or np.abs(scale * state).max() or 1.0
@@ -104,7 +105,7 @@ class _Run:
         while True:
             message = solver.step()
             if solver.status == "failed" or not np.isfinite(solver.y).all():
-                raise RuntimeError(f"{self.method} gave up at t = {solver.t:.4g} s: {message or 'values that are not finite'}")
+                raise RuntimeError(f"{self.method} failed at t = {solver.t:.4g} s: {message or 'values that are not finite'}")
             times, end, hit = inside[(inside > solver.t_old) & (inside <= solver.t)], solver.t, None
             if self.opens.size or times.size:
                 path = solver.dense_output()
@@ -158,7 +159,8 @@ class _Run:
         self.events += 1
         if self.events > EVENTS:
             raise RuntimeError(
-                f"contact changed {EVENTS} times up to t = {t:.4g} s: flanks rest on the edge of touching; give a shorter run"
+                f"contact changed {EVENTS} times up to t = {t:.4g} s: the flanks open and close continually; give a "
+                "shorter duration"
             )
         x, u = self.compression(t, y), y / self.scale
         speed = self.machine.G @ u[self.n :] - excitation.errors(self.machine, t)[1]

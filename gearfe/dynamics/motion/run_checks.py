@@ -17,7 +17,8 @@ def check_initial(machine, state):
     deep, fast = (float(np.abs(machine.G @ part).max(initial=0.0)) for part in (state[:n], state[n:]))
     if deep > DEEPEST or fast > FASTEST:
         raise ValueError(
-            f"initial: the flanks of a mesh would be {deep:.3g} m in or off each other and move at {fast:.3g} m/s, but give less "
+            f"initial: the flanks of a mesh would be {deep:.3g} m inside or apart from each other and move at "
+            f"{fast:.3g} m/s, but give less "
             f"than {DEEPEST:g} m and {FASTEST:g} m/s: displacements in m and rad, velocities in m/s and rad/s"
         )
 
@@ -32,7 +33,7 @@ def initial_state(machine, initial):
 
 def check_memory(machine, duration, count, filtered):
     """Reject more outputs than memory holds, before they are computed."""
-    size = 4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0)  # twice, with a copy
+    size = 4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0)  # factor 2 for a copy
     memory, free = 8.0 * count * size, free_memory()
     if memory > free:
         raise ValueError(

@@ -254,7 +254,7 @@ class _Runs:
             try:
                 place, span = beginning(self.machine, self.duration, self.own, self.start)
                 found = estimate(self.machine, out.stats["dt"], span, [place])
-            except RuntimeError:  # the stretch, unlike the run, grows beyond all bounds
+            except RuntimeError:  # the stretch becomes unstable although the run does not
                 found = Estimate(math.inf, False, length, 0.0, math.inf)
         doubt = max(found.error, unseen(self.machine, self.start, self.duration, out.stats["dt"]))
         if not doubt <= COARSE:

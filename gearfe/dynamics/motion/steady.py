@@ -69,7 +69,7 @@ def common_period(machine: Machine) -> float:
     rates = [abs(m.frequency) / m.cycles() for m in machine.meshes if m.frequency]
     rates += [abs(f) for m in machine.meshes for _, f, _ in m.error if f]
     if not rates:
-        raise ValueError("nothing in this machine is periodic: give the period")
+        raise ValueError("no load or mesh of this machine is periodic: give the period")
     parts = [Fraction(rate / rates[0]).limit_denominator(10000) for rate in rates]
     if any(abs(float(part) * rates[0] / rate - 1) > 1e-9 for part, rate in zip(parts, rates, strict=True)):
         raise ValueError(f"frequencies {', '.join(f'{r:.6g}' for r in sorted(set(rates)))} Hz have no common period")

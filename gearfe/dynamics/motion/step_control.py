@@ -254,9 +254,9 @@ def estimate(machine, h, length, places, *, adapt=False, tried=False):
             told.append(seen(run(3, *place)))
         worst, lost = np.maximum(worst, apart(told)), lost or opened
         one, two = (each.stats["seconds"] for each in runs)
-        if one >= two:  # the first waited for the compiler, or for the processor
+        if one >= two:  # the first run includes compilation or waiting time
             one = run(1, *place).stats["seconds"]
-        cost = max(cost, two - one, two / 4)  # half of `two` but for noise, which may make it nothing
+        cost = max(cost, two - one, two / 4)  # about half of `two`, with a lower limit because of timing noise
     return Estimate(float(worst[0]), lost, length * len(places), cost / length, float(worst[1]))
 
 

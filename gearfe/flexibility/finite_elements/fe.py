@@ -110,11 +110,12 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), 
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
     edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
-    even = {"span": SPAN, "growth": GROWTH / refine}  # or the graded ends would be equally coarse at any resolution
+    even = {"span": SPAN, "growth": GROWTH / refine}  # refine the graded ends, too
 
     def vertices(tooth, size, **ends):
         end = loaded_side(gear, broken, tooth)
-        longest = abs(arc_at(end, end.roll_a) - arc_at(end, end.roll_f)) / (8 * SPAN)  # a bicubic spline needs hats enough
+        # a bicubic spline needs a minimum number of hats
+        longest = abs(arc_at(end, end.roll_a) - arc_at(end, end.roll_f)) / (8 * SPAN)
         return stations(end, min(edge[size], longest), **ends, **even)
 
     rolls = {tooth: vertices(tooth, "flank", tip=edge["tip"], low=edge["low"]) for tooth in loaded}

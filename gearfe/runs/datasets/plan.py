@@ -135,9 +135,9 @@ def _fault(file, where, table):
 def _check(plan):
     """Raise ValueError for a plan that contradicts itself or its scene."""
     if "machine" not in plan.tables:
-        raise ValueError(f"scene {plan.scene} has no [machine], so that nothing vibrates: add one, or take another scene")
+        raise ValueError(f"scene {plan.scene} has no [machine], so that it has no vibration model: add one, or use another scene")
     if not plan.fault:
-        raise ValueError("no fault, so that there is nothing to learn: give one [[fault]] or more")
+        raise ValueError("no fault, so that the data set has no damaged class: give at least one [[fault]]")
     names = [sensor["name"] for sensor in plan.sensor]
     if not names or len(set(names)) < len(names):
         raise ValueError(f"[[sensor]] names {names!r}: give one sensor or more, each with another name")

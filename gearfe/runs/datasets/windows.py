@@ -59,7 +59,8 @@ def losses(machine: Machine) -> tuple[float, float]:
     worst = (0.0, 0.0)
     for mesh in machine.meshes:
         for _, _, change in mesh.changes:
-            phase = np.linspace(-0.25, change.start + change.end + 0.25, 1001)  # neighbours are in mesh as long before as after
+            # the neighbours mesh symmetrically before and after
+            phase = np.linspace(-0.25, change.start + change.end + 0.25, 1001)
             loss = -change(phase) / mesh.cycle(phase % 1.0)
             worst = max(worst, (float(loss.max()), float(loss.mean())))
     return worst
@@ -149,7 +150,7 @@ def check_machine(plan: Plan) -> dict[str, Any]:
     if window["seconds"] * slow < 1:
         raise ValueError(
             f"[window] seconds = {window['seconds']:g}, but at {min(speeds):g} rpm a faulty tooth meshes every {1 / slow:.4g} s, "
-            f"so that a faulty window may hold nothing of it: give {1 / slow:.3g} s or more"
+            f"so that a window of a damaged machine may not contain the damage: give {1 / slow:.3g} s or more"
         )
     if samples_of(plan) < 16:
         raise ValueError(f"a window of {samples_of(plan)} samples: give a longer one")

@@ -31,7 +31,7 @@ def durable(path: StrPath, content: bytes) -> None:
         os.fsync(file.fileno())
     folder = os.open(Path(path).parent, os.O_RDONLY)
     try:
-        os.fsync(folder)  # its list of names
+        os.fsync(folder)  # sync the directory entry
     finally:
         os.close(folder)
 
@@ -68,7 +68,7 @@ def begin(folder: StrPath, about: Mapping[str, Any], shape: Mapping[str, Any]) -
     """
     check_path("folder", folder)
     if not os.fspath(folder):
-        raise ValueError("an empty name of a folder: give one")
+        raise ValueError("the name of the folder is empty: give a name")
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
         empty = not _inside(folder)

@@ -109,7 +109,7 @@ def _column(name, kind, values, schema):
     pa = arrow()
     try:
         if kind == "whole" and any(int(value) != value for value in values if value is not None):
-            raise ValueError("a fraction")  # which pyarrow would cut off
+            raise ValueError("a fraction")  # pyarrow would truncate fractions
         plain = [json.dumps(value) if kind == "json" and value is not None else value for value in values]
         return pa.array(plain, schema.field(name).type)
     except (pa.ArrowException, TypeError, ValueError, OverflowError) as error:
@@ -169,7 +169,7 @@ def check_shards(folder: StrPath) -> None:
         size, end = _end(file)
         other = first.setdefault((size, hashlib.sha256(end).digest()), file)
         if other is not file and filecmp.cmp(other, file, shallow=False):
-            raise ValueError(f"{folder} holds {other.name} and {file.name} with the same rows: one is a copy; take it out")
+            raise ValueError(f"{folder} holds {other.name} and {file.name} with the same rows: one is a copy; remove it")
         words.setdefault(end[end.rfind(b"ARROW:schema") :], file)
     schema = None
     for file in words.values():
@@ -179,7 +179,7 @@ def check_shards(folder: StrPath) -> None:
             raise _damaged(file, error) from error
         schema = schema or found
         if found != schema:
-            raise ValueError(f"{file} has other columns than the shards before it: it does not belong here; take it out")
+            raise ValueError(f"{file} has other columns than the shards before it: it does not belong here; remove it")
 
 
 def unfinished(folder: StrPath, names: Sequence[str], what: str, failed: Sequence[str] = ()) -> list[str]:
@@ -192,7 +192,7 @@ def unfinished(folder: StrPath, names: Sequence[str], what: str, failed: Sequenc
     unknown = sorted(present - set(names))
     if unknown:
         name = unknown[0] if unknown[0] in failed else f"{unknown[0]}{SUFFIX}"
-        raise ValueError(f"{folder} holds {name}, which is none of this {what}'s: take it out")
+        raise ValueError(f"{folder} holds {name}, which does not belong to this {what}: remove it")
     return [name for name in names if name not in present]
 
 

@@ -22,7 +22,7 @@ from .zoned import DEGREE, breaks_of, phases_of, piece_of, series_of
 
 FEWEST, MOST = 16, 20_000  # cases of a fit
 CHECKED = 64  # phases per mesh cycle at which a held-back case is compared
-SETS = tuple((degree, power) for degree in range(1, 9) for power in (1.0, 0.75, 0.6))  # sums of degrees**power allowed
+SETS = tuple((degree, power) for degree in range(1, 9) for power in (1.0, 0.75, 0.6))  # limits of sums of degrees**power
 BUSY = 0.6  # terms for each case at most
 
 
@@ -87,7 +87,7 @@ def fit_surrogate(
     done = batch(jobs, work=solved, workers=workers, progress=progress)
     for point, result in zip(drawn + fresh, done.results, strict=True):
         if isinstance(result, Exception):
-            raise ValueError(f"the ranges have a gap at {_told(point)}: {result}; narrow them") from result
+            raise ValueError(f"no stiffness within the ranges at {_told(point)}: {result}; narrow the ranges") from result
     pairs = sorted({result["pairs"] for result in done.results})
     if len(pairs) > 1:
         raise ValueError(f"contact ratios from below {pairs[-1]} to above it are in the ranges: k jumps there; narrow them")
@@ -157,7 +157,7 @@ def _check_corners(space, materials):
         try:
             space.case(point, materials)
         except ValueError as error:
-            raise ValueError(f"the ranges have a gap at their corner {_told(point)}: {error}; narrow them") from error
+            raise ValueError(f"no stiffness at a corner of the ranges, {_told(point)}: {error}; narrow the ranges") from error
 
 
 def _told(point):

@@ -131,7 +131,7 @@ class Surrogate:
         if phase.size and not (breaks[0] <= phase.min() and phase.max() <= breaks[-1]):
             raise ValueError(
                 f"phases from {phase.min():g} to {phase.max():g}, but the cracked tooth is known from {breaks[0]:.4g} to "
-                f"{breaks[-1]:.4g}: before and after are other teeth"
+                f"{breaks[-1]:.4g}: other phases belong to other teeth"
             )
         return phase
 
@@ -184,6 +184,6 @@ def _check_shapes(surrogate):
     terms, inputs = surrogate.powers.shape
     pieces = surrogate.worst.size
     if inputs != len(surrogate.space.ranges) or surrogate.weights.shape != (terms, pieces + 1 + pieces * (DEGREE + 1)):
-        raise ValueError(f"{terms} terms of {inputs} inputs do not go with weights of shape {surrogate.weights.shape}")
+        raise ValueError(f"{terms} terms of {inputs} inputs do not match weights of shape {surrogate.weights.shape}")
     if surrogate.powers.dtype.kind != "i" or not np.isfinite(surrogate.weights).all() or not np.isfinite(surrogate.worst).all():
         raise ValueError("its powers are no whole numbers, or its weights not finite")

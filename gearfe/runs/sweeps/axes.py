@@ -10,7 +10,7 @@ from ...scene.schema import schema_of
 from . import samples
 
 RUNS = "gearfe.runs"
-MOST = 10**7  # cases: their values alone take gigabytes
+MOST = 10**7  # limit of cases, whose values alone take gigabytes
 SPEC = {*schema_of(RUNS)["steps"].keys, *samples.SHAPES, "choice", "within"}
 
 
@@ -107,7 +107,7 @@ def checked_sample(file, given):
         samples.check_shape(f"{file} [sample.of] {key}", spec)
         check_values(f"{file} [sample.of] {key}", spec.get("choice", []))
     if method == "saltelli" and out["correlated"]:
-        raise ValueError(f"{file} [sample]: Sobol indices part the variance among independent values; leave [[correlated]] out")
+        raise ValueError(f"{file} [sample]: Sobol indices require independent values; leave out [[sample.correlated]]")
     _check_correlated(file, out)
     return out
 

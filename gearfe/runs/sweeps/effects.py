@@ -87,8 +87,10 @@ def sobol_indices(runs: Runs, output: str, where: Any = None) -> "pandas.DataFra
     table = _numbers(runs, output, where).sort_values("draw")
     if table["draw"].tolist() != list(range(count * (len(names) + 2))):
         raise ValueError(
-            f"Sobol indices need each of the {count * (len(names) + 2)} draws once, but there are {len(table)} with a value, "
-            f"of {table['draw'].nunique()} draws: choose one value of the other inputs by where, within which no case fails"
+            f"Sobol indices need a value for each of the {count * (len(names) + 2)} draws once, but there are "
+            f"{len(table)} with a value, "
+            f"of {table['draw'].nunique()} draws: select one value of the other inputs by where, and a subset "
+            "without failed cases"
         )
     parts = table[output].to_numpy().reshape(len(names) + 2, 1, count)
     indices = stats.sobol_indices(func={"f_A": parts[0], "f_B": parts[1], "f_AB": parts[2:]}, n=count)

@@ -83,7 +83,7 @@ def sweep(
             tally.add(len(ended.cases))
     if tally.done != tally.total:
         raise RuntimeError(
-            f"{tally.total - tally.done} of {tally.total} cases were handed out and never came back: start the sweep again"
+            f"{tally.total - tally.done} of {tally.total} cases were started but returned no result: start the sweep again"
         )
     return open_runs(folder)
 

@@ -121,7 +121,7 @@ class Runs:
         if "phase" in lists and "phase" not in names:
             phase = values["phase"]
             longest = phase[np.argmax(np.isfinite(phase).sum(axis=1))] if phase.size else np.empty(0)
-            if (np.isnan(phase) | (phase == longest)).all():  # all begin with the same phases, as far as they go
+            if (np.isnan(phase) | (phase == longest)).all():  # all curves share their first phases
                 coords["phase"] = ("place", longest, {"units": "-"})
             else:
                 names = ["phase", *names]

@@ -94,7 +94,7 @@ def check_shape(where, spec):
         raise ValueError(f"{where}: {name} = {shown(values)}, but give a list: {meaning}")
     if shape is None:
         if within is not None:
-            raise ValueError(f"{where}: within is of a distribution; leave out of the choice what is not in it")
+            raise ValueError(f"{where}: within applies to a distribution; remove the unwanted values from the choice")
         return
     if not all(map(_finite, values)):
         raise ValueError(f"{where}: {name} = {shown(values)}, but give finite numbers: {meaning}")
@@ -105,7 +105,9 @@ def check_shape(where, spec):
     if not (isinstance(within, (list, tuple)) and len(within) == 2 and all(map(_finite, within)) and within[0] < within[1]):
         raise ValueError(f"{where}: within = {shown(within)}, but give [low, high] with low < high")
     if not np.diff(_distribution(spec).cdf(within))[0] > LEAST:
-        raise ValueError(f"{where}: within = {within} leaves nothing of {name} = {values}; give an interval in which values lie")
+        raise ValueError(
+            f"{where}: within = {within} contains no values of {name} = {values}; give an interval that contains values"
+        )
 
 
 def _finite(value):

@@ -103,7 +103,7 @@ def _study(file, place, data):
     sample = checked_sample(file, top["sample"])
     cases = math.prod([len(next(iter(axis.values()))) for axis in grid]) * sample.get("count", 1)
     if cases > MOST:
-        raise ValueError(f"{file}: {cases} cases, but a study has at most {MOST:.0e}: vary less, or part it")
+        raise ValueError(f"{file}: {cases} cases, but a study has at most {MOST:.0e}: vary fewer values, or split the study")
     keys = inputs_of(grid, sample)
     for key in keys:
         try:

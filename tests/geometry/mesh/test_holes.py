@@ -156,7 +156,7 @@ def test_a_mesh_that_gmsh_cannot_make_is_made_finer(monkeypatch):
     assert len(asked) == 2
     monkeypatch.setattr(holes, "FINER", (1.0,))
     asked.clear()
-    with pytest.raises(RuntimeError, match=r"overlapping facets\); raise refine"):
+    with pytest.raises(RuntimeError, match=r"overlapping facets\); increase refine"):
         holed_sector(GEAR, [pit(GEAR)], teeth=1, sizes=COARSE)
 
 
@@ -186,7 +186,7 @@ def test_a_boolean_that_fails_is_caught(fault, monkeypatch):
     ("pits", "options", "message"),
     [
         ([{"radius": GEAR.r_form + 0.1}], {}, "below the form circle"),
-        ([{}, {"tooth": 1, "z": 1.0}], {}, "one tooth at a time"),
+        ([{}, {"tooth": 1, "z": 1.0}], {}, "one tooth only"),
         ([{"depth": 3.0}], {}, "shallower"),
         ([{"z": 7.0}], {}, "0 <= z <= b"),
         ([{}], {"teeth": 2}, "odd number"),

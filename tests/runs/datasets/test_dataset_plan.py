@@ -48,7 +48,7 @@ def changed(**values):
         (changed(fault__0__gear="moon"), "no such gear|only the teeth"),
         (changed(fault__0__body="planet2"), "body 'planet2', but in this machine it is sun"),
         (changed(fault__0__depth=1.0), "unknown key 'depth'"),
-        (changed(fault=[]), "nothing to learn"),
+        (changed(fault=[]), "no damaged class"),
         (changed(window__rate_Hz=-1.0), "rate_Hz = -1"),
         (changed(window__count=0), "count = 0"),
         (changed(operation__speed_rpm=[]), "speed_rpm"),

@@ -93,7 +93,7 @@ def test_saved_and_loaded(fitted, tmp_path):
 
 
 def test_gaps_in_the_ranges_are_refused(pair, steel):
-    with pytest.raises(ValueError, match=r"gap at their corner bore_1 = 1\.1"):
+    with pytest.raises(ValueError, match=r"at a corner of the ranges, bore_1 = 1\.1"):
         gf.fit_surrogate(pair, steel, {"force": 900.0, "bore_1": (0.3, 1.1)}, cases=16, held_back=8, workers=1)
     with pytest.raises(ValueError, match="cases = 3"):
         gf.fit_surrogate(pair, steel, LOADS, cases=3)

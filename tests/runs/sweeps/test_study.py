@@ -128,11 +128,11 @@ REFUSED = {
     "standard deviation is > 0": {"sample": {"count": 4, "of": {"gear.sun.x": {"normal": [1, 0]}}}},
     "block = 0": {"block": 0},
     "seed = -1": {"seed": -1},
-    "leaves nothing of uniform": {
+    "contains no values of uniform": {
         "sample": {"count": 4, "of": {"gear.sun.x": {"uniform": [1000, 2000], "within": [5000, 6000]}}}
     },
     "give .low, high. with low < high": {"sample": {"count": 4, "of": {"gear.sun.x": {"uniform": [0, 1], "within": 3}}}},
-    "within is of a distribution": {"sample": {"count": 4, "of": {"gear.sun.x": {"choice": [0, 1], "within": [0, 1]}}}},
+    "within applies to a distribution": {"sample": {"count": 4, "of": {"gear.sun.x": {"choice": [0, 1], "within": [0, 1]}}}},
     "also = 5: expected a list of texts": {"sample": {"count": 4, "of": {"gear.sun.x": {"uniform": [0, 1], "also": 5}}}},
     "also = 'x': expected": {"vary": {"gear.sun.x": {"from": 0, "to": 1, "count": 3, "also": "x"}}},
     "correlated twice": {"sample": CORRELATED | {"correlated": [AGAIN, AGAIN | {"between": AGAIN["between"][::-1]}]}},

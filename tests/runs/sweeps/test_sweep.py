@@ -124,7 +124,7 @@ def test_another_study_version_or_shard_is_noticed(undisturbed, tmp_path, monkey
     with pytest.raises(ValueError, match=r"block-000000\.parquet and other\.parquet with the same rows"):
         gf.sweep(small, tmp_path / "runs")
     (tmp_path / "runs" / "other.parquet").write_bytes(half)
-    with pytest.raises(ValueError, match=r"other\.parquet, which is none of this study's"):
+    with pytest.raises(ValueError, match=r"other\.parquet, which does not belong to this study"):
         gf.sweep(small, tmp_path / "runs")
 
 

@@ -213,7 +213,7 @@ class MeshedBody:
         return (2 * math.pi / self.outline.gear.z + other - loaded + behind) * self.outline.r_f
 
     def _other(self, s):
-        """The side that is not loaded by the arc lengths of the loaded side (whose modifications it may lack)."""
+        """Return the side that is not loaded by the arc lengths of the loaded side (whose modifications it may lack)."""
         radius = self.side.place(np.asarray(s, dtype=float))[0]
         last = self.side.joints[-2]
         tip = np.asarray(s) >= last

@@ -52,7 +52,7 @@ def random_pair(seed):
 
 
 def random_flank(rng, gear):
-    """A rounded or chamfered tip, reliefs, crowning, slope, pitch deviations, each at times."""
+    """Draw a rounded or chamfered tip, reliefs, crowning, slope and pitch deviations, each with some probability."""
     m, given = gear.m_n, {}
     kind = rng.random()
     if kind < 0.4:

@@ -46,7 +46,7 @@ def stiffness(nodes, triangles, young, nu):
 
 
 def solver(matrix, held):
-    """Function that solves ``matrix u = load`` with nodes `held` fixed, for many loads ``(dofs, n)`` at a time."""
+    """Return a function that solves ``matrix u = load`` with nodes `held` fixed, for many loads ``(dofs, n)`` at a time."""
     free = np.ones(matrix.shape[0], dtype=bool)
     free[2 * held], free[2 * held + 1] = False, False
     free = np.flatnonzero(free)

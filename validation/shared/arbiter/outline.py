@@ -67,7 +67,7 @@ class Outline:
         return self._pitch[np.asarray(tooth) % self.gear.z]
 
     def removed(self, radius):
-        """What the flank lacks at radii [mm], along the line of action [mm], without tip edge and pitch."""
+        """Return the material removed at radii [mm], along the line of action [mm], without tip edge and pitch."""
         radius = np.asarray(radius, dtype=float)
         out = np.zeros(radius.shape)
         if self.flank is None:
@@ -203,7 +203,7 @@ class _Chamfer:
 
 
 def _normal(outline, radius, step=1e-5):
-    """Unit vector (x, y) out of the material of the flank as cut, by central differences (tooth along +y)."""
+    """Return the unit vector (x, y) out of the material of the flank as cut, by central differences (tooth along +y)."""
     radii = radius + step * np.array([-1.0, 1.0])
     angles = outline._flank(outline.roll(radii))
     x, y = radii * np.sin(angles), radii * np.cos(angles)

@@ -255,7 +255,7 @@ def _bodies(contact, zones, material, refine, cracks, missing):
 
 
 def complementary(matrix, gap, rate, load):
-    """Forces and approach: pressed hats close exactly, the others stay open (primal-dual active set).
+    """Return forces and approach: pressed hats close exactly, the others stay open (primal-dual active set).
 
     Raises
     ------

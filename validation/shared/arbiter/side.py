@@ -33,7 +33,7 @@ class Side:
         return np.interp(sign * np.asarray(radius), sign * radii, s)
 
     def piece(self, s):
-        """Number of the piece of places `s`."""
+        """Return the number of the piece of places `s`."""
         return np.clip(np.searchsorted(self.joints, s, side="right") - 1, 0, len(self._s) - 1)
 
     def parameter(self, s):
@@ -118,7 +118,7 @@ class Posed:
         return gap, at
 
     def _crossing(self, points, tangents, normals, grid):
-        """Ends of the interval of each row of `grid` in which the line through its point crosses the curve nearest to it."""
+        """Return the ends of the interval of each row of `grid` in which its line crosses the curve nearest to its point."""
         flat = np.where(np.isfinite(grid), grid, 0.0)
         x, y = self.points(flat.ravel()).reshape(2, *grid.shape) - points[:, :, None]
         across = np.where(np.isfinite(grid), x * tangents[0][:, None] + y * tangents[1][:, None], np.nan)

@@ -46,7 +46,7 @@ class Contact:
         self.press, self.sides = press, sides
 
     def posed(self, gear, stand, approach, shift=STILL):
-        """The side of `gear` of the one tooth pair of `stand` after an approach and elastic shifts of both gears."""
+        """Return the side of `gear` of the one tooth pair of `stand` after an approach and elastic shifts of both gears."""
         press = self.press
         turn = float((stand.turn_1, stand.turn_2)[gear][0]) + press.rates[gear] * approach
         behind = float(press.outlines[gear].pitch(stand.tooth)[0])
@@ -115,7 +115,7 @@ def _slides(pieces, touch, i):
 
 
 def placed(contact, stand, phase, order, own, s, approach, ends, width, force, refine, shift=STILL):
-    """A `Zone` between two ends, hats of ``width / HATS`` and finer ones at corners and joints."""
+    """Return a `Zone` between two ends, hats of ``width / HATS`` and finer ones at corners and joints."""
     side = contact.sides[own]
     low, high = max(ends[0], 1e-6), min(ends[1], side.joints[-1] - 1e-6)
     coarse = max(high - low, 1e-9) / 2 / WIDER / HATS / refine

@@ -204,7 +204,7 @@ def _depth(z, weight, front, whole, rise):
     carried = whole.T @ (weight * value)
     value, slope = value - whole @ carried, slope - rise @ carried
     size, turn = np.linalg.eigh(value.T @ (weight * value))
-    kept = size > 1e-12  # all functions had about unit size before
+    kept = size > 1e-12  # all functions were scaled to about 1 before
     turn = turn[:, kept] / np.sqrt(size[kept])
     return value @ turn, slope @ turn
 

@@ -13,7 +13,7 @@ from ....geometry.tooth.profile import cartesian, flank
 
 LEAST, DECAY = 5, 2.0  # degree of parts that do not decay; half waves that decay by less than exp(-`DECAY`) are kept
 SAMPLES = 60  # points of a loaded flank at which distances are measured
-SAME = 1e-6  # distances that differ by less have one degree [m_n]
+SAME = 1e-6  # distances closer than this share one degree [m_n]
 
 
 def degrees(gear, sector, numbers, sides, degree, order):

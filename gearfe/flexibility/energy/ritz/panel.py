@@ -25,7 +25,7 @@ from ...condense import condense
 from ...plane_elements import bent_stiffness, stiffness
 from .tip import face_columns, load_columns, tip_columns, tip_of
 
-STRAIGHT = 1e-12  # edges that depart less from their chord, by the size of the sector
+STRAIGHT = 1e-12  # edges with a smaller deviation from their chord are straight, relative to the sector size
 GROUP = 10  # triangles eliminated together, and up to twice as many
 
 
@@ -162,7 +162,7 @@ def _local(sector, bulges, order, modulus, ratio):
     kept = 2 * (basis.count - basis.inside)
     if not basis.inside:
         return local
-    inside = np.linalg.inv(local[:, kept:, kept:])  # for so few unknowns faster than a solve
+    inside = np.linalg.inv(local[:, kept:, kept:])  # for few unknowns an inverse is faster than a solve
     return local[:, :kept, :kept] - local[:, :kept, kept:] @ (inside @ local[:, kept:, :kept])
 
 
@@ -240,8 +240,8 @@ def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
     with np.errstate(divide="ignore", invalid="ignore"):  # a load at itself, which is taken as zero
         moved = flamant.displacement(where, where, inward, tip_side, *elastic)
         field = np.einsum("dji,di->ij", moved, inward) + 2 / (math.pi * elastic[0]) * np.log(np.abs(arc[:, None] - arc))
-    field[~np.isfinite(field)] = 0.0  # loads at one place with different directions do not read each other
-    leans = (1 + elastic[1]) / (math.pi * elastic[0]) * np.sin(tilt) ** 2  # the surface then is not at right angles to the load
+    field[~np.isfinite(field)] = 0.0  # loads at one point with different directions do not interact
+    leans = (1 + elastic[1]) / (math.pi * elastic[0]) * np.sin(tilt) ** 2  # the surface is not normal to the load
     np.fill_diagonal(field, leans)
     return [(rows, columns, force.ravel()), (read_rows, read_columns, read.ravel())], field
 

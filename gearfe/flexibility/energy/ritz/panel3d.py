@@ -32,7 +32,7 @@ from .panel import Panel, numbering
 from .parity import front_by_parity
 from .short_edges import ORDER, bind, quadratic_edges
 
-CLOSE = 0.5  # how near a crack [m_n] nodes have the functions that its ends along the width need
+CLOSE = 0.5  # nodes within this distance of a crack [m_n] have the functions for its ends along the width
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +94,7 @@ def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
     load = np.concatenate([section.load, apart], axis=2)
     nodes = int(every.max()) + 1
     own_degrees = degrees(gear, sector, every, sides, degree, model.order)
-    kinds = np.zeros(nodes + load.shape[2], dtype=int)  # which functions along the width
+    kinds = np.zeros(nodes + load.shape[2], dtype=int)  # indices of functions along the width
     kinds[:nodes] = _kinds(gear, sector, every, own_degrees, sides, parts, bends, [right for _, right in seams])
     kinds[nodes + knots.shape[1] :] = [2 + 4 * i for i in owner]
     body = body_of(section._replace(load=load), along, seams=seams, kinds=kinds, bent=bent)

@@ -22,7 +22,7 @@ from .panel3d import polar, section_of
 from .plane import PLACES as LOADS
 from .plane import carry, loaded_sector
 
-FURTHER, HIGHEST = 3, 8  # orders more of the polynomials compared with at cracks, and the highest order
+FURTHER, HIGHEST = 3, 8  # additional polynomial orders for the comparison at cracks, and the highest order
 
 
 def missing(model, section, healthy, *, chip=None, cubic=False, cache=True):

@@ -26,7 +26,7 @@ from .panel import check_order
 from .panel3d import SolidModel, panel3d
 from .plane_strain import completed, missing, missing_at_cracks
 
-LOST = 2  # axial modes too poor to be kept
+LOST = 2  # number of highest axial modes that are discarded as inaccurate
 # Depths at which a sloping crack's section is compared with plane strain; Gauss points along each open part.
 DEPTHS, ALONG = 3, 12
 # edge lengths in modules, see `gearfe.geometry.mesh.sector.SIZES`
