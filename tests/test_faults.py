@@ -47,6 +47,7 @@ for path in sys.argv[1:]:
 """
 
 
+@pytest.mark.slow
 def test_a_killed_writer_leaves_the_old_file_or_a_new_one(tmp_path):
     """Killed at any moment: what stands there is whole, the old or the new."""
     targets = [tmp_path / f"x{suffix}" for suffix in (*suffixes("curve"), ".png")]
@@ -88,6 +89,7 @@ print(codes)
 """
 
 
+@pytest.mark.slow
 def test_a_full_disk_is_said_and_leaves_the_old_file(tmp_path):
     """No file may grow beyond 2000 bytes: the write fails in its middle."""
     names = ["k.csv", "k.json", "k.mat", "k.npz", "k.png"]
@@ -103,6 +105,7 @@ def test_a_full_disk_is_said_and_leaves_the_old_file(tmp_path):
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == dict.fromkeys(names, b"old")
 
 
+@pytest.mark.slow
 def test_two_processes_share_one_cache(tmp_path, monkeypatch):
     """Both solve the same gears at once; both get the same numbers, and no file is broken."""
     run = {"method": "fe", "refine": 0.4, "phases": 3}
@@ -182,6 +185,7 @@ def test_a_file_name_outside_utf_8_is_drawn(tmp_path):
     assert save_figure(figure, tmp_path / "x.png", 20).get_suptitle() == "? $x"
 
 
+@pytest.mark.slow
 def test_switched_off_compilation_is_said(tmp_path):
     code = "import gearfe as gf; m = gf.single_mesh(1.0, 1e8, 500.0, force=100.0); gf.simulate(m, 0.01)"
     environment = ENVIRONMENT | {"NUMBA_DISABLE_JIT": "1"}

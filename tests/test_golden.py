@@ -41,6 +41,7 @@ def test_what_is_not_reproduced_has_a_reason(page):
             assert verdicts.reasons(by_id[row.id], row), f"{row.id}, {row.case}: {row.verdict} without reason or correction"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES)
 def test_cheap_rows_are_what_the_table_says(page):
     known = {row[:3]: row for row in table_rows.read(page)}
@@ -60,6 +61,7 @@ def test_verdicts_follow_from_the_numbers(page):
         assert [row.verdict for row in verdicts.judge(one, found)] == [row.verdict for row in own], one.id
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES)
 def test_pages_are_not_stale(page):
     for name, made in ((page, machines.text(page)), (f"{page}_variants", machines.variants(page))):

@@ -65,6 +65,7 @@ def test_beam_code_with_its_conventions():
         assert_allclose(got[row["quantity"]], row["value"], rtol=TABLES["beam_code"]["tolerance"], err_msg=row["quantity"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("row", "table"), rows("formulations"))
 def test_errors_of_the_textbook(row, table):
     for zone, errors in zip(("single", "double"), reference.formulation(row, teeth=5), strict=True):

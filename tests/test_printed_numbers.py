@@ -57,6 +57,7 @@ def _found(place):
     return value if isinstance(value, list) else [value]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row['article']} {row['what']}")
 def test_what_is_said_of_a_printed_number(row):
     """Judged numbers stand in their reference as printed, used ones where they are said to be; the others have a reason."""

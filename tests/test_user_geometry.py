@@ -49,6 +49,7 @@ def installed(wheel, tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize("home", ["checkout", "wheel"])
 def test_a_users_geometry_and_that_of_gearfe_do_not_meet(home, order, tmp_path, installed, monkeypatch):

@@ -43,6 +43,7 @@ def done(tmp_path_factory):
     return dict(zip(LINES, found, strict=True)) | {"folder": folder, "whole": whole}
 
 
+@pytest.mark.slow
 def test_tables_and_pictures_of_curves_need_no_vtk(done):
     code, out, error = done["compare"]
     assert code == 0, error

@@ -31,6 +31,7 @@ def values(field):
     return st.integers(int(field.low), int(field.high)) if field.whole else st.floats(field.low, field.high)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=15)
 @given(st.fixed_dictionaries({one.name: values(one) for one in FIELDS}), st.text(max_size=20))
 def test_any_state_is_written_and_read_alike(state, title):

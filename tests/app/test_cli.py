@@ -31,6 +31,7 @@ def test_stiffness_of_one_gear_turned_against_the_other(tmp_path):
     assert abs(mean.k / expected.k - 1).max() > 1e-6
 
 
+@pytest.mark.slow
 def test_stiffness_of_a_case_is_told_as_compare_tells_it(capsys):
     """One number for one question: zones over the same cycle, losses against the same healthy gears."""
     run = ["compound_planetary", "--case", "crack30", "--phases", "8"]
@@ -48,6 +49,7 @@ def test_stiffness_of_a_case_is_told_as_compare_tells_it(capsys):
     assert "3.07 mm crack" in text
 
 
+@pytest.mark.slow
 def test_compare_prints_errors_by_zone(tmp_path, capsys):
     file = tmp_path / "errors.tex"
     assert main(["compare", "planetary_pitting", "--phases", "8", "--refine", "0.6", "-o", str(file)]) == 0

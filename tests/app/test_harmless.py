@@ -62,6 +62,7 @@ def quiet(text):
     return not shell.STEERING.search(text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("more", [["--case", f"cracked {STEERS} $x_$ |<b>"], ["--pair", "none"], ["--case", "none"]])
 def test_no_verb_passes_on_what_steers_a_terminal(scene, more, capsys, tmp_path):
     for verb in (["stiffness", "--method", "textbook", "--plot", str(tmp_path / "p.png")], ["compare", "--refine", "0.2"]):

@@ -58,6 +58,7 @@ def test_verbs_say_how_far_they_are(line, least, capsys):
     assert 0.5 <= said[-1] < 1.0
 
 
+@pytest.mark.slow
 def test_a_terminal_shows_the_time_left(tmp_path):
     """On a pseudo-terminal; without numbers of seconds, which the machine decides."""
     screen, terminal = pty.openpty()

@@ -35,6 +35,7 @@ def found(scene):
     return gf.compare(scene, case="cracked", phases=16)
 
 
+@pytest.mark.slow
 def test_healthy_curves_are_of_the_same_phases(found):
     assert found.healthy.keys() == found.curves.keys()
     for name, curve in found.healthy.items():
@@ -68,6 +69,7 @@ def test_any_tooth_loses_as_tooth_nought():
         assert_allclose(two.losses()["ritz"][zone], value, rtol=1e-3, err_msg=zone)
 
 
+@pytest.mark.slow
 def test_every_method_has_a_column_or_a_reason(found, scene):
     for one in (
         found,
@@ -98,6 +100,7 @@ def test_case_and_cases_give_the_same_numbers(found, scene):
         assert_allclose(list(one.values()), list(other.values()), rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_cases_with_damage_in_several_teeth_are_each_looked_at(tmp_path):
     path = gf.new_scene(tmp_path / "two.toml", teeth=(17, 23), width=8.0)
     path.write_text(path.read_text() + "\n[[crack]]\ncase = 'third'\ngear = 'pinion'\nlevel = 0.3\ntooth = 2\n")
@@ -107,6 +110,7 @@ def test_cases_with_damage_in_several_teeth_are_each_looked_at(tmp_path):
         assert_allclose(list(third[name].values()), list(first[name].values()), rtol=2e-3)
 
 
+@pytest.mark.slow
 def test_terminal_report_and_python_say_the_same(found, scene, capsys):
     assert main(["compare", str(scene), "--case", "cracked", "--phases", "16"]) == 0
     text = capsys.readouterr().out

@@ -265,6 +265,7 @@ def test_decimal_commas_and_matlab_vectors_are_the_same_curve(tmp_path):
         assert_allclose(curve_of(tmp_path / name, PHASE).k, STEP, rtol=1e-14)
 
 
+@pytest.mark.slow
 def test_a_cracked_curve_of_gearfe_loses_what_gearfe_finds(tmp_path):
     scene = gf.load_scene("compound_planetary")
     case, pair = next(iter(scene.pair().damage)), next(iter(scene.pairs))
@@ -279,6 +280,7 @@ def test_a_cracked_curve_of_gearfe_loses_what_gearfe_finds(tmp_path):
         assert_allclose(found[case][zone], lost, atol=2e-4, err_msg=zone)
 
 
+@pytest.mark.slow
 def test_a_pair_model_of_the_damaged_tooth_counts_for_that_tooth_alone():
     healthy, half = (gf.PairModel(lambda r_1, r_2, k=k: np.full(r_1.shape, k)) for k in (2e8, 1e8))
     scene = gf.load_scene("compound_planetary")

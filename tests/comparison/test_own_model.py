@@ -154,6 +154,7 @@ def test_own_curves_are_saved_and_read_again(tmp_path):
         assert after.meta == before.meta
 
 
+@pytest.mark.slow
 def test_compare_gives_the_textbooks_error_row():
     models = {"file": example.EXAMPLE, "total": lambda phase: by_textbook(phase).k, "pairs": gf.PairModel(textbook_pair)}
     result = gf.compare(SCENE, models=models, phases=32, refine=0.5)

@@ -8,6 +8,7 @@ import gearfe as gf
 from gearfe.comparison.comparison import Comparison
 
 
+@pytest.mark.slow
 def test_a_pair_without_a_scene_is_compared_as_in_one():
     chosen = gf.load_scene("planetary_pitting").pair()
     own = {"force": chosen.force, "material": chosen.materials}

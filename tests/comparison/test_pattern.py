@@ -16,6 +16,7 @@ def askew(tmp_path_factory):
     return scene
 
 
+@pytest.mark.slow
 def test_load_over_the_face_is_the_whole_force(askew):
     chosen = gf.load_scene(askew).pair()
     found = pattern_of(chosen.case(), phases=4)

@@ -28,6 +28,7 @@ def test_frequencies_of_the_scenes():
     assert_allclose(notes["fault frequency of a sun tooth [Hz]"], 40.0, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_crack_shows_at_its_sidebands_only(found):
     report = analysis(found)
     assert report.channel == "force sun2_b1"

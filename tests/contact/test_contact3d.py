@@ -107,6 +107,7 @@ def test_corner_contact_of_a_ring_and_of_two_materials_is_that_of_the_plane():
     assert_allclose(solid.k, plane, rtol=5e-3)
 
 
+@pytest.mark.slow
 def test_helical_contact_goes_on_beyond_the_path():
     """Lines end where the gap is the approach, loads stay positive, and more contact is stiffer."""
     pair, phases = pair_of(20.0), np.linspace(0, 1, 5)[:-1]
@@ -290,6 +291,7 @@ def test_a_piece_that_vanishes_takes_its_load_with_it():
     assert carried[2] < 1e-3 * 1500.0
 
 
+@pytest.mark.slow
 def test_plot_of_the_contact_lines(tmp_path):
     pair = pair_of()
     found = solid_contact(pair, 1000.0, STEEL, [0.4], order=2, axial=6)

@@ -41,6 +41,7 @@ def test_pits_over_a_whole_line_are_refused():
         solid_contact(pair_of(), 1500.0, STEEL, 4, pits=(pits, ()), order=2, axial=6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", ["loaded", "unloaded"])
 def test_faces_of_cracks_are_kept_apart_as_in_the_plane(side):
     """On a wide spur pair: the same phases as in the plane, and the same k within what wide spur pairs differ without cracks."""

@@ -31,6 +31,7 @@ def relative(scene, case, **changes):
     return missing_material(pitted, contact) / contact.k
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("scene", "case"), list(CUT))
 def test_what_finite_elements_with_recesses_lose_is_covered(scene, case):
     """Under loads that do not choose anew; the estimate is at most five times that."""

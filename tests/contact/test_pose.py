@@ -71,6 +71,7 @@ def test_an_unknown_pose_is_refused(pair):
         solved(pair, 0.1, "gear")
 
 
+@pytest.mark.slow
 def test_the_pose_holds_in_three_dimensions():
     pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
     wide = {"method": "ritz3d", "face": "spur"}

@@ -50,6 +50,7 @@ def test_faces_that_overlap_anywhere_are_closing():
         assert _closing(np.array([opening])).tolist() == [closes]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:no cracked tooth is in contact")
 @pytest.mark.parametrize("method", ["ritz", "fe"])
 def test_contacts_slide_as_well_where_crack_faces_touch(method):

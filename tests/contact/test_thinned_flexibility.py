@@ -27,6 +27,7 @@ def relieved(gear, amount, both):
     return gf.Flank(root_relief=amount, root_start_roll=middle, both_sides=both)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["ritz", "fe"])
 @pytest.mark.parametrize(("amount", "both"), list(KNOWN))
 def test_root_relief_bends_more(pair, amount, both, method):
@@ -61,6 +62,7 @@ def test_added_flexibility_is_symmetric_and_grows_with_what_is_removed(ring):
     )
 
 
+@pytest.mark.slow
 def test_three_dimensions_tell_what_they_leave_out(pair):
     """`ritz3d` solves full teeth: its estimate holds the whole difference of the section."""
     flanks = {"wheel": relieved(pair.gear_2, 0.08, True)}

@@ -55,6 +55,7 @@ def depth(pair, part, order):
     return ((np.arctan2(x, y) - own) * gear.r_b)[there]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:the ring's tip:UserWarning")
 @pytest.mark.parametrize(("degrees", "ring"), [(15.0, False), (15.0, True), (-15.0, False), (0.0, False)])
 def test_flanks_touch_along_their_lines_and_nowhere_overlap(tmp_path, degrees, ring):
@@ -82,6 +83,7 @@ def damaged(tmp_path_factory):
     return folder / "p.inp", written(folder, pair_of(15.0), damage=damage, **COARSE)
 
 
+@pytest.mark.slow
 def test_deck_is_whole(damaged):
     path, deck = damaged
     text = path.read_text()
@@ -171,6 +173,7 @@ def test_a_line_load_has_its_resultant_and_stays_on_the_flank(tmp_path):
         deck.deflection(tmp_path / "none.dat")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", list(outsider.lines()))
 def test_line_loads_on_file_are_of_the_decks_written_today(name, tmp_path):
     """A rule of the mesh that changes makes rows of another mesh of them, which do not repeat."""

@@ -142,6 +142,7 @@ def test_a_close_up_needs_its_damage(tmp_path):
         gf.render_mesh(part, tmp_path / "t.png", close_up="tip")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("ring", "side"), [(False, "unloaded"), (True, "loaded"), (True, "unloaded")])
 def test_a_close_up_looks_into_pits_wherever_they_are(tmp_path, ring, side):
     """The camera once stood where the loaded flank of an external gear is: elsewhere it saw the next tooth, or the rim."""

@@ -113,6 +113,7 @@ def test_design_relief(pair):
     says("howto/design.md", "from a diameter of {} mm on", diameter)
 
 
+@pytest.mark.slow
 def test_design_pattern_and_root_stress(tmp_path):
     text = (SITE / "howto" / "design.md").read_text(encoding="utf-8")
     scene = gf.new_scene(tmp_path / "my.toml")

@@ -51,6 +51,7 @@ def fewer(script, folder):
     return copy
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("script", PARAMETERS)
 def test_script_prints_what_is_on_record(script, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)

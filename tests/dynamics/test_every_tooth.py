@@ -82,6 +82,7 @@ def test_teeth_of_both_gears_show_both_lines():
     assert_allclose([found.lines["f_m - f_r"], found.lines["f_m - f_wheel"]], [MESH - TURNS[gear] for gear in TURNS])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("gear", "tooth", "entry"), [("pinion", 5, 12), ("wheel", 30, 8)])
 def test_a_tooth_is_tooth_0_shifted_in_time(gear, tooth, entry):
     """Tooth k enters z - k mesh cycles after tooth 0; the step divides the mesh period."""
@@ -148,6 +149,7 @@ def test_another_integrator_with_contact_solved_for_the_teeth_that_meet():
     assert_allclose(run["pair.x"], want.y[0], atol=1e-4 * np.ptp(want.y[0]))
 
 
+@pytest.mark.slow
 def test_eccentric_pinion_runs_as_one_off_its_axis():
     """30 um: one line of 30 um a turn in the transmission error; the force is that of a body off its axis."""
     flank = {"gear": "pinion", "eccentricity_um": 30.0}
@@ -215,6 +217,7 @@ def test_a_chipped_tip_shows_at_the_turns_of_its_gear(gear, tooth):
     assert [(one.gear, one.tooth) for one in machine.faults] == [(gear, tooth)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("gear", "tooth"), [("pinion", 0), ("wheel", 23)])
 def test_a_missing_tooth_shows_at_the_turns_of_its_gear(gear, tooth):
     """The contact opens and closes once per revolution; without a backlash it could not open."""
@@ -230,6 +233,7 @@ def test_a_missing_tooth_shows_at_the_turns_of_its_gear(gear, tooth):
     assert [(one.gear, one.tooth) for one in machine.faults] == [(gear, tooth)]
 
 
+@pytest.mark.slow
 def test_slow_rotation_with_a_missing_tooth_has_the_transmission_error():
     """With the gap: as contact solved over the whole revolution has it, and as a mass that is moved slowly."""
     case = replace(scene(missing_tooth=[{"gear": "pinion", "tooth": 3}]).case(case="missing"), force=1669.298)

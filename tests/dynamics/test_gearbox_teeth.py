@@ -70,6 +70,7 @@ def test_a_gear_turned_on_its_shaft_by_a_pitch_meshes_a_cycle_later_or_sooner():
     assert_allclose(turned[2] - turned[0], -4.0 * 19 / 360, rtol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("crack", "body", "mesh"), [
     ({"gear": "sun", "tooth": 2}, "sun", ("outer1", "outer2", "outer3")),
     ({"gear": "planet", "tooth": 4, "body": "planet2"}, "planet2", ("outer2", "inner2")),
@@ -101,6 +102,7 @@ def records(branching):
     return {name: recorded(made, 0.4, 20_000.0) for name, made in (("healthy", healthy), ("hurt", branching))}
 
 
+@pytest.mark.slow
 def test_sensors_at_bearings_and_couplings(records):
     """Bearing forces carry the mesh forces, the coupling the torque of its load, on average."""
     run = records["hurt"]
@@ -126,6 +128,7 @@ def test_indicators_by_gear_point_at_the_damaged_one(records):
     assert any("f_r" in name for name in report.standing()), "sidebands at the rotation of the damaged gear"
 
 
+@pytest.mark.slow
 def test_lines_of_a_noisy_record_are_named(branching):
     """Every line of ten times the local median of a bearing's force has a name; an alien line has none."""
     run, rng = recorded(branching, 4.0, 5120.0), np.random.default_rng(1)

@@ -38,6 +38,7 @@ def rms(values):
     return math.sqrt(np.mean(np.square(values)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("load", [120.0, 700.0, 3000.0])
 def test_turned_slowly_a_mesh_has_its_static_transmission_error_at_every_load(load):
     frequency = 2.0

@@ -81,6 +81,7 @@ def test_decimation_keeps_what_is_below_and_takes_out_what_is_above():
         gf.decimate(whole, 80e3)
 
 
+@pytest.mark.slow
 def test_what_is_compiled_is_told_of_once_and_what_is_kept_on_the_disk_is_not(tmp_path):
     """Each time in a process of its own, a function that is compiled as the loop is."""
     (tmp_path / "own.py").write_text("""

@@ -146,6 +146,7 @@ def test_steep_ramps_are_followed_by_shorter_steps():
     assert max(difference(fixed, want)) > max(difference(got, want))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "mesh", "losses"),
     [

@@ -43,6 +43,7 @@ COMPOUND = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PLANETARY)
 def test_damage_is_in_the_meshes_of_its_body(name):
     row, meshes, frequency = PLANETARY[name]
@@ -56,6 +57,7 @@ def test_damage_is_in_the_meshes_of_its_body(name):
     assert_allclose(fault.frequency, frequency, rtol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", COMPOUND)
 def test_damage_is_in_the_meshes_of_its_body_in_a_compound_train(name):
     row, meshes = COMPOUND[name]
@@ -112,6 +114,7 @@ def test_a_tooth_of_a_sun_is_tooth_0_at_another_time():
         assert_allclose(one.at_phase(phase), two.at_phase(phase + 18), rtol=1e-11)
 
 
+@pytest.mark.slow
 def test_two_damaged_teeth_of_sun_and_planet_meet():
     """Sun tooth 0 and tooth 5 of planet 2: their meeting is solved in that mesh alone, every 651 cycles."""
     rows = {"gear": "sun"}, {"gear": "planet", "body": "planet2", "tooth": 5}
@@ -127,6 +130,7 @@ def test_two_damaged_teeth_of_sun_and_planet_meet():
     assert_allclose(mesh.at_phase(phase), want.k, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_deviations_of_ring_and_planet_are_solved_as_their_teeth_meet():
     """Both gears of a ring mesh differ: planet 2 meets the ring with other teeth than planet 1."""
     planet, ring = [-20.0] + [0.0] * 30, [-15.0] + [0.0] * 83

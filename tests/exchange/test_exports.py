@@ -116,6 +116,7 @@ def test_a_resonance_of_the_fmu_is_that_of_simulate(tmp_path):
     assert sizes["fmu"] == pytest.approx(sizes["simulate"], rel=1e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", [".mat", ".txt"])
 def test_tables_are_read_back(tmp_path, suffix):
     path = tmp_path / f"table{suffix}"

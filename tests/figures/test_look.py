@@ -64,6 +64,7 @@ def test_transmission_errors_say_whose_they_are(pair, steel):
     assert "µm" in found.plot(title="own").axes[0].get_ylabel()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", ["pinion", "wheel"])
 @pytest.mark.parametrize("name", ["sun_planet", "planet_ring"])
 def test_a_drawn_pair_has_its_damage_below_the_flank_that_touches(name, side):

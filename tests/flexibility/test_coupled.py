@@ -202,6 +202,7 @@ PAIRS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PAIRS)
 def test_below_three_percent_of_finite_elements(name):
     """At every phase, not only on average; standard racks, solid bodies."""
@@ -222,6 +223,7 @@ LIMITS = {  # gear, and the largest error there: wide roots are hardly beams, an
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LIMITS)
 def test_beyond_its_range(name):
     """A recorded verdict: this closed form is not within 3 % there, and is wrong by this much."""

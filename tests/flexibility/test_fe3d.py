@@ -145,6 +145,7 @@ def test_influence_is_that_of_another_solver(helical, solved, steel):
     assert_allclose(other, matrix, atol=1e-10 * abs(matrix).max(), err_msg="by SuperLU, of scipy")
 
 
+@pytest.mark.slow
 def test_mirrored_helix_gives_the_mirrored_influence(helical, solved, steel):
     found, right = helical[0], solved.matrix
     other = replace(HELICAL, beta=-HELICAL.beta)

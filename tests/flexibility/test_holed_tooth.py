@@ -81,6 +81,7 @@ def pressed():
     return pair, pressed_tooth(gf.Case(pair, 1500.0, gf.Material(E=207e3, nu=0.3), damage=damage), **run)
 
 
+@pytest.mark.slow
 def test_the_load_is_that_of_the_contact(pressed):
     """Its axial part and moment are those of a force at right angles to the flank; the reactions balance it."""
     pair, made = pressed
@@ -95,6 +96,7 @@ def test_the_load_is_that_of_the_contact(pressed):
     assert made.load[0] == pytest.approx(sum(part[3].sum() for part in lines[0]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", [0.0, HELICAL.b])
 def test_a_line_shorter_than_the_triangles_presses_at_the_nearest(end):
     """At a corner of the flank of any tooth: a force of its size, at right angles to the flank, less than a triangle away."""

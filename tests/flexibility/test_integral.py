@@ -49,6 +49,7 @@ def by_beam(held):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", ["both", "left"])
 def test_a_rigid_gear_on_elastic_stubs_is_a_rigid_piece_of_a_beam(mesh, side):
     """Loads along the involute's normal: force, tilt and torque of the hub, two stubs or an overhung gear."""

@@ -21,6 +21,7 @@ GEARS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("angle", "gear"), list(zip((0.1, -0.07), GEARS, strict=True)), ids=["undercut", "ring"])
 def test_a_tooth_yields_to_the_direction_of_a_force(gear, angle):
     mesh = fe.mesh_gear(gear, refine=1.4)

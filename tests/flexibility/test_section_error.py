@@ -91,6 +91,7 @@ def test_forces_that_lean_by_a_helix_are_taken_in_the_section(monkeypatch):
     assert_allclose(plane_hats(helical, gf.Material(), (), 0.5), want, rtol=2e-3)
 
 
+@pytest.mark.slow
 def test_what_a_section_lacks_is_added_to_every_axial_mode(hats_at, monkeypatch):
     """To the near part of each tooth, of a cracked one with its crack; nothing changes between teeth."""
     monkeypatch.setattr(section_error, "FINER", 2.0)

@@ -58,6 +58,7 @@ def stated_by_gearfe(error):
     return own and isinstance(error, (ValueError, TypeError, RuntimeError))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_place")
 def test_any_argument_of_any_public_name():
     told = {"answered": 0, "refused": 0}

@@ -215,6 +215,7 @@ def test_gears_with_another_number_of_planets_stand_equally_spaced():
     assert unequal(0, 34, 71).with_(force=1000.0).planet_angles == unequal(0, 34, 71).planet_angles
 
 
+@pytest.mark.slow
 def test_numbers_of_other_types_run_as_floats():
     plain, single = (run(duration=number(0.0078125)) for number in (float, np.float32))
     assert single.time.dtype == plain.time.dtype

@@ -161,6 +161,7 @@ def test_pitch_deviations_are_those_of_the_teeth_named(name, inner, planet):
     assert np.flatnonzero(changed).tolist() == [planet]
 
 
+@pytest.mark.slow
 def test_a_crack_softens_the_mesh_it_is_in():
     crack = gf.Crack(level=0.6)
     plain = planetary_stiffness(case(), [0.2, 1.2])
@@ -181,6 +182,7 @@ def test_uncoupled_cracks_are_those_of_isolated_pairs(crack):
     assert_allclose(one.k_alone[0, :, 0], want.k, rtol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["planet1", "ring"])
 def test_cracks_of_planet_and_ring_are_those_of_isolated_pairs(name):
     """Counted and mirrored as the pair of planet and ring has them: what the sun loads is unloaded there."""
@@ -295,6 +297,7 @@ def test_helical_sets_are_refused():
         PlanetaryCase(gf.PlanetarySet(*turned, 3), FORCE, STEEL)
 
 
+@pytest.mark.slow
 def test_planets_out_of_mesh_carry_nothing_and_the_others_all():
     """Errors so large for the load that planets leave their meshes, with hats at corners open and closed."""
     rng = np.random.default_rng(5)

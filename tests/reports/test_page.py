@@ -41,6 +41,7 @@ def test_page_is_one_file_with_all_its_parts(page):
     assert "N along the line of action, " in text
 
 
+@pytest.mark.slow
 def test_numbers_of_the_page_are_those_of_compare(page):
     text = page.read_text(encoding="utf-8")
     found = gf.compare(gf.load_scene(page.parent / "own.toml"), case="cracked", phases=12)
@@ -50,6 +51,7 @@ def test_numbers_of_the_page_are_those_of_compare(page):
         assert math.isnan(row.loss) or f"<td>{100 * row.loss:.1f} %</td>" in text
 
 
+@pytest.mark.slow
 def test_first_sentence_is_the_answer(page):
     text = page.read_text(encoding="utf-8")
     healthy, hurt = (gf.compare(page.parent / "own.toml", case=case, phases=12).headline for case in (None, "cracked"))

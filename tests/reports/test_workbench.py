@@ -16,6 +16,7 @@ def files(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_the_workbench_writes_pictures_tables_and_a_page(files, capsys):
     folder = files / "bench"
     command = ["signal", str(files / "a.csv"), str(files / "b.csv"), "--shaft", "20", "--teeth", "23", "-o", str(folder)]

@@ -18,6 +18,7 @@ PAIR = gf.GearPair(gf.Gear(z=18, r_bore=9.0, **RACK), gf.Gear(z=27, r_bore=12.0,
 CASES = [{"pair": PAIR, "force": force, "material": gf.Material(), "phases": 8} for force in (50.0, 100.0, -1.0, 200.0)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_batch_is_its_cases_in_order(workers, monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "7")
@@ -73,6 +74,7 @@ def found():
     return gf.error_map(4, seed=1, loads=(20.0, 100.0), phases=12, workers=1)
 
 
+@pytest.mark.slow
 def test_rows_of_the_map(found):
     columns = found.columns
     assert columns["load"].size == 4 * 2 + 2 * 2, "every pair healthy, every second one also cracked, at two loads"

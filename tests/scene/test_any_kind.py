@@ -227,6 +227,7 @@ def test_what_no_parser_reads(tmp_path, text):
         gf.load_scene(path)
 
 
+@pytest.mark.slow
 def test_any_place_of_a_scene_given_as_anything(monkeypatch):
     cut = cache(lambda pair, *nominals: overlap(pair, nominals))  # most attempts leave the teeth as they are
     monkeypatch.setattr(gear_pair, "overlap", lambda pair, nominals: cut(pair, *nominals))

@@ -65,6 +65,7 @@ def test_an_existing_file_and_other_suffixes_are_refused(tmp_path):
         gf.new_scene(tmp_path / "my.yaml")
 
 
+@pytest.mark.slow
 def test_written_scene_runs_on_the_command_line(tmp_path, capsys):
     path = str(tmp_path / "my.toml")
     assert main(["new", path, "--teeth", "17", "23", "--width", "8"]) == 0

@@ -50,6 +50,7 @@ def heard(machine, ring, cycles):
     return np.fft.rfftfreq(time.size, found.time[1]), 2 * np.abs(np.fft.rfft(signal.values)) / time.size
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("sun", "ring"), [(21, 81), (20, 82)])
 @pytest.mark.parametrize("damaged", [None, "sun", "planet"])
 def test_a_simulated_stage_has_these_lines_and_no_others(sun, ring, damaged):

@@ -21,6 +21,7 @@ def case(side=None, broken="missing", tooth=0, *, beta=0.0, material=STEEL):
     return gf.Case(gf.GearPair(*gears), FORCE, material, damage=side and {side: [BROKEN[broken](tooth=tooth)]})
 
 
+@pytest.mark.slow
 @pytest.mark.quick
 @pytest.mark.parametrize("broken", BROKEN)
 @pytest.mark.parametrize("side", ["pinion", "wheel"])
@@ -35,6 +36,7 @@ def test_a_spur_pair_without_lateral_contraction_is_its_section(side, broken):
         assert wide.error[5] > 0.05 * wide.k[5], "what a gap may change"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("broken", BROKEN)
 def test_helical_teeth_by_their_numbers(broken):
     """Tooth n is tooth 0 shifted by n mesh cycles, on either gear; the hand of the helix changes nothing."""
@@ -53,6 +55,7 @@ def test_helical_teeth_by_their_numbers(broken):
         assert first[0] / healthy[0] > 0.997, "not yet in mesh"
 
 
+@pytest.mark.slow
 def test_a_herringbone_tooth_is_broken_in_both_halves():
     """Without a groove both halves are the helical pair of half the width under half the force."""
     whole, half = case("pinion", "chip", beta=math.radians(12)), {"b": RACK["b"] / 2}

@@ -217,6 +217,7 @@ while True:
 """
 
 
+@pytest.mark.slow
 def test_a_killed_writer_and_two_at_once_leave_no_broken_file(tmp_path):
     """Every look during the writing of two processes, and after both were killed, finds the whole file or none."""
     file = tmp_path / "one.gear"
@@ -264,6 +265,7 @@ def test_with_the_cache_a_second_load_solves_no_gear(method):
     assert sorted(map(repr, PROCESS._kept)) == sorted(map(repr, kept))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", [{}, {"pinion": [CRACK]}], ids=["healthy", "cracked"])
 def test_another_process_reads_the_gears_of_the_energy_model(damage, monkeypatch):
     """Of both hands: the pinion's section turns one way along the width, the wheel's the other way."""

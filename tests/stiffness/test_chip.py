@@ -43,6 +43,7 @@ def test_both_methods_agree(side):
     assert_allclose(ritz.k[alike], healthy.k[alike], rtol=3e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("angle", "side"), [(30, "loaded"), (60, "unloaded"), (75, "loaded"), (75, "unloaded"), (90, "unloaded")]
 )
@@ -129,6 +130,7 @@ def test_the_picture_has_no_such_tip():
     assert np.diff(angles).max() > 1.7 * 2 * math.pi / 17
 
 
+@pytest.mark.slow
 def test_a_ring_and_a_shortened_gear():
     """A ring's chip cuts off what points inwards; `shortened` ends flanks where it is told to."""
     ring = gf.Gear(z=84, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_rim=95.0, rack_tip_radius=0.3, addendum=0.9)

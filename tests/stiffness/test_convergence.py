@@ -11,6 +11,7 @@ RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("method", "orders", "solves"), [("ritz", (3, 4), 4), ("fe", None, 2)])
 def test_estimates_cover_the_difference_from_the_finest(method, orders, solves, tmp_path):
     case = gf.Case(PAIR, force=2000.0, material=gf.Material())

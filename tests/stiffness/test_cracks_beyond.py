@@ -19,6 +19,7 @@ def curve(level, name="ritz", phases=CYCLES, **options):
     return gf.mesh_stiffness(PAIR, 2000.0, gf.Material(), damage={"pinion": [gf.Crack(level=level)]}, **run)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", [0.5, 0.9])
 def test_a_crack_counts_while_other_teeth_carry(level, monkeypatch):
     """With all 21 teeth solved k is the same up to three teeth away, and within the estimate of the contact further away."""
@@ -32,6 +33,7 @@ def test_a_crack_counts_while_other_teeth_carry(level, monkeypatch):
     assert off.max() > 1e-4, "every tooth was solved: the estimate is not tried"
 
 
+@pytest.mark.slow
 def test_finite_elements_and_the_energy_model_agree_before_the_tooth_enters():
     """The loss of k one and two mesh cycles before the tooth is in mesh, by methods that share the contact alone."""
     before = CYCLES[3:6]  # the last with the cracked tooth

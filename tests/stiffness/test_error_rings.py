@@ -55,6 +55,7 @@ def errors(seed, fine, count=64):
     return np.array([np.abs(curve.k / truth.k - 1), curve.error / curve.k])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [38, 59, 74, 129, 228])
 def test_phases_at_which_it_was_short(seed):
     """Single phases of these pairs erred by up to 1.6 times the estimate from coarser solves alone (seeds it was tuned on)."""

@@ -31,6 +31,7 @@ def solved(flanks=None, force=2000.0, pair=PAIR, phases=PHASES, **options):
     return gf.mesh_stiffness(pair, force, STEEL, phases=phases, flanks=flanks, **({"method": "ritz3d", "order": 2} | options))
 
 
+@pytest.mark.slow
 def test_no_modification_is_an_involute():
     plain = solved()
     for given in ({"pinion": gf.Flank()}, {"pinion": gf.Flank(helix_crowning=1e-12, twist=1e-12)}):
@@ -69,6 +70,7 @@ def test_misalignment_of_axes_is_what_is_left_in_the_plane_of_action():
     assert tilt_of(PAIR, gf.Misalignment(F_beta_x=0.015)) == pytest.approx(0.001)
 
 
+@pytest.mark.slow
 def test_the_unloaded_error_is_that_of_pure_geometry():
     """Profile crowning C and a helix slope S: the least of ``C p**2 + S z / b`` over the lines of contact, by hand."""
     crowning, slope = 0.002, 0.0006

@@ -128,6 +128,7 @@ def test_versions(capsys):
     assert gf.__version__[0].isdigit()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", [None, {"pinion": [gf.Pit(radius=21.0, z=10.0, axes=(0.8, 2.0), depth=0.2)]}])
 def test_three_dimensions_from_the_lightest_to_the_heaviest_load(pair, steel, damage):
     """0.06 N/mm: sound, and softer than under load; 5e6 N: refused with what was given and what to do."""

@@ -274,6 +274,7 @@ def test_an_object_with_only_a_matrix(steel, solved):
             curve_of(steel, gf.OwnFlexibility(OnlyMatrix(solved[0], change), solved[1]), phases=[0.2])
 
 
+@pytest.mark.slow
 def test_own_flexibility_in_compare():
     scene = gf.load_scene("planetary_pitting")
     models = {"energy": gf.OwnFlexibility("ritz"), "mine": gf.OwnFlexibility(sections)}

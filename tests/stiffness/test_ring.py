@@ -124,6 +124,7 @@ def test_energy_methods_have_no_ring(pair):
         gf.mesh_stiffness(pair, 2000.0, STEEL, method="textbook")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", ["30deg", "root"])
 def test_ring_crack(pair, start):
     """The crack makes the mesh softer, by the work up to each load.

@@ -94,6 +94,7 @@ def test_the_load_of_helical_gears_moves_to_the_stiff_side_and_mirrors():
     assert middle[0] < plain.load @ plain.z / plain.load.sum() - 0.2
 
 
+@pytest.mark.slow
 def test_reactions_of_a_helical_gear_do_the_work_of_its_load():
     """The hub's displacements by hand: force, axial force and moments of all cells about the middle of the gear."""
     held = gf.Support(radial=3e5, tilt=4e7, torsion=2e8, axial=2e5, coupling=5e-8)

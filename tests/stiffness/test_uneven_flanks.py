@@ -184,6 +184,7 @@ def test_eccentric_gears_and_their_cumulative_pitch():
     assert_allclose(back, e * np.sin(turn), atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_hunting_period_meets_all_pairs_once():
     small = gf.GearPair(gf.Gear(z=12, x=0.3, r_bore=8.0, **RACK), gf.Gear(z=18, r_bore=15.0, **RACK))
     flanks = {

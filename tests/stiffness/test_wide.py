@@ -34,6 +34,7 @@ def healthy(steel):
     return curve_of(steel, error=True)
 
 
+@pytest.mark.slow
 def test_identities_of_the_curve(healthy):
     assert_allclose(healthy.k * healthy.deflection, FORCE, rtol=1e-12)
     assert_allclose(healthy.force.sum(axis=1), FORCE, rtol=1e-9)
@@ -85,6 +86,7 @@ def test_several_forces_give_a_list(healthy, steel):
     assert isinstance(curve_of(steel, force=[FORCE]), list)
 
 
+@pytest.mark.slow
 def test_auto_says_which_method_and_why(steel):
     def chosen(pair, **options):
         meta = curve_of(steel, pair=pair, phases=1, method="auto", **options).meta
@@ -98,6 +100,7 @@ def test_auto_says_which_method_and_why(steel):
         assert chosen(spur, damage={"wheel": [gf.Crack(level=0.3, tooth=9)]})[0] == "ritz"
 
 
+@pytest.mark.slow
 def test_more_damage_is_not_stiffer(healthy, steel):
     cracks = [curve_of(steel, {"pinion": [gf.Crack(level=level)]}).k for level in (0.2, 0.5)]
     sizes = [{"axes": (0.4, 0.7)}, {"axes": (0.8, 1.5)}, {"axes": (1.2, 2.5)}]

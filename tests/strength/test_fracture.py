@@ -50,6 +50,7 @@ def strip(width, height, a, angle, near):
     return tip_intensity(body, body.solve(force)[:, 0], faces[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("ratio", "factor"), [(0.1, 1.1892), (0.2, 1.3673), (0.3, 1.6599), (0.4, 2.1114), (0.5, 2.8246)])
 def test_edge_cracked_strip(ratio, factor):
     """Tension of a long strip: K_I / (sigma sqrt(pi a)) of A. C. Kaya, F. Erdogan, Q. Appl. Math. 45 (1987) 105-122."""
@@ -72,6 +73,7 @@ def test_growth_angle():
     assert_allclose(1.0 * math.sin(t) + 0.4 * (3 * math.cos(t) - 1), 0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_tooth_crack_opens_and_grows_with_depth():
     small, deep = (gf.stress_intensity(GEAR, gf.Crack(level=p), 19.5, 100.0, STEEL) for p in (0.1, 0.4))
     assert deep.K_I > small.K_I > 0

@@ -24,6 +24,7 @@ def polyline(crack, between=0):
     return gf.Crack(path=[tuple(point) for point in (*inside, *corners)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("crack", [gf.Crack(length=1.5), gf.Crack(level=0.7, turning=True)], ids=["straight", "turning"])
 def test_a_polyline_through_the_corners_of_a_crack_is_that_crack(crack):
     one, two = (gf.stress_intensity(GEAR, each, 22.0, 100.0, STEEL) for each in (crack, polyline(crack, 1)))
@@ -110,6 +111,7 @@ def test_path_and_life_do_not_depend_on_the_step():
         assert abs(np.interp(-point[0], -line[:, 0], line[:, 1]) - point[1]) < 0.03
 
 
+@pytest.mark.slow
 def test_both_methods_grow_the_same_path():
     """The mesh, the elements and the integral's weights are not shared; the loads and the formula of the integral are."""
     start = gf.Crack(length=0.4, angle=math.radians(20), start="middle")
@@ -159,6 +161,7 @@ def test_closed_faces_press_only_where_they_touch():
     assert abs(response.in_contact(shut)[0]) < 0.02 * abs(shut[-2])
 
 
+@pytest.mark.slow
 def test_a_single_load_is_the_highest_and_a_free_arc_of_the_bore_weakens_a_rim():
     rim = gf.Gear(z=21, r_bore=17.0, **RACK)
     case = gf.Case(gf.GearPair(rim, CASE.pair.gear_2), 2000.0, STEEL)

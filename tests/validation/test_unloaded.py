@@ -38,6 +38,7 @@ def test_tip_edges_are_those_of_whole_outlines(held, edge):
     assert_allclose(math.hypot(form.edge.start, gear.r_b), other.start, rtol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [260000, 260005, 260062, 260281, 260556])
 def test_gaps_are_those_of_whole_outlines(seed):
     """The last three were refused as conforming, at the very start of a chamfer, or stand on edges that a spline missed."""

@@ -192,6 +192,7 @@ def test_a_crack_out_of_sight_is_pointed_out():
         stiffness(PAIR, 127.0, STEEL, phases=[0.3], damage={"pinion": [gf.Crack(level=0.4, tooth=5)]})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["fe", "ritz"])
 def test_flexibility_of_a_cracked_gear_is_symmetric_positive_definite(method):
     gear, crack = PAIR.gear_1, (gf.Crack(level=0.6),)

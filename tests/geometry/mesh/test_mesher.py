@@ -49,6 +49,7 @@ def test_area_converges_to_that_of_the_exact_outline(section):
     assert errors[1] < errors[0] / 4, "third order or better"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("z", "bore"), [(5, 0.3), (12, 0.95), (17, 0.5), (60, 0.9), (200, 0.5)])
 def test_hard_gears_mesh(z, bore):
     r_f = gf.Gear(z=z, r_bore=0.1, **GEAR).r_f

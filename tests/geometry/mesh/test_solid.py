@@ -138,6 +138,7 @@ CRACKS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CRACKS)
 def test_cracks_open_on_element_faces_without_losing_volume(name):
     gear, cracks = CRACKS[name]

@@ -120,6 +120,7 @@ def test_agrees_with_the_slices_of_the_closed_forms():
         assert_allclose(total_length(pair, PHASES[::400], face=face, pits=pits), slices, rtol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beta", [0.0, 0.01, 15.0, -35.0])
 def test_a_pit_takes_its_area_out_of_the_passing_lines(beta):
     """Integrated over the phases, the lost length is the area of the pit in the (roll, z) plane, over cos(beta_b)."""

@@ -34,6 +34,7 @@ def test_the_search_finds_conjugate_contact_again():
     assert_allclose(found.radius[near], plain.radius[near], rtol=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("exponent", [1.0, 2.0])
 def test_the_gap_is_the_least_over_the_flank(exponent):
     forms = flank_forms(PAIR, relieved(0.02, exponent=exponent, profile_crowning=0.004))

@@ -124,6 +124,7 @@ def test_card_counts_what_is_there(made):
     assert "half of the amplitude at 4000 Hz" in text
 
 
+@pytest.mark.slow
 def test_stopped_and_continued_is_the_same(made, plan, tmp_path, monkeypatch):
     """Two conditions taken away and made again, in a folder begun before: file by file the same."""
     folder = tmp_path / "again"
@@ -214,6 +215,7 @@ def test_verb_goes_on_with_a_folder(made, plan, tmp_path, capsys):
     assert "described in card.md" in text
 
 
+@pytest.mark.slow
 def test_dry_run_says_what_it_takes_and_writes_nothing(made, plan, tmp_path, capsys):
     (tmp_path / "set.toml").write_text(toml(plan))
     assert main(["dataset", str(tmp_path / "set.toml"), "-o", str(tmp_path / "new"), "--dry-run", "--workers", "1"]) == 0

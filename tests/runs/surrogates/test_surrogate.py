@@ -24,6 +24,7 @@ def fresh(fitted, steel, forces):
     return points, [solved(fitted.space, (steel, steel), point, True) for point in points]
 
 
+@pytest.mark.slow
 def test_error_on_cases_of_our_own_is_as_stated(fitted, steel):
     """Neither fitted nor held back: forces of this test."""
     error, _ = held_back_error(fitted, *fresh(fitted, steel, [650.0, 1777.0]))
