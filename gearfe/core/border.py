@@ -251,17 +251,18 @@ def _is_row(value, size):
 
 def _mapping(inner):
     rule = _rule(inner[1])
+    words = f"a dict, each value {rule.words}" if rule else "a dict"
 
     def settled(name, value):
         if not isinstance(value, Mapping):
-            raise _wrong(name, value, "a dict")
+            raise _wrong(name, value, words)
         for key, one in value.items() if rule else ():
             if one is not None:  # None is as good as missing, one record as good as a list of it
                 alone = rule.words.startswith("a sequence") and dataclasses.is_dataclass(one)
                 rule.settled(f"{name}[{key!r}]", [one] if alone else one)
         return value
 
-    return _Rule("a dict", settled)
+    return _Rule(words, settled)
 
 
 def _wrong(name, value, words):
