@@ -30,5 +30,5 @@ def test_bores_move_the_stiffness_as_the_scene_says():
     for part in (0.33, 0.85):
         pair = gf.GearPair(*(replace(g, r_bore=part * g.r_f) for g in (one.pair.gear_1, one.pair.gear_2)), one.pair.a)
         k.append(gf.mesh_stiffness(pair, one.force, one.materials, method="ritz3d", face=one.face, phases=6).k.mean())
-    quoted = f"move the value {k[1] / k[0]:.2f} times"
+    quoted = f"change the value {k[1] / k[0]:.2f} times"
     assert any(quoted in str(one) for one in gf.load_scene("herringbone").references)

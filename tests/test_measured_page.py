@@ -1,5 +1,7 @@
 """The page of measured gearboxes: its cheap rows computed again, and what it says of them."""
 
+import re
+
 import measured
 import pytest
 from numpy.testing import assert_allclose
@@ -24,5 +26,8 @@ def test_a_perfect_planetary_set_has_its_line_at_a_multiple_of_three():
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::UserWarning")
 def test_the_page_is_what_is_computed_now():
-    text = TEXT.splitlines()
-    assert [line for line in measured.lines() if line not in text] == []
+    """All rows of its tables, and all numbers of its sentences."""
+    text, lines = TEXT.splitlines(), "\n".join(measured.lines()).splitlines()
+    assert [line for line in lines if line.startswith("|") and line not in text] == []
+    numbers = re.findall(r"\d+\.\d+", "\n".join(line for line in lines if not line.startswith("|")))
+    assert [number for number in numbers if number not in TEXT] == []

@@ -33,7 +33,6 @@ def test_health_and_damage(tmp_path, monkeypatch):
     monkeypatch.setattr(findings, "_tooth", lambda found: None)
     monkeypatch.setattr(findings, "compare", partial(gf.compare, refine=0.35))  # pairs are no part of this section
     monkeypatch.setattr(whole_set, "POSITIONS", 4)
-    monkeypatch.setattr(whole_set, "DPI", {"loads": 40, "bent": 40})
     scene = loaded(tmp_path, SCENE)
     text = gf.report(scene, tmp_path / "page.html", phases=2, duration=0).read_text(encoding="utf-8")
     text = text[text.index('<section id="set">') :]
