@@ -9,6 +9,7 @@ interrupted. 143: terminated. 141: the program that read the output has ended (a
 
 import codecs
 import contextlib
+import contextvars
 import errno
 import os
 import re
@@ -84,7 +85,7 @@ def run(work, options=()):
                 warnings.simplefilter("always", kind)
             warnings.filterwarnings("always", ".*the old name leaves", DeprecationWarning)
             warnings.showwarning = lambda message, *_: tell(f"note: {as_options(message, options)}")
-            work()
+            contextvars.copy_context().run(work)  # a failed verb leaves no listener of progress behind
             if sys.stdout is not None:
                 sys.stdout.flush()
     except KeyboardInterrupt:
