@@ -19,7 +19,7 @@ from ..scene.load import Scene, read_tables, scene_of
 from ..scene.schema import LISTS
 from ..signal.known_lines import fine_amplitudes, line_amplitudes, noise_amplitudes
 from ..signal.series import Signal
-from .vibration import recorded
+from .settled import recorded
 
 PATH = ("path.frequency_Hz", "path.damping_ratio", "path.mass_kg")
 BAND = 0.4  # lines above this part of the rate are not used
