@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 import gearfe as gf
-from gearfe.comparison.vibration import recorded
+from gearfe.comparison.settled import recorded
 from gearfe.dynamics.machine.gear_pair import gear_pair_machine
 from gearfe.dynamics.machine.layout import Body
 from gearfe.dynamics.machine.member import gear_member

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from ..core.table import Column, Table
@@ -18,13 +17,13 @@ from ..geometry.aliases import Floats
 from ..scene.dotted_keys import find_key, set_values
 from ..scene.load import Scene, read_tables, scene_of
 from ..scene.schema import LISTS
+from ..signal.known_lines import fine_amplitudes, line_amplitudes, noise_amplitudes
 from ..signal.series import Signal
-from .vibration import recorded
+from .settled import recorded
 
 PATH = ("path.frequency_Hz", "path.damping_ratio", "path.mass_kg")
-BAND = 0.4  # of the rate: highest line that is used
+BAND = 0.4  # lines above this part of the rate are not used
 APART = 4.0  # widths 1/T of a spectral line between two lines, so that a Hann window parts them
-NOISE = (5, 60)  # such widths beside a line in which the noise is measured
 STARTS = 6  # starting points per parameter; the best two are refined
 SHORT = 4  # mesh cycles of the common period up to which the periodic motion is solved directly
 CLEAR = 3.0  # times the noise together are lines that can be fitted
@@ -118,7 +117,7 @@ class MachineFit:
     def _shift(self, machine):
         """Time by which the machine is ahead so that its lines have the phases of the record [s]."""
         ours = _lines(machine, self.channel, self.frequency) * _gain(_path(self.values), self.frequency)
-        theirs = _projected(self.record, self.frequency)
+        theirs = line_amplitudes(self.record, self.frequency)
         times = np.linspace(0, 1 / self.frequency[0], 20 * self.frequency.size + 1)[:-1]
         match = np.exp(2j * math.pi * np.outer(times, self.frequency)) @ (ours * theirs.conj())
         return float(times[np.argmax(match.real)])
@@ -129,7 +128,7 @@ def fit_machine(
 ) -> MachineFit:
     """Fit values of a scene's machine to a healthy record at constant speed.
 
-    The amplitudes of the mesh lines are compared. Least squares weigh each line by the noise that the record has beside it.
+    The amplitudes of the mesh lines are compared. Least squares weigh each line by the noise of the record around it.
     Intervals follow from the linearised model at the solution. If lines differ by more than their noise, intervals are widened.
 
     Parameters
@@ -172,7 +171,7 @@ def fit_machine(
     frequency = _frequencies(build_machine(changed((ends[0] + ends[1]) / 2)[0]), record, harmonics)
     if frequency.size < low.size:
         raise ValueError(f"the record has {frequency.size} mesh lines below {BAND:g} of its rate, but {low.size} keys vary")
-    measured, noise = np.abs(_projected(record, frequency)), _noise(record, frequency)
+    measured, noise = np.abs(line_amplitudes(record, frequency)), noise_amplitudes(record, frequency)
 
     def lines(x: Floats) -> Floats:
         fitted, values = changed(x)
@@ -256,8 +255,8 @@ def _frequencies(machine, record, harmonics):
     least = APART / record.duration
     lines = np.array([one for one, before in zip(every, [0.0, *every], strict=False) if one - before > least])
     speeds = 1 + np.arange(-OFF, OFF, 0.25 / (record.duration * max(lines.max(initial=0.0), 1.0)))
-    found = np.sum(_fine(record, np.outer([1.0, *speeds], lines)) ** 2, axis=1)
-    if not found.max() > CLEAR**2 * float(np.sum(_noise(record, lines) ** 2)):
+    found = np.sum(fine_amplitudes(record, np.outer([1.0, *speeds], lines)) ** 2, axis=1)
+    if not found.max() > CLEAR**2 * float(np.sum(noise_amplitudes(record, lines) ** 2)):
         raise ValueError("the record shows no mesh lines above its noise: give a longer record of this channel and speed")
     if found[0] < found.max() / 2:
         raise ValueError(
@@ -267,37 +266,15 @@ def _frequencies(machine, record, harmonics):
     return lines
 
 
-def _projected(signal, frequency, window=np.hanning):
-    """Complex amplitudes of lines under a window."""
-    window = window(signal.values.size)
-    weighed = window * (signal.values - signal.values.mean())
-    turns = np.exp(-2j * math.pi * np.outer(frequency, signal.time))
-    return 2 * (turns @ weighed) / window.sum()
-
-
-def _noise(record, frequency) -> NDArray[np.float64]:
-    """Return the standard deviation of the amplitude of each line: from the median of those around it, by Rayleigh's law."""
-    apart = np.arange(*NOISE) / record.duration
-    around = np.add.outer(frequency, [*-apart, *apart])
-    return np.median(_fine(record, around), axis=1) / math.sqrt(2 * math.log(2))
-
-
-def _fine(record, frequency):
-    """Amplitudes under a Hann window, at the nearest of bins that are a quarter of the line width apart."""
-    window, size = np.hanning(record.values.size), 4 * record.values.size
-    spectrum = np.abs(np.fft.rfft(window * (record.values - record.values.mean()), size)) * 2 / window.sum()
-    return spectrum[np.clip(np.rint(np.abs(frequency) * size / record.rate).astype(int), 0, spectrum.size - 1)]
-
-
 def _lines(machine, channel, frequency):
     """Complex amplitudes of the lines of a machine: of its periodic motion if that is short, else of a run."""
     period = common_period(machine)
     if period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
         found = steady_state(machine, period=period).response
-        return _projected(found.part(slice(None, -1)).signal(channel), frequency, np.ones)
+        return line_amplitudes(found.part(slice(None, -1)).signal(channel), frequency, np.ones)
     apart = np.diff(frequency, prepend=0.0).min()
     run = recorded(machine, 2 * APART / apart, 1.5 * float(frequency.max()) / BAND)
-    return _projected(run.signal(channel), frequency)
+    return line_amplitudes(run.signal(channel), frequency)
 
 
 def _reach(jacobian, scale, free, whole):

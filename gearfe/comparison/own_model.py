@@ -63,7 +63,7 @@ def own_models(models, taken=()):
     items = list(models.items()) if isinstance(models, dict) else [(_name(m, i), m) for i, m in enumerate(models, 1)]
     out = {}
     for name, model in items:
-        parts = model if isinstance(model, tuple) else model.split(",") if isinstance(model, str) else [model]
+        parts = _parts(model)
         if len(parts) > 2:
             raise ValueError(f"model {name!r} has {len(parts)} parts, but give one, or the damaged and the healthy one")
         read = [_read(name, one) for one in parts]
@@ -72,6 +72,13 @@ def own_models(models, taken=()):
             raise ValueError(f"the name {name!r} {clash}; rename the file or function, or give models={{'another name': ...}}")
         out[name] = read[0] if len(read) == 1 else tuple(read)
     return out
+
+
+def _parts(model):
+    """Models of the damaged and of the healthy pair, or one; a comma in the name of a file parts nothing."""
+    if isinstance(model, tuple):
+        return model
+    return model.split(",") if isinstance(model, str) and not Path(model).is_file() else (model,)
 
 
 def _read(name, model):
@@ -110,7 +117,7 @@ def _in_file(path, name):
 
 
 def _name(model, number):
-    model = model[0] if isinstance(model, tuple) else model.split(",")[0] if isinstance(model, str) else model
+    model = _parts(model)[0]
     if isinstance(model, OwnFlexibility):
         return model.name if model.name.isidentifier() else f"model {number}"
     if isinstance(model, PairModel):

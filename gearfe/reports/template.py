@@ -34,11 +34,16 @@ def page_maker(path: str | os.PathLike[str], name: str) -> Any:
 
 
 def picture_data(draw, title):
-    """Return what ``draw(path)`` draws as data of the page, with what it returns; without it the reason."""
+    """Return the picture that ``draw(path)`` makes and its result as data of the page; if it fails, the reason."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "picture.png"
         try:
             told = draw(path=file)
         except (RuntimeError, ValueError) as error:
             return {"missing": f"{title}: {error}"}
-        return {"data": base64.b64encode(file.read_bytes()).decode(), "title": title, "told": told}
+        return embedded(file, title) | {"told": told}
+
+
+def embedded(file, title):
+    """Return a picture in a file as data of the page."""
+    return {"data": base64.b64encode(file.read_bytes()).decode(), "title": title}

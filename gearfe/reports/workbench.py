@@ -19,10 +19,10 @@ from ..signal.spectra import spectrum, squared_envelope_spectrum
 from ..signal.spectral_lines import expected_lines
 from ..signal.spectrum import Spectrum
 from ..stiffness.provenance import versions
-from .template import page_maker, picture_data
+from .template import embedded, page_maker
 
 UNSAFE = re.compile(r"[^\w.-]+")  # characters that names of files do not have
-HARMONICS = 4  # of a fault, drawn in the spectrum of the envelope
+HARMONICS = 4  # harmonics of a fault that are marked in the spectrum of the envelope
 
 
 class Part(NamedTuple):
@@ -87,10 +87,11 @@ def signal_workbench(
         parts += [part._replace(name=f"simulated_{part.name}", title=f"Simulated mesh force: {part.title}") for part in
                   _of_angle(simulated, teeth)]  # fmt: skip
     for part in parts:
-        part.draw(path=folder / f"{part.name}.png")
+        picture = folder / f"{part.name}.png"
+        part.draw(path=picture)
         for record, table in part.tables.items():
             table.save(folder / f"{part.name}_{UNSAFE.sub('_', record)}.csv")
-        shown.append(picture_data(part.draw, part.title))
+        shown.append(embedded(picture, part.title))
     about = [
         f"{name}: {one.values.size} samples at {one.rate:.6g} Hz, {one.duration:.4g} s, {one.unit}"
         for name, one in signals.items()

@@ -10,7 +10,7 @@ from .orders import residual_signal, synchronous_average
 from .series import Signal
 
 SIGMAS = 6.0  # standard deviations of the kurtosis of noise above 3; white noise exceeds it in less than 0.1 % of averages
-RISE = 1.5  # times the FM4 of the healthy record
+RISE = 1.5  # times the FM4 that the deviations of the healthy teeth alone would give
 FEWEST = 4  # revolutions, two for each half of the record
 
 
@@ -61,9 +61,11 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
 
     ::
 
-        limit = max(3 + SIGMAS sqrt(24 / n), RISE FM4_healthy)
+        limit = max(3 + SIGMAS sqrt(24 / n), RISE (3 + (FM4_healthy - 3) min(1, v_healthy / v)^2))
 
-    FM4 of n samples of white noise has the mean 3 and the variance 24 / n. The angles of the largest impulse in the difference
+    FM4 of n samples of white noise has the mean 3 and the variance 24 / n. v are the variances of the difference signals. Fourth
+    cumulants of independent parts add, so that the deviations of healthy teeth count by their part of the signal: rounding
+    errors of a simulated healthy record do not hide a fault. The angles of the largest impulse in the difference
     signals of both halves of the record must agree within one tooth.
 
     Parameters
@@ -82,10 +84,15 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
     average, revolutions = synchronous_average(record)
     if revolutions < FEWEST:
         raise ValueError(f"{record.name}: {revolutions} revolutions, but a verdict needs {FEWEST} or more")
-    known = math.nan if healthy is None else gear_indicators(synchronous_average(healthy)[0], teeth)["FM4"]
+    known, part = math.nan, 1.0
+    if healthy is not None:
+        sound = synchronous_average(healthy)[0]
+        known = gear_indicators(sound, teeth)["FM4"]
+        before, now = (float(np.var(residual_signal(one, teeth, sidebands=1))) for one in (sound, average))
+        part = min(1.0, before / now) if now else 1.0
     halves = _halves(record, average.size, revolutions)
     limit = 3 + SIGMAS * math.sqrt(24 / average.size)
-    limit = limit if math.isnan(known) else max(limit, RISE * known)
+    limit = limit if math.isnan(known) else max(limit, RISE * (3 + (known - 3) * part**2))
     values = [gear_indicators(one, teeth)["FM4"] for one in (average, *halves)]
     angles = [2 * math.pi * int(np.argmax(np.abs(residual_signal(one, teeth, sidebands=1)))) / one.size for one in halves]
     apart = abs((angles[0] - angles[1] + math.pi) % (2 * math.pi) - math.pi)

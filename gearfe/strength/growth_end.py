@@ -7,7 +7,7 @@ import numpy as np
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import cartesian, fillet_length, root_curve
 
-END = 0.25  # of a step: a tip that close to a boundary has reached it
+END = 0.25  # a tip has reached a boundary that is nearer than this part of a step
 
 
 def stopped(values, law):

@@ -24,8 +24,8 @@ from ..geometry.mesh.sector import sector
 from ..geometry.tooth.profile import arc_at
 from .fracture import ring, tip_reads
 
-FE_PLACES = 9  # of a load on a flank, between which `fe` has a cubic spline
-MIDDLE = 0.8  # part of the sector in which a tip of `ritz` lies: 2 % off in K at 0.82, 0.4 % further inside
+FE_PLACES = 9  # places of a load on a flank; `fe` interpolates between them by a cubic spline
+MIDDLE = 0.8  # part of the sector in which a tip of `ritz` may lie; at 0.82, K was 2 % off
 WIDE = 0.12  # half width of a load of `fe` [m_n]
 
 

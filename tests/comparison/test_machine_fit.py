@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.comparison.machine_fit import PATH
-from gearfe.comparison.vibration import recorded
+from gearfe.comparison.settled import recorded
 from gearfe.dynamics.motion.transfer_path import through_frf
 from gearfe.scene.dotted_keys import set_values
 from gearfe.scene.load import scene_of

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.io import savemat
 
 import gearfe as gf
-from gearfe.comparison.own_model import own_curve
+from gearfe.comparison.own_model import own_curve, own_models
 from validation.make import own_model as example
 
 CHOSEN = gf.load_scene("planetary_pitting").pair()
@@ -263,6 +263,14 @@ def test_decimal_commas_and_matlab_vectors_are_the_same_curve(tmp_path):
     savemat(tmp_path / "k.mat", {"theta_deg": angle, "k_N_per_um": STEP / 1e6, "torque": 3.0})
     for name in ("k.csv", "k.mat"):
         assert_allclose(curve_of(tmp_path / name, PHASE).k, STEP, rtol=1e-14)
+
+
+def test_a_comma_in_the_name_of_a_file_parts_nothing(tmp_path):
+    file = tmp_path / "run 3,5.csv"
+    file.write_text("phase,k [N/um]\n" + "".join(f"{x},{300 + x}\n" for x in np.linspace(0, 1, 33)))
+    assert list(own_models([str(file)])) == list(own_models([file]))
+    with pytest.raises(ValueError, match="has 3 parts"):
+        own_models({"mine": "a.csv,b.csv,c.csv"})
 
 
 @pytest.mark.slow

@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.app.cli import main
-from gearfe.comparison.vibration import analyse, analysis, in_words, recorded, responses, slowest_decay
+from gearfe.comparison.settled import recorded, slowest_decay
+from gearfe.comparison.vibration import analyse, analysis, in_words, responses
 
 SCENE = gf.load_scene("compound_planetary")
 

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.comparison.vibration import recorded
+from gearfe.comparison.settled import recorded
 from gearfe.dynamics.machine.mesh_curves import changed
 from gearfe.dynamics.machine.of_scene import flat_machine
 from gearfe.dynamics.machine.pitted_planetary import pitted_planetary

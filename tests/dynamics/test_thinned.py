@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from scipy.signal import get_window
 
 import gearfe as gf
-from gearfe.comparison.vibration import recorded
+from gearfe.comparison.settled import recorded
 from gearfe.dynamics.motion.simulate import simulate
 from gearfe.dynamics.motion.thinned import stages, thinned
 

@@ -32,6 +32,18 @@ def test_a_hurt_tooth_is_found_at_its_angle():
     assert f"FM4 {found.FM4:.3g} against {found.healthy:.3g}" in found.told(TEETH)
 
 
+def test_rounding_errors_of_a_healthy_record_do_not_hide_a_fault():
+    """A simulated healthy record has a difference signal of rounding errors, whose FM4 is large and states nothing."""
+    angle = 2 * np.pi * TURNING * np.arange(round(2 * RATE)) / RATE
+    errors = 1e-6 * (np.abs(np.mod(angle - 1.0 + math.pi, 2 * np.pi) - math.pi) < 0.02)
+    healthy = gf.Signal(np.cos(TEETH * angle) + errors, RATE, "N", shaft_frequency=TURNING)
+    found = tooth_verdict(record(1, impulse=1.0), TEETH, healthy)
+    assert found.healthy > found.FM4
+    assert found.level == "likely"
+    large = gf.Signal(healthy.values + 1e7 * errors, RATE, "N", shaft_frequency=TURNING)
+    assert tooth_verdict(record(1, impulse=1.0), TEETH, large).level == "not seen", "deviations as large as the fault"
+
+
 def test_one_impulse_of_a_record_is_no_likely_fault():
     found = tooth_verdict(record(1, impulse=1.0, bound=False), TEETH)
     assert found.level == "possible"

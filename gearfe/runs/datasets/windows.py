@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ...comparison.vibration import recorded
+from ...comparison.settled import recorded
 from ...core.threads import own_warnings
 from ...dynamics.machine.of_scene import build_machine, flat_machine
 from ...dynamics.machine.tables import Machine

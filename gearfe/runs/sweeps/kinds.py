@@ -6,8 +6,8 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
+from ...comparison.settled import recorded
 from ...comparison.told_set import set_numbers, spread
-from ...comparison.vibration import recorded
 from ...core.case import Case
 from ...dynamics.machine.of_scene import build_machine
 from ...dynamics.motion.step_control import default_step
