@@ -243,10 +243,10 @@ BESIDE = {
     "the article says": lambda view: statements(*VIEWS[view]),
 }
 SAID_OF = (
-    "The verdicts and draws use the first column. A broken tooth is `gearfe.MissingTooth`, and the backlash is 0.1 mm. The second "
-    "column is the velocity of sun 2, which S2 shows. In the third, a broken tooth is the crack of 80 %. The last three columns "
-    "have another backlash. Where no other pair is on the path of contact, the gears rotate by a gap until tip corners of "
-    "the neighbours touch. With backlash, the meshes open there. Without backlash, the meshes cannot open, and the gap is an "
+    "The verdicts and draws use the first column. A broken tooth is `gearfe.MissingTooth`, and the backlash is 0.1 mm. The "
+    "second column is the velocity of sun 2, which S2 shows. In the third, a broken tooth is the crack of 80 %. The last three "
+    "columns have another backlash. Where no other pair is on the path of contact, the gears rotate by a gap until tip corners "
+    "of the neighbours touch. With backlash, the meshes open there. Without backlash, the meshes cannot open, and the gap is an "
     "error that they follow"
 )
 
