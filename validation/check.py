@@ -15,7 +15,7 @@ import numpy as np
 from .shared.page import MACHINES
 
 PAGES = (
-    *("assumptions", "needs", "truth", "outlines", "sample", "three", "herringbone", "joint"),
+    *("assumptions", "truth", "outlines", "sample", "three", "herringbone", "joint"),
     *MACHINES,
 )
 DAYS = 10  # within which every page has its turn
