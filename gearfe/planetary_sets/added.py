@@ -4,7 +4,6 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..geometry.aliases import Floats
 from ..scene.load import Scene
@@ -32,7 +31,7 @@ class AddedCompliance(NamedTuple):
     added: Floats
     pairs: tuple[str, str]
 
-    def at(self, kind: int, planet: int, position: ArrayLike) -> Floats:
+    def at(self, kind: int, planet: int, position: Floats) -> Floats:
         """Return the added compliance of a mesh at positions [m/N]."""
         return np.interp(position, self.position, self.added[kind, :, planet], period=1.0)
 

@@ -25,7 +25,7 @@ def test_built_in_scene():
 
 
 @pytest.mark.parametrize(
-    ("name", "cases"), [("compound_planetary", 5), ("helical_pitting", 3), ("herringbone", 8), ("herringbone_contact_line", 4)]
+    ("name", "cases"), [("compound_planetary", 6), ("helical_pitting", 3), ("herringbone", 8), ("herringbone_contact_line", 4)]
 )
 def test_the_other_machines(name, cases):
     pair = gf.load_scene(name).pair()
