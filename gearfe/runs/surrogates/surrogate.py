@@ -19,6 +19,7 @@ from .space import Space, space_of
 from .zoned import DEGREE, at, piece_of
 
 TITLE = "gearfe surrogate, version 1"
+ERRORS = ("mean", "worst", "cases")  # that its line shows
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +60,7 @@ class Surrogate:
 
     def __post_init__(self) -> None:
         """Raise ValueError if an error is missing."""
-        check_keys("Surrogate: error", self.error, ("mean", "worst", "cases"))
+        check_keys("Surrogate: error", self.error, ERRORS)
 
     def __repr__(self):
         """One line: ranges and error."""
