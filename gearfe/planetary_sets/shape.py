@@ -45,8 +45,8 @@ def plot_planetary_set(
     """Draw one position of a loaded set, all gears deformed and coloured by von Mises stress; save to `path` if given.
 
     Each gear is solved separately by finite elements under the loads of the set's meshes. Rigid rotations and shifts of sun and
-    planets are not drawn. Each load acts on three nodes: near it the stress is not meaningful. Faces of cracks are free; where they
-    touch (``curves.meta["shut"]``) they pass through each other in the picture.
+    planets are not drawn. Each load acts on three nodes: near it the stress is not meaningful. Faces of cracks are free. Those that
+    touch (``curves.meta["shut"]``) pass through each other in the picture.
 
     Parameters
     ----------
@@ -91,9 +91,8 @@ def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[lis
     made = []
     for k, same in enumerate(steps(list(zip(*bodies, strict=True)))):
         name = ("sun", *(f"planet{i + 1}" for i in range(case.planets)), "ring")[k]
-        made.append(
-            _shapes(case, same, [[side for side in one if side["body"] == k] for one in sides], case.damage.get(name, ()))
-        )
+        loads = [[side for side in one if side["body"] == k] for one in sides]
+        made.append(_shapes(case, same, loads, case.damage.get(name, ())))
     pads: list[Floats | None] = [None] * len(bodies)
     if case.ring != "held":
         pads = [cartesian(1.03 * case.ring_gear.r_rim, case.ring.middles + there[-1][3]) for there in bodies]

@@ -54,7 +54,7 @@ class ToothVerdict(NamedTuple):
         place = f", once per revolution, at {math.degrees(self.angle):.0f} degrees"
         if self.level == "likely":
             return f"{text}{place}. The verdict changes if another record of the gear has FM4 below the limit or another angle."
-        if not self.FM4 > self.limit:
+        if self.FM4 <= self.limit:
             return f"{text}. Deviations of healthy teeth from each other do this, too: compare with a healthy record of the gear."
         halves = f"its halves differ: the largest impulse moves by {math.degrees(self.apart):.0f} degrees"
         return f"{text}, but {halves}. An impulse that is not bound to the gear, or a short record, does this: record longer."
@@ -91,8 +91,8 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
         raise ValueError(f"{record.name}: {revolutions} revolutions, but a verdict needs {FEWEST} or more")
     if mesh_coherence(record, teeth) < SHARP or not has_mesh_line(np.abs(np.fft.rfft(average)), teeth):
         raise ValueError(
-            f"{record.name}: its average is smeared, or is not of a gear of {teeth} teeth: give the angle of its shaft, the ratio "
-            "of its speed to the tachometer's, or estimate the speed from the mesh lines"
+            f"{record.name}: its average is smeared, or is not of a gear of {teeth} teeth: give the angle of its shaft, the "
+            "ratio of its speed to the tachometer's, or estimate the speed from the mesh lines"
         )
     known, part = math.nan, 1.0
     if healthy is not None:
