@@ -45,8 +45,8 @@ def plot_planetary_set(
     """Draw one position of a loaded set, all gears deformed and coloured by von Mises stress; save to `path` if given.
 
     Each gear is solved separately by finite elements under the loads of the set's meshes. Rigid rotations and shifts of sun and
-    planets are not drawn. Each load acts on three nodes: near it the stress is not meaningful. Faces of cracks are free. Those that
-    touch (``curves.meta["shut"]``) pass through each other in the picture.
+    planets are not drawn. Each load acts on three nodes: near it the stress is not meaningful. Faces of cracks are free.
+    Those that touch (``curves.meta["shut"]``) pass through each other in the picture.
 
     Parameters
     ----------

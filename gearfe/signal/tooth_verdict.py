@@ -54,7 +54,7 @@ class ToothVerdict(NamedTuple):
         place = f", once per revolution, at {math.degrees(self.angle):.0f} degrees"
         if self.level == "likely":
             return f"{text}{place}. The verdict changes if another record of the gear has FM4 below the limit or another angle."
-        if self.FM4 <= self.limit:
+        if self.limit >= self.FM4:
             return f"{text}. Deviations of healthy teeth from each other do this, too: compare with a healthy record of the gear."
         halves = f"its halves differ: the largest impulse moves by {math.degrees(self.apart):.0f} degrees"
         return f"{text}, but {halves}. An impulse that is not bound to the gear, or a short record, does this: record longer."
