@@ -62,8 +62,11 @@ def healthy_pair(row):
 def healthy(row, **options):
     """Mean, max, min stiffness [N/(mm um)] without extended contact; phases in the middle of 32 equal parts."""
     pair, steel = healthy_pair(row)
-    phases = (np.arange(32) + 0.5) / 32
-    k = gf.mesh_stiffness(pair, row["line_load"], steel, phases=phases, extended=False, **options).k / 1e6
+    return _sizes(pair, row["line_load"], steel, **options)
+
+
+def _sizes(pair, load, steel, **options):
+    k = gf.mesh_stiffness(pair, load, steel, phases=(np.arange(32) + 0.5) / 32, extended=False, **options).k / 1e6
     return np.array([k.mean(), k.max(), k.min()])
 
 
@@ -144,9 +147,7 @@ def healthy_ring(method):
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 1.0}
     with own_warnings():
         pair = gf.GearPair(gf.Gear(z=27, r_bore=12.0, **rack), gf.Gear(z=72, r_rim=90.0, **rack))
-    steel = gf.Material(E=207e3, nu=0.3)
-    k = gf.mesh_stiffness(pair, 150.0, steel, method=method, phases=(np.arange(32) + 0.5) / 32, extended=False).k / 1e6
-    return np.array([k.mean(), k.max(), k.min()])
+    return _sizes(pair, 150.0, gf.Material(E=207e3, nu=0.3), method=method)
 
 
 def crack_reduction(row, method="ritz", **crack):
