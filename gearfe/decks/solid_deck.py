@@ -1,6 +1,7 @@
 """Bodies of a CalculiX / Abaqus deck: triangles, hexahedra or tets, their outer faces, materials, held and moved nodes."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,7 +36,7 @@ class DeckBody:
     points: Floats
     cells: NDArray[np.int64]
     held: NDArray[np.int64]
-    faces: dict[str, NDArray[np.int64]]
+    faces: dict[Any, NDArray[np.int64]]  # of a section by the keys of its flanks
 
 
 def plane_part(mesh, points, flank=None, held=None) -> DeckBody:
