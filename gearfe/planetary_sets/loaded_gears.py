@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..core.checks import whole
-from ..decks.deck import held_nodes
+from ..decks.solid_deck import held_nodes
 from ..flexibility.hertz import contact_modulus, half_width
 from ..geometry.mesh.both_flanks import both_flanks
 from ..geometry.pair.contacts import contacts
