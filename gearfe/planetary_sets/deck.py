@@ -118,10 +118,13 @@ def write_set_inp(
     Raises
     ------
     ValueError
-        If the set cannot be meshed gear by gear (see `planetary_sets.loaded_gears.drawable`), or an argument is out of range.
+        If the set cannot be meshed gear by gear (see `planetary_sets.loaded_gears.drawable`) or has cracks, or an argument is out
+        of range.
     """
     check_output(path, "deck")
     case, stand = drawable(curves, at)
+    if case.damage:
+        raise ValueError("cracks of a set are not in its deck: give curves of a case without them")
     for name, value in (("per_width", per_width), ("penalty", penalty)):
         ranged(name, value, above=0.0)
     refine = checked_refine(refine)

@@ -31,8 +31,8 @@ def stiffness(arguments):
     from ...stiffness.solve import Solve
 
     if arguments.forces or arguments.torques:
-        if arguments.output or arguments.force is not None:
-            raise ValueError("--forces and --torques compute the transmission error: leave out --output and --force")
+        if arguments.force is not None:
+            raise ValueError("--forces and --torques state the loads of a transmission error: leave out --force")
         from ...geometry.renamed import warn_renamed
 
         warn_renamed("gearfe stiffness --forces", "gearfe te --forces", FutureWarning)
