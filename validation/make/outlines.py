@@ -1,17 +1,16 @@
-"""The page `outlines`: whole outlines of gears, without load and pressed together, beside gearfe.
+"""The page `outlines`: whole outlines of gears pressed together, compared with gearfe.
 
 The arbiter needs no more of gearfe than the shape of gears.
 """
 
 from ..shared import outlines_page, outlines_three
-from ..shared.arbiter import kept, unloaded_table
+from ..shared.arbiter import kept
 from ..shared.arbiter.cases import fresh
 from ..shared.kept_rows import stored
 
 
 def reference():
-    """Compute gaps of random pairs, sections pressed by the arbiter, and whole gears by CalculiX."""
-    unloaded_table.reference()
+    """Compute sections pressed by the arbiter, and whole gears by CalculiX."""
     kept.reference()
     kept.reference(fresh(), kept.FRESH)
     outlines_three.reference()
