@@ -20,12 +20,12 @@ NEAR = 1.5  # gaps up to this multiple of the approach can close
 
 
 def check_meshable(case: PlanetaryCase) -> None:
-    """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, modified flanks, cracks."""
+    """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, modified flanks, damage."""
     rigid = isinstance(case.ring, RimSupports) and math.isinf(case.ring.radial) and math.isinf(case.ring.tangential)
     if not (case.ring == "held" or rigid):
         raise ValueError("the ring is neither held nor on rigid pads, and is not meshed so: give a case with one of these")
     if case.flanks or case.damage:
-        raise ValueError("modified flanks and cracks of a set are not meshed: give a case without them")
+        raise ValueError("modified flanks and damage of a set are not meshed: give a case without them")
 
 
 def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:

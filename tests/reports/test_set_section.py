@@ -48,7 +48,7 @@ def test_health_and_damage(tmp_path, monkeypatch):
     assert f"the damage reduces k by up to {100 * (1 - cracked.k / healthy.k).max():.1f} %" in second
     pictures = re.findall('data:image/png;base64,([^"]*)', text)
     assert [base64.b64decode(one)[:4] for one in pictures] == [PNG] * 3
-    assert "No picture of the bent set, cracked: modified flanks and cracks of a set are not meshed" in text
+    assert "No picture of the bent set, cracked: modified flanks and damage of a set are not meshed" in text
 
 
 def test_what_cannot_be_solved_is_said(tmp_path):
