@@ -185,8 +185,9 @@ class PlanetaryCase:
             check_through(cracks, "the section of a planetary set")
             check_apart(gear, cracks)
             check_broken(gear, damage)
-            if any(isinstance(one, Chip) for one in damage) and name in self.flanks:
-                raise ValueError(f"chips of modified flanks are not modelled: leave the flanks of {name!r} out, or its chips")
+            flank = self.flanks.get(name)
+            if flank and (flank.tip_rounding or flank.tip_chamfer) and any(isinstance(one, Chip) for one in damage):
+                raise ValueError(f"chips of rounded or chamfered tips: leave out the tip edges of {name!r}, or its chips")
 
     def gear_of(self, name: Any) -> Any:
         """Gear by its name."""

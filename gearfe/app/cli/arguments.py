@@ -45,8 +45,12 @@ def main(argv=None):
     arguments = parser.parse_args(argv)
     _refuse_nothing(known.choices[arguments.verb], arguments)
     module, _, function = arguments.run.partition(".")
-    work = getattr(MODULES[module], function)
-    return shell.run(lambda: work(arguments), [name for name in vars(arguments) if name not in ("verb", "run", "verbs")])
+
+    def work():
+        _check_outputs(arguments)
+        getattr(MODULES[module], function)(arguments)
+
+    return shell.run(work, [name for name in vars(arguments) if name not in ("verb", "run", "writes", "verbs")])
 
 
 def _refuse_nothing(parser, arguments):
@@ -55,6 +59,18 @@ def _refuse_nothing(parser, arguments):
         value = getattr(arguments, action.dest, None)
         if action.nargs is None and value != action.default and (value == [] or value == [[]]):
             parser.error(f"argument {'/'.join(action.option_strings)}: expected one argument")
+
+
+def _check_outputs(arguments):
+    """Raise ValueError if a file of an option could not be written at the end."""
+    given = {option: path for option in arguments.writes if (path := getattr(arguments, option)) is not None}
+    if given:
+        from ...core.files import check_output
+
+        for option, path in given.items():
+            check_output(path, arguments.writes[option])
+    if len(set(given.values())) < len(given):
+        raise ValueError(f"{' and '.join(f'--{option}' for option in given)} name the same file: give a separate file for each")
 
 
 class _Version(argparse.Action):
@@ -77,20 +93,23 @@ def _add_verb(known, name, table, shared):
         form = {"formatter_class": argparse.RawDescriptionHelpFormatter, "epilog": f"methods:\n{described()}"}
     about = {"help": text, "description": f"{text[0].upper()}{text[1:]}.", "aliases": table.get("aliases", ())}
     verb = known.add_parser(name, **about, **form)
-    verb.set_defaults(run=table["run"])
+    writes = {}
+    verb.set_defaults(run=table["run"], writes=writes)
     groups = [*(shared[group] for group in table.get("shared", ())), table.get("options", {})]
     groups += [shared[group] for group in table.get("further", ())]
-    for group in groups:
-        for names, row in group.items():
-            _add_option(verb, names.split(), row)
+    for names, row in [option for group in groups for option in group.items()]:
+        options = {"help": row} if isinstance(row, str) else dict(row)
+        content = options.pop("writes", None)
+        action = _add_option(verb, names.split(), options)
+        if content:
+            writes[action.dest] = content
 
 
-def _add_option(verb, flags, row):
-    """Add an option, ``-o --output FILE``, or a switch if nothing follows its name and its row is a help text only."""
-    options = {"help": row} if isinstance(row, str) else dict(row)
+def _add_option(verb, flags, options):
+    """Add an option, ``-o --output FILE``, or a switch if nothing follows its name and it has a help text only."""
     if len(flags) > 1 and not flags[-1].startswith("-"):
         options["metavar"] = flags.pop()
-    elif flags[0].startswith("-") and isinstance(row, str):
+    elif flags[0].startswith("-") and len(options) == 1:
         options["action"] = "store_true"
     if isinstance(options.get("default"), (int, float)):
         options["type"] = type(options["default"])
@@ -99,4 +118,4 @@ def _add_option(verb, flags, row):
     if isinstance(options.get("metavar"), list):
         options["metavar"] = tuple(options["metavar"])
     options["help"] = argparse.SUPPRESS if options.pop("hidden", False) else options["help"].format(**WORDS)
-    verb.add_argument(*flags, **options)
+    return verb.add_argument(*flags, **options)
