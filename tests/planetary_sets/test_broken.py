@@ -82,9 +82,9 @@ def test_what_a_section_lacks_is_named(damage, message):
         case(damage={"sun": damage})
 
 
-def test_chips_need_unmodified_flanks():
-    with pytest.raises(ValueError, match="leave the flanks of 'sun' out, or its chips"):
-        case(damage={"sun": [gf.Chip(depth=0.4)]}, flanks={"sun": gf.Flank(profile_crowning=0.003)})
+def test_chips_need_sharp_tips():
+    with pytest.raises(ValueError, match="leave out the tip edges of 'sun', or its chips"):
+        case(damage={"sun": [gf.Chip(depth=0.4)]}, flanks={"sun": gf.Flank(tip_rounding=0.1)})
 
 
 def test_faces_of_a_crack_and_a_missing_tooth_of_one_gear():
