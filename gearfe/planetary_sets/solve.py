@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.checks import checked_refine, numbers, truth, whole
+from ..core.memory import free_memory
 from ..core.steps import steps
 from ..core.supports.held import REFUSE
+from ..core.time_limit import check_time
 from ..flexibility.solved import solved_gears
 from ..stiffness.limits import FURTHEST
 from .assembly import BodyTables, Position, Set
@@ -24,6 +26,7 @@ from .whole_gear import PLACES, between_teeth, whole_gear
 
 CHECKED = 8  # number of positions at which the error is estimated
 COARSER, ORDER = 0.7, 3  # its resolution relative to that of the curves, and the order of its polynomials
+BYTES, SECONDS = 1.4e8, 0.65  # memory and time of a first position by refine, measured at 1, 2 and 4
 PASSES = 5  # maximum number of repetitions until corners, kinks and pairs in reach agree with the loads of the meshes
 
 
@@ -80,6 +83,7 @@ def planetary_stiffness(
         raise ValueError(f"case = {case!r}, but give a PlanetaryCase: what holds the set, and its load")
     at, refine, options = _positions(positions, cycles), checked_refine(refine), {"cache": solved_gears(cache)}
     coupled, error = truth("coupled", coupled), truth("error", error)
+    _check_cost(refine)
     found = _curves(case, at, coupled, options | {"refine": refine})
     _check_small(case, found)
     if error:
@@ -87,6 +91,15 @@ def planetary_stiffness(
         less = _curves(case, at[some], coupled, options | {"refine": COARSER * refine, "order": ORDER})
         found.meta["error"] = set_error(found, less, some)
     return found
+
+
+def _check_cost(refine):
+    """ValueError if the first position alone exceeds the limit of computing time, or the free memory."""
+    what, remedy = f"refine = {refine:g}: one position of a set", "give a smaller refine"
+    memory, free = BYTES * refine**1.8, free_memory()
+    if memory > free:
+        raise ValueError(f"{what} needs about {memory / 1e9:.3g} GB, but {free / 1e9:.3g} GB are free: {remedy}")
+    check_time(what, SECONDS * refine**2.3, remedy)
 
 
 def _check_small(case, found):
