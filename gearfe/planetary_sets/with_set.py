@@ -10,6 +10,7 @@ from ..dynamics.machine.mesh_excitation import harmonics
 from ..dynamics.machine.springs import Spring
 from ..dynamics.machine.tables import Machine
 from ..geometry.aliases import Floats
+from ..geometry.damage.missing import missing_teeth
 from ..geometry.renamed import warn_renamed
 from .curves import SetCurves
 from .rim_supports import RimBed, RimSupports
@@ -72,6 +73,10 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
     if ring not in RINGS:
         raise ValueError(f"ring = {ring!r}, but give 'lumped' (its motion is part of k) or 'body' (of the machine)")
     cycles, case = _cycles(curves), curves.meta["case"]
+    if any(missing_teeth(case.gear_of(name), own) for name, own in case.damage.items()):
+        raise ValueError(
+            "a missing tooth opens meshes, but a linear stiffness stays closed: give the damage to the machine, without a set"
+        )
     at = _places(machine, case, names)
     machine = _still(machine) if ring == "lumped" else _on_springs(machine, case)
     k = curves.k if ring == "lumped" else _without_body(machine, curves, at[1])
