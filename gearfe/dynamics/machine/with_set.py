@@ -8,6 +8,7 @@ import numpy as np
 
 from ...core.units import NEWTON_PER_UM
 from ...geometry.aliases import Floats
+from ...geometry.damage.missing import missing_teeth
 from ...geometry.renamed import warn_renamed
 from ...planetary_sets.added import AddedCompliance, cycles_of
 from ...planetary_sets.curves import SetCurves
@@ -74,6 +75,10 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
     if ring not in RINGS:
         raise ValueError(f"ring = {ring!r}, but give 'lumped' (its motion is part of k) or 'body' (of the machine)")
     cycles, case = _cycles(curves), curves.meta["case"]
+    if any(missing_teeth(case.gear_of(name), own) for name, own in case.damage.items()):
+        raise ValueError(
+            "a missing tooth opens meshes, but a linear stiffness stays closed: give the damage to the machine, without a set"
+        )
     at = _places(machine, case, names)
     machine = _still(machine) if ring == "lumped" else _on_springs(machine, case)
     k = curves.k if ring == "lumped" else _without_body(machine, curves, at[1])
