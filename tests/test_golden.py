@@ -15,7 +15,7 @@ from gearfe.scene import verdicts
 from gearfe.scene.stored import read_curves
 from validation import __main__ as main
 from validation import check
-from validation.make import assumptions, herringbone, machines, speed
+from validation.make import assumptions, herringbone, machines
 from validation.shared import herringbone_page, places, table_rows
 from validation.shared import page as pages
 from validation.shared.page import text
@@ -148,7 +148,3 @@ def test_energy_model_of_the_ten_rows(pair):
     assert len(rows) == 5
     for row in rows:
         assert max(abs(float(row["error of mean"])), abs(float(row["error of max"]))) < 0.03
-
-
-def test_speed_page_is_not_stale():
-    assert pages.read("speed")[0] == text("speed", *speed.text()), "run python -m validation speed"

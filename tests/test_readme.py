@@ -3,11 +3,11 @@
 import re
 
 from numpy.testing import assert_allclose
+from remake import FIVE, OUTPUT, README, ROOT, TABLE, five_rows, outputs
 
 import gearfe as gf
-from validation.make import readme
 
-TEXT = readme.README.read_text(encoding="utf-8")
+TEXT = README.read_text(encoding="utf-8")
 NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]\d+)?")
 
 
@@ -18,8 +18,8 @@ def same(printed, shown):
 
 
 def test_programs_print_what_is_shown():
-    shown = [match[1] for match in readme.OUTPUT.findall(TEXT)]
-    printed = readme.outputs(TEXT)
+    shown = [match[1] for match in OUTPUT.findall(TEXT)]
+    printed = outputs(TEXT)
     assert len(shown) == len(printed) == 1
     for ours, theirs in zip(printed, shown, strict=True):
         same(ours, theirs)
@@ -27,12 +27,12 @@ def test_programs_print_what_is_shown():
 
 def test_table_is_what_compare_gives():
     table = gf.compare(gf.load_scene("planetary_pitting")).table().markdown()
-    same(table.rpartition("\n")[0], readme.TABLE.search(TEXT)[0].rpartition("\n")[0])
+    same(table.rpartition("\n")[0], TABLE.search(TEXT)[0].rpartition("\n")[0])
 
 
 def test_five_rows_are_those_of_the_page():
-    assert readme.FIVE.search(TEXT)[0] == readme.five_rows()
-    assert len(readme.five_rows().splitlines()) == 2 + 5
+    assert FIVE.search(TEXT)[0] == five_rows()
+    assert len(five_rows().splitlines()) == 2 + 5
 
 
 def test_is_read_in_two_minutes():
@@ -41,4 +41,4 @@ def test_is_read_in_two_minutes():
 
 def test_files_it_names_exist():
     for link in re.findall(r"\]\(([^)#]+)\)", TEXT):
-        assert (readme.ROOT / link).exists(), link
+        assert (ROOT / link).exists(), link

@@ -9,15 +9,7 @@ import sys
 from .shared import kept_rows, page
 from .shared.page import MACHINES, QUESTIONS
 
-PAGES = (
-    QUESTIONS
-    | MACHINES
-    | {
-        "own_model": "(a file: the example of a curve exported by MATLAB)",
-        "readme": "(a file: the table and the program output in the README)",
-        "tutorials": "(files: what the scripts of the documentation print, for their test)",
-    }
-)
+PAGES = QUESTIONS | MACHINES
 
 
 def main():

@@ -8,14 +8,15 @@ import datetime
 import importlib
 import random
 import time
-import warnings
 
 import numpy as np
+
+from gearfe.core.threads import own_warnings
 
 from .shared.page import MACHINES
 
 PAGES = (
-    *("assumptions", "truth", "outlines", "sample", "three", "herringbone", "joint"),
+    *("assumptions", "truth", "sample", "three", "herringbone", "joint"),
     *MACHINES,
 )
 DAYS = 10  # within which every page has its turn
@@ -70,8 +71,7 @@ def cheap_rows(page):
 def compared(name, known, compute):
     """Lines that name a row that differs, with the largest relative difference; none if it agrees. A dear row is told."""
     started = time.process_time()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
+    with own_warnings():
         found = compute()
     if (spent := time.process_time() - started) > MOST:
         print(f"  {name} took {spent:.1f} CPU s, more than {MOST:g}", flush=True)

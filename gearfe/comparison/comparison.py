@@ -1,8 +1,7 @@
 """`Comparison`: stiffness of pairs in cases of damage by several methods, with errors, losses and cost, and its tables."""
 
 import math
-import warnings
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 from html import escape
 from typing import Any, NamedTuple
@@ -18,13 +17,6 @@ from .losses import LARGEST, headline, kind_of, loss, rounded_up, told_cycle, wi
 ZONES = ("single", "double", "triple", "mean", "max", LARGEST)
 BRIEF = ("mean", "max", LARGEST)  # zones in tables of many cases
 Key = tuple[str, str | None]  # pair and case of damage; None: healthy
-
-RENAMED: dict[str, tuple[str, Callable[[Any], Any]]] = {  # by former name: the new one and its value
-    "pair_name": ("subject", lambda one: one.subject[0]),
-    "damage": ("teeth", lambda one: one.first_tooth()[0]),
-    "cycle": ("teeth", lambda one: one.first_tooth()[1]),
-    "doubt": ("teeth", lambda one: one.first_tooth()[2]),
-}
 
 
 class Row(NamedTuple):
@@ -106,14 +98,6 @@ class Comparison:
     def seconds(self) -> dict[str, float]:
         """Seconds that the curves of the `subject` took, by method."""
         return {name: self.times[*self.subject, name] for name in self.curves if (*self.subject, name) in self.times}
-
-    def __getattr__(self, name: str) -> Any:
-        """Return the value of a former name, of the `subject`, with a DeprecationWarning."""
-        if name not in RENAMED:
-            raise AttributeError(f"a Comparison has no {name!r}")
-        new, value = RENAMED[name]
-        warnings.warn(f"Comparison.{name} will be removed in the next version: use {new}", DeprecationWarning, stacklevel=2)
-        return value(self)
 
     @property
     def kind(self) -> str:

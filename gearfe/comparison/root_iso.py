@@ -1,10 +1,11 @@
-"""Nominal root stress of external spur gears by ISO 6336-3, method B, for comparison with finite elements."""
+"""Nominal root stress of external gears by ISO 6336-3, method B, for comparison with finite elements."""
 
 import math
 from dataclasses import dataclass
 from typing import cast
 
 from ..core.case import Case
+from ..core.record import ranged
 from ..geometry.pair.gear_pair import GearPair
 from ..strength.loaded_tooth import root_stress
 
@@ -16,40 +17,47 @@ class IsoRootStress:
     Attributes
     ----------
     stress : float
-        ``F_t / (b m_n) Y_F Y_S`` [MPa]: without the factors of application, dynamics, face load and life.
+        ``F_t / (b m_n) Y_F Y_S Y_beta`` [MPa]: without the factors of application, dynamics, face load and life.
     Y_F, Y_S : float
-        Form factor and stress correction factor.
+        Form factor and stress correction factor, of helical gears those of the virtual spur gear.
     radius : float
-        Of the outer point of single contact, where the whole load is put [mm].
+        Of the outer point of single contact, where the whole load is put, of helical gears on the virtual spur gear [mm].
+    Y_beta : float
+        Helix angle factor, 1 for spur gears.
     """
 
     stress: float
     Y_F: float
     Y_S: float
     radius: float
+    Y_beta: float = 1.0
 
 
 def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRootStress:
-    """Nominal root stress of a gear of an external spur pair by ISO 6336-3, method B.
+    """Nominal root stress of a gear of an external pair by ISO 6336-3, method B.
 
-    Without its other factors, so that it is what `gearfe.root_stress` computes: one tooth under the whole load at its outer point
-    of single contact. The standard is above it by 1 to 13 %, most at sharp fillets.
+    Without its other factors, so that for spur gears it is what `gearfe.root_stress` computes: one tooth under the whole load at
+    its outer point of single contact. The standard is above it by 1 to 13 %, most at sharp fillets.
+    For a helical gear the standard uses the virtual spur gear of its normal section::
+
+        z_n = z / (cos(beta_b)**2 cos(beta)),  eps_alpha_n = eps_alpha / cos(beta_b)**2
+        Y_beta = 1 - min(eps_beta, 1) min(beta, 30 degrees) / 120 degrees
 
     Parameters
     ----------
     pair : GearPair
     force : float
-        Along the line of action [N], over the narrower width.
+        Along the transverse line of action [N], over the narrower width.
     side : {"pinion", "wheel"}
 
     Raises
     ------
     ValueError
-        If the pair is no external spur pair with a contact ratio between 1 and 2.
+        If the pair is no external pair with a contact ratio eps_alpha_n between 1 and 2.
 
     References
     ----------
-    ISO 6336-3:2006, 6.2 and 7.2.
+    ISO 6336-3:2006, 6.2, 7.2 and clause 8 (edition 2019 divides Y_beta by cos(beta)**3).
 
     Examples
     --------
@@ -62,10 +70,13 @@ def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRo
     """
     if side not in ("pinion", "wheel"):
         raise ValueError(f"side = {side!r}, but it must be 'pinion' or 'wheel'")
+    force = ranged("force", force, " N", above=0.0)
     if why := _beyond(pair):
-        raise ValueError(f"ISO 6336-3 is here for external spur pairs with a contact ratio between 1 and 2, but {why}")
+        raise ValueError(f"ISO 6336-3 is here for external pairs with a contact ratio between 1 and 2, but {why}")
     gear = pair.gear_1 if side == "pinion" else pair.gear_2
-    z, alpha, dedendum, tip, m_n = gear.z, gear.alpha_n, gear.dedendum, gear.rack_tip_radius, gear.m_n
+    alpha, dedendum, tip, m_n = gear.alpha_n, gear.dedendum, gear.rack_tip_radius, gear.m_n
+    flat = math.cos(gear.beta_b) ** 2
+    z = gear.z / (flat * math.cos(gear.beta))
     # E of ISO 6336-3 in modules, as all lengths below
     cut = math.pi / 4 - dedendum * math.tan(alpha) - (1 - math.sin(alpha)) * tip / math.cos(alpha)
     g, theta = tip - dedendum + gear.x_E, math.pi / 6
@@ -73,29 +84,38 @@ def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRo
         theta = 2 * g / z * math.tan(theta) - (2 / z * (math.pi / 2 - cut) - math.pi / 3)
     chord = z * math.sin(math.pi / 3 - theta) + math.sqrt(3) * (g / math.cos(theta) - tip)
     rho = tip + 2 * g**2 / (math.cos(theta) * (z * math.cos(theta) ** 2 - 2 * g))
-    radius = math.hypot(gear.roll_a - (pair.eps_alpha - 1) * pair.p_bt, gear.r_b)
-    at = math.acos(gear.r_b / radius)
+    base, top = m_n * z * math.cos(alpha) / 2, m_n * z / 2 + gear.r_a - gear.r
+    roll = math.sqrt(top**2 - base**2) - (pair.eps_alpha / flat - 1) * math.pi * m_n * math.cos(alpha)
+    radius = math.hypot(roll, base)
+    at = math.acos(base / radius)
     gamma = (math.pi / 2 + 2 * math.tan(alpha) * gear.x_E) / z + math.tan(alpha) - alpha - (math.tan(at) - at)
     arm = (math.cos(gamma) - math.sin(gamma) * math.tan(at - gamma)) * radius / m_n
     arm += (tip - z * math.cos(math.pi / 3 - theta) - g / math.cos(theta)) / 2
     y_f = 6 * arm * math.cos(at - gamma) / (chord**2 * math.cos(alpha))
     y_s = (1.2 + 0.13 * chord / arm) * (chord / (2 * rho)) ** (1 / (1.21 + 2.3 * arm / chord))
+    y_beta = 1 - min(pair.eps_beta, 1.0) * min(math.degrees(abs(gear.beta)), 30.0) / 120
     width = min(pair.gear_1.b, pair.gear_2.b)
-    return IsoRootStress(force * math.cos(alpha) / (width * m_n) * y_f * y_s, y_f, y_s, radius)
+    return IsoRootStress(force * math.cos(gear.alpha_t) / (width * m_n) * y_f * y_s * y_beta, y_f, y_s, radius, y_beta)
 
 
 def _beyond(pair):
     """Why a pair is not one of those that are known here; empty if it is."""
-    if pair.gear_2.internal or pair.gear_1.beta:
-        return "this is a ring pair" if pair.gear_2.internal else "this one is helical"
-    return "" if 1 < pair.eps_alpha < 2 else f"this one has {pair.eps_alpha:.4g}"
+    if pair.gear_2.internal:
+        return "this is a ring pair"
+    ratio = pair.eps_alpha / math.cos(pair.gear_1.beta_b) ** 2
+    return "" if 1 < ratio < 2 else f"this one has {ratio:.4g}" + " in its normal section" * bool(pair.gear_1.beta)
 
 
 def told_root(case: Case) -> list[str]:
-    """Return the root stress of both healthy gears of a pair by finite elements and by ISO 6336-3, as text lines."""
+    """Return the root stress of both healthy gears of a pair by ISO 6336-3 and, of spur gears, by finite elements, as lines."""
     if _beyond(case.pair):
         return []
     width = min(case.pair.gear_1.b, case.pair.gear_2.b)
+    if case.pair.gear_1.beta:
+        found = {side: iso_root_stress(case.pair, case.forces[0], side) for side in ("pinion", "wheel")}
+        factors = "Y_F {0.Y_F:.3f}, Y_S {0.Y_S:.3f}, Y_beta {0.Y_beta:.3f}"
+        lines = [f"  {side} {one.stress:.1f} MPa ({factors.format(one)})" for side, one in found.items()]
+        return ["nominal root stress (largest principal stress) by ISO 6336-3, method B:", *lines]
     lines = ["root stress of one tooth under the whole force at its outer point of single contact, as ISO 6336-3 has it:"]
     for i, side in enumerate(("pinion", "wheel")):
         gear, norm = (case.pair.gear_1, case.pair.gear_2)[i], iso_root_stress(case.pair, case.forces[0], side)

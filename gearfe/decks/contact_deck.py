@@ -15,9 +15,9 @@ from ..geometry.mesh.relieved import relieved
 from ..geometry.mesh.section_mesh import section
 from ..geometry.pair.modified import flank_contacts
 from ..geometry.tooth.profile import arc_at, turned
-from .deck import held_nodes
-from .pressed import Sections, pressing, read_rows, write_lines
+from .pressed import pressing, read_rows, write_lines
 from .pressing import Pressing
+from .solid_deck import Assembly, plane_part
 
 TIP = 0.005  # longest edge at a tip corner that may touch [m_n], where pressure ends steeply
 SECTION = 8.0  # edges per Hertz half width
@@ -60,25 +60,21 @@ def write_contact_section(path: StrPath, case: Case, phase: float, approach: flo
         bodies = [relieved(body, form, order, sense) for body, form, sense in zip(bodies, forms, (1, -1), strict=True)]
     pressed = how.turned(pair, approach)
     turns = pair.turn(candidates.nominal[0, near[0]] - order[0] * pair.p_bt)
-    text = Sections()
+    assembly, places = Assembly(), []
     for i, (body, material) in enumerate(zip(bodies, materials, strict=True)):
         points = turned(body.mesh.doflocs * [[(1, pair.outward)[i]], [1]], turns[i])
-        teeth = ((1, -1)[i] * order % body.gear.z).tolist()
-        surfaces = {f"C{i + 1}P{k}": tooth for k, tooth in enumerate(teeth)}
-        centre = 0.0, (0.0, pair.centre_2)[i]
-
-        def moved(place, angle=pressed[i]):
-            return turned(place, angle) - place
-
-        text.add(i + 1, body, material, points, centre, held_nodes(body.mesh), surfaces, moved)
+        part = plane_part(body.mesh, points, body.flank)
+        surfaces = {f"C{i + 1}P{k}": part.faces[int(tooth)] for k, tooth in enumerate((1, -1)[i] * order % body.gear.z)}
+        places.append(points[:, part.held])
+        part.points[1] += (0.0, pair.centre_2)[i]
+        assembly.add(i + 1, part, material, surfaces, turned(places[i], pressed[i]) - places[i])
     corners = np.abs(rolls[1] - pair.gear_2.roll_a) <= 1e-9 * pair.gear_2.m_n
     contacts = [(f"C2P{k}", f"C1P{k}") if corner else (f"C1P{k}", f"C2P{k}") for k, corner in enumerate(corners)]
     stiff = how.penalty * max(m.E for m in materials)
-    head = ["** gearfe: gear pair in contact, plane strain; mm, N, MPa, per mm of width", "*NODE, NSET=ALL"]
-    step = [*pressing(stiff, contacts, text.motions), "*NODE PRINT, NSET=H1\nRF\n*NODE PRINT, NSET=H2\nRF\n*END STEP\n"]
-    write_lines(path, [*head, *text.nodes, *text.blocks, *step])
-    held, place = text.held, text.place
-    return ContactDeck((held[0], held[1]), (place[0], place[1]), (pair.gear_1.r_b, pair.gear_2.r_b))
+    step = [*pressing(stiff, contacts, assembly.motions), "*NODE PRINT, NSET=H1\nRF\n*NODE PRINT, NSET=H2\nRF\n*END STEP\n"]
+    title = "** gearfe: gear pair in contact, plane strain; mm, N, MPa, per mm of width"
+    write_lines(path, [title, *assembly.nodes, *assembly.blocks, *step])
+    return ContactDeck((assembly.held[0], assembly.held[1]), (places[0], places[1]), (pair.gear_1.r_b, pair.gear_2.r_b))
 
 
 def _meshed(gear, teeth, arcs, widths, per_width, refine):

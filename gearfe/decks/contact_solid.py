@@ -26,7 +26,7 @@ from ..geometry.tooth.side import on_fillet
 from .contact_deck import ContactDeck
 from .pressed import pressing, write_lines
 from .pressing import Pressing
-from .solid_deck import DeckBody, element_lines, holed_part, node_lines, part_of, placed, surface_lines
+from .solid_deck import Assembly, DeckBody, holed_part, part_of, placed
 
 # edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "far": 3.0, "crack": 0.3, "crack tip": 0.08}
@@ -188,12 +188,14 @@ def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float
     for k, order in enumerate(touch.order):
         side = touch.slave[k]
         slaves[order] = side, _faces(pair, parts[side], touch, side, k)
-    write_lines(path, _text(case, parts, touch, angles, how.penalty))
-    starts = [0, parts[0].points.shape[1]]
-    held = [part.held + start + 1 for part, start in zip(parts, starts, strict=True)]
-    centred = [_from_centre(pair, part, number) for number, part in enumerate(parts)]
-    radii = pair.gear_1.r_b, pair.gear_2.r_b
-    return SolidDeck((held[0], held[1]), (centred[0], centred[1]), radii, (parts[0], parts[1]), slaves)
+    assembly, places = Assembly(), []
+    for number, part in enumerate(parts):
+        surfaces = {f"C{number + 1}P{k}": _faces(pair, part, touch, number, k) for k in range(len(touch.order))}
+        places.append(part.points[:2, part.held] - [[0.0], [(0.0, pair.centre_2)[number]]])  # of held nodes from the centre
+        assembly.add(number + 1, part, case.materials[number], surfaces, turned(places[number], angles[number]) - places[number])
+    write_lines(path, _text(assembly, touch, how.penalty * max(m.E for m in case.materials)))
+    radii, held = (pair.gear_1.r_b, pair.gear_2.r_b), assembly.held
+    return SolidDeck((held[0], held[1]), (places[0], places[1]), radii, (parts[0], parts[1]), slaves)
 
 
 def _faces(pair, part, found, number, k):
@@ -250,34 +252,11 @@ def _renamed(name, tooth, z):
     return f"flank {(int(name.split()[1]) + tooth) % z}" if name.startswith("flank ") else name
 
 
-def _from_centre(pair, part, number):
-    """Places (2, n) of the held nodes from their gear's centre [mm]."""
-    return part.points[:2, part.held] - [[0.0], [(0.0, pair.centre_2)[number]]]
-
-
-def _text(case, parts, found, angles, penalty):
-    pair, materials = case.pair, case.materials
+def _text(assembly, found, stiffness):
     yield "** gearfe: gear pair of finite width in contact; mm, N, MPa"
-    yield "*NODE, NSET=ALL"
-    first, element, ends = 0, 0, []
-    for part in parts:
-        yield from node_lines(part, first)
-        first += part.points.shape[1]
-    first = 0
-    for number, part in enumerate(parts):
-        yield from element_lines(part, number + 1, first, element, materials[number])
-        for k in range(len(found.order)):
-            yield from surface_lines(part, f"C{number + 1}P{k}", _faces(pair, part, found, number, k), element)
-        held = part.held + first + 1
-        yield f"*NSET, NSET=H{number + 1}"
-        yield from (f"{n}," for n in held.tolist())
-        at = _from_centre(pair, part, number)
-        moved = turned(at, angles[number]) - at
-        for n, u, v in zip(held.tolist(), *moved, strict=True):
-            ends += [f"{n}, 1, 1, {u:.10e}", f"{n}, 2, 2, {v:.10e}", f"{n}, 3, 3"]
-        first, element = first + part.points.shape[1], element + part.cells.shape[1]
+    yield from (*assembly.nodes, *assembly.blocks)
     contacts = [(f"C{slave + 1}P{k}", f"C{2 - slave}P{k}") for k, slave in enumerate(found.slave)]
-    yield from pressing(penalty * max(m.E for m in materials), contacts, ends)
+    yield from pressing(stiffness, contacts, assembly.motions)
     yield "*NODE PRINT, NSET=H1\nRF\n*NODE PRINT, NSET=H2\nRF"
     yield from (f"*CONTACT PRINT, SLAVE={slave}, MASTER={master}\nCF" for slave, master in contacts)
     yield "*CONTACT FILE\nCDIS\n*END STEP\n"

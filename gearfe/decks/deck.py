@@ -2,12 +2,10 @@
 
 import os
 from collections.abc import Sequence
-from pathlib import Path
 
-import numpy as np
 from scipy.sparse import spmatrix
 
-from ..core.files import check_output, written
+from ..core.files import check_output
 from ..core.material import Material, check_state
 from ..flexibility.finite_elements.elasticity import HeldSection
 from ..flexibility.finite_elements.fe import EDGES
@@ -22,6 +20,8 @@ from ..flexibility.finite_elements.one_tooth import (
 )
 from ..geometry.damage.crack import Crack
 from ..geometry.tooth.gear import Gear
+from .pressed import write_lines
+from .solid_deck import element_lines, node_lines, plane_part, set_lines
 
 
 def write_inp(
@@ -78,43 +78,18 @@ def write_inp(
     at = load_at(gear, radius), NARROW * gear.m_n, NARROW * gear.m_n / 4
     _, body, unit = narrow_section(gear, material, state, edge_lengths(gear, EDGES, refine), at, cracks=cracks)
     load = line_load * unit
-    with written(path) as name:
-        Path(name).write_text("\n".join(_lines(body, load)), encoding="ascii")
+    write_lines(path, _lines(body, load))
     return body, load
 
 
 def _lines(body, load):
-    mesh, points = body.mesh, body.mesh.doflocs
+    part = plane_part(body.mesh, body.mesh.doflocs)
     yield f"** gearfe: one gear, {body.state}; mm, N, MPa; nodal forces per mm of width"
-    yield "*NODE, NSET=ALL"
-    yield from (f"{i}, {x:.12e}, {y:.12e}, 0." for i, (x, y) in enumerate(points.T.tolist(), 1))
-    yield f"*ELEMENT, TYPE={'CPE6' if body.state == 'plane strain' else 'CPS6'}, ELSET=GEAR"
-    nodes = element_nodes(mesh, points) + 1
-    yield from (f"{i}, {', '.join(map(str, row))}" for i, row in enumerate(nodes.T.tolist(), 1))
-    yield "*NSET, NSET=HELD"
-    yield from (f"{node}," for node in (held_nodes(mesh) + 1).tolist())
-    yield "*MATERIAL, NAME=M"
-    yield f"*ELASTIC\n{body.material.E!r}, {body.material.nu!r}"
-    yield "*SOLID SECTION, ELSET=GEAR, MATERIAL=M\n1."
-    yield "*BOUNDARY\nHELD, 1, 2"
-    yield "*STEP\n*STATIC\n*CLOAD"
+    yield from ("*NODE, NSET=ALL", *node_lines(part))
+    for line in element_lines(part, 1, 0, 0, body.material):
+        yield line if body.state == "plane strain" else line.replace("CPE6", "CPS6")
+    yield from (*set_lines("HELD", part.held), "*BOUNDARY\nHELD, 1, 2", "*STEP\n*STATIC\n*CLOAD")
     entries = load.tocoo()
-    yield from (
-        f"{row // 2 + 1}, {row % 2 + 1}, {value:.12e}"
-        for row, value in zip(entries.row.tolist(), entries.data.tolist(), strict=True)
-    )
+    for row, value in zip(entries.row.tolist(), entries.data.tolist(), strict=True):
+        yield f"{row // 2 + 1}, {row % 2 + 1}, {value:.12e}"
     yield "*NODE PRINT, NSET=ALL\nU\n*END STEP\n"
-
-
-def element_nodes(mesh, points):
-    """Nodes ``(6, triangles)`` counter-clockwise for `points` (2, nodes): corners, then middles of 1-2, 2-3, 3-1."""
-    nodes = np.vstack([mesh.t[:3], mesh.nvertices + mesh.t2f])
-    a, b, c = points[:, nodes[:3]].transpose(1, 0, 2)
-    clockwise = (b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0] < 0
-    return np.where(clockwise, nodes[[0, 2, 1, 5, 4, 3]], nodes)
-
-
-def held_nodes(mesh):
-    """Nodes of the held edge."""
-    edges = mesh.boundaries["held"]
-    return np.unique(np.concatenate([mesh.facets[:, edges].ravel(), mesh.nvertices + edges]))

@@ -1,6 +1,7 @@
-"""Parts of a CalculiX / Abaqus deck in three dimensions: hexahedra or tets, their outer faces, material and held nodes."""
+"""Bodies of a CalculiX / Abaqus deck: triangles, hexahedra or tets, their outer faces, materials, held and moved nodes."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,22 +20,39 @@ MIRRORED = {20: MIRROR, 10: np.array([0, 2, 1, 3, 6, 5, 4, 7, 9, 8])}
 FACES = {  # corners of the faces, in CalculiX's order
     20: ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
     10: ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
+    6: ((0, 1), (1, 2), (2, 0)),
 }
-KINDS = {20: "C3D20R", 10: "C3D10"}
+KINDS = {20: "C3D20R", 10: "C3D10", 6: "CPE6"}
 ROW = 15  # numbers on a line; at most 16 are read
 
 
 @dataclass(frozen=True, slots=True)
 class DeckBody:
-    """A meshed body: `points` (3, n) [mm], `cells` (20 or 10, m) in CalculiX's order, `held` nodes, `faces` by name.
+    """A meshed body: `points` (3, n) [mm], `cells` (20, 10 or 6, m) in CalculiX's order, `held` nodes, `faces` by name.
 
-    Every face of `faces` is named by its corners ``(4 or 3, k)``.
+    Every face of `faces` is named by its corners ``(4, 3 or 2, k)``. The triangles of a section are in plane strain, 1 mm thick.
     """
 
     points: Floats
     cells: NDArray[np.int64]
     held: NDArray[np.int64]
-    faces: dict[str, NDArray[np.int64]]
+    faces: dict[Any, NDArray[np.int64]]  # of a section by the keys of its flanks
+
+
+def plane_part(mesh, points, flank=None, held=None) -> DeckBody:
+    """Second-order triangles of a section at `points` ``(2, n)`` [mm], with faces of the vertices of `flank` by name."""
+    nodes = np.vstack([mesh.t[:3], mesh.nvertices + mesh.t2f])
+    a, b, c = points[:, nodes[:3]].transpose(1, 0, 2)
+    clockwise = (b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0] < 0
+    cells = np.where(clockwise, nodes[[0, 2, 1, 5, 4, 3]], nodes)
+    faces = {name: np.array([line[:-1], line[1:]]) for name, line in (flank or {}).items()}
+    return DeckBody(np.vstack([points, 0 * points[:1]]), cells, held_nodes(mesh) if held is None else held, faces)
+
+
+def held_nodes(mesh):
+    """Nodes of the held edge of a section."""
+    edges = mesh.boundaries["held"]
+    return np.unique(np.concatenate([mesh.facets[:, edges].ravel(), mesh.nvertices + edges]))
 
 
 def part_of(mesh: Solid) -> DeckBody:
@@ -106,14 +124,15 @@ def sides_of(cells, faces):
     return np.array([element, side])
 
 
-def node_lines(part, first):
+def node_lines(part, first=0):
     """Nodes, numbered from `first` + 1."""
     return [f"{first + i}, {x:.12e}, {y:.12e}, {z:.12e}" for i, (x, y, z) in enumerate(part.points.T.tolist(), 1)]
 
 
 def cell_lines(part, name, first=0, element=0):
     """Elements of the set `name`, numbered from `element` + 1; RuntimeError if some fold."""
-    check_folds(part.points, part.cells)
+    if len(part.cells) > 6:
+        check_folds(part.points, part.cells)
     out = [f"*ELEMENT, TYPE={KINDS[len(part.cells)]}, ELSET={name}"]
     for j, row in enumerate((part.cells + first + 1).T.tolist(), 1):
         row = [element + j, *row]
@@ -124,7 +143,8 @@ def cell_lines(part, name, first=0, element=0):
 def element_lines(part, number, first, element, material):
     """Elements, numbered from `element` + 1, material and section of body `number`."""
     out = [f"*MATERIAL, NAME=M{number}\n*ELASTIC\n{material.E!r}, {material.nu!r}"]
-    return [*cell_lines(part, f"G{number}", first, element), *out, f"*SOLID SECTION, ELSET=G{number}, MATERIAL=M{number}"]
+    out += [f"*SOLID SECTION, ELSET=G{number}, MATERIAL=M{number}", *(["1."] if len(part.cells) == 6 else [])]
+    return [*cell_lines(part, f"G{number}", first, element), *out]
 
 
 def set_lines(name, nodes):
@@ -136,3 +156,26 @@ def surface_lines(part, name, faces, element):
     """Surface `name` of outer faces ``(corners, k)``."""
     sides = sides_of(part.cells, faces)
     return [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *(f"{element + j + 1}, S{s + 1}" for j, s in sides.T.tolist())]
+
+
+class Assembly:
+    """Bodies as lines of a deck, their nodes and elements numbered through from 1.
+
+    `nodes`, `blocks` and `motions` are lines; `held` are by body the numbers ``(n,)`` of its held nodes.
+    """
+
+    def __init__(self):
+        self.nodes, self.blocks, self.motions, self.held = ["*NODE, NSET=ALL"], [], [], []
+        self.count = self.elements = 0
+
+    def add(self, number, part, material, surfaces, moved):
+        """Add body `number`, with the faces of `surfaces` by name, whose held nodes move by `moved` ``(2, k)`` [mm]."""
+        self.nodes += node_lines(part, self.count)
+        self.blocks += element_lines(part, number, self.count, self.elements, material)
+        for name, faces in surfaces.items():
+            self.blocks += surface_lines(part, name, faces, self.elements)
+        self.blocks += set_lines(f"H{number}", part.held + self.count)
+        self.held.append(part.held + self.count + 1)
+        for n, u, v in zip(self.held[-1].tolist(), *moved.tolist(), strict=True):
+            self.motions += [f"{n}, 1, 1, {u:.10e}", f"{n}, 2, 2, {v:.10e}", *([f"{n}, 3, 3"] if len(part.cells) > 6 else [])]
+        self.count, self.elements = self.count + part.points.shape[1], self.elements + part.cells.shape[1]

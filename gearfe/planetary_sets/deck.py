@@ -15,8 +15,8 @@ from ..core.checks import checked_refine
 from ..core.files import check_output
 from ..core.record import ranged
 from ..decks.contact_deck import TIP
-from ..decks.deck import held_nodes
-from ..decks.pressed import Sections, pressing, read_rows, write_lines
+from ..decks.pressed import pressing, read_rows, write_lines
+from ..decks.solid_deck import Assembly, held_nodes, plane_part, set_lines
 from ..flexibility.finite_elements.fe import EDGES
 from ..flexibility.finite_elements.one_tooth import edge_lengths
 from ..geometry.aliases import Floats, StrPath
@@ -118,34 +118,37 @@ def write_set_inp(
     Raises
     ------
     ValueError
-        If the set cannot be meshed gear by gear (see `planetary_sets.loaded_gears.drawable`), or an argument is out of range.
+        If the set cannot be meshed gear by gear (see `planetary_sets.loaded_gears.drawable`) or has cracks, or an argument is out
+        of range.
     """
     check_output(path, "deck")
     case, stand = drawable(curves, at)
+    if case.damage:
+        raise ValueError("cracks of a set are not in its deck: give curves of a case without them")
     for name, value in (("per_width", per_width), ("penalty", penalty)):
         ranged(name, value, above=0.0)
     refine = checked_refine(refine)
     pressed, bodies = touching(case, stand, curves, at), placed(case, stand, curves, at)
-    text = Sections()
+    assembly, places = Assembly(), []
     for number, (gear, material, centre, angle, (turn, shift)) in enumerate(bodies):
         rolls = _rolls(gear, [side for pair in pressed for side in pair if side["body"] == number], per_width, refine)
         edge = edge_lengths(gear, EDGES, refine)
         section, fixed = meshed(case, gear, rolls, edge["fillet"], edge["near"], edge["far"], 0.05 / refine)
         points = turned(section.mesh.doflocs, angle)
-        surfaces = {_surface(number, *flank): flank for flank in section.flank}
-
-        def moved(place, turn=turn, shift=shift):
-            return np.array([place[1] * turn, -place[0] * turn]) + np.reshape(shift, (2, 1))
-
-        text.add(number, section, material, points, centre, fixed, surfaces, moved)
+        part = plane_part(section.mesh, points, section.flank, fixed)
+        surfaces = {_surface(number, *flank): faces for flank, faces in part.faces.items()}
+        places.append(points[:, fixed])
+        part.points[:2] += np.reshape(centre, (2, 1))
+        moved = np.array([[0.0, turn], [-turn, 0.0]]) @ places[-1] + np.reshape(shift, (2, 1))
+        assembly.add(number, part, material, surfaces, moved)
     edge_of_ring = held_nodes(section.mesh)
-    rim, around = edge_of_ring + text.count - points.shape[1] + 1, points[:, edge_of_ring]
-    head = ["** gearfe: planetary set, plane strain; mm, N, MPa, per mm of width", "*NODE, NSET=ALL"]
-    step = pressing(penalty * max(m.E for m in case.material), _contacts(pressed), text.motions, "*STEP, INC=200")
+    rim, around = edge_of_ring + assembly.count - points.shape[1] + 1, points[:, edge_of_ring]
+    title = "** gearfe: planetary set, plane strain; mm, N, MPa, per mm of width"
+    step = pressing(penalty * max(m.E for m in case.material), _contacts(pressed), assembly.motions, "*STEP, INC=200")
     prints = [*(f"*NODE PRINT, NSET=H{k}\nRF" for k in range(len(bodies))), "*NODE PRINT, NSET=RIM\nU"]
-    outer = ["*NSET, NSET=RIM", *(f"{n}," for n in rim.tolist())]
-    write_lines(path, [*head, *text.nodes, *text.blocks, *outer, *step, *prints, "*END STEP\n"])
-    return SetDeck(case, text.held, text.place, rim, around, bodies[-1][3])
+    lines = [title, *assembly.nodes, *assembly.blocks, *set_lines("RIM", rim - 1), *step, *prints, "*END STEP\n"]
+    write_lines(path, lines)
+    return SetDeck(case, assembly.held, places, rim, around, bodies[-1][3])
 
 
 def _contacts(pressed):

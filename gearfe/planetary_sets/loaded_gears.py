@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from ..core.checks import whole
-from ..decks.deck import held_nodes
+from ..decks.solid_deck import held_nodes
 from ..flexibility.hertz import contact_modulus, half_width
+from ..geometry.damage.kinds import BROKEN
 from ..geometry.mesh.both_flanks import both_flanks
 from ..geometry.pair.contacts import contacts
 from ..geometry.tooth.profile import arc_at
@@ -20,12 +21,12 @@ NEAR = 1.5  # gaps up to this multiple of the approach can close
 
 
 def check_meshable(case: PlanetaryCase) -> None:
-    """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, modified flanks, cracks."""
+    """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, modified flanks, broken teeth."""
     rigid = isinstance(case.ring, RimSupports) and math.isinf(case.ring.radial) and math.isinf(case.ring.tangential)
     if not (case.ring == "held" or rigid):
         raise ValueError("the ring is neither held nor on rigid pads, and is not meshed so: give a case with one of these")
-    if case.flanks or case.damage:
-        raise ValueError("modified flanks and cracks of a set are not meshed: give a case without them")
+    if case.flanks or any(isinstance(one, BROKEN) for own in case.damage.values() for one in own):
+        raise ValueError("modified flanks and broken teeth of a set are not meshed: give a case without them")
 
 
 def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
@@ -44,11 +45,11 @@ def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
     return case, standing(case.gears, np.array(case.planet_angles), [curves.position[at]])
 
 
-def meshed(case, gear, rolls, fillet, near, far, pad):
+def meshed(case, gear, rolls, fillet, near, far, pad, cracks=()):
     """`Section` of a gear by its edge lengths [mm], `pad` those at the ends of a ring's pads; and its nodes that are held."""
     pads = gear.internal and case.ring != "held"
     marks = case.ring.ends(gear) if pads else ()
-    section = both_flanks(gear, rolls, fillet_size=fillet, size=near, far_size=far, marks=marks, mark_size=pad)
+    section = both_flanks(gear, rolls, fillet_size=fillet, size=near, far_size=far, marks=marks, mark_size=pad, cracks=cracks)
     held = held_nodes(section.mesh)
     return section, held[case.ring.covers(gear, section.mesh.doflocs[:, held])] if pads else held
 

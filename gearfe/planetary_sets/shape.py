@@ -45,12 +45,13 @@ def plot_planetary_set(
     """Draw one position of a loaded set, all gears deformed and coloured by von Mises stress; save to `path` if given.
 
     Each gear is solved separately by finite elements under the loads of the set's meshes. Rigid rotations and shifts of sun and
-    planets are not drawn. Each load acts on three nodes: near it the stress is not meaningful.
+    planets are not drawn. Each load acts on three nodes: near it the stress is not meaningful. Faces of cracks are free.
+    Those that touch (``curves.meta["shut"]``) pass through each other in the picture.
 
     Parameters
     ----------
     curves : SetCurves
-        Of a case with a held ring or one on rigid pads, without modified flanks and cracks.
+        Of a case with a held ring or one on rigid pads, without modified flanks.
     at : int
         Number of the position, from 0.
     path : path, optional
@@ -89,19 +90,21 @@ def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[lis
         bodies.append(placed(case, stand, curves, at))
     made = []
     for k, same in enumerate(steps(list(zip(*bodies, strict=True)))):
-        made.append(_shapes(case, same, [[side for side in one if side["body"] == k] for one in sides]))
+        name = ("sun", *(f"planet{i + 1}" for i in range(case.planets)), "ring")[k]
+        loads = [[side for side in one if side["body"] == k] for one in sides]
+        made.append(_shapes(case, same, loads, case.damage.get(name, ())))
     pads: list[Floats | None] = [None] * len(bodies)
     if case.ring != "held":
         pads = [cartesian(1.03 * case.ring_gear.r_rim, case.ring.middles + there[-1][3]) for there in bodies]
     return [(list(one), held) for one, held in zip(zip(*made, strict=True), pads, strict=True)]
 
 
-def _shapes(case, bodies, sides):
+def _shapes(case, bodies, sides, cracks):
     """`Shape` of one gear at each position, under the loads of its flanks there, held where it is."""
     gear, material, centre, *_ = bodies[0]
     size = {name: edge * gear.m_n for name, edge in EDGE.items()}
     rolls = {(side["tooth"], side["side"]): stations(gear, size["flank"]) for there in sides for side in there}
-    made, held = meshed(case, gear, rolls, size["fillet"], size["near"], size["far"], 0.3 * gear.m_n)
+    made, held = meshed(case, gear, rolls, size["fillet"], size["near"], size["far"], 0.3 * gear.m_n, cracks)
     mesh = made.mesh
     facets = mesh.boundaries["held"]
     mesh = mesh.with_boundaries({"held": facets[np.isin(mesh.nvertices + facets, held)]})
@@ -110,7 +113,9 @@ def _shapes(case, bodies, sides):
     for (*_, angle, _), there in zip(bodies, sides, strict=True):
         u = solver.solve(sum(_load(gear, made, rolls, side) for side in there))[:, 0]
         place, moved = (turned(one, angle) for one in (mesh.doflocs, u.reshape(-1, 2).T))
-        out.append(Shape(place + centre[:, None], moved, solver.nodes, _mises(*solver.stress(u), material.nu)))
+        out.append(
+            Shape(place + centre[:, None], moved, solver.nodes, _mises(*solver.stress(u, 0.05 if cracks else 0.0), material.nu))
+        )
     return out
 
 

@@ -10,6 +10,7 @@ from ..core.steps import part, steps
 from ..core.threads import own_warnings
 from ..scene.load import Scene, load_scene
 from ..strength.holed import pressed_tooth, tooth_field
+from ..strength.render import FINE, STRIP
 from .whole_set import find_set
 
 
@@ -97,7 +98,7 @@ def _tooth(found):
     chosen = found.scene.pair(found.hurt_pair)
     case = found.case if found.case in chosen.damage else None
     try:
-        pressed = pressed_tooth(chosen.case(case))
+        pressed = pressed_tooth(chosen.case(case), sizes=FINE, strip=STRIP)  # the mesh of the pictures
     except ValueError as error:
         found.notes.append(f"no tooth in three dimensions: {error}")
         return None

@@ -19,6 +19,7 @@ from ..scene.load import Scene, scene_names
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import versions
 from ..stiffness.solve import Solve
+from ..strength.holed import root_error
 from ..strength.render import enlarged, render_stress, rounded_up
 from . import figures
 from .figures import part_of_page
@@ -137,7 +138,8 @@ def _tooth(found):
     name, pressed, field = found.tooth
     scale = enlarged(field.opening, pressed.sector.gear.m_n)
     drawn = part_of_page(figures.tooth_figure(pressed, field, scale, rounded_up(field.root)), "figure-0")
-    return {"drawn": drawn, "pair": name, "pressed": pressed, "root": field.root, "enlarged": scale}
+    error = root_error(pressed, found.scene.pair(name).materials[pressed.gear == "wheel"])
+    return {"drawn": drawn, "pair": name, "pressed": pressed, "root": field.root, "error": error, "enlarged": scale}
 
 
 def _methods(found):

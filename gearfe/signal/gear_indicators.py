@@ -91,7 +91,7 @@ def gear_indicators(
     mesh = amplitude[teeth::teeth].sum()
     if not mesh > EMPTY * np.abs(x).max():
         raise ValueError(f"the average has no mesh line of {teeth} teeth: is it over a turn of that gear?")
-    if not _has_mesh_line(amplitude, teeth):
+    if not has_mesh_line(amplitude, teeth):
         warnings.warn(
             f"the average has no line at {teeth} orders or their harmonics (FM0 {np.ptp(x) / mesh:.3g}), so its indicators do "
             "not describe that gear: check the teeth, and the ratio of its shaft to the tachometer's",
@@ -115,7 +115,7 @@ def gear_indicators(
     }
 
 
-def _has_mesh_line(amplitude, teeth):
+def has_mesh_line(amplitude, teeth):
     """Whether one of the first three mesh orders stands out of the orders half a mesh order to either side."""
     for order in range(teeth, min(4 * teeth, amplitude.size), teeth):
         around = amplitude[max(order - teeth // 2, 1) : order + teeth // 2 + 1]

@@ -58,7 +58,8 @@ def read_signal(
     ----------
     path : path
     column : str, optional
-        Name of the channel, without its groups if it is the only one of that name; needed if there are several channels.
+        Name of the channel; the part behind its groups or behind a blank is sufficient if only one name ends so. Needed if there
+        are several channels.
     rate, shaft_frequency : float, optional
         Sampling rate and shaft frequency [Hz]. If the file itself has several rates, the one that `rate` names counts.
     unit : str, optional
@@ -219,7 +220,7 @@ def _choose(path, found, column):
         return names[0]
     if column in found.vectors:
         return column
-    same = [name for name in names if found.leaf(name) == column]
+    same = [name for name in names if column and (found.leaf(name) == column or name.endswith(f" {column}"))]
     if len(same) == 1:
         return same[0]
     if column is None and found.hint:

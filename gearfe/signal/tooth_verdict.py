@@ -5,12 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .gear_indicators import gear_indicators
-from .orders import residual_signal, synchronous_average
+from .gear_indicators import SHARP, gear_indicators, has_mesh_line
+from .orders import mesh_coherence, residual_signal, synchronous_average
 from .series import Signal
 
 SIGMAS = 6.0  # standard deviations of the kurtosis of noise above 3; white noise exceeds it in less than 0.1 % of averages
-RISE = 1.5  # times the FM4 that the deviations of the healthy teeth alone would give
+# Deviations of healthy teeth from each other exceed these in less than 1 % of gears, see tests/signal/test_false_alarms.py.
+RISE = 2.5  # times the FM4 that the deviations of the healthy teeth alone would give
+ALONE = 24.0  # FM4 without a healthy record
 FEWEST = 4  # revolutions, two for each half of the record
 
 
@@ -21,7 +23,7 @@ class ToothVerdict(NamedTuple):
     ----------
     level : {"likely", "possible", "not seen"}
         "likely" if FM4 is above `limit` in the whole record and in both halves, and the largest impulse keeps its angle.
-        "possible" if only the whole record exceeds the limit.
+        "possible" if only the whole record exceeds the limit, or, without a healthy record, only the limit of noise.
     FM4, limit : float
         Kurtosis of the difference signal, and the value that a fault exceeds.
     healthy : float
@@ -52,6 +54,8 @@ class ToothVerdict(NamedTuple):
         place = f", once per revolution, at {math.degrees(self.angle):.0f} degrees"
         if self.level == "likely":
             return f"{text}{place}. The verdict changes if another record of the gear has FM4 below the limit or another angle."
+        if self.limit >= self.FM4:
+            return f"{text}. Deviations of healthy teeth from each other do this, too: compare with a healthy record of the gear."
         halves = f"its halves differ: the largest impulse moves by {math.degrees(self.apart):.0f} degrees"
         return f"{text}, but {halves}. An impulse that is not bound to the gear, or a short record, does this: record longer."
 
@@ -61,7 +65,7 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
 
     ::
 
-        limit = max(3 + SIGMAS sqrt(24 / n), RISE (3 + (FM4_healthy - 3) min(1, v_healthy / v)^2))
+        limit = max(3 + SIGMAS sqrt(24 / n), RISE (3 + (FM4_healthy - 3) min(1, v_healthy / v)^2)),  ALONE without healthy record
 
     FM4 of n samples of white noise has the mean 3 and the variance 24 / n. v are the variances of the difference signals. Fourth
     cumulants of independent parts add, so that the deviations of healthy teeth count by their part of the signal: rounding
@@ -79,11 +83,17 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
     Raises
     ------
     ValueError
-        As `gearfe.synchronous_average` and `gearfe.gear_indicators`, or if the record has fewer than `FEWEST` revolutions.
+        As `gearfe.synchronous_average` and `gearfe.gear_indicators`, or if the record has fewer than `FEWEST` revolutions,
+        or if its average keeps less than `SHARP` of the mesh line or has none.
     """
     average, revolutions = synchronous_average(record)
     if revolutions < FEWEST:
         raise ValueError(f"{record.name}: {revolutions} revolutions, but a verdict needs {FEWEST} or more")
+    if mesh_coherence(record, teeth) < SHARP or not has_mesh_line(np.abs(np.fft.rfft(average)), teeth):
+        raise ValueError(
+            f"{record.name}: its average is smeared, or is not of a gear of {teeth} teeth: give the angle of its shaft, the "
+            "ratio of its speed to the tachometer's, or estimate the speed from the mesh lines"
+        )
     known, part = math.nan, 1.0
     if healthy is not None:
         sound = synchronous_average(healthy)[0]
@@ -91,14 +101,14 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
         before, now = (float(np.var(residual_signal(one, teeth, sidebands=1))) for one in (sound, average))
         part = min(1.0, before / now) if now else 1.0
     halves = _halves(record, average.size, revolutions)
-    limit = 3 + SIGMAS * math.sqrt(24 / average.size)
-    limit = limit if math.isnan(known) else max(limit, RISE * (3 + (known - 3) * part**2))
+    noise = 3 + SIGMAS * math.sqrt(24 / average.size)
+    limit = max(noise, ALONE if math.isnan(known) else RISE * (3 + (known - 3) * part**2))
     values = [gear_indicators(one, teeth)["FM4"] for one in (average, *halves)]
     angles = [2 * math.pi * int(np.argmax(np.abs(residual_signal(one, teeth, sidebands=1)))) / one.size for one in halves]
     apart = abs((angles[0] - angles[1] + math.pi) % (2 * math.pi) - math.pi)
     seen, both = values[0] > limit, min(values[1:]) > limit and apart < 2 * math.pi / teeth
     angle = 2 * math.pi * int(np.argmax(np.abs(residual_signal(average, teeth, sidebands=1)))) / average.size
-    level = "likely" if seen and both else "possible" if seen else "not seen"
+    level = "likely" if seen and both else "possible" if seen or (healthy is None and values[0] > noise) else "not seen"
     return ToothVerdict(level, values[0], limit, known, angle, apart, revolutions)
 
 

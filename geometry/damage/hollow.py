@@ -25,22 +25,37 @@ def centre_arc(gear, hollow):
     return gear.outward * (hollow.radius**2 - gear.r_b**2) / (2 * gear.r_b)
 
 
-def on_line(gear, hollow, roll, z):
-    """Return the place of a straight contact line relative to a hollow, from roll lengths and heights [mm] at its ends (t 0, 1).
+def crossing(gear, hollow, roll, z, limits):
+    """Return the ranges of t (0 to 1) of a straight contact line inside a hollow, from roll lengths and heights [mm] at its ends.
 
     The place u(v) [mm] is quadratic in ``v = (z - hollow.z) / hollow.reach[1]``, which is between -1 and 1 in the hollow for any
-    length of the line. Returns its coefficients, and a function that converts ranges of v to ranges of t and drops empty ones.
+    length of the line. ``limits(u)`` are polynomials in v, of which one is zero wherever the line passes the outline.
     """
     slope, reach = z[1] - z[0], hollow.reach[1]
     change = (roll[1] - roll[0]) / slope
     at, sign = roll[0] + change * (hollow.z - z[0]), gear.outward / (2 * gear.r_b)
     u = np.array([sign * at**2 - centre_arc(gear, hollow), 2 * sign * at * change * reach, sign * (change * reach) ** 2])
+    roots = np.concatenate([_roots(limit) for limit in limits(u)])
+    places = np.unique([-1.0, *roots[np.abs(roots) < 1], 1.0])
+    middles = (places[1:] + places[:-1]) / 2
+    covered = hollow._contains(np.polynomial.polynomial.polyval(middles, u), reach * middles)
+    parts = []
+    for first, last, inside in zip(places[:-1], places[1:], covered, strict=True):
+        if inside and parts and parts[-1][1] == first:
+            parts[-1][1] = last
+        elif inside:
+            parts.append([first, last])
+    ends = [np.clip((hollow.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in parts]
+    return [(float(t.min()), float(t.max())) for t in ends if t.max() > t.min()]
 
-    def ranges(parts):
-        ends = [np.clip((hollow.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in parts]
-        return [(float(t.min()), float(t.max())) for t in ends if t.max() > t.min()]
 
-    return u, ranges
+def _roots(coefficients):
+    """Real roots of a polynomial, if it may have some between -1 and 1."""
+    size = np.abs(coefficients)
+    if size[0] > size[1:].sum() or not size.any():
+        return np.zeros(0)
+    roots = np.polynomial.polynomial.polyroots(coefficients[: np.flatnonzero(size > 1e-15 * size.max())[-1] + 1])
+    return roots.real[np.abs(roots.imag) < 1e-9]
 
 
 def rolls(gear, hollow):

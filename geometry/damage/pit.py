@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..aliases import Floats
 from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
-from .hollow import in_circle, on_line, profile, warning_of
+from .hollow import crossing, in_circle, profile, warning_of
 
 MOST = 5000  # pits in a row
 LEAST, LONGEST = 1e-50, 1e50  # semi-axes [mm]: a pit larger than its flank takes all of it, however large
@@ -149,18 +149,17 @@ class Pit:
         return in_circle(p, q, dp, dq, 1e-12 / min(self.axes) ** 2)
 
     def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
-        """Return the ranges of t of a straight contact line (see `hollow.on_line`) inside the pit, at most two."""
+        """Return the ranges of t of a straight contact line inside the pit, at most two, see `hollow.crossing`."""
         across, mixed, along = self.form
-        u, ranges = on_line(gear, self, roll, z)
         w = np.array([0.0, self.reach[1]])
-        inside = across * _times(w, w, 5) + 2 * mixed * _times(u, w, 5) + along * _times(u, u, 5)
-        inside[0] -= 1.0
-        inside = inside[: np.flatnonzero(np.abs(inside) > 1e-15 * np.abs(inside).max())[-1] + 1]
-        roots = np.polynomial.polynomial.polyroots(inside)
-        roots = roots.real[np.abs(roots.imag) < 1e-9]
-        places = np.sort(np.concatenate([[-1.0, 1.0], roots[np.abs(roots) < 1]]))
-        parts = zip(places[:-1], places[1:], strict=True)
-        return ranges([(a, b) for a, b in parts if np.polynomial.polynomial.polyval((a + b) / 2, inside) < 0])
+
+        def edge(u):
+            inside = along * np.convolve(u, u)
+            inside[:3] += across * np.convolve(w, w) - [1.0, 0.0, 0.0]
+            inside[:4] += 2 * mixed * np.convolve(u, w)
+            return [inside]
+
+        return crossing(gear, self, roll, z, edge)
 
 
 def pit_row(count, first, last, **numbers):
@@ -174,9 +173,3 @@ def pit_row(count, first, last, **numbers):
     if isinstance(count, bool) or not isinstance(count, Integral) or not 1 <= count <= MOST:
         raise ValueError(f"count = {count!r} pits in a row, but give a whole number from 1 to {MOST}")
     return [Pit(z=float(z), **numbers) for z in np.linspace(first, last, count)]
-
-
-def _times(a, b, size):
-    """Product of two polynomials, padded."""
-    out = np.convolve(a, b)
-    return np.append(out, np.zeros(size - out.size))

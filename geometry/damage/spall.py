@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..aliases import Floats
 from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
-from .hollow import in_circle, on_line, profile, warning_of
+from .hollow import crossing, in_circle, profile, warning_of
 
 LEAST, LONGEST = 1e-6, 1e6  # sides [mm]
 QUARTER = 8  # parts of a rounded corner that is drawn
@@ -165,42 +165,24 @@ class Spall:
         return np.where(high > low, low, 0.0), np.where(high > low, high, 0.0)
 
     def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
-        """Return the ranges of t of a straight contact line inside the spall, between its sides and corner circles.
+        """Return the ranges of t of a straight contact line inside the spall, see `hollow.crossing`."""
+        inner, unit = [half - self.corner for half in self.axes], np.array([1.0, 0.0, 0.0])
 
-        `gearfe.geometry.damage.hollow.on_line` describes the line.
-        """
-        (u, ranges), reach, unit = on_line(gear, self, roll, z), self.axes[1], np.array([1.0, 0.0, 0.0])
-        inner = [half - self.corner for half in self.axes]
-        limits = [u - sign * half * unit for half in (self.axes[0], inner[0]) for sign in (-1, 1)]
-        for i, j in CORNERS if self.corner else ():
-            circle = _square(*(u - i * inner[0] * unit))
-            circle[:3] += _square(-j * inner[1], reach) - self.corner**2 * unit
-            limits.append(circle)
-        roots = np.concatenate([_roots(limit) for limit in limits])
-        places = np.unique([-1.0, *roots[np.abs(roots) < 1], 1.0])
-        middles = (places[1:] + places[:-1]) / 2
-        covered = self._contains(np.polynomial.polynomial.polyval(middles, u), reach * middles)
-        ends: list[list[float]] = []
-        for first, last, inside in zip(places[:-1], places[1:], covered, strict=True):
-            if inside and ends and ends[-1][1] == first:
-                ends[-1][1] = last
-            elif inside:
-                ends.append([first, last])
-        return ranges(ends)
+        def edges(u):
+            """Sides along the width, the lines on which the corners begin, and circles of the corners."""
+            out = [u - sign * half * unit for half in (self.axes[0], inner[0]) for sign in (-1, 1)]
+            for i, j in CORNERS if self.corner else ():
+                circle = _square(*(u - i * inner[0] * unit))
+                circle[:3] += _square(-j * inner[1], self.axes[1]) - self.corner**2 * unit
+                out.append(circle)
+            return out
+
+        return crossing(gear, self, roll, z, edges)
 
 
 def _square(*coefficients):
     """Coefficients of the square of a polynomial."""
     return np.convolve(coefficients, coefficients)
-
-
-def _roots(coefficients):
-    """Real roots of a polynomial, if it may have some between -1 and 1."""
-    size = np.abs(coefficients)
-    if size[0] > size[1:].sum() or not size.any():
-        return np.zeros(0)
-    roots = np.polynomial.polynomial.polyroots(coefficients[: np.flatnonzero(size > 1e-15 * size.max())[-1] + 1])
-    return roots.real[np.abs(roots.imag) < 1e-9]
 
 
 def _in_box(p, q, dp, dq, wide, high):

@@ -6,13 +6,13 @@ import numpy as np
 
 from ..tooth.profile import cartesian
 from .outline import around, doubled, half, held_circle, spaced, stations
-from .section_mesh import Section, fill
+from .section_mesh import Seam, Section, crack_chains, crack_lines, fill
 
 GROWTH = 0.3  # growth of the edge length of the held circle per length, away from its marks
 SIDES = "loaded", "unloaded"  # the flanks 0 and 1 of a tooth, at its right and its left
 
 
-def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size=0.0, held_size=math.inf):
+def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size=0.0, held_size=math.inf, cracks=()):
     """Mesh the whole section of `gear`.
 
     Parameters
@@ -24,19 +24,23 @@ def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size
         Edge lengths of the loaded teeth's fillets, of adjacent teeth and of all others [mm].
     marks : sequence of float
         Angles on the held circle with a vertex [rad], with edges of `mark_size` there and of at most `held_size` elsewhere [mm].
+    cracks : sequence of Crack
+        Their loaded side is side 0.
 
     Returns
     -------
     Section
         Its `flank` and `roll` by tooth and side, without fillets.
     """
+    cuts, lines = crack_lines(gear, cracks, fillet_size)
     coarse, far = (half(gear, stations(gear, s), s, s) for s in (size, far_size))
-    loaded = {tooth for tooth, _ in rolls}
+    loaded = {tooth for tooth, _ in (*rolls, *cuts)}
     beside = {(tooth + k) % gear.z for tooth in loaded for k in (-1, 1)}
 
     def choose(tooth, side):
         if tooth in loaded:
-            return half(gear, rolls.get((tooth, SIDES.index(side)), stations(gear, size)), fillet_size, size)
+            roll = rolls.get((tooth, SIDES.index(side)), stations(gear, size))
+            return half(gear, roll, fillet_size, size, mark=cuts.get((tooth, side)))
         return coarse if tooth in beside else far
 
     rim, places = around(gear, choose)
@@ -45,7 +49,9 @@ def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size
         piece, first, sense = places[tooth, SIDES[side]]
         flanks[tooth, side] = (first + sense * piece.flank)[::-1]
     held = _marked(gear, marks, mark_size, held_size) if len(marks) else held_circle(gear)
-    return Section(gear, fill(rim, held, ring=gear.internal)[0], flanks, rolls, {})
+    starts = {place: first + sense * piece.mark for place, (piece, first, sense) in places.items() if place in lines}
+    mesh, faces = fill(rim, held, crack_chains(gear, cracks, lines, rim, starts), ring=gear.internal)
+    return Section(gear, mesh, flanks, rolls, {}, tuple(map(Seam, faces)))
 
 
 def _marked(gear, marks, fine, longest):

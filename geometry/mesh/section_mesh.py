@@ -77,35 +77,52 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), 
     if len({tooth % gear.z for tooth in rolls}) != len(rolls):
         raise ValueError(f"teeth {sorted(rolls)} are not distinct on a gear of z = {gear.z}")
     rolls = {tooth % gear.z: np.asarray(roll, dtype=float) for tooth, roll in rolls.items()}
+    marks, lines = crack_lines(gear, cracks, fillet_size)
+    rim, flanks, fillets, starts = outline(
+        gear, rolls, fillet_size=fillet_size, size=size, far_size=far_size, teeth=teeth, marks=marks, broken=broken
+    )
+    chains = crack_chains(gear, cracks, lines, rim, starts)
+    mesh, faces = fill(rim, held_circle(gear), chains, ring=gear.internal)
+    return Section(gear, mesh, flanks, rolls, fillets, tuple(map(Seam, faces)))
+
+
+def crack_lines(gear, cracks, fillet_size):
+    """Return where cracks start and how they run, both by tooth and side.
+
+    The former are `marks` of `gearfe.geometry.mesh.outline.outline`, the latter points ``(2, n)`` from mouth to tip [mm].
+    """
     check_through(cracks, "a mesh of the section")
     check_apart(gear, cracks)
-    paths, marks, tips = {}, {}, {}
+    marks, lines = {}, {}
     for crack in cracks:
         place = crack.tooth % gear.z, crack.side
-        paths[place] = corners = turned(meshed_path(gear, crack), 2 * math.pi * crack.tooth / gear.z)
+        corners = turned(meshed_path(gear, crack), 2 * math.pi * crack.tooth / gear.z)
         length = lengths(corners)[-1]
         marks[place] = start_arc(gear, crack), min(fillet_size, length / 4)
-        tips[place] = min(CRACK_EDGE * fillet_size, math.dist(corners[:, -2], corners[:, -1]) / 5)
+        tip = min(CRACK_EDGE * fillet_size, math.dist(corners[:, -2], corners[:, -1]) / 5)
         if crack.turning and crack.level > 0.5:  # it runs towards its mirror image: refine there as the ligament shrinks
             left = math.dist(corners[:, -1], turned(mirrored(gear, crack), 2 * math.pi * crack.tooth / gear.z))
             opposite = "unloaded" if crack.side == "loaded" else "loaded"
             marks.setdefault((crack.tooth % gear.z, opposite), (marks[place][0], min(fillet_size, left / 4)))
-            tips[place] = min(tips[place], left / 8)
+            tip = min(tip, left / 8)
         elif crack.path is not None:
-            left = _ligament(gear, corners, crack.tooth)
-            tips[place] = min(tips[place], left / 8)
-    rim, flanks, fillets, starts = outline(
-        gear, rolls, fillet_size=fillet_size, size=size, far_size=far_size, teeth=teeth, marks=marks, broken=broken
-    )
+            tip = min(tip, _ligament(gear, corners, crack.tooth) / 8)
+        lines[place] = corners, tip
+    return marks, {place: along(corners, marks[place][1], tip, max(fillet_size, tip)) for place, (corners, tip) in lines.items()}
+
+
+def crack_chains(gear, cracks, lines, rim, starts):
+    """`chains` of `fill` of the `lines` of cracks that start at vertices `starts` of a rim.
+
+    ValueError if one leaves the body or two start at the same vertex.
+    """
     chains = []
-    for crack, (place, corners) in zip(cracks, paths.items(), strict=True):
-        line = along(corners, marks[place][1], tips[place], max(fillet_size, tips[place]))
+    for crack, (place, line) in zip(cracks, lines.items(), strict=True):
         _check_within(gear, crack, rim[:, ::2], starts[place], line[:, 1:])
         chains.append((starts[place], line[:, 1:]))
     if len({start for start, _ in chains}) < len(chains):
         raise ValueError(f"z = {gear.z}: two cracks start at the same place between two teeth: leave one out, or start it higher")
-    mesh, faces = fill(rim, held_circle(gear), chains, ring=gear.internal)
-    return Section(gear, mesh, flanks, rolls, fillets, tuple(Seam(f) for f in faces))
+    return chains
 
 
 def _ligament(gear, corners, tooth):

@@ -1,4 +1,5 @@
 import sys
+import tomllib
 from dataclasses import replace
 from importlib import resources
 
@@ -7,9 +8,19 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.app.cli import main
+from gearfe.app.cli import arguments, main
 from gearfe.strength.fields import stressed_gears
 from gearfe.strength.render import render_contact
+
+
+@pytest.mark.quick
+def test_every_verb_has_a_function_and_a_place_for_its_options():
+    tables = tomllib.loads(resources.files("gearfe.app.cli").joinpath("verbs.toml").read_text(encoding="utf-8"))
+    for verb in tables["verbs"].values():
+        module, _, name = verb["run"].partition(".")
+        assert callable(getattr(arguments.MODULES[module], name))
+        assert {*verb.get("shared", ()), *verb.get("further", ())} <= tables["shared"].keys()
+        assert verb.keys() <= {"run", "text", "methods", "aliases", "shared", "further", "options"}
 
 
 @pytest.mark.quick

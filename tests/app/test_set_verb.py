@@ -57,7 +57,6 @@ def test_what_cannot_be_is_refused_before_work_begins(scene, tmp_path, monkeypat
         (["--picture", str(tmp_path / "x.csv")], "no format for '.csv'"),
         (["--animate", str(tmp_path / "x.mp4")], "ends in .gif"),
         (["--animate", str(tmp_path / "none" / "x.gif")], "cannot write"),
-        (["--case", "cracked", "--picture", str(tmp_path / "x.png")], "cracks of a set are not meshed"),
         (["--case", "broken"], "no case 'broken' in the set of scene my_set; it has cracked"),
         (["--positions", "0"], "positions = 0"),
         (["--cycles", "0"], "cycles = 0"),

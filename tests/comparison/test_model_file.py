@@ -3,11 +3,11 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from remake import EXAMPLE, ROWS
 from scipy.io import savemat
 
 import gearfe as gf
 from gearfe.comparison.own_model import own_curve, own_models
-from validation.make import own_model as example
 
 CHOSEN = gf.load_scene("planetary_pitting").pair()
 PAIR, WIDTH = CHOSEN.pair, 20e-3  # m
@@ -249,11 +249,11 @@ def test_a_curve_written_by_gearfe(tmp_path):
 
 
 def test_matlab_example_is_the_textbooks_curve():
-    data = example.EXAMPLE.read_bytes()
+    data = EXAMPLE.read_bytes()
     assert data.startswith(b"phase,k_N_per_m\r\n0,")
-    assert data.count(b"\r\n") == example.ROWS + 1
-    want = by_textbook(np.arange(example.ROWS) / example.ROWS)
-    assert_allclose(gf.read_model(example.EXAMPLE).k, want.k, rtol=1e-12, err_msg="remake: python -m validation own_model")
+    assert data.count(b"\r\n") == ROWS + 1
+    want = by_textbook(np.arange(ROWS) / ROWS)
+    assert_allclose(gf.read_model(EXAMPLE).k, want.k, rtol=1e-12, err_msg="python -m tests.remake own_model")
 
 
 def test_decimal_commas_and_matlab_vectors_are_the_same_curve(tmp_path):

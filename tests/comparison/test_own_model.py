@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from remake import EXAMPLE
 
 import gearfe as gf
 from gearfe.app.cli import main
@@ -12,7 +13,6 @@ from gearfe.comparison.compare import FORMULATIONS
 from gearfe.comparison.own_model import own_curve, own_models
 from gearfe.flexibility.energy.closed import textbook
 from gearfe.flexibility.hertz import linear_hertz
-from validation.make import own_model as example
 
 SCENE = gf.load_scene("planetary_pitting")
 CHOSEN = SCENE.pair()
@@ -123,7 +123,7 @@ def test_names():
     def mine(phase):
         return phase
 
-    models = own_models([mine, gf.PairModel(textbook_pair), lambda phase: phase, str(example.EXAMPLE)])
+    models = own_models([mine, gf.PairModel(textbook_pair), lambda phase: phase, str(EXAMPLE)])
     assert list(models) == ["mine", "textbook_pair", "model 3", "matlab_curve"]
     assert list(own_models({"a": mine, "b": mine})) == ["a", "b"]
     for given, message in (
@@ -156,7 +156,7 @@ def test_own_curves_are_saved_and_read_again(tmp_path):
 
 @pytest.mark.slow
 def test_compare_gives_the_textbooks_error_row():
-    models = {"file": example.EXAMPLE, "total": lambda phase: by_textbook(phase).k, "pairs": gf.PairModel(textbook_pair)}
+    models = {"file": EXAMPLE, "total": lambda phase: by_textbook(phase).k, "pairs": gf.PairModel(textbook_pair)}
     result = gf.compare(SCENE, models=models, phases=32, refine=0.5)
     assert list(result.curves) == ["fe", *FORMULATIONS, "file", "total", "pairs"]
     assert result.seconds.keys() == result.curves.keys()
@@ -179,7 +179,7 @@ def test_command_line(tmp_path, capsys):
     mine = write(tmp_path / "mine.csv", ["angle_deg,c_N_per_mm_um"], PHASE * 360 / 21, STEP / 1e9 / WIDTH)
     plot = tmp_path / "all.svg"
     options = ["--phases", "16", "--refine", "0.5", "--plot", str(plot)]
-    assert main(["compare", "planetary_pitting", *options, "--model", str(mine), "--model", str(example.EXAMPLE)]) == 0
+    assert main(["compare", "planetary_pitting", *options, "--model", str(mine), "--model", str(EXAMPLE)]) == 0
     text = capsys.readouterr().out
     assert "| mine [N/um] | error | matlab_curve [N/um] | error |" in re.sub(r" +\|", " |", re.sub(r"\| +", "| ", text))
     rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| ")]

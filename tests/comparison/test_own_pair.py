@@ -16,8 +16,6 @@ def test_a_pair_without_a_scene_is_compared_as_in_one():
     one = gf.compare(pair=chosen.pair, **own, **run)
     other = gf.compare("planetary_pitting", **run)
     assert one.subject == ("21/31", None)
-    with pytest.warns(DeprecationWarning, match="use subject"):
-        assert one.pair_name == "21/31"
     assert list(one.curves) == list(other.curves)
     for name in one.curves:
         assert_allclose(one.curves[name].k, other.curves[name].k, rtol=1e-12)

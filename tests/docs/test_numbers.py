@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from remake import outputs
 
 import gearfe as gf
 from gearfe.comparison.harris import harris
 from gearfe.comparison.pattern import pattern_of
 from gearfe.comparison.root_iso import told_root
-from validation.make.readme import outputs
 
 ROOT = Path(__file__).parents[2]
 SITE = ROOT / "gearfe" / "docs"

@@ -7,10 +7,10 @@ from functools import partial
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from stages import article, compound, helical, spur, stage
 
 from gearfe.dynamics.motion.simulate import simulate
 from validation.shared.kept_rows import stored
-from validation.shared.stages import article, compound, helical, spur, stage
 
 RATES = (2e3, 5e3, 1e4, 2.5e4, 5e4)  # of the output [Hz]; the last holds all others
 

@@ -65,7 +65,7 @@ def test_tooth_is_pressed_as_its_scene_says(tmp_path, monkeypatch):
     (tmp_path / "own.toml").write_text(text.replace("#F_beta_x_um", "F_beta_x_um"))
     given = {}
 
-    def pressed_tooth(case):
+    def pressed_tooth(case, **_):
         given.update(case.as_dict())
         raise ValueError("seen")
 
@@ -77,6 +77,14 @@ def test_tooth_is_pressed_as_its_scene_says(tmp_path, monkeypatch):
     assert set(given["flanks"]) == {"pinion", "wheel"}
     assert given["misalignment"] == chosen.misalignment
     assert given["misalignment"].F_beta_x == 0.01
+
+
+@pytest.mark.slow
+def test_the_turned_tooth_and_the_picture_state_one_root_stress(tmp_path):
+    scene = gf.load_scene(gf.new_scene(tmp_path / "own.toml", teeth=(17, 23), width=8.0, helix_deg=15.0))
+    _, pressed, field = _tooth(Findings(scene, "cracked"))
+    told = gf.render_stress(scene.pair(), tmp_path / "stress.vtu", case="cracked")
+    assert (told["root"], told["phase"]) == (field.root, float(pressed.contact.phase[0]))
 
 
 def luminance(colour):

@@ -1,6 +1,7 @@
 """The verdict on a tooth: seen where a tooth is hurt, at its angle, and rarely where none is."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -61,6 +62,13 @@ def test_noise_rarely_exceeds_the_limit():
     limit = 3 + SIGMAS * math.sqrt(24 / n)
     above = sum(gear_indicators(mesh + 0.05 * rng.standard_normal(n), TEETH)["FM4"] > limit for _ in range(2000))
     assert above <= 2  # less than 0.1 %
+
+
+@pytest.mark.parametrize(("turning", "teeth"), [(1.003 * TURNING, TEETH), (TURNING, 31)])
+def test_a_smeared_average_and_that_of_another_gear_have_no_verdict(turning, teeth):
+    wrong = replace(record(1, impulse=1.0), shaft_frequency=turning)
+    with pytest.raises(ValueError, match="smeared, or is not of a gear of"):
+        tooth_verdict(wrong, teeth)
 
 
 def test_a_verdict_needs_revolutions():

@@ -1,10 +1,10 @@
 """The page `assumptions`: the stiffness of each scene by its assumptions, one change at a time, and conventions of cracks."""
 
 import math
-import warnings
 from dataclasses import replace
 
 import gearfe as gf
+from gearfe.core.threads import own_warnings
 from gearfe.core.units import in_newton_per_um
 from gearfe.geometry.damage.crack import start_arc
 from gearfe.geometry.pair.gear_pair import GearPair
@@ -186,8 +186,7 @@ def _sized(row, crack):
 def compute():
     """Compute the table."""
     rows = []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
+    with own_warnings():
         for name in SCENES:
             rows += gears(name)
             if name in PITTED:

@@ -7,7 +7,7 @@ import numpy as np
 from gearfe.dynamics.machine.contact_law import hertz_coefficient
 from gearfe.geometry.pair.lines import total_length
 
-from ..shared.simulated import scene
+from ..shared.simulated import by_name, scene
 
 NAME = "helical_pitting"
 CASES = ("minor", "severe", "multi")
@@ -88,14 +88,6 @@ def lines_of_lost_length(teeth):
     return 2 * np.abs(np.fft.rfft(lost))[1:3] / lost.size
 
 
-QUICK = {
-    "theory": theory,
-    "measured": measured,
-    "errors_simulated": errors_simulated,
-    "errors_measured": errors_measured,
-    "one_speed": one_speed,
-    "impact_period": impact_period,
-    "hertz_coefficient": hertz,
-    "contact_ratios": contact_ratios,
-    "line_length": line_length,
-}
+QUICK = {"hertz_coefficient": hertz} | by_name(
+    theory, measured, errors_simulated, errors_measured, one_speed, impact_period, contact_ratios, line_length,
+)  # fmt: skip

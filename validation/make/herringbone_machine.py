@@ -1,7 +1,7 @@
 """The printed numbers of article S4 but its stiffness table (herringbone stage with crack and pits in the sun), computed."""
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from gearfe.dynamics.machine.of_scene import with_scene_errors
 
 from ..shared.laws import beside, tables
 from ..shared.places import TABLES
-from ..shared.simulated import PHASES, amplitude, machine, record, scene, signal, spectrum, told
+from ..shared.simulated import PHASES, amplitude, by_name, machine, record, scene, signal, spectrum, told
 from ..shared.table_rows import rows_of, write_table
 from . import herringbone_play as play
 from .herringbone_numbers import NAME, QUICK, speeds  # noqa: F401
@@ -31,7 +31,7 @@ from .herringbone_runs import (  # noqa: F401
     drawn,
     found_in,
     impulse_of,
-    poincare_points,
+    points_of,
     range_of,
     record_of,
 )  # fmt: skip
@@ -48,19 +48,14 @@ def degrees():
     return {"whole machine": float(len(machine(NAME).dofs))}
 
 
-def displacement_upper():
-    """Upper end of the sun displacement along x [um]."""
-    return {name: range_of(case)[1] for name, case in STATES.items()}
-
-
-def displacement_lower():
-    """Lower end of the sun displacement along x [um]."""
-    return {name: range_of(case)[0] for name, case in STATES.items()}
+def _displacement(end):
+    """Upper end (1) or lower end (0) of the sun displacement along x [um]."""
+    return {name: range_of(case)[end] for name, case in STATES.items()}
 
 
 def displacement_span():
     """Upper less lower end [um]."""
-    return {name: range_of(case)[1] - range_of(case)[0] for name, case in STATES.items()}
+    return _ranges()
 
 
 def healthy_spectrum():
@@ -103,57 +98,23 @@ def _grown(pitted, crack):
     return gf.build_machine(scene(NAME).with_damage("grown", damage), "grown", method="ritz3d", phases=PHASES[NAME])
 
 
-def _increments(name, pick):
-    healthy = _indicators(None, 0.0)[name]
-    out = {}
+def _over_cracks(name, pick):
+    """Least or largest value over the cracks of an indicator: the sideband index [rad/s2], of others the increment [%]."""
+    healthy, out = _indicators(None, 0.0)[name], {}
     for level, case in PITTED.items():
         values = [_indicators(case, crack)[name] for crack in CRACKS]
-        out[level] = pick(100 * (value / healthy - 1) for value in values)
+        out[level] = pick(values if name == "sideband index" else [100 * (value / healthy - 1) for value in values])
     return out
 
 
-def crest_least():
-    """Increments [%] of the crest factor, least over the cracks."""
-    return _increments("crest factor", min)
-
-
-def crest_most():
-    """Largest value over the cracks."""
-    return _increments("crest factor", max)
-
-
-def kurtosis_least():
-    """Increments [%] of the kurtosis, least over the cracks."""
-    return _increments("kurtosis", min)
-
-
-def kurtosis_most():
-    """Largest value over the cracks."""
-    return _increments("kurtosis", max)
-
-
-def _sideband(pick):
-    return {level: pick(_indicators(case, crack)["sideband index"] for crack in CRACKS) for level, case in PITTED.items()}
-
-
-def sideband_least():
-    """Sideband index of the sun's angular acceleration [rad/s2], least over the cracks."""
-    return _sideband(min)
-
-
-def sideband_most():
-    """Largest value over the cracks."""
-    return _sideband(max)
-
-
-def poincare():
+def poincare_points():
     """Points of the Poincare section by state."""
-    return {name: float(poincare_points(case)) for name, case in STATES.items()}
+    return {name: float(points_of(case)) for name, case in STATES.items()}
 
 
 def statements():
     """Statements of article S4 on its motions and spectra, as worded in the scene."""
-    changes = kurtosis_most()["severe"] > crest_most()["severe"]
+    changes = _over_cracks("kurtosis", max)["severe"] > _over_cracks("crest factor", max)["severe"]
     return about_motion() | {"kurtosis changes more than the crest factor": changes}
 
 
@@ -261,22 +222,12 @@ def draw(folder):
     plot_phases(portraits, "rad", folder / "herringbone_machine_phase.png", title="herringbone, sunL.theta")
 
 
-SIMULATED = {
-    "degrees": degrees,
-    "displacement_upper": displacement_upper,
-    "displacement_lower": displacement_lower,
-    "displacement_span": displacement_span,
-    "healthy_spectrum": healthy_spectrum,
-    "largest_displacement": largest_displacement,
-    "measured_displacement": measured_displacement,
-    "crest_least": crest_least,
-    "crest_most": crest_most,
-    "kurtosis_least": kurtosis_least,
-    "kurtosis_most": kurtosis_most,
-    "sideband_least": sideband_least,
-    "sideband_most": sideband_most,
-    "poincare_points": poincare,
-    "statements": statements,
-    "further": further,
+SIMULATED = by_name(degrees, displacement_span, healthy_spectrum, largest_displacement, measured_displacement, poincare_points)
+SIMULATED |= by_name(statements, further)
+SIMULATED |= {"displacement_upper": partial(_displacement, 1), "displacement_lower": partial(_displacement, 0)}
+SIMULATED |= {
+    f"{reference}_{end}": partial(_over_cracks, name, pick)
+    for reference, name in (("crest", "crest factor"), ("kurtosis", "kurtosis"), ("sideband", "sideband index"))
+    for end, pick in (("least", min), ("most", max))
 }
 RUN_OF = dict.fromkeys(set(SIMULATED) - {"degrees"}, ERRING)

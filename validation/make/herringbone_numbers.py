@@ -5,7 +5,7 @@ import math
 from gearfe import Pit
 from gearfe.flexibility.energy.closed.beam import SAINSOT
 
-from ..shared.simulated import scene
+from ..shared.simulated import by_name, scene
 
 NAME = "herringbone"
 
@@ -94,15 +94,6 @@ def measured_range():
     return {"healthy, lower": None, "healthy, upper": None}
 
 
-QUICK = {
-    "mesh_frequency": mesh_frequency,
-    "fault_frequency": fault_frequency,
-    "periods": periods,
-    "mesh_period": mesh_period,
-    "impulses": impulses,
-    "sainsot": sainsot,
-    "masses": masses,
-    "inertias": inertias,
-    "pit_counts": pit_counts,
-    "measured_range": measured_range,
-}
+QUICK = by_name(
+    mesh_frequency, fault_frequency, periods, mesh_period, impulses, sainsot, masses, inertias, pit_counts, measured_range,
+)  # fmt: skip

@@ -95,7 +95,7 @@ def section_of(case, errors=ERRING):
     return (points - points.mean(axis=0)) / size
 
 
-def poincare_points(case, errors=ERRING):
+def points_of(case, errors=ERRING):
     """Distinct points of it within 0.5 %."""
     return len({tuple(np.round(point / 0.005).astype(int)) for point in section_of(case, errors)})
 
@@ -128,7 +128,7 @@ def about_motion(errors=ERRING, channel=TURNING):
         name: (line_of(case, mesh - fault, errors, channel) + line_of(case, mesh + fault, errors, channel)) / 2
         for name, case in STATES.items()
     }
-    points = {name: poincare_points(case, errors) for name, case in STATES.items()}
+    points = {name: points_of(case, errors) for name, case in STATES.items()}
     impulse = {name: impulse_of(case, errors, channel) for name, case in STATES.items() if case}
     scattered = [_scattered(STATES[name], errors) for name in ("healthy", "6 pits", "crack 30 %")]
     at_fault = {name: line_of(case, fault, errors, channel) for name, case in STATES.items()}

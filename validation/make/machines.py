@@ -3,11 +3,11 @@
 import importlib
 import time
 import tomllib
-import warnings
 from functools import cache
 
 import gearfe as gf
 from gearfe.core.table import Table
+from gearfe.core.threads import own_warnings
 from gearfe.scene import verdicts
 from gearfe.scene.reading import checked
 from gearfe.scene.references import read_references
@@ -65,8 +65,7 @@ def computed(page, names):
     """Rows of some references of a page, computed now."""
     found, runs = functions(page), getattr(module(page), "RUN_OF", {})
     out = []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
+    with own_warnings():
         for one in references(page):
             if one.id in names:
                 out += verdicts.judge(one, found[one.id](), runs.get(one.id, ""))

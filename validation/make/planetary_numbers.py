@@ -7,7 +7,7 @@ from gearfe.dynamics.machine.contact_law import hertz_coefficient
 from gearfe.geometry.damage.pit import Pit
 from gearfe.geometry.pair.lines import total_length
 
-from ..shared.simulated import scene
+from ..shared.simulated import by_name, scene
 
 NAME = "planetary_pitting"
 CASES = ("mild", "moderate", "severe")
@@ -36,7 +36,7 @@ def hertz():
     return {"sun and planet": hertz_coefficient(float(radii[0]), float(radii[1]), outer.materials)}
 
 
-def base_radii():
+def base_radius():
     """Return the base radii."""
     return {name: scene(NAME).gears[name].r_b for name in ("sun", "planet")}
 
@@ -119,16 +119,7 @@ def line_length():
     return out | {f"{case}, least": ours[case].min() for case in CASES}
 
 
-QUICK = {
-    "hertz_coefficient": hertz,
-    "base_radius": base_radii,
-    "carrier_speed": carrier_speed,
-    "mesh_frequency": mesh_frequency,
-    "mesh_period": mesh_period,
-    "fault_frequency": fault_frequency,
-    "fault_interval": fault_interval,
-    "measured_lines": measured_lines,
-    "ring_shift": ring_shift,
-    "contact_ratio": contact_ratio,
-    "line_length": line_length,
-}
+QUICK = {"hertz_coefficient": hertz} | by_name(
+    base_radius, carrier_speed, mesh_frequency, mesh_period, fault_frequency, fault_interval, measured_lines,
+    ring_shift, contact_ratio, line_length,
+)  # fmt: skip

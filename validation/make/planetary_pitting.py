@@ -1,13 +1,13 @@
 """The printed numbers of articles S0 and S1 (planetary stage with pitted sun teeth), computed."""
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
 import gearfe as gf
 
 from ..shared.laws import beside, tables
-from ..shared.simulated import amplitude, scene, spectrum, told
+from ..shared.simulated import amplitude, by_name, scene, spectrum, told
 from .planetary_numbers import CASES, NAME, QUICK, lengths, speeds  # noqa: F401
 from .planetary_repeats import (  # noqa: F401
     JUDGED_ON,
@@ -56,38 +56,19 @@ def sc_simulated(law=OWN):
     return {case: values_of(case, True, law=law)["SC (S0)"] for case in CASES}
 
 
-def sc_measured(law=OWN):
-    """S0's definition on the acceleration of the ring, under impacts."""
-    return _measured("SC (S0)", law)
-
-
-def _measured(name, law):
+def _measured(name, law=OWN):
+    """Return an indicator of the acceleration of the ring, under impacts."""
     return {case: values_of(case, True, SENSOR, law)[name] for case in CASES}
 
 
-def rms(law=OWN):
-    """RMS of the ring acceleration under impacts."""
-    return _measured("rms", law)
+MEASURED = {  # indicators by reference
+    "sc_measured": "SC (S0)", "rms": "rms", "kurtosis": "kurtosis", "shape_factor": "shape factor", "amplitudes": "peak",
+}  # fmt: skip
 
 
 def rms_without_pulses(law=OWN):
     """RMS of the ring acceleration without impacts."""
     return {case: values_of(case, False, SENSOR, law)["rms"] for case in CASES}
-
-
-def kurtosis(law=OWN):
-    """Kurtosis of the ring acceleration under impacts."""
-    return _measured("kurtosis", law)
-
-
-def shape_factor(law=OWN):
-    """Shape factor of the ring acceleration under impacts."""
-    return _measured("shape factor", law)
-
-
-def amplitudes(law=OWN):
-    """Largest acceleration of the ring, under impacts."""
-    return _measured("peak", law)
 
 
 @cache
@@ -248,26 +229,17 @@ def draw(folder):
     )
 
 
-SIMULATED = {
-    "sc_simulated": sc_simulated,
-    "sc_measured": sc_measured,
-    "rms": rms,
-    "kurtosis": kurtosis,
-    "shape_factor": shape_factor,
-    "amplitudes": amplitudes,
-    "housing_lines": housing_lines,
-    "statements": statements,
-    "further": also,
-}
+SIMULATED = by_name(sc_simulated, housing_lines, statements) | {"further": also}
+SIMULATED |= {reference: partial(_measured, name) for reference, name in MEASURED.items()}
 RUN_OF = dict.fromkeys(SIMULATED, OWN) | {"housing_lines": OWN + STEADY}
 BESIDE = {
     "SC, force [Hz]": sc_simulated,
-    "SC, ring acceleration [Hz]": sc_measured,
-    "RMS [m/s^2]": rms,
+    "SC, ring acceleration [Hz]": SIMULATED["sc_measured"],
+    "RMS [m/s^2]": SIMULATED["rms"],
     "RMS without pulses [m/s^2]": rms_without_pulses,
-    "kurtosis": kurtosis,
-    "shape factor": shape_factor,
-    "peak [m/s^2]": amplitudes,
+    "kurtosis": SIMULATED["kurtosis"],
+    "shape factor": SIMULATED["shape_factor"],
+    "peak [m/s^2]": SIMULATED["amplitudes"],
     "sidebands f_m +- 40 Hz [N]": sidebands,
     f"the same, sampled {FINE:g} times a second [N]": finer_sidebands,
     "bandwidth of the sidebands [Hz]": spread,

@@ -3,11 +3,11 @@
 import datetime
 import math
 import time
-import warnings
 
 import numpy as np
 
 import gearfe as gf
+from gearfe.core.threads import own_warnings
 
 from ..shared import kept_rows, page
 from ..shared.places import TABLES
@@ -42,8 +42,7 @@ def random_case(seed):
 def row(seed):
     """One row of the table, or None where gears, mesh or crack of the seed cannot exist."""
     started = time.process_time()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
+    with own_warnings():
         try:
             pair, load, damage = random_case(seed)
             run = {"phases": 8, "span": "tooth" if damage else "cycle", "damage": damage}

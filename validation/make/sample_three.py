@@ -6,12 +6,12 @@ All three solutions of a pair are one row, of one code: a contact law that chang
 import itertools
 import math
 import time
-import warnings
 
 import numpy as np
 
 import gearfe as gf
 from gearfe.contact.wide_contact import STEP
+from gearfe.core.threads import own_warnings
 from gearfe.flexibility.energy.ritz.solid import axial_degree
 from gearfe.geometry.damage.crack import crack_path
 from gearfe.geometry.damage.hollow import check_hollows
@@ -162,8 +162,7 @@ def seeds(kind):
 def _possible(kind, seed):
     """Whether a seed gives gears that exist, mesh, and bear their crack."""
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)
+        with own_warnings():
             pair, _, damage, _ = drawn(kind, seed)
             for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2)):
                 own = (damage or {}).get(name, ())

@@ -2,13 +2,13 @@
 
 import math
 import tempfile
-import warnings
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 import gearfe as gf
+from gearfe.core.threads import own_warnings
 from gearfe.core.units import in_newton_per_um
 from gearfe.flexibility.finite_elements.elasticity import HeldSection
 
@@ -50,76 +50,68 @@ def _row(name, case, theirs, ours, tolerance, absolute=False):
     return SourceRow(name, case, *(float(f"{float(x):.6g}") for x in (theirs, ours)), tolerance, absolute)
 
 
+def _rows(table, name, found, absolute=False):
+    """Rows of a table of `reference.toml`; ``found(row)`` lists (case, theirs, ours) for each row of the source."""
+    for row in table["rows"]:
+        for one in found(row):
+            yield _row(name, *one, table["tolerance"], absolute)
+
+
 def quick_rows(tables):
     """Rows that take milliseconds."""
-    one = tables["iso"]
     got = reference.iso()
-    for row, rtol in zip(one["rows"], (1e-5, 1e-4, 1e-4), strict=True):
+    for row, rtol in zip(tables["iso"]["rows"], (1e-5, 1e-4, 1e-4), strict=True):
         yield _row("iso", row["quantity"], row["value"], got[row["quantity"]], rtol)
-    one, got = tables["iso_mesh"], reference.iso_mesh()
-    for row in one["rows"]:
-        yield _row("iso_mesh", row["quantity"], row["value"], got[row["quantity"]], one["tolerance"])
-    one, got = tables["beam_code"], reference.beam_code()
-    for row in one["rows"]:
-        yield _row("beam_code", row["quantity"], row["value"], got[row["quantity"]], one["tolerance"])
+    for name, found in (("iso_mesh", reference.iso_mesh()), ("beam_code", reference.beam_code())):
+        yield from _rows(tables[name], name, lambda row, found=found: [(row["quantity"], row["value"], found[row["quantity"]])])
     one = tables["natural_frequencies"]
     for i, (theirs, ours) in enumerate(zip(one["value"], reference.natural_frequencies(), strict=True)):
-        yield _row(
-            "natural_frequencies",
-            f"mode {i % 6 + 1}, {'translational' if i > 5 else 'rotational'}",
-            theirs,
-            ours,
-            one["tolerance"],
-        )
+        case = f"mode {i % 6 + 1}, {'translational' if i > 5 else 'rotational'}"
+        yield _row("natural_frequencies", case, theirs, ours, one["tolerance"])
     names = ("f_m", "sun fault", "planet fault", "carrier", "contact ratio sun-planet", "contact ratio planet-ring")
-    for table in ("stage_17_37_91", "stage_21_31_84"):
+    for table, digit in (("stage_17_37_91", 0.05), ("stage_21_31_84", 0.005)):  # frequencies have one or two decimals
         one = tables[table]
         for i, (name, theirs, ours) in enumerate(zip(names, one["value"], reference.stage(table), strict=True)):
-            # frequencies are printed with one or two decimals
-            digit = 0.05 if table == "stage_17_37_91" else 0.005
             yield _row(table, name, theirs, ours, *((digit * (1 + 1e-6), True) if i < 4 else (one["tolerance"], False)))
 
 
 def solved_rows(tables):
     """Rows that need finite elements or the energy model."""
-    one = tables["tooth_deflection"]
-    for row in one["rows"]:
-        yield _row("tooth_deflection", f"z {row['z']}", row["value"], reference.tooth_deflection(row), one["tolerance"])
-    one = tables["single_pair"]
-    for row in one["rows"]:
-        yield _row("single_pair", f"s_R {row['s_R']}", row["value"], reference.single_pair(row, one), one["tolerance"])
-    one = tables["root_stress"]
-    for row in one["rows"]:
-        case = f"z {row['z']}, x {row['x']:g}, tip radius {row['rack_tip_radius']:g}"
-        yield _row("root_stress", case, row["value"], reference.root_stress(row), one["tolerance"])
+    for name, told, solve in (
+        ("tooth_deflection", "z {z}", reference.tooth_deflection),
+        ("single_pair", "s_R {s_R}", lambda row: reference.single_pair(row, tables["single_pair"])),
+        ("root_stress", "z {z}, x {x:g}, tip radius {rack_tip_radius:g}", reference.root_stress),
+    ):
+        yield from _rows(tables[name], name, lambda row, told=told, solve=solve: [(told.format(**row), row["value"], solve(row))])
     one = tables["ring_root_stress"]
     row = one["rows"][0]
     stress, eps = reference.ring_root_stress(row)
     yield _row("ring_root_stress", f"ring z {row['z']}", row["value"], stress, one["tolerance"])
     yield _row("ring_root_stress", f"contact ratio 17/{row['z']}", row["eps_alpha"], eps, 1e-9)
+    sizes, ring = ("mean", "max", "min"), tables["healthy_ring"]
     for method in ("fe", "ritz"):
-        one = tables["healthy"]
-        for row in one["rows"]:
-            for name, theirs, ours in zip(
-                ("mean", "max", "min"), row["value"], reference.healthy(row, method=method), strict=True
-            ):
-                yield _row("healthy", f"{row['z'][0]}/{row['z'][1]}, {name}, {method}", theirs, ours, one["tolerance"])
-        one = tables["healthy_ring"]
-        for name, theirs, ours in zip(("mean", "max", "min"), one["value"], reference.healthy_ring(method), strict=True):
-            yield _row("healthy_ring", f"27/72, {name}, {method}", theirs, ours, one["tolerance"])
-    one = tables["crack"]
-    for row in one["rows"]:
-        case = f"{row['z'][0]}/{row['z'][1]}, {100 * row['level']:.0f} %"
-        yield _row("crack", case, row["value"], 100 * reference.crack_reduction(row), one["tolerance"], True)
-    one = tables["formulations"]
-    for row in one["rows"]:
+
+        def healthy(row, method=method):
+            cases = [f"{row['z'][0]}/{row['z'][1]}, {size}, {method}" for size in sizes]
+            return zip(cases, row["value"], reference.healthy(row, method=method), strict=True)
+
+        yield from _rows(tables["healthy"], "healthy", healthy)
+        for size, theirs, ours in zip(sizes, ring["value"], reference.healthy_ring(method), strict=True):
+            yield _row("healthy_ring", f"27/72, {size}, {method}", theirs, ours, ring["tolerance"])
+
+    def crack(row):
+        return [(f"{row['z'][0]}/{row['z'][1]}, {100 * row['level']:.0f} %", row["value"], 100 * reference.crack_reduction(row))]
+
+    def formulations(row):
         for zone, errors in zip(("single", "double"), reference.formulation(row, teeth=5), strict=True):
-            for name, theirs, ours in zip(("least", "most"), row[zone], (errors.min(), errors.max()), strict=True):
-                yield _row("formulations", f"{row['name']}, {zone}, {name}", theirs, ours, one["tolerance"], True)
-    one = tables["load_trend"]
-    for row in one["rows"]:
-        ours = reference.load_trend(row["line_load"])[0]
-        yield _row("load_trend", f"{row['line_load']:g} N/mm", row["value"], ours, one["tolerance"], True)
+            cases = [f"{row['name']}, {zone}, {name}" for name in ("least", "most")]
+            yield from zip(cases, row[zone], (errors.min(), errors.max()), strict=True)
+
+    def trend(row):
+        return [(f"{row['line_load']:g} N/mm", row["value"], reference.load_trend(row["line_load"])[0])]
+
+    for name, found in (("crack", crack), ("formulations", formulations), ("load_trend", trend)):
+        yield from _rows(tables[name], name, found, absolute=True)
 
 
 def contact_pair():
@@ -296,8 +288,7 @@ def _contact_text():
 def compute():
     """Compute all rows, CalculiX's if it is installed, and write the tables."""
     tables, rows = reference.load(), []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
+    with own_warnings():
         for source in (quick_rows, solved_rows):
             for row in source(tables):
                 rows.append(row)

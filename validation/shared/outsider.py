@@ -6,7 +6,6 @@ the run was made, which the row keeps, so that a change of `ritz3d` alone asks f
 
 import math
 import tempfile
-import warnings
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -14,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
+from gearfe.core.threads import own_warnings
 from gearfe.flexibility import solid as flexibility3d
 from gearfe.flexibility.energy.ritz import solid as ritz3d
 from gearfe.flexibility.energy.ritz.join import join
@@ -64,8 +64,7 @@ def pair_of(degrees):
 
 def ring_pair():
     """Pinion in a ring of 36 teeth."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # its tip is trimmed
+    with own_warnings():  # its tip is trimmed
         ring = gf.Gear(z=36, r_rim=45.0, rack_tip_radius=0.2, addendum=0.8, beta=math.radians(15), **RACK)
         return gf.GearPair(pinion(), ring)
 

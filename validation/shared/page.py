@@ -22,7 +22,6 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "sample": "Do the error estimates cover, on pairs that nobody chose?",
     "three": "Is the stiffness in three dimensions right?",
     "assumptions": "What do values that articles leave out do to the stiffness?",
-    "speed": "What does each method cost, and how wrong is it?",
     "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
     "two_minutes": "The articles in two minutes: what do they claim, and what is found?",
     "printed": "What became of every number that the articles print?",

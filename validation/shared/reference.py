@@ -2,11 +2,11 @@
 
 import math
 import tomllib
-import warnings
 
 import numpy as np
 
 import gearfe as gf
+from gearfe.core.threads import own_warnings
 from gearfe.dynamics.machine.member import Member
 from gearfe.dynamics.machine.planetary import planetary
 from gearfe.flexibility.energy.closed import textbook
@@ -62,8 +62,11 @@ def healthy_pair(row):
 def healthy(row, **options):
     """Mean, max, min stiffness [N/(mm um)] without extended contact; phases in the middle of 32 equal parts."""
     pair, steel = healthy_pair(row)
-    phases = (np.arange(32) + 0.5) / 32
-    k = gf.mesh_stiffness(pair, row["line_load"], steel, phases=phases, extended=False, **options).k / 1e6
+    return _sizes(pair, row["line_load"], steel, **options)
+
+
+def _sizes(pair, load, steel, **options):
+    k = gf.mesh_stiffness(pair, load, steel, phases=(np.arange(32) + 0.5) / 32, extended=False, **options).k / 1e6
     return np.array([k.mean(), k.max(), k.min()])
 
 
@@ -118,10 +121,15 @@ def beam_code():
     return {"k": k, "k_hertz": gear.b / hertz * 1e3, "eps_alpha": eps_alpha}
 
 
+def _iso_pair(**rack):
+    """Return the pair of the ISO/TR example."""
+    rack |= {"m_n": 8.0, "alpha_n": math.radians(20), "beta": math.radians(15.8), "b": 100.0}
+    return gf.GearPair(gf.Gear(z=17, x=0.145, r_bore=20.0, **rack), gf.Gear(z=103, r_bore=60.0, **rack), 500.0)
+
+
 def iso():
     """c'_th [N/(mm um)] and virtual tooth numbers of the ISO/TR example."""
-    rack = {"m_n": 8.0, "alpha_n": math.radians(20), "beta": math.radians(15.8), "b": 100.0}
-    pair = gf.GearPair(gf.Gear(z=17, x=0.145, r_bore=20.0, **rack), gf.Gear(z=103, r_bore=60.0, **rack), 500.0)
+    pair = _iso_pair()
     return {"c_th": theoretical_stiffness(pair), "z_n1": virtual_teeth(pair.gear_1), "z_n2": virtual_teeth(pair.gear_2)}
 
 
@@ -129,8 +137,7 @@ def ring_root_stress(row):
     """Root stress of a ring over Ft/(b m) [-], and its contact ratio with 17 teeth before trimming."""
     ring = gf.Gear(z=row["z"], m_n=1.0, r_rim=row["z"] / 2 + 12.0, rack_tip_radius=row["rack_tip_radius"], **RACK)
     stress = gf.root_stress(ring, math.hypot(*row["point"]), 1 / math.cos(ring.alpha_n), STEEL, half_width=0.05)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
+    with own_warnings():
         pair = gf.GearPair(gf.Gear(z=17, m_n=1.0, r_bore=4.0, **RACK), ring)
     return stress, pair.eps_alpha_of(pair.gear_1.roll_a, ring.roll_a)
 
@@ -138,12 +145,9 @@ def ring_root_stress(row):
 def healthy_ring(method):
     """Mean, max, min stiffness [N/(mm um)] of the 27/72 ring pair."""
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 1.0}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
+    with own_warnings():
         pair = gf.GearPair(gf.Gear(z=27, r_bore=12.0, **rack), gf.Gear(z=72, r_rim=90.0, **rack))
-    steel = gf.Material(E=207e3, nu=0.3)
-    k = gf.mesh_stiffness(pair, 150.0, steel, method=method, phases=(np.arange(32) + 0.5) / 32, extended=False).k / 1e6
-    return np.array([k.mean(), k.max(), k.min()])
+    return _sizes(pair, 150.0, gf.Material(E=207e3, nu=0.3), method=method)
 
 
 def crack_reduction(row, method="ritz", **crack):
@@ -159,15 +163,7 @@ def crack_reduction(row, method="ritz", **crack):
 
 def iso_mesh():
     """Single and mesh stiffness of the ISO/TR example, after ISO 6336-1 with rack D and solid discs [N/(mm um)]."""
-    rack = {
-        "m_n": 8.0,
-        "alpha_n": math.radians(20),
-        "beta": math.radians(15.8),
-        "b": 100.0,
-        "dedendum": 1.4,
-        "rack_tip_radius": 0.25,
-    }
-    pair = gf.GearPair(gf.Gear(z=17, x=0.145, r_bore=20.0, **rack), gf.Gear(z=103, r_bore=60.0, **rack), 500.0)
+    pair = _iso_pair(dedendum=1.4, rack_tip_radius=0.25)
     basic_rack = 1 + 0.5 * (1.2 - pair.gear_1.dedendum)
     single = theoretical_stiffness(pair) * 0.8 * basic_rack * math.cos(pair.gear_1.beta)
     mesh = single * (0.75 * pair.eps_alpha + 0.25)
@@ -205,8 +201,7 @@ def stage(table):
     rack = {"m_n": module, "alpha_n": math.radians(20), "b": 10.0}
     sun, planet = (gf.Gear(z=z, r_bore=0.15 * module * z, **rack) for z in teeth[:2])
     ring = gf.Gear(z=teeth[2], r_rim=module * (teeth[2] / 2 + 5), rack_tip_radius=0.2, **rack)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
+    with own_warnings():
         outer, inner = gf.GearPair(sun, planet, a), gf.GearPair(planet, ring, a)
     carrier = rpm / 60 * teeth[0] / (teeth[0] + teeth[2])
     mesh = carrier * teeth[2]

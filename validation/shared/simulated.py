@@ -14,6 +14,11 @@ from gearfe.dynamics.motion.thinned import REACH
 PHASES = {"herringbone": 32}  # per mesh cycle of its stiffness curves, which are smooth
 
 
+def by_name(*functions):
+    """Return functions by their names, the ids of references."""
+    return {one.__name__: one for one in functions}
+
+
 @cache
 def scene(name):
     """Return a built-in scene."""

@@ -1,6 +1,6 @@
 """The ``gearfe`` command: one function per verb, no computing.
 
-`arguments` holds the options, `verbs` what is done with them.
+``verbs.toml`` lists verbs and options, `arguments` parses them, and the other modules hold the functions of the verbs.
 """
 
 from .arguments import main

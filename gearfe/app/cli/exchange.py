@@ -43,15 +43,12 @@ def grow(arguments):
     import math
     from dataclasses import replace
 
-    from ...core.files import check_output
     from ...figures.pair_plot import plot_pair
     from ...geometry.damage.crack import Crack
     from ...scene.load import load_scene
     from ...strength.growth import CrackModel, grow_crack
     from ...strength.paris import ParisLaw
 
-    if arguments.plot:
-        check_output(arguments.plot, "picture")
     case = load_scene(arguments.scene).pair(arguments.pair).case(arguments.case)
     found = [(side, one) for side, damage in (case.damage or {}).items() for one in damage]
     if len(found) != 1 or not isinstance(found[0][1], Crack):

@@ -1,7 +1,7 @@
 """Verb ``gearfe planetary``: a whole planetary set of a scene."""
 
 from .progress import working
-from .verbs import _check_outputs, _print_assumptions
+from .verbs import print_assumptions
 
 FRAMES = 16  # frames of an animation per mesh cycle
 
@@ -17,7 +17,6 @@ def planetary_set(arguments):
     from ...planetary_sets.solve import planetary_stiffness
     from ...scene.load import load_scene
 
-    _check_outputs(arguments, output="curve", plot="picture", picture="picture")
     if arguments.animate is not None:
         check_moving(arguments.animate)
     scene = load_scene(arguments.scene)
@@ -31,7 +30,7 @@ def planetary_set(arguments):
     print(f"{scene.title}\n\n{set_headline(found, healthy)}\n\n{told_set(case)};\n{told_span(at)}\n\n{set_table(found)}")
     if healthy:
         print(f"\nthe same set healthy, {told_span(at)}\n\n{set_table(healthy)}")
-    _print_assumptions(scene, arguments.assumptions)
+    print_assumptions(scene, arguments.assumptions)
     if arguments.output:
         found.save(arguments.output)
     if arguments.plot:

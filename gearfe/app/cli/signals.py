@@ -12,10 +12,9 @@ def signal(arguments):
     from ...comparison.vibration import analyse
     from ...core.steps import part
     from .progress import working
-    from .verbs import _check_outputs, _print_analysis
+    from .verbs import print_analysis
 
     _of_scene(arguments)
-    _check_outputs(arguments, plot="picture", kurtogram="picture", cepstrum="picture", spectrogram="picture", orders="picture")
     if arguments.list:
         _print_channels(arguments)
         return
@@ -38,7 +37,7 @@ def signal(arguments):
             analysed = analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=", ".join(signals))
     for record in signals.values():
         print(_told(record))
-    _print_analysis(analysed, arguments)
+    print_analysis(analysed, arguments)
     tables = {"indicators": analysed.indicators_table()}
     if arguments.scene is not None:
         from ...comparison.named_lines import named_table

@@ -9,10 +9,8 @@ SPEEDS = 121  # number of speeds of a Campbell diagram
 
 def report(arguments):
     """``gearfe report``."""
-    from ...core.files import check_output
     from ...reports.page import report as run
 
-    check_output(arguments.output, "page")
     if os.path.isdir(arguments.scene):
         from ...reports.sweep_page import sweep_report
 
@@ -41,15 +39,12 @@ def check(arguments):
     """``gearfe check``."""
     from ...comparison.check_scene import check_scene
     from ...comparison.told_scene import told
-    from ...core.files import check_output
     from ...figures.pair_plot import plot_pair
     from ...scene.load import load_scene
 
     drawn = arguments.picture is not None
     if not drawn and (arguments.pair or arguments.case):
         raise ValueError("--pair and --case choose what is drawn: give --picture FILE, too")
-    if drawn:
-        check_output(arguments.picture, "picture")
     scene = load_scene(arguments.scene)
     neglected = check_scene(scene)
     for line in (*told(scene), *neglected):
@@ -64,14 +59,9 @@ def check(arguments):
 
 def lines(arguments):
     """``gearfe lines``."""
-    from ...core.files import check_output
     from ...dynamics.machine.lines import lines_table
     from ...scene.load import load_scene
 
-    if arguments.output:
-        check_output(arguments.output, "table")
-    if arguments.picture:
-        check_output(arguments.picture, "picture")
     scene = load_scene(arguments.scene)
     table = lines_table(scene)
     print(f"{scene.title}\n\n{table.title}\n\n{table}")
@@ -89,13 +79,10 @@ def modes(arguments):
     """``gearfe modes``."""
     import numpy as np
 
-    from ...core.files import check_output
     from ...dynamics.machine.mode_words import critical_speeds, modes_table
     from ...dynamics.machine.of_scene import build_machine
     from ...scene.load import load_scene
 
-    if arguments.plot:
-        check_output(arguments.plot, "picture")
     low, high = arguments.speeds
     if not 0 < low < high:
         raise ValueError(f"--speeds {low:g} {high:g}: give two rising parts of the speed of the scene, above 0")

@@ -5,17 +5,6 @@ from dataclasses import replace
 from .progress import working
 
 
-def _check_outputs(arguments, **kinds):
-    """Raise ValueError if a file of an option could not be written at the end; `kinds` is its content by option."""
-    from ...core.files import check_output
-
-    given = {option: getattr(arguments, option) for option in kinds if getattr(arguments, option) is not None}
-    for option, path in given.items():
-        check_output(path, kinds[option])
-    if len(set(given.values())) < len(given):
-        raise ValueError(f"{' and '.join(f'--{option}' for option in given)} name the same file: give a separate file for each")
-
-
 def _print_notes(scene):
     """Print all assumptions of a scene, its changed values, and effects that are not modelled."""
     for note in scene.assumptions:
@@ -42,13 +31,12 @@ def stiffness(arguments):
     from ...stiffness.solve import Solve
 
     if arguments.forces or arguments.torques:
-        if arguments.output or arguments.force is not None:
-            raise ValueError("--forces and --torques compute the transmission error: leave out --output and --force")
+        if arguments.force is not None:
+            raise ValueError("--forces and --torques state the loads of a transmission error: leave out --force")
         from ...geometry.renamed import warn_renamed
 
         warn_renamed("gearfe stiffness --forces", "gearfe te --forces", FutureWarning)
         return transmission_error(arguments)
-    _check_outputs(arguments, output="curve", plot="picture")
     scene = load_scene(arguments.scene)
     case = scene.case(arguments.pair, arguments.case)
     if arguments.force is not None:
@@ -66,12 +54,16 @@ def stiffness(arguments):
         found = beside_health(case, how, returns=returns_of(scene, name, arguments.case))
     curve, meta = found.reference, found.reference.meta
     print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:\n")
+    if scene.set is not None:
+        from ...comparison.told_set import told_in_set  # only sets need it: 0.1 s
+
+        print(f"{told_in_set(scene, name, curve)}\n")
     for one in found.by_tooth() if case.damaged else ():
         print(f"{one.headline};\n{one.definition}\n\n{one.loss_table()}\n")
     print(f"{found.definition}\n\n{found.table(digits=5)}")
     if soft := told_supports(curve):
         print(f"\n{soft}")
-    _print_assumptions(scene, arguments.assumptions)
+    print_assumptions(scene, arguments.assumptions)
     if arguments.output:
         curve.save(arguments.output)
         print(f"written: {arguments.output}")
@@ -93,7 +85,6 @@ def transmission_error(arguments):
     from ...stiffness.solve import Solve
     from ...stiffness.transmission_error import errors_under_loads
 
-    _check_outputs(arguments, output="table", plot="picture")
     if arguments.forces and arguments.torques:
         raise ValueError("--forces and --torques both state the loads: give one of them")
     scene = load_scene(arguments.scene)
@@ -117,7 +108,7 @@ def transmission_error(arguments):
         title = _title(scene, arguments, told(found.curves[0], load=False))
         plot_transmission_error(found, arguments.plot, title, plain)
         print(f"written: {arguments.plot}")
-    _print_assumptions(scene, arguments.assumptions)
+    print_assumptions(scene, arguments.assumptions)
 
 
 def compare(arguments):
@@ -129,7 +120,6 @@ def compare(arguments):
     from ...scene.load import load_scene
     from ...scene.references import printed_stiffness
 
-    _check_outputs(arguments, output="table", plot="picture")
     scene = load_scene(arguments.scene)
     printed, one = printed_cases(scene), arguments.pair or arguments.case or arguments.model or arguments.plot
     several = arguments.all_cases or (printed and not one)
@@ -163,7 +153,7 @@ def compare(arguments):
     print()
     for why, methods in result.reasons().items():
         print(f"  no {methods}: {why.partition(' (reference=')[0]}")
-    _print_assumptions(scene, arguments.assumptions)
+    print_assumptions(scene, arguments.assumptions)
     if arguments.plot:
         from ...figures.stiffness_plots import plot_curves, told
 
@@ -174,7 +164,7 @@ def compare(arguments):
         print(f"\nwritten: {arguments.output}")
 
 
-def _print_assumptions(scene, every, told=None):
+def print_assumptions(scene, every, told=None):
     """Print a scene's assumptions without the reasons, `told` (default: those of the stiffness), or with `every` note."""
     from ...scene.assumed import of_stiffness
 
@@ -196,11 +186,13 @@ def render(arguments):
     """``gearfe render``."""
     from ...comparison.pattern import render_pattern
     from ...comparison.root_iso import told_root
+    from ...core.files import check_output
     from ...core.units import in_newton_per_um
     from ...scene.load import load_scene
     from ...strength.render import render_contact, render_stress
 
-    _check_outputs(arguments, output="stress" if arguments.what == "stress" else "picture")
+    if arguments.what != "stress":
+        check_output(arguments.output, "picture")
     scene = load_scene(arguments.scene)
     case, title = scene.case(arguments.pair, arguments.case), _title(scene, arguments)
     if arguments.what == "pattern":
@@ -229,7 +221,6 @@ def mesh(arguments):
     from ...decks.mesh_file import export_mesh
     from ...scene.load import load_scene
 
-    _check_outputs(arguments, output="mesh", picture="picture")
     if arguments.close_up and not arguments.picture:
         raise ValueError("--close-up belongs to a picture: give --picture FILE, too")
     case = load_scene(arguments.scene).case(arguments.pair, arguments.case)
@@ -254,7 +245,6 @@ def dynamics(arguments):
     from ...dynamics.machine.modes import natural_frequencies
     from ...scene.load import load_scene
 
-    _check_outputs(arguments, output="response", plot="picture", kurtogram="picture")
     scene = load_scene(arguments.scene)
     if arguments.contact and scene.machine:
         scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
@@ -285,15 +275,15 @@ def dynamics(arguments):
         list(found.values())[-1].save(arguments.output)
         print(f"written: {arguments.output}")
     report = analysis(found, arguments.channel)
-    _print_analysis(report, arguments, scene.name)
+    print_analysis(report, arguments, scene.name)
     if gears := gears_table(found):
         print(f"gears, from the average over their turns\n\n{gears}\n")
     if report.too_short:
         print(f"longer: --duration {report.resolving:.3g}")
-    _print_assumptions(scene, arguments.assumptions, scene.assumptions)
+    print_assumptions(scene, arguments.assumptions, scene.assumptions)
 
 
-def _print_analysis(report, arguments, name=""):
+def print_analysis(report, arguments, name=""):
     """Tables, envelope and plots of a `gearfe.comparison.vibration.Analysis`; `name` of the scene, if it is one."""
     if report.lines:
         print(f"\n{report.channel}, amplitude of the lines\n\n{report.lines_table()}")

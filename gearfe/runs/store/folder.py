@@ -17,7 +17,7 @@ from ...core.files import PART, check_path, written
 from ...geometry.aliases import StrPath
 
 COUNT = object()  # a whole number from 1 on, in the shape of a note
-ABOUT, FORMER, LOCK = "_about.json", "about.json", ".lock"
+ABOUT, LOCK = "_about.json", ".lock"
 
 
 def durable(path: StrPath, content: bytes) -> None:
@@ -90,7 +90,7 @@ def read_about(folder: StrPath, form: str, shape: Mapping[str, Any]) -> dict[str
     lacks a key or has one of another type; nothing in it is touched.
     """
     check_path("folder", folder)
-    file = next((one for one in (Path(folder) / ABOUT, Path(folder) / FORMER) if one.is_file()), Path(folder) / ABOUT)
+    file = Path(folder) / ABOUT
     if not Path(folder).is_dir():
         raise ValueError(f"no folder {folder}")
     if not file.is_file():

@@ -1,11 +1,11 @@
 """Gear pairs drawn at random, undercut, close, trimmed, rounded and modified ones over-represented."""
 
 import math
-import warnings
 
 import numpy as np
 
 import gearfe as gf
+from gearfe.core.threads import own_warnings
 from gearfe.geometry.pair.contacts import contacts
 
 from ..places import SOURCES
@@ -35,8 +35,7 @@ def random_pair(seed):
     else:
         z_2 = int(8 * (80 / 8) ** rng.random() + 0.5)
         x_2 = float(rng.uniform(-0.4, 0.8)) if rng.random() < 0.7 else 0.0
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
+    with own_warnings():
         one = gf.Gear(z=z_1, x=x_1, r_bore=0.55 * (z_1 / 2 - 1.25 + x_1) * m, **rack)
         held = {"r_rim": ((z_2 / 2 / math.cos(rack.get("beta", 0.0))) + 1.25 + x_2 + 3.0) * m}
         if ring and z_2 < 30:

@@ -1,17 +1,25 @@
-"""Compute the README: its picture, the comparison table, five rows of article S4 and the output of its program."""
+"""Recorded texts that tests compare with the present output; ``python -m tests.remake NAME`` writes one again.
+
+- ``readme``: the README's picture, comparison table, five rows of article S4 and output of its program;
+- ``tutorials``: what the scripts of the documentation print, in ``tests/docs/printed``;
+- ``own_model``: a stiffness curve as MATLAB's ``writetable`` leaves it: 15 digits, CRLF, the unit in the variable name.
+"""
 
 import contextlib
 import io
 import math
 import os
 import re
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
-import gearfe as gf
+import numpy as np
 
-from ..shared.herringbone_page import error_table
-from ..shared.places import PAGES, ROOT
+import gearfe as gf
+from validation.shared.herringbone_page import error_table
+from validation.shared.places import PAGES, ROOT
 
 README = ROOT / "README.md"
 PICTURE = PAGES / "pictures" / "readme.png"
@@ -19,6 +27,10 @@ PROGRAM = re.compile(r"```python\n(.*?)```", re.S)
 OUTPUT = re.compile(r"(prints\n\n```text\n)(.*?)(```)", re.S)
 FIVE = re.compile(r"@@FIVE@@|\| pair \| case \| FE .*?(?=\n\n)", re.S)
 TABLE = re.compile(r"\| zone \|.*?\| seconds [^\n]*\|", re.S)
+SITE = ROOT / "gearfe" / "docs"
+RECORD = ROOT / "tests" / "docs" / "printed"
+EXAMPLE = PAGES / "matlab_curve.csv"
+ROWS = 128  # of the example
 
 
 def five_rows():
@@ -68,7 +80,7 @@ def draw():
     figure.savefig(PICTURE)
 
 
-def run(again=True):
+def readme():
     """Write the README again."""
     text = README.read_text(encoding="utf-8")
     gf.compare(gf.load_scene("planetary_pitting"))  # warm
@@ -80,3 +92,34 @@ def run(again=True):
     README.write_text(text, encoding="utf-8")
     draw()
     print("README.md remade")
+
+
+def tutorials():
+    """Run every script in an empty folder and write its output."""
+    own = {"PYTHONPATH": str(ROOT), "MPLBACKEND": "Agg", "OMP_NUM_THREADS": "1"}
+    for script in sorted(SITE.glob("tutorials/*.py")) + sorted(SITE.glob("gallery/*.py")):
+        with tempfile.TemporaryDirectory() as folder:
+            command = [sys.executable, "-W", "error", script]
+            done = subprocess.run(command, cwd=folder, env=os.environ | own, capture_output=True, text=True, check=True)
+        if done.stdout:
+            (RECORD / f"{script.stem}.txt").write_text(done.stdout, encoding="utf-8")
+        print(f"{script.stem}: {len(done.stdout.splitlines())} lines")
+
+
+def example_text():
+    """Return the example's text: the textbook's total stiffness of the first pair of `planetary_pitting`."""
+    chosen = gf.load_scene("planetary_pitting").pair()
+    phase = np.arange(ROWS) / ROWS
+    curve = gf.mesh_stiffness(chosen.pair, chosen.force, chosen.materials, method="textbook", phases=phase)
+    rows = [f"{x:.15g},{k:.15g}" for x, k in zip(phase, curve.k, strict=True)]
+    return "\r\n".join(["phase,k_N_per_m", *rows, ""])
+
+
+def own_model():
+    """Write the example again."""
+    EXAMPLE.write_bytes(example_text().encode())
+    print(f"{EXAMPLE.name} remade")
+
+
+if __name__ == "__main__":
+    {"readme": readme, "tutorials": tutorials, "own_model": own_model}[sys.argv[1]]()
