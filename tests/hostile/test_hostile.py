@@ -227,7 +227,7 @@ def commands(tmp_path):
             yield [verb, name, *out], ["scene"]
         yield [verb, scene, "--case", "nope", *out], ["case"]
         yield [verb], ["required"]
-        yield [verb, scene, "--nothing", *out], ["unrecognized"]
+        yield [verb, scene, "--nothing", *out], ["unknown argument"]
     for verb in ("stiffness", "compare", "render"):
         out = ["-o", str(tmp_path / "x.png")] if verb == "render" else []
         yield [verb, scene, "--pair", "nope", *out], ["pair"]

@@ -46,7 +46,7 @@ from ...geometry.aliases import StrPath
 from ...scene.dotted_keys import check_key
 from ...scene.load import scene_of
 from ...scene.parts import DAMAGE
-from ...scene.reading import check_listed, check_named, checked
+from ...scene.reading import check_listed, check_named, check_no_scene, checked
 from ...scene.study_tables import is_gearbox, tables_near, trimmed
 from ...scene.toml_file import given_tables
 from . import samples
@@ -94,6 +94,7 @@ def _study(file, place, data):
     for kind in DAMAGE:
         check_listed(file, kind, data.get(kind, []))
     check_named(file, "flank", data.get("flank", {}))
+    check_no_scene(file, "study", data)
     top = checked(RUNS, "study", file, "top level", data)
     kind = KINDS[top["kind"]]
     name, tables = _scene(file, place, top["scene"], {name: top[name] for name in ADDED if top[name]})
