@@ -181,7 +181,7 @@ def _rule(hint):
     if origin is tuple and inner[-1:] != (...,):
         return _row([_rule(one) for one in inner])
     if issubclass(origin, Iterable):
-        return _sequence(_rule(inner[0]), Iterable if origin is Iterable else Collection)
+        return _sequence(_rule(inner[0]), Iterable if origin is Iterable else Collection, tuple if origin is tuple else None)
     return _Rule("a function", functools.partial(_is_a, Callable, "a function")) if origin is Callable else _instance(origin)
 
 
@@ -242,7 +242,7 @@ def _even(name, value):
     return value
 
 
-def _sequence(rule, kind):
+def _sequence(rule, kind, made):
     words = f"a list, each entry {rule.words}" if rule else "a list"
 
     def settled(name, value):
@@ -253,7 +253,7 @@ def _sequence(rule, kind):
         ):
             raise _wrong(name, value, words)
         if rule and type(value) in (list, tuple):
-            return type(value)([rule.settled(name, one) for one in value])
+            return (made or type(value))([rule.settled(name, one) for one in value])
         if (
             rule
             and isinstance(value, np.ndarray)

@@ -102,8 +102,7 @@ def _study(file, place, data):
     options = checked(RUNS, kind.options, file, "options", top["options"])
     grid = tuple(axes(file, top["vary"], top["along"]))
     sample = checked_sample(file, top["sample"])
-    cases = math.prod([len(next(iter(axis.values()))) for axis in grid]) * sample.get("count", 1)
-    if cases > MOST:
+    if (cases := count_of(grid, sample)) > MOST:
         raise ValueError(f"{file}: {cases} cases, but a study has at most {MOST:.0e}: vary fewer values, or split the study")
     keys = inputs_of(grid, sample)
     for key in keys:
@@ -142,6 +141,11 @@ def inputs_of(grid: Iterable[Mapping[str, Any]], sample: Mapping[str, Any]) -> t
     """Keys that vary, of the axes of a grid and of a sample, with those that take the value of another."""
     drawn = [key for name, spec in sample.get("of", {}).items() for key in (name, *spec.get("also", []))]
     return (*(key for axis in grid for key in axis), *drawn)
+
+
+def count_of(grid: Iterable[Mapping[str, Any]], sample: Mapping[str, Any]) -> int:
+    """Return the number of cases: each draw of the sample meets each combination of the grid."""
+    return int(math.prod(len(next(iter(axis.values()))) for axis in grid) * sample.get("count", 1))
 
 
 def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:
