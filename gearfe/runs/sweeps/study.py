@@ -145,7 +145,9 @@ def inputs_of(grid: Iterable[Mapping[str, Any]], sample: Mapping[str, Any]) -> t
 
 def count_of(grid: Iterable[Mapping[str, Any]], sample: Mapping[str, Any]) -> int:
     """Return the number of cases: each draw of the sample meets each combination of the grid."""
-    return int(math.prod(len(next(iter(axis.values()))) for axis in grid) * sample.get("count", 1))
+    combinations = math.prod(len(next(iter(axis.values()))) for axis in grid)
+    draws = sample.get("count", 1) * (len(sample["of"]) + 2 if sample.get("method") == "saltelli" else 1)
+    return int(combinations * draws)
 
 
 def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:
