@@ -77,7 +77,7 @@ def planetary_stiffness(
     -----
     The load is the same all over the face width. Phases are those of the mean pose of each mesh: its turn under load is shared by
     both gears (`gearfe.geometry.pair.contacts`). The faces of all cracks belong to the same contact problem. They push each other
-    apart where they touch, and slide without friction.
+    apart where they touch, and slide without friction. A mesh without load at a missing tooth has k = 0 there.
     """
     if not isinstance(case, PlanetaryCase):
         raise ValueError(f"case = {case!r}, but give a PlanetaryCase: what holds the set, and its load")
@@ -124,10 +124,11 @@ def _curves(case, at, coupled, options):
     stand = standing(case.gears, np.array(case.planet_angles), at)
     bodies = bodies_of(case if coupled else case.with_(ring="held"), refine=options["refine"], cache=options["cache"])
     solved = time.perf_counter() - started
-    of, meshes = Set(case, bodies, stand, coupled), Meshes(case.with_(damage=None), stand, options)
+    of, meshes = Set(case, bodies, stand, coupled), Meshes(case, stand, options)
     solutions = [_position(of, meshes, i) for i in steps(range(at.size))]
     seconds = {"seconds_flexibility": solved, "seconds_contact": time.perf_counter() - started - solved}
-    return SetCurves.of(of, Meshes(case, stand, options) if case.damage else meshes, at, solutions, seconds)
+    pairs = Meshes(case, stand, options, alone=True) if case.damage else meshes
+    return SetCurves.of(of, pairs, at, solutions, seconds)
 
 
 def _positions(positions, cycles):
@@ -169,12 +170,11 @@ def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) ->
     key = ring.gear, case.material[2], case.ring, case.width, refine
     rim = kept.get(("rim", *key), lambda: ring_on(ring, case.ring, case.width))
     faces = {}
-    for name, cracks in case.damage.items():
-        if not cracks:
-            continue
+    for name, damage in case.damage.items():
         whole = {"sun": sun, "ring": ring}.get(name, planet)
-        of = whole, tuple(cracks), refine
+        of = whole, tuple(damage), refine
         teeth = kept.get(("cracks", whole.gear, whole.material, *of[1:]), partial(cracked_teeth, *of))
-        faces[name] = ring_faces(rim, case.ring, teeth) if name == "ring" else faces_of(whole, teeth, whole.held_inverse())
+        if teeth:
+            faces[name] = ring_faces(rim, case.ring, teeth) if name == "ring" else faces_of(whole, teeth, whole.held_inverse())
     across = planet.held()[:, :PLACES, PLACES:]
     return BodyTables(between_teeth(sun.held()), across, between_teeth(ring.held()), rim, faces)
