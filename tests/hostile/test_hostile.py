@@ -258,7 +258,7 @@ def commands(tmp_path):
     yield ["signal", str(tmp_path)], ["no records"]
     yield ["signal", "x.xlsx"], ["no format"]
     yield [], ["required"]
-    yield ["stifness", scene], ["invalid choice"]
+    yield ["stifness", scene], ["unknown choice"]
     for value in ("nan", "inf", "x"):
         yield ["render", scene, "--phase", value, "-o", str(tmp_path / "x.png")], ["phase"]
 
