@@ -11,7 +11,9 @@ from gearfe.contact.missing_material import missing_material
 from gearfe.contact.wide_contact import pair_stiffness3d
 from gearfe.flexibility.finite_elements.tetrahedron import nodes_of, second_order
 from gearfe.flexibility.hertz import contact_modulus, half_width
+from gearfe.geometry.damage.hollow import centre_arc
 from gearfe.geometry.mesh.holes import holed_sector
+from gearfe.geometry.tooth.profile import arc_at
 from gearfe.strength import holed
 
 AS_HERTZ = 1.2  # half width of a hat as wide as Hertz's pressure [his half widths]
@@ -25,6 +27,8 @@ def widened(case, lines, gear, per_edge, refine, pits):
     radius = abs(float(pair.relative_radius(*pair.curvature_radii(pair.pitch_phase)))) / math.cos(pair.gear_1.beta_b)
     spread = AS_HERTZ * float(half_width(np.median((load / width)[load > 0]), radius, contact_modulus(steel)))
     crack = next(iter(case.cracks[0]), None)
+    low = arc_at(gear, gear.roll_f)  # pits that end below are not cut out: they are drawn on the involute only
+    pits = [pit for pit in pits if centre_arc(gear, pit) - pit.reach[0] >= low]
     sector = holed_sector(gear, pits, crack, refine=refine, strips=holed._strips(gear, [lines], spread / per_edge, spread))
     nodes, cells, number = second_order(sector.points, sector.cells)
     ones = np.eye(z.size)
