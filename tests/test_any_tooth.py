@@ -99,16 +99,22 @@ def test_verbs_print_a_tooth_by_chance(tmp_path, capsys, gear, tooth, kind, beta
 
 
 def test_a_set_has_the_tooth_or_refuses():
-    """The planetary set takes cracks of each gear; what it lacks it names."""
+    """The planetary set has cracks and broken teeth of each gear; what it lacks it names."""
     given = {
         key: value
         for key, value in read_tables("planetary_pitting")[1].items()
         if key not in ("assumption", "given", "reference")
     }
     given |= {"set": {"n_planets": 3}, "crack": [{"case": "x", "gear": "planet", "tooth": 4, "level": 0.3}]}
+    given |= {"missing_tooth": [{"case": "x", "gear": "ring", "tooth": 2}, {"case": "x", "gear": "planet", "body": "planet2"}]}
+    given |= {"chip": [{"case": "x", "gear": "planet", "tooth": 7, "depth_mm": 0.5, "pair": "planet_ring"}]}
     made = build_set(scene_of("set.toml", given), "x")
-    assert {name: [crack.tooth for crack in cracks] for name, cracks in made.damage.items()} == {"planet1": [4]}
-    with pytest.raises(ValueError, match="cracks only"):
+    assert made.damage == {
+        "planet1": (gf.Crack(level=0.3, tooth=4), gf.Chip(depth=0.5, tooth=7, side="unloaded")),
+        "planet2": (gf.MissingTooth(),),
+        "ring": (gf.MissingTooth(tooth=2),),
+    }
+    with pytest.raises(ValueError, match="no pits or spalls"):
         build_set(scene_of("set.toml", given), "mild")
 
 

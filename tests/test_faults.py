@@ -200,7 +200,10 @@ def test_a_terminated_command_leaves_no_file(tmp_path):
 import os, signal
 from gearfe.app.cli.shell import run
 from gearfe.core.files import written
+from gearfe.geometry.mesh.mesher import gmsh_session
 def work():
+    with gmsh_session():
+        pass
     with written("x.csv") as name:
         os.kill(os.getpid(), signal.SIGTERM)
 run(work)

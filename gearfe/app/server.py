@@ -15,7 +15,7 @@ from ..core.extras import missing
 try:
     import uvicorn
     from starlette.applications import Starlette
-    from starlette.requests import Request
+    from starlette.requests import ClientDisconnect, Request
     from starlette.responses import Response
     from starlette.routing import Route
 except ImportError as error:
@@ -79,6 +79,8 @@ def application(
         kind = request.path_params["kind"]
         try:
             body = json.loads(await request.body(), parse_constant=_no_number)
+        except ClientDisconnect:  # nobody reads the answer
+            return _refused("the request is incomplete", 400)
         except (json.JSONDecodeError, UnicodeDecodeError, RecursionError):
             return _refused("this is no JSON", 400)
         except ValueError as error:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import cast
 
 from ..core.case import Case
+from ..core.record import ranged
 from ..geometry.pair.gear_pair import GearPair
 from ..strength.loaded_tooth import root_stress
 
@@ -69,6 +70,7 @@ def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRo
     """
     if side not in ("pinion", "wheel"):
         raise ValueError(f"side = {side!r}, but it must be 'pinion' or 'wheel'")
+    force = ranged("force", force, " N", above=0.0)
     if why := _beyond(pair):
         raise ValueError(f"ISO 6336-3 is here for external pairs with a contact ratio between 1 and 2, but {why}")
     gear = pair.gear_1 if side == "pinion" else pair.gear_2

@@ -8,10 +8,15 @@ from ..core.checks import whole
 from ..core.table import Column, Table, stiffness_column
 from ..core.units import NEWTON_PER_UM, in_newton_per_um
 from ..geometry.aliases import Floats
+from ..geometry.damage.kinds import told
+from ..planetary_sets.added import added_compliance
 from ..planetary_sets.case import PlanetaryCase
 from ..planetary_sets.curves import SetCurves
+from ..planetary_sets.faults import first_pass
 from ..planetary_sets.rim_supports import RimBed, RimSupports
 from ..planetary_sets.set_file import MESHES
+from ..scene.load import Scene
+from ..stiffness.curve import StiffnessCurve
 
 COLUMNS = (
     "mesh",
@@ -23,13 +28,13 @@ COLUMNS = (
 )
 
 MOST = 10_000  # limits of the number of positions and of cycles
-ENGAGED = 2  # mesh cycles until the damaged tooth 0 has left its mesh
+ENGAGED = 2  # mesh cycles in which a tooth passes its mesh
 
 
 def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> Floats:
     """Positions of the sun [pitches], evenly spread over `cycles` mesh cycles; some more than `count` if phases would repeat.
 
-    Default: one cycle; of damaged sets two, in which tooth 0 goes through its mesh; of a ring on pads, a pitch of these.
+    Default: one cycle; of damaged sets two, in which the first damaged tooth passes a mesh; of a ring on pads, a pitch of these.
     """
     for name, value in (("positions", count), ("cycles", 1 if cycles is None else cycles)):
         if whole(name, value, 1) > MOST:
@@ -38,7 +43,7 @@ def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> Floats
     span = cycles or (ENGAGED if case.damage else max(1, round(case.gears.ring.z / pads)))
     while math.gcd(count, span) > 1:
         count += 1
-    return span * np.arange(count) / count
+    return first_pass(case) + span * np.arange(count) / count
 
 
 def set_numbers(curves: SetCurves) -> dict[str, float]:
@@ -82,20 +87,35 @@ def set_table(curves: SetCurves) -> Table:
 
 def told_span(positions: Floats) -> str:
     """Over which positions of `spread` the numbers of a table are taken, in words."""
-    cycles = round(positions.size * positions[1]) if positions.size > 1 else 1
-    return f"over {positions.size} positions in {'a mesh cycle' if cycles == 1 else f'{cycles} mesh cycles'}"
+    cycles = round(positions.size * (positions[1] - positions[0])) if positions.size > 1 else 1
+    start = f" from position {positions[0]:.4g} on" if positions[0] else ""
+    return f"over {positions.size} positions in {'a mesh cycle' if cycles == 1 else f'{cycles} mesh cycles'}{start}"
 
 
 def told_set(case: PlanetaryCase) -> str:
-    """Return a description of a planetary set: planets, load, and supports."""
+    """Return a description of a planetary set: planets, load, supports, and damage by tooth."""
     places = ", ".join(f"{one:.4g}" for one in np.degrees(case.planet_angles).tolist())
     pin = "" if np.isinf(case.pin) else f", pins of {case.pin / 1e3:g} N/um"
     off = sum(1 for one in case.errors if any(one))
     errors = f", {off} of {case.planets} off their places" if off else ""
+    gear, hurt = case.gear_of, [(name, one) for name, own in case.damage.items() for one in own]
     sun = "floating" if case.floating else "held at its axis"
     return (
         f"{case.planets} planets at {places} degrees{pin}{errors}; {case.force:g} N a mesh on average, "
         f"{case.force * case.planets * case.gears.sun.r_b * 1e-3:.4g} N m on the sun; sun {sun}, ring {_ring(case.ring)}"
+        + "".join(f"; tooth {one.tooth} of {name}: {told({name: gear(name)}, {name: [one]})}" for name, one in hurt)
+    )
+
+
+def told_in_set(scene: Scene, pair: str, curve: StiffnessCurve) -> str:
+    """Return the mean stiffness of a pair in the set of its scene and as an isolated pair, in words; empty without a set."""
+    if scene.set is None or pair not in scene.set.pairs or (added := added_compliance(scene)) is None:
+        return ""
+    kind = scene.set.pairs.index(pair)
+    inside, alone = curve.with_compliance(added.added[kind].mean()).k.mean(), curve.k.mean()
+    return (
+        f"in the whole set {in_newton_per_um(inside)} N/um on average, isolated pair {in_newton_per_um(alone)} N/um "
+        f"({100 * (inside / alone - 1):+.1f} % in the set); `gearfe planetary` prints every mesh of the set"
     )
 
 
@@ -116,7 +136,9 @@ def _taken(curves, healthy):
         loss = np.where((curves.k > 0) & (healthy.k > 0), 1 - curves.k / healthy.k, -np.inf)
     k, at, planet = np.unravel_index(int(loss.argmax()), loss.shape)
     most, kind = 100 * loss[k, at, planet], MESHES[int(k)].replace("-", " and ")
-    return f"the damage reduces k by up to {most:.1f} % in the mesh of {kind}, planet {planet + 1}"
+    idle = int(((curves.k == 0) & (healthy.k > 0)).any(axis=(0, 2)).sum())
+    text = f"the damage reduces k by up to {most:.1f} % in the mesh of {kind}, planet {planet + 1}"
+    return f"{text}; at {idle} of {loss.shape[1]} positions a mesh carries no load" if idle else text
 
 
 def _mean(k: Floats) -> float:

@@ -115,11 +115,6 @@ class Analysis:
             "; ".join(risen.values()) or none
         )
 
-    def alarms(self):
-        """Names of the lines of the fault that stand out of spectrum or envelope of the last case; empty if it shows nothing."""
-        lines = [name for name in self.standing() if "f_fault" in name]
-        return [*lines, *(f"{name} of the envelope" for name in self._demodulated()[1])] if self.fault else []
-
     def _demodulated(self):
         """`Demodulated` of the last case, its significant lines in words, and whether a healthy case is compared."""
         healthy, *others = self.signals.values()

@@ -6,15 +6,16 @@ import numpy as np
 
 from ..geometry.pair.contacts import Touch, touching
 from ..geometry.pair.gear_pair import with_tips
+from ..geometry.pair.modified import touching_modified
 
 
-def with_broken(points, pair, flexibility, extended):
+def with_broken(points, pair, flexibility, extended, flanks=None):
     """Contacts of a pair with missing teeth and chipped tips, and ends of the path ``(2, pairs)`` [mm].
 
     A missing tooth has an infinite gap. The flank of a chipped one ends at its corner. ValueError if no pair is left at a phase.
     """
     path = np.tile(np.array(pair.path)[:, None], points.order.size)
-    points = _chipped(points, pair, flexibility, extended, path)
+    points = _chipped(points, pair, flexibility, extended, path, flanks)
     gone = np.zeros(points.order.size, dtype=bool)
     for gear, own, teeth in zip((pair.gear_1, pair.gear_2), flexibility, (points.order, -points.order), strict=True):
         gone |= np.isin(teeth % gear.z, [tooth % gear.z for tooth in getattr(own, "missing", ())])
@@ -29,7 +30,7 @@ def with_broken(points, pair, flexibility, extended):
     return replace(points, gap=gap, corner_gap=np.where(gone, np.inf, points.corner_gap)), path
 
 
-def _chipped(points, pair, flexibility, extended, path):
+def _chipped(points, pair, flexibility, extended, path, flanks):
     """Contacts in which flanks end at the corners of chips; the ends of their path are put into `path`."""
     cut = [getattr(own, "tips", {}) for own in flexibility]
     if not any(cut):
@@ -40,6 +41,10 @@ def _chipped(points, pair, flexibility, extended, path):
         if any(ends):
             short = with_tips(pair, [end and end[0] for end in ends])
             path[:, k] = short.path
-            for name, values in touching(short, points.nominal[:, k], extended=extended)._asdict().items():
+            nominal = points.nominal[:, k]
+            met = touching(short, nominal, extended=extended)
+            if flanks is not None:
+                met = touching_modified(short, flanks, nominal, np.full(nominal.shape, order), met)
+            for name, values in met._asdict().items():
                 found[name][..., k] = values
     return replace(points, **found)

@@ -66,7 +66,7 @@ class PairContact:
         self.coefficients = [half_plane(m, state) for m in materials]
         self.modulus = contact_modulus(materials, state)
         found = flank_contacts(pair, phase, extended=extended, flanks=flanks)
-        self.found, self.path = points, _ = with_broken(found, pair, flexibility, extended)
+        self.found, self.path = points, _ = with_broken(found, pair, flexibility, extended, flanks)
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
         matrices = [flexibility[0].matrix(points.roll_1, points.order), flexibility[1].matrix(points.roll_2, -points.order)]

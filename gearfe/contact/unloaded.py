@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..geometry.pair.broken import touching_each
+from ..geometry.pair.broken import each_pair, touching_each
 from ..geometry.pair.modified import first_touch
 
 FINE, ROUNDS = 9, 2  # places along the cell with the least gap, and how often they are looked for more closely
@@ -33,8 +33,16 @@ def least_gap(contact, found):
         orders = np.repeat(order, FINE)
         gap = touching_each(contact.pair_of, orders, at).gap
         if contact.flanks is not None:
-            gap = first_touch(contact.pair, contact.flanks, at, orders, gap, (z[:, None] + steps).ravel()).gap
+            gap = _modified(contact, orders, at, gap, (z[:, None] + steps).ravel())
         gap, rows = gap.reshape(-1, FINE), np.arange(order.size)
         least = np.argmin(gap, axis=1)
         low, high = steps[rows, np.maximum(least - 1, 0)], steps[rows, np.minimum(least + 1, FINE - 1)]
     return gap.min(axis=1) + (0.0 if contact.flanks is None else floor / cos)
+
+
+def _modified(contact, orders, at, gap, z):
+    """Gaps of modified flanks at abscissae `at` and heights `z` [mm] from those of unmodified ones."""
+    found = each_pair(
+        contact.pair_of, orders, lambda pair, on: first_touch(pair, contact.flanks, at[on], orders[on], gap[on], z[on])
+    )
+    return found.gap

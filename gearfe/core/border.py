@@ -18,7 +18,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..geometry.checks import WrongTypeError, shown
-from .checks import has_truth, number, truth, whole
+from .checks import checked_refine, has_truth, number, truth, whole
+from .stated_shapes import check_stated
 
 
 def _number(name, value):
@@ -39,6 +40,9 @@ class _Rule(NamedTuple):
 
     words: str
     settled: Callable[[str, Any], Any]
+
+
+BY_NAME = {"refine": _Rule("a number", lambda _, value: checked_refine(value))}  # parameters of one meaning everywhere
 
 
 class _Named(type):
@@ -87,7 +91,10 @@ def _checked(function, called, record=False):
             if record:  # its own message has the unit and the range
                 _own_message(function, args, options, type(misfit))
             raise
-        return function(*given, *args[len(places) :], **stated)
+        out = function(*given, *args[len(places) :], **stated)
+        if record and dataclasses.is_dataclass(args[0]):
+            check_stated(args[0])
+        return out
 
     return checked
 
@@ -121,7 +128,7 @@ def _rules(function, called):
     places, named = [], {}
     for parameter in inspect.signature(function).parameters.values():
         hint = _hint(function, parameter.annotation)
-        row = (f"{called}: {parameter.name}", None if hint is None else _rule(hint), parameter.default)
+        row = (f"{called}: {parameter.name}", BY_NAME.get(parameter.name) or (hint and _rule(hint)), parameter.default)
         if parameter.kind in (parameter.POSITIONAL_ONLY, parameter.POSITIONAL_OR_KEYWORD):
             places.append(row)
         if parameter.kind in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD):
@@ -152,8 +159,8 @@ def _rule(hint):
     if hint in PLAIN:
         return _Rule(WORDS[hint], PLAIN[hint])
     if origin in (typing.Union, types.UnionType):
-        like = any(str(one).startswith(("numpy._typing", "<class 'numpy._typing")) for one in inner)  # functions read these
-        return None if like else _any_of([_rule(one) for one in inner])
+        like = any(str(one).startswith(("numpy._typing", "<class 'numpy._typing")) for one in inner)
+        return _Rule("numbers", _even) if like else _any_of([_rule(one) for one in inner])
     if origin is np.ndarray:
         return _Rule("an array of real numbers", functools.partial(_array, "i" if "int" in str(inner[1]) else "f"))
     if not isinstance(origin, type):
@@ -198,6 +205,8 @@ def _instance(kind):
 def _is_a(kind, words, name, value):
     if not isinstance(value, kind):
         raise _wrong(name, value, words)
+    if kind is str and "\0" in value:
+        raise ValueError(f"{name} = {shown(value)}, but give a text without zero bytes")
     return value
 
 
@@ -209,6 +218,15 @@ def _array(kind, name, value):
     except ValueError:
         raise _wrong(name, value, "an array of real numbers") from None
     return out.astype(float, copy=False) if kind == "f" else out
+
+
+def _even(name, value):
+    """Return what an array can be made of; the functions read it themselves."""
+    try:
+        np.ndim(value)
+    except ValueError:
+        raise ValueError(f"{name} = {shown(value)}, but give rows of one length") from None
+    return value
 
 
 def _sequence(rule, kind):
@@ -223,7 +241,11 @@ def _sequence(rule, kind):
             raise _wrong(name, value, words)
         if rule and type(value) in (list, tuple):
             return type(value)([rule.settled(name, one) for one in value])
-        if rule and isinstance(value, np.ndarray) and (value.dtype.kind not in "iuf" or "number" not in rule.words):
+        if (
+            rule
+            and isinstance(value, np.ndarray)
+            and (value.ndim > 1 or value.dtype.kind not in "iuf" or "number" not in rule.words)
+        ):
             raise _wrong(name, value, words)
         return value
 

@@ -13,7 +13,7 @@ from ..geometry.checks import is_finite, shown
 from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import Crack, check_apart
 from ..geometry.damage.hollow import warning_together
-from ..geometry.damage.kinds import BROKEN, Damage, by_side, split, why_wide
+from ..geometry.damage.kinds import BROKEN, Damage, by_side, check_broken, split, why_wide
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.pair.flanks import Misalignment, flank_forms
 from ..geometry.pair.gear_pair import GearPair
@@ -321,24 +321,8 @@ def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Any, ...], ...], .
         cracks.append(weakens)
         pits.append(removes)
         broken.append(tuple(dict.fromkeys(defect for defect in own if isinstance(defect, BROKEN))))
-        _check_broken(gear, defects)
+        check_broken(gear, defects)
     return tuple(cracks), tuple(pits), tuple(broken)
-
-
-def _check_broken(gear, defects):
-    """ValueError for other damage of a broken tooth, invalid chips, and two missing teeth side by side."""
-    broken = [defect for defect in defects if isinstance(defect, BROKEN)]
-    gone = sorted({one.tooth % gear.z for one in broken if isinstance(one, MissingTooth)})
-    for one in broken:
-        if isinstance(one, Chip):
-            one.cut(gear)
-        for defect in defects:
-            if defect != one and (defect.tooth - one.tooth) % gear.z == 0:
-                said = "is missing" if isinstance(one, MissingTooth) else "has a chip"
-                raise ValueError(f"tooth {one.tooth} of z = {gear.z} {said} and has a {defect._nouns[0]}: give one of them")
-    for tooth in gone:
-        if (tooth + 1) % gear.z in gone:
-            raise ValueError(f"teeth {tooth} and {tooth + 1} of z = {gear.z} are missing: of neighbours only one may be missing")
 
 
 def _flanks(defects):

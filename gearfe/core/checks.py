@@ -12,6 +12,7 @@ from ..geometry.checks import LARGEST, WrongTypeError, is_number, is_whole, show
 
 MOST = 2**63  # largest whole number that an array holds, plus 1
 COARSEST = 0.2  # section errors: 0.2 % at 0.4, 0.5 % at 0.2, irregular below (25 % at 1e-9)
+SHORTEST = 1e-4  # length of a part that is meshed [mm]: less than the roughness of flanks
 FINEST = 64.0  # at finer meshes k changes by less than the errors of rounding and contact
 
 
@@ -25,7 +26,7 @@ def number(name: str, value: Any) -> float:
     return float(value)
 
 
-def whole(name: str, value: Any, least: float = -math.inf, most: int = MOST) -> int:
+def whole(name: str, value: Any, least: float = -MOST, most: int = MOST) -> int:
     """Return a whole number from `least` to `most`.
 
     Raises
@@ -37,9 +38,7 @@ def whole(name: str, value: Any, least: float = -math.inf, most: int = MOST) -> 
         raise ValueError(f"{name} = {shown(value)}, but the maximum is {most}")
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         close = is_number(value) and math.isfinite(value) and value == int(value) and value >= least
-        remedy = (
-            f": give {name.rpartition(': ')[2]} = {int(value)}" if close else "" if least == -math.inf else f" from {least} on"
-        )
+        remedy = f": give {name.rpartition(': ')[2]} = {int(value)}" if close else "" if least == -MOST else f" from {least} on"
         kind = ValueError if is_number(value) else WrongTypeError
         raise kind(f"{name} = {shown(value)}, but it must be a whole number{remedy}")
     return int(value)
@@ -102,6 +101,6 @@ def checked_refine(refine: Any) -> float:
 
 
 def check_length(name, value):
-    """ValueError unless a length is None (the default) or a positive number [mm]."""
-    if value is not None and not (is_number(value) and math.isfinite(value) and value > 0):
-        raise ValueError(f"{name} = {value!r} mm, but it is a length: give {name} > 0, or leave it out")
+    """ValueError unless a length is None (the default) or a number of at least `SHORTEST` [mm]."""
+    if value is not None and not (is_number(value) and math.isfinite(value) and value >= SHORTEST):
+        raise ValueError(f"{name} = {value!r} mm, but it is a length: give {name} > 0, at least {SHORTEST:g} mm, or leave it out")

@@ -32,7 +32,7 @@ from .matlab_file import MOST_PACKED, variables
 NO_ARCHIVE: tuple[type[Exception], ...] = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, RuntimeError)
 NO_ARCHIVE += (MemoryError, KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError)
 _drawing = threading.Lock()
-MOST_DPI = 2400  # dots per inch of a picture
+LEAST_DPI, MOST_DPI = 10, 2400  # dots per inch of a picture: fonts need one pixel
 PART = ".part-"  # beginning of the names of temporary files
 
 CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # control characters that no text table contains
@@ -151,7 +151,7 @@ def save_figure(figure, path, dpi):
     """Draw a matplotlib figure into a file, unless `path` is None; gives the figure back."""
     if path is not None:
         suffix_of(path, "picture")
-        whole("dpi", dpi, 1, MOST_DPI)
+        whole("dpi", dpi, LEAST_DPI, MOST_DPI)
         for text in figure.findobj(lambda artist: hasattr(artist, "set_parse_math")):
             words = text.get_text().encode(errors="replace").decode()  # the name of a file may not be UTF-8
             if words != text.get_text():

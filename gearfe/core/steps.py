@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextvars import ContextVar
 from typing import NamedTuple, TypeVar
 
+from .time_limit import Clock
+
 T = TypeVar("T")
 
 
@@ -75,6 +77,11 @@ def steps(items: Iterable[T], text: str | Callable[[T], str] = "", weights: Sequ
     ------
     item
 
+    Raises
+    ------
+    ValueError
+        If the first items show that all of them would exceed the limit of `gearfe.core.time_limit`.
+
     Examples
     --------
     >>> said = []
@@ -87,8 +94,9 @@ def steps(items: Iterable[T], text: str | Callable[[T], str] = "", weights: Sequ
     """
     items = list(items)
     cost = [1.0] * len(items) if weights is None else list(weights)
-    done = 0.0
+    done, clock = 0.0, Clock()
     for item, weight in zip(items, cost, strict=True):
         with part(text(item) if callable(text) else text, done / sum(cost), (done + weight) / sum(cost)):
             yield item
         done += weight
+        clock.check(f"{len(items)} steps of this work", done / sum(cost), "give fewer or coarser ones")

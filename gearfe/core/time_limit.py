@@ -1,13 +1,15 @@
-"""Limit of computing time: work whose estimate exceeds it is rejected before it begins.
+"""Limit of computing time: work whose estimate exceeds it is rejected.
 
-The limit is two hours, or the number of hours in the environment variable ``GEARFE_MAX_HOURS``. Sweeps and data sets have none:
-they are resumed, and `gearfe.plan_sweep` and ``--dry-run`` print their estimate.
+The limit is two hours, or the number of hours in the environment variable ``GEARFE_MAX_HOURS``. Single solves and runs are
+estimated before they begin. Work in equal parts (positions, phases, cases of a sweep) is estimated by its first parts.
 """
 
 import math
 import os
+import time
 
 VARIABLE, HOURS = "GEARFE_MAX_HOURS", 2.0
+SURE = 10.0  # elapsed time [s] from which the first parts show what the rest costs
 
 
 def check_time(what: str, seconds: float, remedy: str) -> None:
@@ -24,3 +26,19 @@ def check_time(what: str, seconds: float, remedy: str) -> None:
             f"{what}: about {seconds / 3600:.2g} hours of computing, but the limit is {limit:g}: {remedy}, or raise the limit "
             f"(environment variable {VARIABLE})"
         )
+
+
+class Clock:
+    """Estimates work in parts by those that are done; the first ones count for nothing, because they load and compile."""
+
+    def __init__(self, idle: int = 1) -> None:
+        self.idle, self.started, self.before = idle, 0.0, 0.0
+
+    def check(self, what: str, share: float, remedy: str) -> None:
+        """Raise ValueError if all of the work would exceed the limit; a `share` of it, 0 to 1, is done."""
+        now = time.perf_counter()
+        if self.idle:
+            self.idle, self.started, self.before = self.idle - 1, now, share
+        elapsed = now - self.started
+        if share < 1 and elapsed > SURE:
+            check_time(what, elapsed * (1 - self.before) / (share - self.before), remedy)

@@ -168,6 +168,10 @@ def plot_phase(
     title: str = "",
 ) -> "Figure":
     """Draw a phase portrait, `gearfe.phase_portrait`, with the points of a Poincare section; save to `path` if given."""
+    if portrait[0].shape != portrait[1].shape:
+        raise ValueError(
+            f"portrait: {portrait[0].size} displacements and {portrait[1].size} velocities, but give as many of both"
+        )
     figure, axes = blank((5, 4))
     axes.plot(*portrait, linewidth=0.4, color=COLOURS[0])
     if section is not None and np.shape(section)[1:] != (2,):

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
@@ -12,7 +12,10 @@ from ..core.checks import numbers, truth
 from ..core.frozen import Frozen
 from ..core.material import Material
 from ..core.record import ranged, settle
+from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import Crack, check_apart, check_through
+from ..geometry.damage.kinds import check_broken
+from ..geometry.damage.missing import MissingTooth
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.planetary import PlanetarySet
 from ..geometry.renamed import renamed, warn_renamed
@@ -20,6 +23,7 @@ from ..geometry.tooth.modified import Flank
 from .rim_supports import check_support
 from .standing import assembled
 
+KINDS = Crack | MissingTooth | Chip  # damage of a section
 GEARS = ("sun", "planet", "ring")
 LARGEST = 0.1  # modules: larger position errors are probably given in another unit
 
@@ -62,9 +66,9 @@ class PlanetaryCase:
         Teeth are counted clockwise: at position 0 tooth 0 of the sun meets tooth 0 of planet 1, see
         `gearfe.planetary_sets.standing`.
     damage : dict, optional
-        Lists of cracks through the whole width ``{"sun": [Crack(...)], ...}``, by the same names. The loaded side of a planet's
-        tooth is the one that the sun loads. One crack to a side of a tooth. Faces of cracks do not pass through each other under
-        all loads of the set together. They slide without friction.
+        Lists of cracks through the whole width, missing teeth and chips ``{"sun": [Crack(...)], ...}``, by the same names. The
+        loaded side of a planet's tooth is the one that the sun loads. One crack to a side of a tooth. Faces of cracks do not pass
+        through each other under all loads of the set together. They slide without friction.
 
     Raises
     ------
@@ -111,7 +115,7 @@ class PlanetaryCase:
         if self.floating and self.planets < 3:
             raise ValueError(f"{self.planets} planets do not hold a floating sun: give floating = False, or at least 3 planets")
         flanks = self._by_gear("flanks", self.flanks, Flank, single=True)
-        settle(self, errors=self._errors(), flanks=flanks, damage=self._by_gear("damage", self.damage, Crack, single=False))
+        settle(self, errors=self._errors(), flanks=flanks, damage=self._by_gear("damage", self.damage, KINDS, single=False))
         self._check_faults()
 
     @property
@@ -160,11 +164,12 @@ class PlanetaryCase:
             value = given[name]
             if not single:
                 if not isinstance(value, (list, tuple)):
-                    raise ValueError(f"{what} of {name!r} = {value!r}, but give a list of {kind.__name__}, even of one")
+                    raise ValueError(f"{what} of {name!r} = {value!r}, but give a list, even of one")
                 value = tuple(value)
             for entry in (value,) if single else value:
                 if not isinstance(entry, kind):
-                    raise ValueError(f"{what} of {name!r}: {entry!r} is no {kind.__name__}; the section has no other")
+                    nouns = [one.__name__ for one in get_args(kind) or (kind,)]
+                    raise ValueError(f"{what} of {name!r}: {entry!r} is no {' nor a '.join(nouns)}; the section has no other")
             out |= dict.fromkeys(planets, value) if name == "planet" else {name: value}
         return Frozen(out)
 
@@ -175,9 +180,14 @@ class PlanetaryCase:
             if flank.eccentricity and name not in ("sun", "ring"):
                 raise ValueError(f"eccentricity of {name!r}: give that of a planet as pitch deviations")
             flank.on(self.gear_of(name))
-        for name, cracks in self.damage.items():
+        for name, damage in self.damage.items():
+            gear, cracks = self.gear_of(name), [one for one in damage if isinstance(one, Crack)]
             check_through(cracks, "the section of a planetary set")
-            check_apart(self.gear_of(name), cracks)
+            check_apart(gear, cracks)
+            check_broken(gear, damage)
+            flank = self.flanks.get(name)
+            if flank and (flank.tip_rounding or flank.tip_chamfer) and any(isinstance(one, Chip) for one in damage):
+                raise ValueError(f"chips of rounded or chamfered tips: leave out the tip edges of {name!r}, or its chips")
 
     def gear_of(self, name: Any) -> Any:
         """Gear by its name."""

@@ -29,7 +29,8 @@ class CrackContacts(NamedTuple):
 
     def overlap(self, opened: Floats) -> bool:
         """Return True if faces that may touch overlap."""
-        return bool(opened[self.touch].min() < -OVERLAP * np.abs(opened).max())
+        own = opened[self.touch]
+        return bool(own.min(initial=0.0) < -OVERLAP * np.abs(own).max(initial=0.0))
 
 
 def crack_contacts(

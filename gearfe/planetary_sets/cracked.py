@@ -1,4 +1,4 @@
-"""Cracks of a gear as openings of their faces: their effect on all its teeth, and the contact of the faces.
+"""Cracks and missing teeth of a gear: their effect on all its teeth, and the contact of crack faces.
 
 A gear with all faces held together is the healthy gear. Openings d of the faces act on it as forces on the sides of the cracked
 sectors. Let v be the unknowns of all sectors, K the healthy block-circulant stiffness, and E that of the cracked sectors. With
@@ -8,6 +8,9 @@ loads f of the teeth and forces r that push the faces apart::
 
 The healthy gear, solved once, and one solve for each opening therefore give any cracked gear exactly. C is the healthy
 flexibility. Open faces have r = 0. Faces in contact press along their normal and slide without friction.
+
+A missing tooth changes the stiffness of its sector by ``W s W'``, s = 1 or -1 by column, from the eigenvectors of the change.
+With d = -s W' v it has the form of open faces: E K_vd = -W, K_dd = -s. The identity is that of Woodbury.
 """
 
 from typing import Any, NamedTuple
@@ -17,12 +20,18 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from ..geometry.aliases import Floats
+from ..geometry.damage.crack import Crack
+from ..geometry.damage.missing import missing_teeth
 from ..geometry.mesh.periodic_sector import periodic_sector
 from .whole_gear import PLACES, WholeGear, in_chain, sector_stiffness
+
+NEGLIGIBLE = 1e-9  # changes of a sector's stiffness below this part of the largest are left out
 
 
 class CrackedTooth(NamedTuple):
     """Openings (e of them) of the facing nodes in a tooth: along their normals, then along the faces.
+
+    A missing tooth has e modes of its change instead (see the module), which never touch.
 
     `sides` ``(N, e)`` are the forces on the N unknowns of the sector and of the next one's side by unit openings, `faces` ``(e,
     e)`` those on the faces. `loads` ``(e, 2 PLACES)`` is the openings' part in the work of the tooth's loads. `touch` are the
@@ -53,8 +62,12 @@ class CrackOpenings(NamedTuple):
     released: Floats
 
 
-def cracked_teeth(whole: WholeGear, cracks: Any, refine: float) -> tuple[CrackedTooth, ...]:
-    """`CrackedTooth` by tooth, from a sequence of `Crack`, their teeth counted clockwise."""
+def cracked_teeth(whole: WholeGear, damage: Any, refine: float) -> tuple[CrackedTooth, ...]:
+    """`CrackedTooth` by tooth, from cracks and missing teeth, their teeth counted clockwise.
+
+    Chips are left out: tips without load hardly change the deflection of other teeth.
+    """
+    cracks = [one for one in damage if isinstance(one, Crack)]
     own, next_, side = in_chain(periodic_sector(whole.gear, refine=refine))
     order = np.concatenate([own, next_])
     out = []
@@ -64,6 +77,14 @@ def cracked_teeth(whole: WholeGear, cracks: Any, refine: float) -> tuple[Cracked
         matrix, load, _ = sector_stiffness(sector, whole.material, pairs)
         sides, faces, loads = _opened(matrix, load, normal, order)
         out.append(CrackedTooth(tooth, side, sides, faces, loads, touch))
+    if gone := missing_teeth(whole.gear, damage):
+        sectors = (periodic_sector(whole.gear, missing=missing, refine=refine) for missing in (True, False))
+        without, drawn = (sector_stiffness(sector, whole.material)[0][np.ix_(order, order)] for sector in sectors)
+        change, modes = np.linalg.eigh(without - drawn)
+        strong = np.abs(change) > NEGLIGIBLE * np.abs(change).max()
+        sides, signs = -modes[:, strong] * np.sqrt(np.abs(change[strong])), np.sign(change[strong])
+        rest = np.diag(-signs), np.zeros((signs.size, 2 * PLACES)), np.zeros(signs.size, dtype=bool)
+        out += [CrackedTooth(tooth, side, sides, *rest) for tooth in gone]
     return tuple(out)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.files import save
+from ..core.record import check_keys
 from ..core.units import NEWTON_PER_UM
 from ..figures.set_plot import draw_curves
 from ..geometry.aliases import Floats, StrPath
@@ -76,13 +77,8 @@ class SetCurves:
     meta: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Check that all meshes have the same positions and planets."""
-        if self.force.ndim != 3 or not self.force.shape == self.k.shape == self.k_alone.shape == (
-            2,
-            self.position.size,
-            self.force.shape[2],
-        ):
-            raise ValueError("force, k and k_alone need the shape (2, positions, planets)")
+        """Raise ValueError if the case is missing."""
+        check_keys("SetCurves: meta", self.meta, ("case",))
 
     def __repr__(self):
         """One line: planets, positions, stiffness of both kinds of mesh, load factor."""

@@ -1,20 +1,22 @@
-"""Flanks and cracks of a set's gears, by the tooth numbers of the pair of each mesh (`gearfe.planetary_sets.standing`)."""
+"""Flanks and damage of a set's gears, by the tooth numbers of the pair of each mesh (`gearfe.planetary_sets.standing`)."""
 
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from ..geometry.damage.missing import MissingTooth
 from ..geometry.pair.flanks import flank_forms
 from ..geometry.tooth.modified import Flank
 from .case import planet_name
+from .standing import standing
 
 
 def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, bool]:
-    """Flank forms (None: involutes) and cracks of pinion and wheel of a mesh, and whether its teeth differ.
+    """Flank forms (None: involutes) and damage of pinion and wheel of a mesh, and whether its teeth differ.
 
     `inner`: it is the mesh with the ring. `first` is the wheel's tooth that meets the pinion's tooth 0: C or D of `Standing`.
-    Cracks count teeth in each gear's own frame, as `gearfe.flexibility.plane.Flexibility` does.
+    Damage counts teeth in each gear's own frame, as `gearfe.flexibility.plane.Flexibility` does.
     """
     pair, names = case.pairs[inner], (planet_name(planet), "ring") if inner else ("sun", planet_name(planet))
     flanks = [case.flanks.get(name, Flank()) for name in names]
@@ -29,9 +31,33 @@ def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, b
         centre = flank.eccentric_tooth if k == 0 else first - flank.eccentric_tooth
         pair_flanks[side] = replace(flank, pitch=moved, tooth_scale=scaled, eccentric_tooth=centre)
     forms = flank_forms(pair, pair_flanks)
-    cracks_1, cracks_2 = (case.damage.get(name, ()) for name in names)
+    damage_1, damage_2 = (case.damage.get(name, ()) for name in names)
     if inner:  # mirrored: flanks loaded by the sun are unloaded here
-        cracks_1 = tuple(replace(c, tooth=-c.tooth, side="unloaded" if c.side == "loaded" else "loaded") for c in cracks_1)
-    cracks_2 = tuple(replace(c, tooth=c.tooth - first) for c in cracks_2)
-    differs = bool(cracks_1 or cracks_2) or any(form.differs for form in forms or ())
-    return forms, (cracks_1, cracks_2), differs
+        damage_1 = tuple(turned(one, -one.tooth) for one in damage_1)
+    damage_2 = tuple(replace(one, tooth=one.tooth - first) for one in damage_2)
+    differs = bool(damage_1 or damage_2) or any(form.differs for form in forms or ())
+    return forms, (damage_1, damage_2), differs
+
+
+def first_pass(case: Any) -> float:
+    """Position of the sun [pitches] from which the first damaged tooth passes a mesh, the one nearest to 0; 0 without damage.
+
+    A planet's tooth passes the mesh that its damaged side is loaded in.
+    """
+    found = [(name, one) for name, own in case.damage.items() for one in own]
+    if not found:
+        return 0.0
+    (name, one), stand = found[0], standing(case.gears, np.array(case.planet_angles), [0.0])
+    inner = name == "ring" or (name != "sun" and one.side == "unloaded")
+    phases = (stand.outer, stand.inner)[inner][0]
+    pinion = {"sun": one.tooth + 0 * stand.planet, "ring": stand.ring - one.tooth}
+    teeth = pinion.get(name, -one.tooth + (0 if inner else 1) * stand.planet)
+    z, here = case.gear_of(name).z, [planet_name(k) == name or name in pinion for k in range(case.planets)]
+    places = (-(phases + teeth)[here] + z / 2) % z - z / 2
+    return float(places[np.abs(places).argmin()])
+
+
+def turned(damage: Any, tooth: int) -> Any:
+    """Return damage on the other side of a tooth; a missing tooth has no side."""
+    side = {} if isinstance(damage, MissingTooth) else {"side": "unloaded" if damage.side == "loaded" else "loaded"}
+    return replace(damage, tooth=tooth, **side)

@@ -9,6 +9,7 @@ import numpy as np
 from ..core.checks import whole
 from ..decks.solid_deck import held_nodes
 from ..flexibility.hertz import contact_modulus, half_width
+from ..geometry.damage.kinds import BROKEN
 from ..geometry.mesh.both_flanks import both_flanks
 from ..geometry.pair.contacts import contacts
 from ..geometry.tooth.profile import arc_at
@@ -20,12 +21,12 @@ NEAR = 1.5  # gaps up to this multiple of the approach can close
 
 
 def check_meshable(case: PlanetaryCase) -> None:
-    """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, or modified flanks."""
+    """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, modified flanks, broken teeth."""
     rigid = isinstance(case.ring, RimSupports) and math.isinf(case.ring.radial) and math.isinf(case.ring.tangential)
     if not (case.ring == "held" or rigid):
         raise ValueError("the ring is neither held nor on rigid pads, and is not meshed so: give a case with one of these")
-    if case.flanks:
-        raise ValueError("modified flanks of a set are not meshed: give a case without them")
+    if case.flanks or any(isinstance(one, BROKEN) for own in case.damage.values() for one in own):
+        raise ValueError("modified flanks and broken teeth of a set are not meshed: give a case without them")
 
 
 def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:

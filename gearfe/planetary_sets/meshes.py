@@ -5,6 +5,7 @@ corners and kinks, exact gaps, cracks.
 """
 
 import math
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,10 @@ from ..contact.sliding import bounded
 from ..flexibility.energy.ritz.plane import flexibility
 from ..flexibility.section_contact import Solved
 from ..geometry.aliases import Floats
+from ..geometry.damage.chip import Chip
+from ..geometry.damage.crack import Crack
+from ..geometry.damage.kinds import BROKEN
+from ..geometry.damage.missing import missing_teeth
 from ..geometry.pair.contacts import near_pitches
 from .case import planet_name
 from .faults import faults
@@ -79,10 +84,15 @@ class PlacedContacts(NamedTuple):
 
 
 class Meshes:
-    """All meshes of a case at the positions of a `Standing`; equal planets share their solutions."""
+    """All meshes of a case at the positions of a `Standing`; equal planets share their solutions.
 
-    def __init__(self, case: Any, stand: Standing, options: dict[str, Any]) -> None:
-        self.case, self._options = case, options
+    The bodies have their cracks and missing teeth if the pair is `alone`. In the set, `gearfe.planetary_sets.cracked` adds these
+    to bodies without.
+    """
+
+    def __init__(self, case: Any, stand: Standing, options: dict[str, Any], *, alone: bool = False) -> None:
+        self._alone, self._options = alone, options
+        self.case = case if alone else case.with_(damage={name: broken_of(own) for name, own in case.damage.items()})
         self._phases = (stand.outer, stand.inner)
         self._firsts = (stand.planet, stand.ring)
         self._mesh: dict[Any, tuple[SetMesh, dict[float, int]]] = {}
@@ -121,7 +131,7 @@ class Meshes:
 
     def _made(self, key, chunk):
         inner, planet, differs, flank = key
-        forms, cracks, _ = faults(self.case, bool(inner), planet, int(self._firsts[inner][planet]))
+        forms, damage, _ = faults(self.case, bool(inner), planet, int(self._firsts[inner][planet]))
         if differs:
             phase = np.unique(self._phases[inner][chunk * TOGETHER : (chunk + 1) * TOGETHER, planet])
         else:
@@ -130,10 +140,25 @@ class Meshes:
             phase = np.unique(np.round(phases - np.floor(phases), DIGITS))
         pair, materials = self.case.pairs[inner], self.case.material[inner : inner + 2]
         near = math.ceil(pair.eps_alpha) + sum(near_pitches(pair)) - 2
-        gears = zip((pair.gear_1, pair.gear_2), materials, cracks, strict=True)
-        bodies = [flexibility(gear, m, gear_cracks, neighbours=near, **self._options) for gear, m, gear_cracks in gears]
+        gears = zip((pair.gear_1, pair.gear_2), materials, damage, strict=True)
+        bodies = [self._body(gear, material, own, near) for gear, material, own in gears]
         contact = PairContact(pair, materials, bodies, phase, extended=True, state="plane strain", flanks=forms)
         return SetMesh(contact), {value: k for k, value in enumerate(phase.tolist())}
+
+    def _body(self, gear, material, damage, near):
+        """`Flexibility` of a gear."""
+        broken, gone = broken_of(damage), ()
+        if not self._alone:
+            gone = missing_teeth(gear, broken)
+            broken = [one for one in broken if isinstance(one, Chip)]
+        cracks = [one for one in damage if isinstance(one, Crack)]
+        made = flexibility(gear, material, cracks, broken=tuple(broken), neighbours=near, **self._options)
+        return replace(made, missing=gone) if gone else made
+
+
+def broken_of(damage: Any) -> list[Any]:
+    """Missing teeth and chips among damage."""
+    return [one for one in damage if isinstance(one, BROKEN)]
 
 
 def near_load(line_load: float, unit: float) -> float:

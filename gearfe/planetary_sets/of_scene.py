@@ -1,22 +1,21 @@
 """Planetary set of a scene: the case of the tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]``."""
 
-from dataclasses import replace
 from typing import Any
 
-from ..geometry.damage.crack import Crack
 from ..scene.load import Scene, ScenePair
 from ..scene.reading import located
 from ..scene.schema import arguments
 from ..scene.set_table import SceneSet
-from .case import PlanetaryCase, planet_name
+from .case import KINDS, PlanetaryCase, planet_name
+from .faults import turned
 from .rim_supports import RimBed, RimSupports
 
 
 def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
     """Return the planetary set of a scene for `gearfe.planetary_stiffness`, with its flanks and a case of damage.
 
-    Cracks of the planet's gear are in the planet of their ``body``, by default the first, on the flank that the sun loads.
-    A crack that the scene states in the pair of planet and ring only is on the other flank.
+    Damage of the planet's gear is in the planet of its ``body``, by default the first, on the flank that the sun loads.
+    Damage that the scene states in the pair of planet and ring only is on the other flank.
 
     Parameters
     ----------
@@ -32,7 +31,7 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
     Raises
     ------
     ValueError
-        If the scene has no set, no such case in its gears, damage other than cracks, pairs whose misalignment, shafts or springs
+        If the scene has no set, no such case in its gears, pits or spalls, pairs whose misalignment, shafts or springs
         are not modelled in a set, or if the set is impossible.
     """
     given = scene.set
@@ -82,7 +81,7 @@ def _flanks(scene: Scene, outer: ScenePair, inner: ScenePair) -> dict[str, Any]:
 
 
 def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, inner: ScenePair) -> dict[Any, Any]:
-    """Cracks of a case by gear."""
+    """Cracks, missing teeth and chips of a case by gear."""
     if case is None:
         return {}
     known = dict.fromkeys((*outer.damage, *inner.damage))
@@ -90,22 +89,22 @@ def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, i
         raise ValueError(f"no case {case!r} in the set of scene {scene.name}; it has {', '.join(known) or 'none'}")
     one, two = outer.owned.get(case, {}), inner.owned.get(case, {})
     hurt = [own for found in (*one.values(), *two.values()) for damage in found.values() for own in damage]
-    other = sorted({own._nouns[0] for own in hurt if not isinstance(own, Crack)})
+    other = sorted({own._nouns[0] for own in hurt if not isinstance(own, KINDS)})
     if other:
         raise ValueError(
-            f"case {case!r} has a {' and a '.join(other)}, but the section of a set has cracks only: choose a case of cracks"
+            f"case {case!r} has a {' and a '.join(other)}, but the section of a set has no pits or spalls: choose another case"
         )
     out: dict[Any, Any] = {}
-    for found, side, gear, turned in (
-        (one, "pinion", "sun", 0),
-        (one, "wheel", "planet", 0),
-        (two, "pinion", "planet", 1),
-        (two, "wheel", "ring", 0),
+    for found, side, gear, mirrored in (
+        (one, "pinion", "sun", False),
+        (one, "wheel", "planet", False),
+        (two, "pinion", "planet", True),
+        (two, "wheel", "ring", False),
     ):
-        for owner, cracks in found.get(side, {}).items():
+        for owner, damage in found.get(side, {}).items():
             own = out.setdefault(_gear_name(owner.body, gear, case, given), [])
-            seen = [replace(crack, side=_opposite(crack.side)) if turned else crack for crack in cracks]
-            own += [crack for crack in seen if crack not in own]
+            seen = [turned(one, one.tooth) if mirrored else one for one in damage]
+            own += [one for one in seen if one not in own]
     return out
 
 
@@ -115,7 +114,3 @@ def _gear_name(body, gear, case, given):
     if body is not None and body not in known:
         raise ValueError(f"case {case!r} damages body {body!r}, but the {gear} of the set is {', '.join(known)}")
     return known[0] if body is None else body
-
-
-def _opposite(side):
-    return "unloaded" if side == "loaded" else "loaded"

@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.checks import checked_refine, numbers, truth, whole
+from ..core.memory import free_memory
 from ..core.steps import steps
 from ..core.supports.held import REFUSE
+from ..core.time_limit import check_time
 from ..flexibility.solved import solved_gears
 from ..stiffness.limits import FURTHEST
 from .assembly import BodyTables, Position, Set
@@ -24,6 +26,7 @@ from .whole_gear import PLACES, between_teeth, whole_gear
 
 CHECKED = 8  # number of positions at which the error is estimated
 COARSER, ORDER = 0.7, 3  # its resolution relative to that of the curves, and the order of its polynomials
+BYTES, SECONDS = 1.4e8, 0.65  # memory and time of a first position by refine, measured at 1, 2 and 4
 PASSES = 5  # maximum number of repetitions until corners, kinks and pairs in reach agree with the loads of the meshes
 
 
@@ -74,12 +77,13 @@ def planetary_stiffness(
     -----
     The load is the same all over the face width. Phases are those of the mean pose of each mesh: its turn under load is shared by
     both gears (`gearfe.geometry.pair.contacts`). The faces of all cracks belong to the same contact problem. They push each other
-    apart where they touch, and slide without friction.
+    apart where they touch, and slide without friction. A mesh without load at a missing tooth has k = 0 there.
     """
     if not isinstance(case, PlanetaryCase):
         raise ValueError(f"case = {case!r}, but give a PlanetaryCase: what holds the set, and its load")
     at, refine, options = _positions(positions, cycles), checked_refine(refine), {"cache": solved_gears(cache)}
     coupled, error = truth("coupled", coupled), truth("error", error)
+    _check_cost(refine)
     found = _curves(case, at, coupled, options | {"refine": refine})
     _check_small(case, found)
     if error:
@@ -87,6 +91,15 @@ def planetary_stiffness(
         less = _curves(case, at[some], coupled, options | {"refine": COARSER * refine, "order": ORDER})
         found.meta["error"] = set_error(found, less, some)
     return found
+
+
+def _check_cost(refine):
+    """ValueError if the first position alone exceeds the limit of computing time, or the free memory."""
+    what, remedy = f"refine = {refine:g}: one position of a set", "give a smaller refine"
+    memory, free = BYTES * refine**1.8, free_memory()
+    if memory > free:
+        raise ValueError(f"{what} needs about {memory / 1e9:.3g} GB, but {free / 1e9:.3g} GB are free: {remedy}")
+    check_time(what, SECONDS * refine**2.3, remedy)
 
 
 def _check_small(case, found):
@@ -111,10 +124,11 @@ def _curves(case, at, coupled, options):
     stand = standing(case.gears, np.array(case.planet_angles), at)
     bodies = bodies_of(case if coupled else case.with_(ring="held"), refine=options["refine"], cache=options["cache"])
     solved = time.perf_counter() - started
-    of, meshes = Set(case, bodies, stand, coupled), Meshes(case.with_(damage=None), stand, options)
+    of, meshes = Set(case, bodies, stand, coupled), Meshes(case, stand, options)
     solutions = [_position(of, meshes, i) for i in steps(range(at.size))]
     seconds = {"seconds_flexibility": solved, "seconds_contact": time.perf_counter() - started - solved}
-    return SetCurves.of(of, Meshes(case, stand, options) if case.damage else meshes, at, solutions, seconds)
+    pairs = Meshes(case, stand, options, alone=True) if case.damage else meshes
+    return SetCurves.of(of, pairs, at, solutions, seconds)
 
 
 def _positions(positions, cycles):
@@ -156,12 +170,11 @@ def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) ->
     key = ring.gear, case.material[2], case.ring, case.width, refine
     rim = kept.get(("rim", *key), lambda: ring_on(ring, case.ring, case.width))
     faces = {}
-    for name, cracks in case.damage.items():
-        if not cracks:
-            continue
+    for name, damage in case.damage.items():
         whole = {"sun": sun, "ring": ring}.get(name, planet)
-        of = whole, tuple(cracks), refine
+        of = whole, tuple(damage), refine
         teeth = kept.get(("cracks", whole.gear, whole.material, *of[1:]), partial(cracked_teeth, *of))
-        faces[name] = ring_faces(rim, case.ring, teeth) if name == "ring" else faces_of(whole, teeth, whole.held_inverse())
+        if teeth:
+            faces[name] = ring_faces(rim, case.ring, teeth) if name == "ring" else faces_of(whole, teeth, whole.held_inverse())
     across = planet.held()[:, :PLACES, PLACES:]
     return BodyTables(between_teeth(sun.held()), across, between_teeth(ring.held()), rim, faces)

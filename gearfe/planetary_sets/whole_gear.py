@@ -139,13 +139,16 @@ def sector_stiffness(sector, material, faces=None):
 
     Unknowns are polar components of the nodes of the left side, of the held edge between its corners, of the right side. With
     pairs of nodes ``(2, m)`` that face each other in its cracks, x and y of these follow: m of one face, m of the other.
+    A missing tooth has no loads.
     """
     body = HeldSection(sector.mesh, material, held="rim")  # its own outline: only its elements are used
     local, dofs = body.local()
     left, right, edge = (np.array(_chain(sector.mesh, way)) for way in (sector.left, sector.right, sector.held))
     ends = np.concatenate([left, edge[1:-1], right])  # both sides begin with a corner of the held edge
     rolls = _rolls(sector.gear)
-    load = np.hstack([line_loads(sector.gear, sector.mesh, sector.flank[k], sector.roll, rolls, k) for k in (0, 1)])
+    sides = (0, 1) if sector.roll.size else ()
+    flanks = [line_loads(sector.gear, sector.mesh, sector.flank[k], sector.roll, rolls, k) for k in sides]
+    load = np.hstack([np.zeros((dofs.max() + 1, 0)), *flanks])
     centre = sector.mesh.doflocs[:, sector.mesh.t[:3]].mean(axis=1)
     kept = ends if faces is None else np.concatenate([ends, *faces])
     stays = (2 * kept[:, None] + np.arange(2)).ravel()

@@ -135,7 +135,7 @@ def build(sample):
 
 def _samples(count, seed):
     """`count` samples that can be built."""
-    ends = np.array(list(RANGES.values()))
+    ends, seed = np.array(list(RANGES.values())), whole("seed", seed, 0)
     source, out = qmc.Sobol(len(RANGES), seed=seed), []
     while len(out) < count:
         for point in qmc.scale(source.random(256), ends[:, 0], ends[:, 1]).tolist():

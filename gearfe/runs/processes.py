@@ -26,7 +26,13 @@ def processes(workers: int, *, own: bool = False) -> Iterator[ProcessPoolExecuto
         contextlib.nullcontext() if own else _hidden,
         ProcessPoolExecutor(workers, mp_context=spawn, initializer=_end_with_parent) as pool,
     ):
-        yield pool
+        before = set(multiprocessing.active_children())
+        try:
+            yield pool
+        except (KeyboardInterrupt, SystemExit):  # work under way would delay the end
+            for worker in set(multiprocessing.active_children()) - before:
+                worker.terminate()
+            raise
 
 
 @contextlib.contextmanager

@@ -9,15 +9,17 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, wait
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
 
 from ..core.checks import whole
 from ..core.extras import needing
 from ..core.steps import reached
+from ..core.time_limit import Clock
 from .processes import processes
 
+KEPT = "give fewer; results in a folder are complete so far and are kept"
 AHEAD = 2  # jobs submitted per process, so that none waits
 TIMEOUT = "20s"  # time limit for the answer of a scheduler
 REFRESH = 5.0  # s between two looks at how many workers a scheduler has
@@ -31,6 +33,7 @@ class Tally:
     total: int
     progress: Callable[[int, int], object] | None
     done: int = 0
+    clock: Clock = field(default_factory=lambda: Clock(2))
 
     def add(self, count: int) -> None:
         """Count `count` more as done, and report it."""
@@ -38,6 +41,7 @@ class Tally:
         reached(f"{self.done} of {self.total} {self.noun}", self.done / self.total)
         if self.progress is not None:
             self.progress(self.done, self.total)
+        self.clock.check(f"{self.total} {self.noun}", self.done / self.total, KEPT)
 
 
 def check_workers(workers: int | None) -> None:

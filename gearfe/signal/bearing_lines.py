@@ -73,5 +73,5 @@ def bearing_lines(
         "inner": rollers * apart * (1 + c) / 2,
         "roller": apart * (1 - c**2) * pitch / (2 * roller),
     }
-    many = range(1, whole("count", count, 1) + 1)
+    many = range(1, whole("count", count, 1, 1000) + 1)
     return {name if k == 1 else f"{k} {name}": k * value for k in many for name, value in fundamental.items()}

@@ -9,12 +9,15 @@ from scipy.fft import irfft, rfft
 from scipy.interpolate import make_interp_spline
 
 from ..core.checks import whole
+from ..core.memory import free_memory
+from ..core.time_limit import check_time
 from ..geometry.aliases import Floats
 from .given import samples
 from .series import Signal
 from .spectrum import Spectrum, amplitudes
 
 MOST = 10**8  # limit of samples per revolution
+BYTES, SECONDS = 40.0, 1.2e-7  # memory and time for each sample, measured with 1e8 of them
 SLOWEST = 1 / 16  # limit of the speed relative to the mean: below it resampling by angle would multiply the samples
 
 
@@ -43,8 +46,17 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
     turns = math.floor(angle[-1] + 1 / count + 1e-9)
     if turns < 1 or angle.size < 6:
         raise ValueError(f"{signal.name} covers {angle[-1]:.3g} revolutions with {angle.size} samples; one revolution is needed")
+    _check_size(turns * count, count)
     grid = np.minimum(np.arange(turns * count) / count, angle[-1])
     return make_interp_spline(angle, signal.values, k=5)(grid).reshape(turns, count)
+
+
+def _check_size(size, count):
+    """ValueError for more samples than memory holds or the limit of computing time allows."""
+    what, remedy = f"samples_per_turn = {count}: {size} samples", "give fewer samples per turn"
+    if BYTES * size > (free := free_memory()):
+        raise ValueError(f"{what} need about {BYTES * size / 1e9:.3g} GB, but {free / 1e9:.3g} GB are free: {remedy}")
+    check_time(what, SECONDS * size, remedy)
 
 
 def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, window: str | tuple[Any, ...] = "hann") -> Spectrum:

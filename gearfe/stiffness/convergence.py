@@ -12,6 +12,7 @@ from ..core.case import Case
 from ..core.table import Column, Table, stiffness_column
 from ..core.units import NEWTON_PER_UM
 from ..figures.convergence_plots import plot_convergence
+from ..geometry.aliases import Floats
 from .solve import Solve, solve
 
 REFINES = (0.5, 0.7, 1.0, 1.4, 2.0)
@@ -24,25 +25,25 @@ class Convergence:
     Attributes
     ----------
     method : str
-    refine, order : tuple
+    refine, order : tuple, shape (solves,)
         Resolution and polynomial order of each solve; the order is None for methods without one.
     k : ndarray, shape (solves, phases)
         Mesh stiffness [N/m].
     error : ndarray, shape (solves, phases)
         Its estimated error [N/m].
-    seconds : tuple of float
+    seconds : tuple of float, shape (solves,)
         CPU time of each solve with its estimate.
     """
 
     method: str
     refine: tuple[float, ...]
     order: tuple[int | None, ...]
-    k: Any
-    error: Any
+    k: Floats
+    error: Floats
     seconds: tuple[float, ...]
 
     @property
-    def difference(self) -> Any:
+    def difference(self) -> Floats:
         """Difference of `k` from that of the finest solve, the last one ``(solves, phases)`` [N/m]."""
         return np.abs(self.k - self.k[-1])
 
@@ -113,6 +114,8 @@ def convergence(
     elif orders is None:
         orders = (method.order - 1, method.order, method.order + 1)
     steps = [(float(refine), order) for refine in refines for order in orders or ()]
+    if not steps:
+        raise ValueError(f"orders = {orders!r}, but give one polynomial order at least, or None for the usual ones")
     curves, seconds = [], []
     for refine, order in steps:
         started = time.process_time()

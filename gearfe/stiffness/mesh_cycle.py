@@ -15,6 +15,7 @@ import numpy as np
 from ..core.case import SIDES, Case
 from ..flexibility.plane import FURTHER
 from ..geometry.aliases import Floats
+from ..geometry.checks import WrongTypeError, shown
 from ..geometry.pair.contacts import neighbours_of
 from .curve import StiffnessCurve, joined
 from .limits import check_count
@@ -79,6 +80,11 @@ class MeshCycle:
     healthy: Any
     parts: tuple[Part, ...]
 
+    def __post_init__(self) -> None:
+        """Raise ValueError unless the cycle has phases and a curve."""
+        check_count(self.phases)
+        _checked(self.healthy)
+
     @property
     def cycles(self) -> int:
         """Mesh cycles after which the pair repeats: 1, the teeth of a gear, or the hunting period."""
@@ -137,7 +143,7 @@ def mesh_cycle(case: Case, how: Solve | None = None, *, curve: Callable[[Case, S
     how = replace(how, span="cycle")
     both = [_windows(case, side, n) for side in (0, 1)]
     meetings = _meetings(case, both, n)
-    healthy = curve(like_all(case, (0, 1)), how)
+    healthy = _checked(curve(like_all(case, (0, 1)), how))
     parts = []
     for side, windows in enumerate(both):
         alone = like_all(case, (1 - side,))
@@ -267,7 +273,7 @@ def _solved(curve, case, how, n, samples, position):
     """
     bounds = [*range(*samples, AT_ONCE * n), samples[1]]
     spans = zip(bounds[:-1], bounds[1:], strict=True)
-    found = [curve(case, replace(how, phases=np.arange(low, high) / n, span="tooth")) for low, high in spans]
+    found = [_checked(curve(case, replace(how, phases=np.arange(low, high) / n, span="tooth"))) for low, high in spans]
     if len(found) > 1 and not all(isinstance(one, StiffnessCurve) for one in found):
         raise ValueError(
             "a force law over several loads allows single deviating teeth, but here all teeth of a gear deviate: give one load"
@@ -276,6 +282,13 @@ def _solved(curve, case, how, n, samples, position):
         bare = [replace(one, order=one.order[:0], force=one.force[:, :0], pressure=one.pressure[:, :0]) for one in found]
         found = [joined(bare)]
     return replace(found[0], phase=found[0].phase - position)
+
+
+def _checked(curve):
+    """Return a curve; ValueError for what is none."""
+    if not hasattr(curve, "phase"):
+        raise WrongTypeError(f"mesh cycle: curve = {shown(curve)}, but give a StiffnessCurve or a ForceLaw")
+    return curve
 
 
 def _values(curve, name):

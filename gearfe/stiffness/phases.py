@@ -16,6 +16,16 @@ SPANS = ("cycle", "tooth", "revolution", "hunting")
 LONG = SPANS[2:]  # spans of many cycles
 
 
+def check_phases(phases: Any) -> int | Floats:
+    """Return a number of phases, or an array ``(n,)`` of finite ones; ValueError for others."""
+    if np.ndim(phases) == 0:
+        return check_count(phases)
+    out = numbers("phases", phases, "")
+    if out.ndim != 1 or out.size == 0 or not np.isfinite(out).all():
+        raise ValueError("phases: give a number of them, or a list of finite phases in mesh cycles, one at least")
+    return out
+
+
 def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0, teeth: Iterable[int] = (0,)) -> Floats:
     """Phases ``(n,)`` of a number of them over a `span`, or those given; an engagement lasts ``eps_alpha + overlap`` cycles.
 
@@ -31,8 +41,6 @@ def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0, te
         return np.arange(phases * cycles_in(pair, span)) / phases
     if span in LONG:
         raise ValueError(f"span = {span!r} with phases spelled out: give their number in each mesh cycle")
-    phases = numbers("phases", phases, "")
-    if phases.ndim != 1 or phases.size == 0 or not np.isfinite(phases).all():
-        raise ValueError("phases must be a non-empty array of finite numbers")
+    phases = check_phases(phases)
     check_range(phases, pair.eps_alpha + overlap)
     return phases

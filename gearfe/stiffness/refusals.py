@@ -60,8 +60,9 @@ def _damage(row, case, method):
         yield f"cracks with {method}, which has none: use {having('cracks')}"
     for one in sum(case.broken, ()) if not row.broken else ():
         yield f"a {one._nouns[0]} with {method}, which has none: use {having('broken')}"
-    if case.forms is not None and any(isinstance(one, Chip) for own in case.broken for one in own):
-        yield "chips of modified flanks: leave the flanks out, or the chips"
+    for form, broken in zip(case.forms or (), case.broken, strict=False):
+        if form.edge is not None and any(isinstance(one, Chip) for one in broken):
+            yield "chips of rounded or chamfered tips: leave out tip_rounding and tip_chamfer, or the chips"
     if any(case.pits) and not row.pits:
         nouns = next(pit for pits in case.pits for pit in pits)._nouns[1]
         yield f"{nouns} with {method}, a transverse section: use {having('pits')}"

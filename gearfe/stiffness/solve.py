@@ -20,7 +20,7 @@ from .curve import StiffnessCurve
 from .methods import METHODS, Method, current
 from .methods import NAMES as METHOD_NAMES
 from .own_flexibility import OwnFlexibility
-from .phases import LONG, SPANS, phase_array
+from .phases import LONG, SPANS, check_phases, phase_array
 from .plausible import check_plausible
 from .pose import SHIFT, in_pose
 from .turns import over_turns
@@ -132,6 +132,7 @@ class Solve:
             raise ValueError(f"order = {order!r}, but give a whole number from 2 to 8, or None for that of the method")
         if self.variants is not None and not isinstance(self.variants, Mapping):
             raise ValueError(f"variants = {self.variants!r}, but give a dict: {{'foundation': 'none'}}")
+        check_phases(self.phases)
         for name in ("phases", "variants"):
             object.__setattr__(self, name, frozen(getattr(self, name)))
 

@@ -22,6 +22,7 @@ from .tip_response import fe_response, ritz_response
 
 NEIGHBOURS = 1  # teeth to either side whose loads count
 PHASES = 97  # places of the pair between the first contact of one neighbour and the last of the other
+SHORTEST = 1e-3  # least growth of a step [modules]
 LOADINGS = ("engagement", "single")
 METHODS = ("auto", "ritz", "fe")
 
@@ -75,7 +76,7 @@ class Growth:
 
     Attributes
     ----------
-    cracks : tuple of Crack
+    cracks : tuple of Crack, shape (n,)
         At each step, the first as it was given.
     length : ndarray, shape (n,)
         Of the crack [mm].
@@ -173,8 +174,8 @@ def grow_crack(
     index = [name for name, _ in SIDES].index(side)
     gear = (case.pair.gear_1, case.pair.gear_2)[index]
     step = 0.1 * gear.m_n if step is None else number("step", step)
-    if not 0 < step <= gear.m_n:
-        raise ValueError(f"step = {step} mm, but it is positive and at most a module, {gear.m_n:g} mm")
+    if not SHORTEST * gear.m_n <= step <= gear.m_n:
+        raise ValueError(f"step = {step} mm, but give {SHORTEST * gear.m_n:g} to {gear.m_n:g} mm, one module at most")
     if gear.beta or not crack.through:
         raise ValueError("grow_crack is for spur gears and cracks through the whole width, because it solves a section")
     loads = _loads(case, index) if model.loading == "engagement" else _single(case, index)

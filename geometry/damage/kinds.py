@@ -62,6 +62,22 @@ def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     return weakens, removes
 
 
+def check_broken(gear, defects):
+    """Raise ValueError for other damage of a broken tooth, invalid chips, and two missing teeth side by side."""
+    broken = [defect for defect in defects if isinstance(defect, BROKEN)]
+    gone = sorted({one.tooth % gear.z for one in broken if isinstance(one, MissingTooth)})
+    for one in broken:
+        if isinstance(one, Chip):
+            one.cut(gear)
+        for defect in defects:
+            if defect != one and (defect.tooth - one.tooth) % gear.z == 0:
+                said = "is missing" if isinstance(one, MissingTooth) else "has a chip"
+                raise ValueError(f"tooth {one.tooth} of z = {gear.z} {said} and has a {defect._nouns[0]}: give one of them")
+    for tooth in gone:
+        if (tooth + 1) % gear.z in gone:
+            raise ValueError(f"teeth {tooth} and {tooth + 1} of z = {gear.z} are missing: of neighbours only one may be missing")
+
+
 def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> str:
     """Return a description of the damage of gears: the size for one of a type, the number for several."""
     by_noun: dict[str, list[str]] = {}

@@ -16,7 +16,8 @@ import numpy as np
 # for points on one circle depends on their last digits. Gears of different size must have equal coordinates in it.
 SEEN, DECIMALS = 50.0, 8
 
-TOUCHED = [getattr(signal, name) for name in ("SIGILL", "SIGFPE", "SIGBUS", "SIGSEGV", "SIGPIPE") if hasattr(signal, name)]
+NAMES = ("SIGILL", "SIGFPE", "SIGBUS", "SIGSEGV", "SIGPIPE", "SIGTERM", "SIGHUP")
+TOUCHED = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
 
 _turn = threading.Lock()
 
@@ -54,7 +55,8 @@ def _handlers_kept():
     """Restore the signal handlers of the process.
 
     gmsh loads PETSc, which resets some handlers to the system's default. A dead worker would then end the process that writes to
-    it by SIGPIPE, and faults of other libraries would not be reported. Python's `signal` only works in the main thread.
+    it by SIGPIPE, and faults of other libraries would not be reported. A terminated program would leave its temporary files.
+    Python's `signal` only works in the main thread.
     """
     if os.name != "posix":
         yield

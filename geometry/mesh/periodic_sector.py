@@ -9,7 +9,7 @@ from skfem import MeshTri2
 from ..damage.crack import check_sector, meshed_path, start_arc
 from ..tooth.gear import Gear
 from ..tooth.profile import cartesian, lengths
-from .outline import along, doubled, half, spaced, stations
+from .outline import Half, along, doubled, half, spaced, stations
 from .section_mesh import CRACK_EDGE, fill
 
 # longest edges in modules: flanks, fillets, root and tip, sides; on the held circle of a ring as many to a pitch as `RIM`
@@ -39,11 +39,11 @@ class PeriodicSector:
     seams: tuple = ()
 
 
-def periodic_sector(gear, cracks=(), *, refine=1.0):
+def periodic_sector(gear, cracks=(), *, missing=False, refine=1.0):
     """Mesh one pitch sector of a gear; `refine` divides the edge lengths.
 
     `cracks` ``(Crack, ...)`` are those of its tooth, whatever tooth they name; one to a side at most. The sides and the held edge
-    of the sector are the same with and without them.
+    of the sector are the same with and without them. A `missing` tooth leaves the root circle and no flanks.
 
     ValueError if a crack is too short, leaves the sector, or shares its side with another.
     """
@@ -59,8 +59,11 @@ def periodic_sector(gear, cracks=(), *, refine=1.0):
         tip = min(CRACK_EDGE * FILLET * unit, length / 5)
         marks[crack.side] = start_arc(gear, crack), min(FILLET * unit, length / 4)
         lines[crack.side] = along(corners, marks[crack.side][1], tip, FILLET * unit)[:, 1:]
-    roll = stations(gear, FLANK * unit)
-    right, left = (half(gear, roll, FILLET * unit, COARSE * unit, mark=marks.get(side)) for side in SIDES)
+    roll = np.zeros(0) if missing else stations(gear, FLANK * unit)
+    right, left = (
+        _bare(gear, FILLET * unit) if missing else half(gear, roll, FILLET * unit, COARSE * unit, mark=marks.get(side))
+        for side in SIDES
+    )
     parts = _parts(gear, right, left, refine)
     r, a = (np.concatenate([part[k][:-1] for part in parts]) for k in (0, 1))
     first = np.cumsum([0, *(part[0].size - 1 for part in parts)]) // 2
@@ -70,6 +73,13 @@ def periodic_sector(gear, cracks=(), *, refine=1.0):
     below, _, _, beyond, held = ((np.arange(first[k], first[k + 1] + 1)) % first[-1] for k in range(5))
     flanks = (first[2] + right.flank)[::-1], (first[2] - left.flank)[::-1]
     return PeriodicSector(gear, mesh, below, beyond[::-1], held[::-1], flanks, roll, tuple(faces))
+
+
+def _bare(gear, size):
+    """Half a pitch of the root circle, in place of half a tooth."""
+    pitch = math.pi / gear.z
+    angle = doubled(np.linspace(0.0, pitch, math.ceil(gear.r_f * pitch / size) + 1))[:-1]
+    return Half(np.full(angle.size, gear.r_f), angle, np.zeros(0, dtype=int), np.zeros(0, dtype=int), None)
 
 
 def _parts(gear, right, left, refine):

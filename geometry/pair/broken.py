@@ -28,13 +28,21 @@ def pair_at(pair: GearPair, broken: Sequence[Any], order: int) -> GearPair | Non
     return with_tips(pair, ends) if any(found) else pair
 
 
-def touching_each(pair_of: Callable[[int], GearPair], order: NDArray, nominal: NDArray) -> Touch:
-    """`touching` of sections ``(n,)`` of the tooth pairs `order`, each with its own tips."""
+def each_pair(pair_of: Callable[[int], GearPair], order: NDArray, found_of: Callable[[GearPair, Any], Touch]) -> Touch:
+    """Return the `Touch` of sections ``(n,)`` of the tooth pairs `order`, each with its own tips.
+
+    ``found_of(pair, on)`` solves the sections `on`, an index or a mask, with the tips of `pair`.
+    """
     numbers = np.unique(order).tolist()
-    found = touching(pair_of(numbers[0]), nominal)
+    found = found_of(pair_of(numbers[0]), slice(None))
     for number in numbers[1:]:
         if pair_of(number) != pair_of(numbers[0]):
             on = order == number
-            for values, own in zip(found, touching(pair_of(number), nominal[on]), strict=True):
+            for values, own in zip(found, found_of(pair_of(number), on), strict=True):
                 values[..., on] = own
     return found
+
+
+def touching_each(pair_of: Callable[[int], GearPair], order: NDArray, nominal: NDArray) -> Touch:
+    """`touching` of unmodified sections ``(n,)`` of the tooth pairs `order`, each with its own tips."""
+    return each_pair(pair_of, order, lambda pair, on: touching(pair, nominal[on]))

@@ -4,7 +4,6 @@ With material C1 removed at a point of the pinion's flank, this point is on the 
 deviation rotates the whole flank. In the terms of `geometry.pair.contacts` the involute through that point crosses the line of
 action at ``n1 = n + delta / 2 - C1`` and the wheel's at ``n2 = n - delta / 2 + C2``. A pinion point at roll length rho, opposite
 the wheel's point at rho2, therefore touches at the approach::
-which faces the wheel's point at rho2, touches at the approach::
 
     delta(rho) = C1(rho) + C2(rho2) + D(n + delta / 2 - C1(rho))
 
@@ -43,15 +42,22 @@ def flank_contacts(
     plain = contacts(pair, phase, extended=extended)
     if flanks is None:
         return plain
+    order, touch = np.broadcast_to(plain.order, plain.gap.shape), Touch(*(getattr(plain, name) for name in Touch._fields))
+    return Contacts(plain.order, plain.nominal, *touching_modified(pair, flanks, plain.nominal, order, touch))
+
+
+def touching_modified(
+    pair: GearPair, forms: tuple[FlankForm, FlankForm], nominal: Floats, order: NDArray[np.int64], plain: Touch
+) -> Touch:
+    """Return the first contact of modified flanks where the unmodified ones meet, in arrays of any shape; see `first_touch`."""
     meets, empty = np.isfinite(plain.gap), np.full(plain.gap.shape, np.inf)
-    touch = first_touch(pair, flanks, plain.nominal[meets], np.broadcast_to(plain.order, meets.shape)[meets], plain.gap[meets])
     out = Touch(
         plain.roll_1.copy(), plain.roll_2.copy(), empty, np.zeros(meets.shape, dtype=int), np.full_like(plain.corner_gap, np.inf),
         np.full_like(plain.corner_roll, np.nan), np.ones(meets.shape),
     )  # fmt: skip
-    for values, met in zip(out, touch, strict=True):
+    for values, met in zip(out, first_touch(pair, forms, nominal[meets], order[meets], plain.gap[meets]), strict=True):
         values[..., meets] = met
-    return Contacts(plain.order, plain.nominal, *out)
+    return out
 
 
 def first_touch(

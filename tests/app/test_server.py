@@ -166,6 +166,15 @@ def test_what_is_too_large_is_not_read(client):
     assert client("/task/load", chunk, Content_Length="9", Transfer_Encoding="chunked")[0] == 411
 
 
+def test_a_client_that_hangs_up_within_its_request_leaves_no_traceback(client, caplog):
+    for _ in range(3):
+        line = socket.create_connection(client.socket.getsockname())
+        line.sendall(f"POST /task/quick HTTP/1.1\r\nHost: {client.host}\r\nContent-Length: 99\r\n\r\n{{".encode())
+        line.close()
+    assert client("/form")[0] == 200
+    assert not [record for record in caplog.records if record.exc_info]
+
+
 @pytest.mark.parametrize("text", ["", "a = [" * 5000, "\x00", "z = 1\n" * 9000, None, 3])
 def test_a_scene_that_is_none_is_refused_and_the_page_lives(client, text):
     assert "refused" in client.last("load", name="x.toml", text=text)

@@ -16,6 +16,12 @@ SCENE = gf.load_scene("compound_planetary")
 
 
 @pytest.fixture(scope="module")
+def alarms(found):
+    """Lines of the fault that stand out of spectrum or envelope of the last case; empty if it shows nothing."""
+    lines = [name for name in found.standing() if "f_fault" in name]
+    return [*lines, *(f"{name} of the envelope" for name in found._demodulated()[1])] if found.fault else []
+
+
 def found():
     return responses(SCENE, "crack50", duration=1.0, phases=32)
 
@@ -54,7 +60,7 @@ def test_a_healthy_machine_is_told_without_a_fault(found):
     twice = analysis({"healthy": found["healthy"], "the same": found["healthy"]})
     assert not [name for name in twice.standing() if "f_fault" in name or "f_r" in name]
     assert "fewer than 2 lines of the fault have" in twice.envelope()[1]
-    assert twice.alarms() == []
+    assert alarms(twice) == []
 
 
 def _noisy(seed, sideband=0.0):
@@ -87,7 +93,7 @@ def test_run_out_is_no_fault_but_pulses_are():
 
     turning = 0.4 * np.cos(2 * np.pi * 36 * time)
     pulses = 2.0 * (time * 36 % 1 < 0.1)
-    one, many = (analyse(heard(rise), 252.0, 36.0).alarms() for rise in (turning, pulses))
+    one, many = (alarms(analyse(heard(rise), 252.0, 36.0)) for rise in (turning, pulses))
     assert one == []
     assert {"f_fault of the envelope", "2 f_fault of the envelope", "3 f_fault of the envelope"} <= set(many)
 
@@ -108,7 +114,7 @@ def test_mesh_forces_carry_the_torque(found):
 def test_what_cannot_run_is_refused():
     with pytest.raises(ValueError, match="has no \\[machine\\] table"):
         gf.build_machine(replace(SCENE, machine={}))
-    with pytest.raises(ValueError, match="no case 'x'; it has crack10"):
+    with pytest.raises(ValueError, match="no case 'x'; it has broken, crack10"):
         gf.build_machine(SCENE, "x")
     with pytest.raises(ValueError, match="must be one of planetary"):
         gf.build_machine(replace(SCENE, machine=SCENE.machine | {"model": "turbine"}))

@@ -31,14 +31,14 @@ GEARS = [SUN, pytest.param(RING, marks=pytest.mark.slow)]
 BOTH = (gf.Crack(level=0.4), gf.Crack(level=0.3, side="unloaded", tooth=2))
 
 
-def direct(gear, cracks, teeth, monkeypatch, support=None):
+def direct(gear, cracks, teeth, monkeypatch, support=None, broken=()):
     """Displacements of unit loads on `teeth`, faces free and in contact, edge held and on pads; nodes of its rim moved there."""
     ends = pads_ends(gear, support)[0] if support else [0.0]
     monkeypatch.setattr(section_mesh, "held_circle", lambda gear: _marked(gear, ends, 0.01, 0.4))
     roll = (gear.roll_f + gear.roll_a) / 2
     rolls = stations(gear, 0.3)
     rolls[np.argmin(abs(rolls - roll))] = roll
-    made = section(gear, dict.fromkeys(teeth, rolls), fillet_size=0.15, size=0.5, far_size=0.8, cracks=cracks)
+    made = section(gear, dict.fromkeys(teeth, rolls), fillet_size=0.15, size=0.5, far_size=0.8, cracks=cracks, broken=broken)
     stiffness, places = HeldSection(made.mesh, STEEL).stiffness(), made.mesh.doflocs
     load, count = np.zeros((stiffness.shape[0], len(teeth))), len(teeth)
     for k, tooth in enumerate(teeth):
@@ -47,7 +47,7 @@ def direct(gear, cracks, teeth, monkeypatch, support=None):
         at = np.abs(places - cartesian(radius, angle + turn)[:, None]).max(axis=0).argmin()
         x, y = -flank_normal(gear, roll)
         load[2 * at, k], load[2 * at + 1, k] = math.cos(turn) * x + math.sin(turn) * y, math.cos(turn) * y - math.sin(turn) * x
-    load = np.hstack([load, face_columns(made).toarray()])
+    load = np.hstack([load, face_columns(made).toarray()]) if cracks else load
     edge = np.flatnonzero(np.abs(np.hypot(*places) - gear.held) < 1e-9 * gear.held)
     angle, out, moved = np.arctan2(*places[:, edge]), [], np.zeros(load.shape)
     for nodes in (edge, *([edge[support.covers(gear, places[:, edge])]] if support else [])):
@@ -61,6 +61,8 @@ def direct(gear, cracks, teeth, monkeypatch, support=None):
 
 def in_contact(free, opening, ease):
     """Displacements under each load alone ``(n, n)`` if faces with openings ``(m, n)`` and `ease` ``(m, m)`` do not overlap."""
+    if not ease.size:
+        return free
     upper = cholesky(ease)
     pushed = [nnls(upper, -solve_triangular(upper, column, trans="T"))[0] for column in opening.T]
     return free + opening.T @ np.array(pushed).T

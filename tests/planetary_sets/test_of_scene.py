@@ -82,7 +82,7 @@ def test_flanks_and_cracks_are_those_of_the_gears(tmp_path):
     [
         ("", "broken", "no case 'broken' in the set of scene s; it has cracked"),
         ('[[spall]]\ncase = "x"\ngear = "sun"\nradius_mm = 21\nz_mm = 10\nsides_mm = [1, 2]\ndepth_mm = 0.1\n', "x",
-         "case 'x' has a spall, but the section of a set has cracks only"),
+         "case 'x' has a spall, but the section of a set has no pits or spalls"),
         ('[support.a]\ngear = "sun"\nradial_N_per_um = 100\n', None, r"pair 'sun_planet' has shafts, springs or misalignment"),
     ],
 )  # fmt: skip

@@ -25,7 +25,7 @@ ROWS = [
     ("abc", "average: values .* type <U3"),
     (None, "average: values .* type object"),
     (3.0, r"average: values of shape \(\)"),
-    ([[1.0], [1.0, 2.0]], "average: give a row of real numbers"),
+    ([[1.0], [1.0, 2.0]], "(average|before) = .*give rows of one length"),
 ]
 COUNTS = [(24.0, "give teeth = 24$"), (24.5, "must be a whole number"), (True, "teeth = True"), ("24", "teeth = '24'"),
           (None, "teeth = None"), (-3, "teeth = -3"), (10**30, "teeth = 1000"), (math.nan, "teeth = nan")]  # fmt: skip

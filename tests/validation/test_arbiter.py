@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from unloaded import gaps
 
 import gearfe as gf
 from gearfe.geometry.pair.contacts import approach
@@ -14,7 +15,6 @@ from validation.shared.arbiter.elements import gradients, solver, stiffness
 from validation.shared.arbiter.outline import Outline
 from validation.shared.arbiter.pressing import complementary, pressed
 from validation.shared.arbiter.touching import Press, stand, touching
-from validation.shared.arbiter.unloaded import gaps
 
 RACK = {"m_n": 2.5, "alpha_n": math.radians(20), "b": 1.0}
 STEEL = (206e3, 0.3)

@@ -7,14 +7,13 @@ import warnings
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from unloaded import LIMIT, TABLE, compared, gaps, one_pair, unloaded
 
 import gearfe as gf
 from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.tooth.profile import cartesian, flank
 from validation.shared.arbiter.cases import random_pair
 from validation.shared.arbiter.outline import Outline
-from validation.shared.arbiter.unloaded import compared, gaps, unloaded
-from validation.shared.arbiter.unloaded_table import LIMIT, TABLE, one_pair
 
 RACK = {"m_n": 2.5, "alpha_n": math.radians(20), "b": 1.0}
 

@@ -5,9 +5,9 @@ import numpy as np
 import gearfe as gf
 from gearfe.core.case import overlap
 
-from .herringbone_contact_line import OFFSETS
 from .kept_rows import kept
 
+OFFSETS = (-0.25, -0.12, -0.09, -0.06, -0.03, 0.0, 0.03, 0.06, 0.09, 0.12, 0.25)  # base pitches from the pitch point
 SCENES = ("herringbone", "herringbone_contact_line")
 FAULTS = ("both", "crack", "pits")
 CLOSE = 0.1  # relative to the crack alone

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from . import outlines_three, page
-from .arbiter import kept, unloaded_table
+from . import page
+from .arbiter import kept
 from .arbiter.beside import beside
 from .arbiter.cases import fresh
 
@@ -29,8 +29,10 @@ stiff, which is not understood; their estimates of 0.7 to 1.0 % know it. The fle
 pointed tooth: with `refine=2` it is 0.09 % off. Away from corners the largest differences are of heavy loads: 14/13 (26/48,
 200 N/mm at a module of 1 mm) -0.20 % with `ritz`, -0.08 % at a tenth of the load.
 
-`python -m validation outlines` makes this page; `... outlines --reference` computes the gaps and presses the cases, with the
-geometry alone, and has CalculiX press the pairs in three dimensions.
+Gaps without load of 1000 pairs: [outlines_unloaded.md](outlines_unloaded.md). Undercut pairs in three dimensions:
+[outlines_three.md](outlines_three.md).
+
+`python -m validation outlines` makes this page; `... outlines --reference` presses the cases, with the geometry alone.
 
 """
 
@@ -42,10 +44,9 @@ once, after the last change above. Differences in per cent.
 """
 
 
-def write(again=False):
-    """Write the page; `again`: compute the rows of `ritz3d` again."""
-    outlines_three.refresh(again)
-    parts, answers = [INTRODUCTION, unloaded_table.section()], []
+def write():
+    """Write the page."""
+    parts, answers = [INTRODUCTION], []
     for method in METHODS:
         rows = [(row, found) for row, found in beside(method)]
         refused = sorted({f"{row['pair']}: {found['refused']}" for row, found in rows if "refused" in found})
@@ -73,7 +74,7 @@ def write(again=False):
                 f"{found['estimate']:.3f} | {row['places']} |\n"
             )
         parts.append("\n" + "".join(f"Refused: {text}\n" for text in refused) + "\n")
-    parts += [_fresh(), outlines_three.section()]
+    parts.append(_fresh())
     answer = (
         f"At {off.size} phases at which tooth pairs off the path come near, {' and '.join(answers)} differ from whole "
         "outlines pressed together by an arbiter that shares none of gearfe's contact."

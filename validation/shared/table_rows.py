@@ -17,13 +17,6 @@ def write_table(table, header, rows):
         out.writerows([f"{x:.6g}" if isinstance(x, float) else x for x in row] for row in rows)
 
 
-def append(table, header, row):
-    """Append a row to a CSV table, which begins with its header."""
-    lines = [row] if table.exists() else [header, row]
-    with table.open("a", encoding="utf-8", newline="") as file:
-        csv.writer(file, lineterminator="\n").writerows(lines)
-
-
 def rows_of(table):
     """Rows of a CSV table, dicts of texts; none if there is no table."""
     if not table.exists():

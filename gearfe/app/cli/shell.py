@@ -66,8 +66,12 @@ def as_options(error, options):
     return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda match: f"--{match[1]}", text)
 
 
+_ended: list[int] = []  # exit code of a termination; libraries in C++ turn the exception into a RuntimeError
+
+
 def _end_tidily(number, _):
     """Exit by an exception, so that temporary files are removed."""
+    _ended.append(128 + number)
     raise SystemExit(128 + number)
 
 
@@ -94,6 +98,8 @@ def run(work, options=()):
         tell(f"interrupted; nothing half-written is left{resumed}")
         return 130
     except (ValueError, RuntimeError) as error:
+        if _ended:
+            return _ended.pop()
         tell(as_options(error, options))
         return 1
     except MemoryError as error:

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -79,7 +78,7 @@ class Shaft:
             )
         object.__setattr__(self, "bearings", _two("bearings", self.bearings, "positions [mm]"))
         stiff = self.bearing_stiffness
-        stiffnesses = (stiff, stiff) if isinstance(stiff, Real) else stiff
+        stiffnesses = (stiff, stiff) if is_number(stiff) else stiff
         object.__setattr__(self, "bearing_stiffness", _two("bearing_stiffness", stiffnesses, "stiffnesses [N/mm]", least=0.0))
         if not hasattr(self.material, "shear_modulus"):
             raise ValueError(f"shaft: material = {self.material!r}, but give a Material")

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from ...geometry.pair.gear_pair import GearPair
 from .gear_mesh import GearMesh
-from .mesh_curves import Stiffness
+from .mesh_curves import Stiffness, cycle_table
 from .tables import Machine
 from .tooth_damage import ToothDamage
 
@@ -34,6 +34,11 @@ class BackFlanks:
     start: float
     stiffness: Stiffness | None = None
     damage: tuple[ToothDamage, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Raise ValueError unless the stiffness is finite and not negative."""
+        if self.stiffness is not None:
+            cycle_table(self.stiffness)
 
 
 def back_phase(pair: GearPair) -> float:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from ...core.checks import numbers, whole
 from ...core.record import ranged
+from ...core.steps import steps
 from ...geometry.aliases import Floats
 from .modes import natural_frequencies
 from .tables import Machine
@@ -101,7 +102,7 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     for name, value in named.items():
         ranged(f"order {name}", value, " Hz", above=0.0)
     if machine.spin or machine.rotors:
-        natural = np.array([natural_frequencies(_at_speed(machine, factor))[0] for factor in speed])
+        natural = np.array([natural_frequencies(_at_speed(machine, factor))[0] for factor in steps(speed)])
     else:
         natural = np.tile(natural_frequencies(machine)[0], (speed.size, 1))
     return Campbell(speed, natural, named, tuple(sorted(_crossings(speed, natural, named))))

@@ -19,9 +19,14 @@ ROUNDS = 6  # maximum number of refinements
 
 @dataclass(frozen=True, slots=True)
 class LawError:
-    """Interpolation errors of a mesh force law, relative to the force: maximum and RMS over phases and loads.
+    """Interpolation errors of a mesh force law, relative to the force.
 
-    `loads` between the loads solved, `phases` between the phases, `loads_rms` and `phases_rms` likewise.
+    Attributes
+    ----------
+    loads, phases : float
+        Largest error between the loads solved, and between the phases.
+    loads_rms, phases_rms : float
+        RMS of these errors over phases and loads.
     """
 
     loads: float

@@ -1,7 +1,8 @@
 """Stiffness over the mesh phase as tables, and its changes by damaged teeth."""
 
 from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,8 +16,17 @@ from .phase_table import SMOOTH, PhaseTable, smooth_table, table
 FINE = 1024  # samples per cycle that curves on uneven phases are brought to
 
 
-class Samples(NamedTuple):
-    """Stiffness `k` [N/m^power] at phases from other sources: contact coefficients, or curves of other programs."""
+@dataclass(frozen=True, slots=True)
+class Samples:
+    """Stiffness at phases from other sources: contact coefficients, or curves of other programs.
+
+    Parameters
+    ----------
+    phase : ndarray, shape (n,)
+        Mesh phases.
+    k : ndarray, shape (n,)
+        Stiffness there [N/m^power]; of errors their values [m].
+    """
 
     phase: Floats
     k: Floats

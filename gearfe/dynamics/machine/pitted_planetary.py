@@ -6,9 +6,8 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
-from ...core.record import ranged
+from ...core.checks import numbers
+from ...core.record import check_keys, ranged
 from ...geometry.pair.planetary import PlanetarySet
 from .contact_cycle import friction_weights
 from .loads import History
@@ -97,6 +96,7 @@ def pitted_planetary(
     hurt = teeth_damaged(damage, stage_meshes(phases))
     fields = {name: phases[name] | {"damage": hurt[name]} | mesh for name in phases}
     if friction is not None:
+        check_keys("friction", friction, ("static", "dynamic", "v_static", "v_dynamic"))
         weights = friction_weights(outer, (speed - turn, -(speed - turn) * sun.z / planet.z), **friction)
         fields |= {name: own | {"rubbing": weights} for name, own in fields.items() if name.startswith("sun")}
     member = {name: gear_member(gear, density, bearing) for name, gear in (("sun", sun), ("planet", planet), ("ring", ring))}
@@ -127,4 +127,7 @@ def scene_planetary(scene, case, **options):
 def _against(value):
     if callable(value):
         return lambda t: -value(t)
-    return -value if np.ndim(value) == 0 else (value[0], -np.asarray(value[1]))
+    history = isinstance(value, (tuple, list)) or getattr(value, "ndim", 0) == 2
+    times, torques = value if history and len(value) == 2 else (None, value)
+    torques = -numbers("carrier_torque", torques, " N m")
+    return torques if times is None else (times, torques)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ...core.checks import numbers, whole
 from ...core.record import check_keys, check_named, ranged
+from ...geometry.checks import WrongTypeError, shown
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
 from ...geometry.renamed import renamed
@@ -108,12 +109,18 @@ def planetary(
             ("planet_ring", name, "ring", (member.r_b, ring.r_b), -1, True),
         ):
             place: dict[str, Any] = {"angle": angle, "alpha": alpha[inside], "sense": sense, "internal": inside}
-            fields = {} if mesh is None else dict(mesh(kind, i))
+            fields = {} if mesh is None else _fields(mesh(kind, i))
             if weights := fields.pop("rubbing", None):
                 fields["friction"] = tuple(zip(layout.rubbing(body_1, body_2, **place), weights, strict=True))
             meshes.append(GearMesh(f"{kind}{i + 1}", layout.mesh(body_1, body_2, radii=r, **place), stiffness[kind], **fields))
     torques = tuple(Load(f"{name} torque", layout.unit(name, "theta"), value) for name, value in (loads or {}).items())
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), torques, spin=spin)
+
+
+def _fields(given):
+    if not isinstance(given, Mapping):
+        raise WrongTypeError(f"mesh returns {shown(given)}, but it must return a dict of fields of GearMesh")
+    return dict(given)
 
 
 def angles_of_planets(n_planets: int, planet_angles: Sequence[float] | None = None) -> NDArray:

@@ -18,6 +18,7 @@ from .springs import Spring
 from .stages import Fault, Stage
 from .turning_frame import frame_terms
 
+FASTEST = 1e6  # spin of a carrier [rad/s]: beyond any machine
 TOUCH = 1e-12  # compression at which the tangent of a force law without load is taken [m]
 
 
@@ -104,6 +105,8 @@ class Machine:
         K, C = (R.T @ (np.array([getattr(s, key) for s in self.springs])[:, None] * R) for key in "kc")
         frame = np.zeros((n, n))
         settle_numbers(self, "machine", "spin", " rad/s")
+        if abs(self.spin) > FASTEST:
+            raise ValueError(f"machine: spin = {self.spin:g} rad/s, but give at most {FASTEST:g} rad/s")
         if self.spin or self.rotors:
             gyroscopic, centripetal, circulatory = frame_terms(self.dofs, mass, self.springs, self.spin, self.rotors)
             frame, C = centripetal + circulatory, C + gyroscopic

@@ -13,6 +13,8 @@ from ...signal.series import Signal
 from .response import Response
 from .transfer_path import through_modes
 
+LEAST = 1e-15  # of the numbers of a ring; beyond 1e15 powers of them overflow
+
 
 @renamed(places="planet_angles")
 def housing_signal(
@@ -140,7 +142,8 @@ def ring_window(radius: float, bending: float, foundation: float) -> Callable[[F
     on the flexural vibrations of a circular ring.
     """
     for name, value in {"radius": radius, "bending": bending, "foundation": foundation}.items():
-        ranged(name, value, above=0.0)
+        if not LEAST < ranged(name, value, above=0.0) < 1 / LEAST:
+            raise ValueError(f"{name} = {value:g}, but give a number between {LEAST:g} and {1 / LEAST:g} in SI units")
     n = np.arange(1, 400)
     share = 1 / (bending * (n**2 - 1.0) ** 2 / radius**3 + foundation * radius)
     share = share / share.sum()

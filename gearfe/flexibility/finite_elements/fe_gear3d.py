@@ -13,10 +13,12 @@ from ...geometry.damage.kinds import BROKEN
 from ...geometry.tooth.gear import Gear
 from ..halfspace import half_space
 from ..solid import Faces, hats, own_distance, parted, solved_teeth
+from . import solver
 from .crack_zones import zone_forces
 from .fe3d import Patches, influence, mesh_patches, planned
 from .integral import integral_influence, on_stubs
 
+FEWEST = 60_000  # unknowns of a gear at refine 1, at least; they grow with its power 2.5 to 3
 LOST = 2  # number of the highest axial degrees that may be dropped if the layers do not resolve them
 RESOLVED = 0.05  # limit of the error of a mesh that is too stiff, as a part of the half-space's displacement
 PER_HAT = 4  # edges across a hat
@@ -74,6 +76,7 @@ class MeshedGear:
         gear, refine = self.gear, self.refine
         if not (math.isfinite(refine) and refine > 0):
             raise ValueError(f"refine = {refine}, but it divides the edge lengths: give a positive number")
+        solver.plan(int(FEWEST * max(refine, 1.0) ** 2.5))  # what no memory holds is not meshed
         degree = (axial_modes(gear.b, gear.m_n) if self.degree is None else self.degree) - self.less
         broken = tuple(one for one in self.damage if isinstance(one, BROKEN))
         own = {one.tooth % gear.z: hats(loaded_side(gear, broken, one.tooth)) for one in broken}

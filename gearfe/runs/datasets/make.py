@@ -127,6 +127,7 @@ def plan_dataset(plan: StrPath | Mapping[str, Any], folder: StrPath = ".", worke
 
     ValueError if the plan is invalid, like `gearfe.dataset`.
     """
+    check_workers(workers)
     checked = read_plan(plan)
     every = conditions(checked)
     check_machine(checked)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...core.extras import needing
 from ...core.files import written
+from ...core.record import check_keys
 from ...geometry.aliases import StrPath
 from ..store.folder import COUNT, read_about
 from ..store.shards import arrow, fields_of, frame, opened, read, shard_names
@@ -31,6 +32,10 @@ class Dataset:
 
     folder: Path
     about: dict[str, Any]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError if the title is missing."""
+        check_keys("Dataset: about", self.about, ("title",))
 
     def __repr__(self):
         """One line: title, how many windows, where."""

@@ -17,7 +17,7 @@ from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.solve import Solve, solve
 from ..batches import batch
 from .space import Space, space_of
-from .surrogate import Surrogate
+from .surrogate import ERRORS, Surrogate
 from .zoned import DEGREE, breaks_of, phases_of, piece_of, series_of
 
 FEWEST, MOST = 16, 20_000  # cases of a fit
@@ -100,7 +100,7 @@ def fit_surrogate(
         "left out, rms of ln k": left_out, "seconds": time.perf_counter() - started, "seconds_cases": sum(done.seconds),
         "curve": fitted[0]["meta"],
     }  # fmt: skip
-    blank = Surrogate(space, powers, weights, {}, np.zeros(fitted[0]["breaks"].size - 1), meta)
+    blank = Surrogate(space, powers, weights, dict.fromkeys(ERRORS, 0.0), np.zeros(fitted[0]["breaks"].size - 1), meta)
     error, worst = held_back_error(blank, fresh, judged)
     return Surrogate(space, powers, weights, error, worst, meta)
 

@@ -9,6 +9,7 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.files import Content, check_output, read_npz, save_as
+from ...core.record import check_keys
 from ...geometry.aliases import Floats, StrPath
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.tooth.gear import Gear
@@ -18,6 +19,7 @@ from .space import Space, space_of
 from .zoned import DEGREE, at, piece_of
 
 TITLE = "gearfe surrogate, version 1"
+ERRORS = ("mean", "worst", "cases")  # that its line shows
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +57,10 @@ class Surrogate:
     error: dict[str, float]
     worst: Floats
     meta: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Raise ValueError if an error is missing."""
+        check_keys("Surrogate: error", self.error, ERRORS)
 
     def __repr__(self):
         """One line: ranges and error."""

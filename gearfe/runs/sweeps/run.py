@@ -124,6 +124,7 @@ def plan_sweep(study: StrPath | Mapping[str, Any], folder: StrPath = ".", *, wor
     >>> plan_sweep(study).cases
     2
     """
+    check_workers(workers)
     checked = read_study(study)
     every, fields = blocks(checked)
     small, chosen = slim(checked), every[len(every) // 2]

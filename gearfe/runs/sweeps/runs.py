@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...core.extras import needing
+from ...core.record import check_keys
 from ...geometry.aliases import StrPath
 from ..store.folder import COUNT, read_about
 from ..store.shards import ShardColumn, fields_of, frame, opened, read, shard_names
@@ -34,6 +35,10 @@ class Runs:
     folder: Path
     about: dict[str, Any]
     fields: dict[str, ShardColumn]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError if a description is missing."""
+        check_keys("Runs: about", self.about, ("title", "cases", "study"))
 
     def __repr__(self):
         """Return one line: the study and the number of finished cases."""

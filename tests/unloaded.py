@@ -1,4 +1,7 @@
-"""Gaps of `gearfe.geometry.pair.contacts` beside those of whole outlines, where either is near contact."""
+"""Gaps of `gearfe.geometry.pair.contacts` without load compared with those of whole outlines, where either is near contact.
+
+The rows of the frozen page `outlines_unloaded` and of its table are those of `one_pair`.
+"""
 
 import math
 import warnings
@@ -6,12 +9,15 @@ import warnings
 import numpy as np
 
 from gearfe.geometry.pair.modified import flank_contacts
-
-from .cases import PHASES, random_pair
-from .outline import Outline
-from .touching import Press, orders, stand, touching
+from validation.shared.arbiter.cases import PHASES, random_pair
+from validation.shared.arbiter.outline import Outline
+from validation.shared.arbiter.touching import Press, orders, stand, touching
+from validation.shared.places import TABLES
 
 NEAR = 3e-3  # mm
+TABLE = TABLES / "outlines_unloaded.csv"
+FIELDS = ("seed", "pair", "rows", "largest_difference_um", "phase_48", "order", "gearfe_um", "arbiter_um", "touches", "refused")
+LIMIT = 0.05  # um
 
 
 def gaps(pair, flanks=None, phases=PHASES):
@@ -62,3 +68,14 @@ def unloaded(seeds, phases=PHASES):
             yield from ((seed, name, *row) for row in compared(pair, flanks, phases))
         except ValueError as error:
             yield seed, name, math.nan, 0, math.nan, math.nan, str(error)
+
+
+def one_pair(rows):
+    """Row of the table from all of one pair, as `unloaded` gives them."""
+    seed, name, phase, *_, last = rows[0]
+    if math.isnan(phase):
+        return dict(zip(FIELDS, [seed, name, 0, *[""] * 6, last], strict=True))
+    apart = [0.0 if row[4] == row[5] else abs(row[4] - row[5]) for row in rows]
+    _, _, phase, order, mine, truth, piece = rows[int(np.argmax(apart))]
+    numbers = [f"{max(apart):.3g}", round(48 * phase), order, f"{mine:.6g}", f"{truth:.6g}"]
+    return dict(zip(FIELDS, [seed, name, len(rows), *numbers, piece, ""], strict=True))

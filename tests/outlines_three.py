@@ -1,38 +1,21 @@
 """Undercut helical pairs whose form corners touch, pressed by CalculiX with whole flanks and fillets, and `ritz3d`.
 
-`reference` computes `tables/outlines_three.jsonl` if `ccx` is there, a run at a time.
+`reference` computes `tables/outlines_three.jsonl` of the frozen page `outlines_three` if `ccx` is there, a run at a time.
 """
 
 import math
 
 import gearfe as gf
-
-from . import kept_rows
-from .decks import installed, pressed
-from .outsider import STEEL, told
-from .solid_pair import solid_contact
+from validation.shared import kept_rows
+from validation.shared.decks import installed, pressed
+from validation.shared.outsider import STEEL, told
+from validation.shared.solid_pair import solid_contact
 
 TABLE, OURS = "outlines_three", "outlines_three_ritz3d"  # tables of rows: runs of CalculiX; of `ritz3d`
 LOAD = 600.0  # N/mm
 PHASE = 0.0  # the line of one pair is all before the start of the path: there the form corner counts most
 ASKED = 0.006  # largest difference asked for at corners
 MESHES = ({"per_width": 1.0, "layers": 4}, {"per_width": 1.5, "layers": 4})
-HEAD = f"""
-## Three dimensions
-
-Three undercut helical pairs (m_n 2 mm, x 0, 20 degrees, {LOAD:g} N/mm, both gears held at their bores) at phase {PHASE:g}: the
-whole line of tooth pair 0 lies before the start of the path, where only the edge that undercut leaves on the pinion touches.
-They were chosen before any was pressed; the phase is one of those at which `ritz3d` and its forerunner, which did not know this
-edge, differed most. CalculiX presses whole gears in 20-node hexahedra against each other, turned by the approach that `ritz3d`
-had under the load when CalculiX was run; the pinion's fillets are part of the contact and meshed as finely as its flanks.
-CalculiX knows no path and no corner. Asked for: within {100 * ASKED:g} %. Its k falls as a mesh is refined, so that the
-difference rises; two meshes do not tell the limit. Only the finer one is computed again. `per_width`: edges per Hertz half
-width in the contact zone, on flank and fillet; `layers`: of elements along the width. 'Path alone': `ritz3d` without contact
-off the path.
-
-"""
-NAMES = ("pair", "mesh", "nodes", "`ritz3d` [N/um]", "path alone", "CalculiX", "difference")
-NAMES += ("pair 0, `ritz3d` [N]", "CalculiX [N]", "forces apart", "seconds")
 
 
 def cases():
@@ -97,20 +80,3 @@ def reference():
         return
     for name, mesh, key in wanted():
         kept_rows.kept(TABLE, key, lambda name=name, mesh=mesh: row_of(name, mesh), again=mesh == MESHES[-1])
-
-
-def refresh(again=False):
-    """Compute what `ritz3d` finds in the cases ; `again`: compute it again."""
-    for name in cases():
-        kept_rows.kept(OURS, name, lambda name=name: ours_row(name), again)
-
-
-def section():
-    """Return the section of the page, from the tables alone."""
-    lines = ["| " + " | ".join(NAMES) + " |\n", "|---" * len(NAMES) + "|\n"]
-    for row in stored():
-        cells = [row["case"], row["mesh"], f"{row['nodes']:,}", *(f"{row[name]:.6g}" for name in ("k", "path only", "theirs"))]
-        cells += [f"{100 * (row['k'] / row['theirs'] - 1):+.2f} %", *(f"{row[name]:.6g}" for name in ("carried", "theirs there"))]
-        cells += [f"{100 * row['forces apart']:+.2f} %", f"{row['seconds']:.0f}"]
-        lines.append("| " + " | ".join(cells) + " |\n")
-    return HEAD + "".join(lines)
