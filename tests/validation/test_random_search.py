@@ -5,6 +5,8 @@ import pytest
 from validation.make import random_search as search
 from validation.shared.table_rows import rows_of
 
+pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")  # drawn gears are capped and trimmed
+
 
 def test_every_difference_beyond_the_estimates_has_a_value_of_calculix():
     """The page counts the rows that stay open; CalculiX has decided each row that the outlines do not cover."""
