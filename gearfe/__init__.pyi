@@ -58,6 +58,7 @@ from .dynamics.machine.stages import Fault as Fault
 from .dynamics.machine.stages import Stage as Stage
 from .dynamics.machine.tables import Machine as Machine
 from .dynamics.machine.tooth_damage import ToothDamage as ToothDamage
+from .dynamics.machine.with_set import with_set as with_set
 from .dynamics.motion.dynamic_factor import dynamic_factors as dynamic_factors
 from .dynamics.motion.housing import housing_signal as housing_signal
 from .dynamics.motion.housing import ring_window as ring_window
@@ -101,7 +102,6 @@ from .planetary_sets.rim_supports import RimBed as RimBed
 from .planetary_sets.rim_supports import RimSupports as RimSupports
 from .planetary_sets.shape import plot_planetary_set as plot_planetary_set
 from .planetary_sets.solve import planetary_stiffness as planetary_stiffness
-from .planetary_sets.with_set import with_set as with_set
 from .reports.page import report as report
 from .reports.sweep_page import sweep_report as sweep_report
 from .runs.batches import batch as batch

@@ -32,3 +32,14 @@ def test_bores_move_the_stiffness_as_the_scene_says():
         k.append(gf.mesh_stiffness(pair, one.force, one.materials, method="ritz3d", face=one.face, phases=6).k.mean())
     quoted = f"change the value {k[1] / k[0]:.2f} times"
     assert any(quoted in str(one) for one in gf.load_scene("herringbone").references)
+
+
+@pytest.mark.parametrize("key", ["planetary_pitting sun_planet", "planetary_pitting planet_ring"])
+def test_full_width_changes_the_stiffness_as_the_page_says(key):
+    """Spur pairs of the page of what scenes need: their section against their full width."""
+    scene, name = key.split()
+    case = gf.load_scene(scene).pairs[name].case()
+    used, wide = (gf.solve(case, gf.Solve(method, 16, cache=False)).k.mean() for method in ("auto", "ritz3d"))
+    rows = map(json.loads, (TABLES / "needs.jsonl").read_text(encoding="utf-8").splitlines())
+    known = next(row for row in rows if row["row"] == key)
+    assert_allclose([used, wide / used - 1], [known["k"], known["change"][0]], rtol=1e-3)

@@ -7,6 +7,7 @@ import resource
 import signal
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -224,3 +225,13 @@ def test_a_pdf_embeds_fonts_that_publishers_accept(tmp_path):
     content = (tmp_path / "k.pdf").read_bytes()
     assert b"/Type3" not in content
     assert b"/TrueType" in content or b"/Type0" in content
+
+
+def test_a_zip_archive_is_no_installation(tmp_path):
+    with zipfile.ZipFile(tmp_path / "gearfe.zip", "w") as archive:
+        for name in ("__init__.py", "__init__.pyi"):
+            archive.write(ROOT / "gearfe" / name, f"gearfe/{name}")
+    environment = ENVIRONMENT | {"PYTHONPATH": str(tmp_path / "gearfe.zip")}
+    command = [sys.executable, "-c", "import gearfe"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert "is in a zip archive: unpack it" in done.stderr.splitlines()[-1]

@@ -9,11 +9,14 @@ from ..core.table import Column, Table, stiffness_column
 from ..core.units import NEWTON_PER_UM, in_newton_per_um
 from ..geometry.aliases import Floats
 from ..geometry.damage.kinds import told
+from ..planetary_sets.added import added_compliance
 from ..planetary_sets.case import PlanetaryCase
 from ..planetary_sets.curves import SetCurves
 from ..planetary_sets.faults import first_pass
 from ..planetary_sets.rim_supports import RimBed, RimSupports
 from ..planetary_sets.set_file import MESHES
+from ..scene.load import Scene
+from ..stiffness.curve import StiffnessCurve
 
 COLUMNS = (
     "mesh",
@@ -101,6 +104,18 @@ def told_set(case: PlanetaryCase) -> str:
         f"{case.planets} planets at {places} degrees{pin}{errors}; {case.force:g} N a mesh on average, "
         f"{case.force * case.planets * case.gears.sun.r_b * 1e-3:.4g} N m on the sun; sun {sun}, ring {_ring(case.ring)}"
         + "".join(f"; tooth {one.tooth} of {name}: {told({name: gear(name)}, {name: [one]})}" for name, one in hurt)
+    )
+
+
+def told_in_set(scene: Scene, pair: str, curve: StiffnessCurve) -> str:
+    """Return the mean stiffness of a pair in the set of its scene and as an isolated pair, in words; empty without a set."""
+    if scene.set is None or pair not in scene.set.pairs or (added := added_compliance(scene)) is None:
+        return ""
+    kind = scene.set.pairs.index(pair)
+    inside, alone = curve.with_compliance(added.added[kind].mean()).k.mean(), curve.k.mean()
+    return (
+        f"in the whole set {in_newton_per_um(inside)} N/um on average, isolated pair {in_newton_per_um(alone)} N/um "
+        f"({100 * (inside / alone - 1):+.1f} % in the set); `gearfe planetary` prints every mesh of the set"
     )
 
 

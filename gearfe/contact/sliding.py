@@ -134,14 +134,14 @@ def off_path(contact, cells, load, radius, approach):
     return float(stiff @ _changed(contact, radius[on], gap, closed, closing) / stiff.sum() / closing)
 
 
-def cracks_beyond_lines(cells, bodies, load, approach):
-    """Part of the `approach` [mm] that cracks further away than their solved teeth may add (see `slid`)."""
+def cracks_beyond_lines(cells, bodies, load, closing):
+    """Part of the approach beyond first touch, `closing` [mm], that cracks beyond their solved teeth may add (see `slid`)."""
     out = 0.0
     for half in np.unique(cells.half).tolist():
         on = cells.half == half
         for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
             out += body.cracks_beyond(sense * cells.order[on], roll[on], cells.depth[on] + offset, load[on])
-    return out / load.sum() / approach
+    return out / load.sum() / closing
 
 
 def _cracks_beyond(contact, line):

@@ -218,6 +218,7 @@ class Case:
         return overlap(self.pair, face or self.runs, self.groove)
 
 
+LIGHTEST = 1e-12  # force or torque: below, terms of contact overflow
 FIRST = ("pair", "force", "material", "face", "groove")
 GIVEN = tuple(own for own in fields(Case) if own.init)
 NAMES = tuple(own.name for own in GIVEN)
@@ -285,8 +286,9 @@ def forces_of(pair: GearPair, force: Any, torque: Any) -> list[float]:
     if values.ndim > 1 or values.size == 0:
         raise ValueError(f"{name} = {given!r}, but give one {name} or a non-empty list of {name}s [{unit.strip()}]")
     for value in values.tolist():
-        if not (math.isfinite(value) and value > 0):
-            raise ValueError(f"{name} = {value}{unit}, but a mesh is pressed together: give a finite {name} > 0")
+        if not (math.isfinite(value) and value >= LIGHTEST):
+            least = f", at least {LIGHTEST:g}{unit}" if value > 0 else ""
+            raise ValueError(f"{name} = {value}{unit}, but a mesh is pressed together: give a finite {name} > 0{least}")
     return (values if torque is None else values * (1e3 / pair.gear_1.r_b)).tolist()
 
 

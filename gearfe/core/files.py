@@ -147,11 +147,16 @@ def save_as(suffix, path, content):
         FORMATS[suffix].write(name, content)
 
 
+def checked_dpi(dpi):
+    """Return the resolution of a picture if it is a whole number within limits."""
+    return whole("dpi", dpi, LEAST_DPI, MOST_DPI)
+
+
 def save_figure(figure, path, dpi):
     """Draw a matplotlib figure into a file, unless `path` is None; gives the figure back."""
     if path is not None:
         suffix_of(path, "picture")
-        whole("dpi", dpi, LEAST_DPI, MOST_DPI)
+        checked_dpi(dpi)
         for text in figure.findobj(lambda artist: hasattr(artist, "set_parse_math")):
             words = text.get_text().encode(errors="replace").decode()  # the name of a file may not be UTF-8
             if words != text.get_text():

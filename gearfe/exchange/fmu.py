@@ -10,28 +10,13 @@ import zipfile
 from datetime import UTC, datetime
 from importlib import resources
 from pathlib import Path
-from xml.etree import ElementTree
 
 from ..core.case import Case
 from ..core.files import written
 from ..geometry.aliases import Floats, StrPath
 from ..stiffness.solve import Solve
 from .mesh_table import mesh_table
-
-# name, causality, unit, description, in the order of the references in fmu.c
-VARIABLES = (
-    ("phi_1", "input", "rad", "angle of the pinion; 0: tooth 0 enters"),
-    ("phi_2", "input", "rad", "angle of the wheel, positive as the pinion drives it"),
-    ("w_1", "input", "rad/s", "speed of the pinion"),
-    ("w_2", "input", "rad/s", "speed of the wheel"),
-    ("damping", "parameter", "N.s/m", "damping along the line of action while flanks touch"),
-    ("backlash", "parameter", "m", "backlash along the line of action; 0: flanks never part"),
-    ("tau_1", "output", "N.m", "torque on the pinion"),
-    ("tau_2", "output", "N.m", "torque on the wheel"),
-    ("force", "output", "N", "mesh force along the line of action"),
-    ("k", "output", "N/m", "mesh stiffness"),
-    ("deflection", "output", "m", "approach along the line of action, the unloaded transmission error included"),
-)
+from .xml_template import filled
 
 
 def write_fmu(path: StrPath, case: Case, how: Solve | None = None) -> None:
@@ -103,32 +88,5 @@ def _compiled(compiler, source, folder):
 
 def _description(name, guid, backlash):
     """``modelDescription.xml``."""
-    root = ElementTree.Element(
-        "fmiModelDescription", fmiVersion="2.0", modelName=name, guid=guid, generationTool="gearfe",
-        variableNamingConvention="flat",
-        generationDateAndTime=datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"), numberOfEventIndicators="0",
-    )  # fmt: skip
-    for kind in ("ModelExchange", "CoSimulation"):
-        more = {"canHandleVariableCommunicationStepSize": "true"} if kind == "CoSimulation" else {}
-        ElementTree.SubElement(root, kind, modelIdentifier="gear_pair", canGetAndSetFMUstate="true", **more)
-    units = ElementTree.SubElement(root, "UnitDefinitions")
-    for unit in dict.fromkeys(unit for _, _, unit, _ in VARIABLES):
-        ElementTree.SubElement(units, "Unit", name=unit)
-    variables = ElementTree.SubElement(root, "ModelVariables")
-    for reference, (variable, causality, unit, text) in enumerate(VARIABLES):
-        kind = {
-            "input": {"variability": "continuous"},
-            "parameter": {"variability": "tunable"},
-            "output": {"variability": "continuous"},
-        }
-        stated = {"name": variable, "valueReference": str(reference), "causality": causality, "description": text}
-        one = ElementTree.SubElement(variables, "ScalarVariable", stated | kind[causality])
-        start = {} if causality == "output" else {"start": repr(backlash) if variable == "backlash" else "0"}
-        ElementTree.SubElement(one, "Real", unit=unit, **start)
-    structure = ElementTree.SubElement(root, "ModelStructure")
-    for part in ("Outputs", "InitialUnknowns"):
-        unknown = ElementTree.SubElement(structure, part)
-        for index, (_, causality, _, _) in enumerate(VARIABLES, 1):
-            if causality == "output":
-                ElementTree.SubElement(unknown, "Unknown", index=str(index))
-    return ElementTree.tostring(root, encoding="unicode", xml_declaration=True)
+    date = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    return filled("fmu.xml", name=name, guid=guid, backlash=backlash, date=date)

@@ -35,7 +35,7 @@ class StiffnessCurve:
     k : ndarray, shape (n,)
         Secant stiffness [N/m]: force divided by `deflection`.
     k_tangent : ndarray, shape (n,)
-        Tangent stiffness dF/dx [N/m].
+        Tangent stiffness dF/dx [N/m]; nan of a surrogate.
     deflection : ndarray, shape (n,)
         Loaded minus unloaded transmission error, as a length on the line of action [m]; ``k = force / deflection``, also if a
         light load leaves pairs open.
@@ -151,11 +151,26 @@ class StiffnessCurve:
         """
         if self.support_deflection is None:
             return self
-        deflection, way = self.deflection - self.support_deflection, self.support_deflection / self.meta["force_N"]
-        k_tangent = 1 / (1 / self.k_tangent - way)
+        added = -self.support_deflection / self.meta["force_N"]
+        return replace(self.with_compliance(added), support_deflection=None)
+
+    def with_compliance(self, added: ArrayLike) -> "StiffnessCurve":
+        """Return the curve in series with a further compliance, such as that of the other gears of a planetary set.
+
+        Parameters
+        ----------
+        added : float or ndarray, shape (n,)
+            Compliance at the phases [m/N].
+
+        Returns
+        -------
+        StiffnessCurve
+        """
+        added = np.asarray(added, dtype=float)
+        deflection = self.deflection + self.meta["force_N"] * added
         error = None if self.error is None else self.error * (self.deflection / deflection) ** 2
-        k = self.meta["force_N"] / deflection
-        return replace(self, k=k, k_tangent=k_tangent, deflection=deflection, error=error, support_deflection=None)
+        k, k_tangent = self.meta["force_N"] / deflection, 1 / (1 / self.k_tangent + added)
+        return replace(self, k=k, k_tangent=k_tangent, deflection=deflection, error=error)
 
     @property
     def share(self) -> Floats:

@@ -114,7 +114,7 @@ def test_mesh_forces_carry_the_torque(found):
 def test_what_cannot_run_is_refused():
     with pytest.raises(ValueError, match="has no \\[machine\\] table"):
         gf.build_machine(replace(SCENE, machine={}))
-    with pytest.raises(ValueError, match="no case 'x'; it has crack10"):
+    with pytest.raises(ValueError, match="no case 'x'; it has broken, crack10"):
         gf.build_machine(SCENE, "x")
     with pytest.raises(ValueError, match="must be one of planetary"):
         gf.build_machine(replace(SCENE, machine=SCENE.machine | {"model": "turbine"}))

@@ -1,6 +1,7 @@
 """Machines whose meshes are those of a set: at rest they turn as far as the set does, whoever has the ring's motion."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,8 +9,9 @@ from numpy.testing import assert_allclose
 from sets import FORCE, case, unequal
 
 import gearfe as gf
+from gearfe.dynamics.machine.with_set import ring_springs
+from gearfe.planetary_sets.added import cycles_of
 from gearfe.planetary_sets.standing import standing
-from gearfe.planetary_sets.with_set import cycles_of, ring_springs
 
 MESH = 280.0  # Hz
 HELD = 1e17  # N/m, N m/rad: beside it meshes are soft, 1e-9
@@ -183,3 +185,28 @@ def test_machines_and_sets_that_do_not_fit_are_refused():
     free = machine(given, ring=gf.Member(1.0, 1e-3, 1e8, 1e-3 * given.gears.ring.r_b))
     with pytest.raises(ValueError, match="rotates freely"):
         gf.with_set(free, found, ring="lumped")
+
+
+@pytest.mark.parametrize("loads", [(1.0,), pytest.param((0.5, 1.0, 2.0), marks=pytest.mark.slow)], ids=["curve", "force laws"])
+def test_meshes_of_a_scene_are_as_stiff_as_in_its_set(loads):
+    """The machine of a scene with a set, against `with_set` on that of isolated pairs; damage keeps the set's compliance."""
+    gears = {"gear.sun.z": 22, "gear.planet.z": 30, "gear.ring.z": 82, "gear.ring.x": 0.0}
+    scene = gf.load_scene("planetary_pitting", gears | {"set.n_planets": 4, "machine.n_planets": 4})
+    made = gf.build_machine(scene, loads=loads)
+    isolated = gf.build_machine(replace(scene, set=None), loads=loads)
+    force = made.notes["mesh forces at rest [N]"]["sun_planet"]
+    whole = gf.with_set(isolated, gf.planetary_stiffness(gf.build_set(scene).with_(force=force), 64, error=False), ring="lumped")
+    time = np.linspace(0, 1 / made.meshes[0].frequency, 64, endpoint=False)
+    other = {mesh.name: mesh.k(time) for mesh in whole.meshes}
+    for mesh, alone in zip(made.meshes, isolated.meshes, strict=True):
+        assert_allclose(mesh.k(time).mean(), other[mesh.name].mean(), rtol=1e-3)  # pairs enter between 32 and 64 positions
+        assert_allclose(np.median(mesh.k(time) / other[mesh.name]), 1.0, rtol=2e-4)
+        assert abs(mesh.k(time).mean() / alone.k(time).mean() - 1) > 0.01
+    told = [made.notes[f"mean stiffness {where} [N/um]"]["sun_planet"] for where in ("in the set", "of isolated pairs")]
+    assert_allclose(told, [1e-6 * one.mean_stiffness()[0] for one in (made, isolated)])
+    cracked = scene.with_damage("crack", {"sun_planet": {"pinion": [gf.Crack(level=0.3, tooth=4)]}})
+    hurt = [gf.build_machine(one, "crack", loads=loads).meshes[2] for one in (cracked, replace(cracked, set=None))]
+    at = time + hurt[0].entries(0.2)[0][0]  # tooth 4 is in mesh
+    added = [1 / one.k(at) - 1 / other.k(at) for one, other in ((made.meshes[2], isolated.meshes[2]), hurt)]
+    assert_allclose(added[1], added[0], rtol=0.05)
+    assert hurt[0].k(at).mean() < 0.99 * made.meshes[2].k(at).mean()

@@ -50,17 +50,26 @@ def stiffness_ratio():
     return {name: k[name] / k["s2_sun_planet"] for name in ("s2_planet_planet", "s1_ring_planet", "s2_ring_planet")}
 
 
-def without_tooth(curve):
-    """Stiffness of a curve over the engagement of tooth 0 less the share that it carries [N/m]."""
-    own = curve.force[:, np.flatnonzero(curve.order == 0)[0]]
-    return curve.k * (1 - own / curve.force.sum(axis=1))
+def engaged(curve):
+    """Phases of a curve at which tooth 0 carries load, as a mask."""
+    return curve.force[:, np.flatnonzero(curve.order == 0)[0]] > 0
 
 
 def broken_tooth():
-    """Remaining share of the mean stiffness over the engagement of the broken tooth, if it carries no load."""
+    """Remaining share of the mean stiffness over the engagement of the broken tooth: beams without its load, converged model."""
     curve = beams("sun_planet", span="tooth")
-    engaged = curve.force[:, np.flatnonzero(curve.order == 0)[0]] > 0
-    return {"sudden break": float(without_tooth(curve)[engaged].mean() / curve.k[engaged].mean())}
+    on, own = engaged(curve), curve.force[:, np.flatnonzero(curve.order == 0)[0]]
+    without = curve.k * (1 - own / curve.force.sum(axis=1))
+    return {"sudden break": float(without[on].mean() / curve.k[on].mean()), "sudden break, converged model": left("broken")}
+
+
+@cache
+def left(case):
+    """Share of the mean stiffness that a case leaves over the engagement of the damaged tooth, by the converged model."""
+    pair = scene(NAME).pairs["sun_planet"]
+    whole, hurt = (gf.mesh_stiffness(pair.case(one), method="ritz", phases=64, span="tooth") for one in (None, case))
+    on = engaged(whole)
+    return float(np.interp(whole.phase[on], hurt.phase, hurt.k).mean() / whole.k[on].mean())
 
 
 def frequencies():

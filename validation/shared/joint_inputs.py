@@ -11,7 +11,7 @@ SUPPORTS = {"load": (0.25, 4.0), "supports": (0.1, 10.0), "drive": (0.1, 10.0), 
 MODE = {"mode_over_f_m": (0.3, 5.0), "mode_damping": (0.01, 0.1)}
 RANGES = {  # by page: least and largest value, both drawn evenly in the logarithm
     "planetary_pitting": SUPPORTS | {"pulses": (0.25, 4.0), "play": (0.1, 2.0), "path": (0.01, 100.0)},
-    "compound_planetary": SUPPORTS | {"mesh_damping": (0.2, 5.0)} | MODE,
+    "compound_planetary": SUPPORTS | {"mesh_damping": (0.2, 5.0), "play": (0.1, 2.0)} | MODE,
     "helical_pitting": SUPPORTS | {"mesh_damping": (0.1, 10.0), "play": (0.1, 2.0)} | MODE,
     "herringbone_machine": SUPPORTS
     | {"mesh_damping": (0.2, 2.0), "groove": (0.1, 10.0), "errors": (0.1, 3.0), "play": (0.1, 2.0)}

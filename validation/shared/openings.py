@@ -117,7 +117,7 @@ def compound_planetary(found):
         f"{rings[0]:.2f} and {rings[1]:.2f} times as stiff instead of {ratios['s1']:.2f} and {ratios['s2']:.2f}. The converged "
         f"stiffness of the same gears is {true:.0f} N/um, {beams / true:.1f} times less. The kurtosis is {min(heard):.3g} to "
         f"{max(heard):.3g} instead of {min(measured):.3g} to {max(measured):.3g}",
-        "the article omits the foundation under the teeth, and its table of parameters is lost. A broken tooth may be absent, "
+        "the article omits the foundation under the teeth, and its table of parameters is lost. A broken tooth may be missing, "
         "as here, or a deep crack",
     )
 

@@ -54,6 +54,10 @@ def stiffness(arguments):
         found = beside_health(case, how, returns=returns_of(scene, name, arguments.case))
     curve, meta = found.reference, found.reference.meta
     print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:\n")
+    if scene.set is not None:
+        from ...comparison.told_set import told_in_set  # only sets need it: 0.1 s
+
+        print(f"{told_in_set(scene, name, curve)}\n")
     for one in found.by_tooth() if case.damaged else ():
         print(f"{one.headline};\n{one.definition}\n\n{one.loss_table()}\n")
     print(f"{found.definition}\n\n{found.table(digits=5)}")

@@ -84,6 +84,11 @@ class ForceLaw:
         loads = f"{self.load.size} loads from {self.load[0]:g} to {self.load[-1]:g} N"
         return f"<ForceLaw: {self.phase.size} phases from {self.phase[0]:.3g} to {self.phase[-1]:.3g}, {loads}>"
 
+    def with_compliance(self, added: Floats) -> "ForceLaw":
+        """Return the law in series with a further compliance at its phases ``(n,)`` [m/N]."""
+        depth, tangent = self.depth + added[:, None] * self.load, 1 / (1 / self.tangent + added[:, None])
+        return replace(self, depth=depth, tangent=tangent)
+
     @classmethod
     def of(cls, curves: Sequence[StiffnessCurve], force: float | None = None) -> "ForceLaw":
         """Law of curves of one pair under several loads, at the same phases.

@@ -43,6 +43,10 @@ def build_machine(
 ) -> Machine:
     """Machine of a scene for `gearfe.simulate`, with the contact of its pairs solved under the loads that its meshes have.
 
+    If a planetary scene has a ``[set]`` table, each mesh has the compliance that the whole set adds to the isolated pair. The set
+    is that of `gearfe.build_set` without damage, in its section. Sets that do not repeat with the mesh cycle (a ring on pads)
+    add nothing: use `gearfe.with_set`. The impact law has a coefficient, to which a set adds nothing.
+
     Parameters
     ----------
     scene : Scene
@@ -88,7 +92,19 @@ def build_machine(
     stated = {name: pair.force for name, pair in scene.pairs.items() if name in forces}
     out = replace(out, notes=out.notes | {"mesh forces at rest [N]": forces, "loads stated for the pairs [N]": stated})
     meshes = tuple(replace(mesh, backlash=own or mesh.backlash) for mesh, own in zip(out.meshes, play, strict=True))
-    return with_scene_errors(scene, with_flanks(replace(out, meshes=meshes)))
+    out = _in_set(scene, replace(out, meshes=meshes), forces)
+    return with_scene_errors(scene, with_flanks(out))
+
+
+def _in_set(scene, machine, forces):
+    """Return the machine with the compliance that the set of its scene adds to isolated pairs, if the scene has a set."""
+    if scene.set is None or scene.machine["model"] != "planetary":
+        return machine
+    from ...planetary_sets.added import added_compliance  # only sets need it: 0.1 s
+    from .with_set import with_added
+
+    added = added_compliance(scene, forces[scene.set.pairs[0]])
+    return machine if added is None else with_added(machine, added)
 
 
 def flat_machine(scene: Scene, case: str | None = None) -> Machine:

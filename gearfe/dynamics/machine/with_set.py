@@ -6,14 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from ..dynamics.machine.mesh_excitation import harmonics
-from ..dynamics.machine.springs import Spring
-from ..dynamics.machine.tables import Machine
-from ..geometry.aliases import Floats
-from ..geometry.damage.missing import missing_teeth
-from ..geometry.renamed import warn_renamed
-from .curves import SetCurves
-from .rim_supports import RimBed, RimSupports
+from ...core.units import NEWTON_PER_UM
+from ...geometry.aliases import Floats
+from ...geometry.damage.missing import missing_teeth
+from ...geometry.renamed import warn_renamed
+from ...planetary_sets.added import AddedCompliance, cycles_of
+from ...planetary_sets.curves import SetCurves
+from ...planetary_sets.rim_supports import RimBed, RimSupports
+from .mesh_excitation import harmonics
+from .springs import Spring
+from .tables import Machine
 
 NAMES = ("sun_planet{}", "planet_ring{}")
 RINGS = ("lumped", "body")
@@ -93,13 +95,29 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
     return replace(machine, meshes=tuple(meshes), notes=notes)
 
 
-def cycles_of(case: Any) -> int:
-    """Mesh cycles after which a `PlanetaryCase` repeats, each planet by itself."""
-    faulty = [name for name, flank in case.flanks.items() if flank.on(case.gear_of(name)).differs]
-    faulty += [name for name, found in case.damage.items() if found]
-    z = case.ring_gear.z
-    on_pads = z // math.gcd(z, case.ring.count) if isinstance(case.ring, RimSupports) else 1
-    return math.lcm(on_pads, *(case.gear_of(name).z for name in faulty))
+def with_added(machine: Machine, added: AddedCompliance) -> Machine:
+    """Return a machine of isolated pairs with the compliance that the set adds, in healthy and damaged teeth alike.
+
+    Stiffness and damage may be of any kind, and of any method that gives curves or force laws. `notes` has both mean stiffnesses.
+    """
+    meshes = {mesh.name: mesh for mesh in machine.meshes}
+    first = meshes[NAMES[0].format(1)].phase
+    for kind, name in enumerate(NAMES):
+        for planet in range(added.added.shape[2]):
+            mesh = meshes[name.format(planet + 1)]
+
+            def inside(curve, mesh=mesh, at=(kind, planet)):
+                return curve.with_compliance(added.at(*at, curve.phase - mesh.phase + first))
+
+            damage = tuple(replace(one, curve=inside(one.curve)) for one in mesh.damage)
+            meshes[mesh.name] = replace(mesh, stiffness=inside(mesh.stiffness), damage=damage)
+    out = replace(machine, meshes=tuple(meshes.values()))
+    firsts = [list(meshes).index(name.format(1)) for name in NAMES]
+    told = {
+        f"mean stiffness {where} [N/um]": dict(zip(added.pairs, one.mean_stiffness()[firsts] / NEWTON_PER_UM, strict=True))
+        for where, one in (("in the set", out), ("of isolated pairs", machine))
+    }
+    return replace(out, notes=machine.notes | told)
 
 
 def _cycles(curves):

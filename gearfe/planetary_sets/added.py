@@ -1,0 +1,62 @@
+"""Compliance that a planetary set adds to its meshes, compared with isolated pairs."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..geometry.aliases import Floats
+from ..scene.load import Scene
+from .of_scene import build_set
+from .rim_supports import RimSupports
+from .solve import planetary_stiffness
+
+POSITIONS = 32  # per mesh cycle
+
+
+class AddedCompliance(NamedTuple):
+    """1/k of the meshes of a healthy planetary set less 1/k of the isolated pairs, by kind of mesh.
+
+    Attributes
+    ----------
+    position : ndarray, shape (p,)
+        Rotation of the sun in its pitches, over one mesh cycle.
+    added : ndarray, shape (2, p, planets)
+        [m/N].
+    pairs : (str, str)
+        Names of the pairs of the scene: sun and planet, planet and ring.
+    """
+
+    position: Floats
+    added: Floats
+    pairs: tuple[str, str]
+
+    def at(self, kind: int, planet: int, position: Floats) -> Floats:
+        """Return the added compliance of a mesh at positions [m/N]."""
+        return np.interp(position, self.position, self.added[kind, :, planet], period=1.0)
+
+
+def added_compliance(scene: Scene, force: float | None = None) -> AddedCompliance | None:
+    """Compute the `AddedCompliance` of a scene; `force` of a sun mesh [N], default that of the scene.
+
+    None if the scene has no set, if its set does not repeat with the mesh cycle, or if a mesh of it carries no load. A set
+    repeats later if its ring is on pads or its flanks differ from tooth to tooth.
+    """
+    if scene.set is None:
+        return None
+    case = build_set(scene)
+    if cycles_of(case) > 1:
+        return None
+    found = planetary_stiffness(case if force is None else case.with_(force=force), POSITIONS, error=False)
+    if not (found.k > 0).all():
+        return None
+    return AddedCompliance(found.position, 1 / found.k - 1 / found.k_alone, scene.set.pairs)
+
+
+def cycles_of(case: Any) -> int:
+    """Mesh cycles after which a `PlanetaryCase` repeats, each planet by itself."""
+    faulty = [name for name, flank in case.flanks.items() if flank.on(case.gear_of(name)).differs]
+    faulty += [name for name, found in case.damage.items() if found]
+    z = case.ring_gear.z
+    on_pads = z // math.gcd(z, case.ring.count) if isinstance(case.ring, RimSupports) else 1
+    return math.lcm(on_pads, *(case.gear_of(name).z for name in faulty))
