@@ -115,7 +115,7 @@ class PairContact:
             )
         unloaded = least if self.flanks is not None or least.any() else None
         marked = (tuple(open_[which].tolist()) for which in (closed, fillet))
-        doubt = left_out(self, line, closing, beyond)
+        doubt = left_out(self, line, closing, beyond, np.isin(np.arange(least.size), open_[closed]))
         return Solved(points.order, closing, tangent, line, pressure, *marked, unloaded, left_out=doubt)
 
     def problems(self, line_load, phases, possible, corners, kink, tilt):
