@@ -127,6 +127,7 @@ def test_the_command_line_prints_and_draws_the_map(tmp_path, capsys):
     assert "peak-to-peak" in text
     assert len([line for line in text.splitlines() if line.split()[1:2] in (["1000"], ["3000"])]) == 2
     assert (tmp_path / "te.svg").stat().st_size > 1000
+    assert main(["stiffness", str(path), "--forces", "1000", "--force", "1000"]) == 1
     assert main(["stiffness", str(path), "--forces", "1000", "-o", str(tmp_path / "te.csv")]) == 0
 
 

@@ -8,21 +8,21 @@ import importlib.util
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array, hstack, issparse, tril
+from scipy.sparse import coo_array, csc_array, csr_array, issparse, tril
 
 from ...core.memory import free_memory
 from ...core.steps import reached
 from ...core.time_limit import check_time
+from .supernodes import gram
 
-A, L, P = 0, 4, 7  # systems that CHOLMOD solves: the whole matrix, the lower factor, the permutation
+WHOLE = 0  # system that CHOLMOD solves: the whole matrix
 # Size of right-hand sides given to cvxopt at once [bytes]. It counts the bytes of a column in 32 bits: from 2**31 on it reads
 # and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
 BLOCK = 2**27
 MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] factors of n and n**(4/3), with and without METIS, see `plan`
-ROWS = 8192  # rows of a half solution that are multiplied at a time
 PLANE = 8000.0  # bytes for each unknown of a plane body that is factored, 7300 measured
 # factors of n, n**2, and n**(4/3) per right-hand side, with and without METIS
-SECONDS = {True: (5e-5, 1.9e-10, 5e-9), False: (5e-5, 3.2e-10, 6e-9)}
+SECONDS = {True: (5e-5, 1.9e-10, 2e-10), False: (5e-5, 3.2e-10, 3e-10)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,7 @@ def plan(unknowns, *, columns=0, free=None):
     ----------
     unknowns : int
     columns : int
-        Right-hand sides; three copies of them are held.
+        Right-hand sides of half solutions; one dense copy of them is held.
     free : float, optional
         Memory [bytes] that may be used; default `free_memory`.
 
@@ -81,7 +81,7 @@ def plan(unknowns, *, columns=0, free=None):
     first, second, each = SECONDS[ordered]
     numbers = n ** (4 / 3)
     seconds = first * n + second * n**2 + each * columns * numbers
-    cost = SolveCost(n, matrix * n + factored * numbers + 24.0 * columns * n, seconds, free)
+    cost = SolveCost(n, matrix * n + factored * numbers + 8.0 * columns * n, seconds, free)
     if cost.memory > free:
         raise RuntimeError(
             f"{n} unknowns need about {cost.memory / 1e9:.3g} GB and {float(f'{cost.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "
@@ -107,8 +107,7 @@ def factor(matrix, plan_=None, *, node=3):
     -------
     callable
         From right-hand sides ``(n,)`` or ``(n, k)``, which may be sparse, to solutions of the same shape. Its attribute ``gram``
-        maps right-hand sides F ``(n, k)`` to ``F' K^-1 F`` by half a solution: with ``K = L L'`` it is the product of ``L^-1 F``
-        with itself. It stays sparse: a load on a tooth reaches the rows of that tooth and of the separators above it only.
+        maps right-hand sides F ``(n, k)`` to ``F' K^-1 F`` by half a solution (`supernodes.gram`).
 
     Raises
     ------
@@ -146,35 +145,11 @@ def factor(matrix, plan_=None, *, node=3):
             columns = sides[:, span].toarray() if issparse(rhs) else sides[:, span]
             block = dense(np.asfortranarray(columns, dtype=float))
             # as sparse columns CHOLMOD takes several at once, so that the factor is read less often: half the time
-            out[:, span] = np.asarray(dense(cholmod.spsolve(factored, sparse(block), sys=A)))
+            out[:, span] = np.asarray(dense(cholmod.spsolve(factored, sparse(block), sys=WHOLE)))
         return out.reshape(rhs.shape if issparse(rhs) else np.shape(rhs))
 
-    def gram(rhs):
-        order = np.arange(matrix.shape[0], dtype=float)
-        cholmod.solve(factored, order := dense(order), sys=P)
-        sides = csc_array(csc_array(rhs)[np.asarray(order, dtype=int).ravel()])
-        width = max(1, BLOCK // (8 * matrix.shape[0]))
-        return _products(hstack([half(sides[:, start : start + width]) for start in range(0, sides.shape[1], width)], "csr"))
-
-    def half(sides):
-        columns = np.repeat(np.arange(sides.shape[1]), np.diff(sides.indptr))
-        given = spmatrix(dense(sides.data), dense(sides.indices.astype(np.int64)), dense(columns), sides.shape)
-        starts, rows, values = (np.asarray(part).ravel() for part in cholmod.spsolve(factored, given, sys=L).CCS)
-        return csc_array((values, rows, starts), sides.shape)
-
-    solve.gram = gram
+    solve.gram = lambda rhs: gram(factored, csr_array(rhs))
     return solve
-
-
-def _products(half):
-    """Product of the transpose of a sparse matrix with itself, dense; few of its columns share rows."""
-    out = np.zeros((half.shape[1],) * 2)
-    for start in range(0, half.shape[0], ROWS):
-        part = half[start : start + ROWS]
-        used = np.unique(part.indices)
-        block = part[:, used].toarray()
-        out[np.ix_(used, used)] += block.T @ block
-    return out
 
 
 def dissection(rows, columns, node=3):
