@@ -4,10 +4,15 @@ Everything public is a name of this package, loaded on first use. `__init__.pyi`
 which imports which, are listed in `docs/where.md`.
 """
 
+import os.path
 from typing import Any
 
 import lazy_loader
 
+if not os.path.isfile(__file__):
+    raise ImportError(
+        f"gearfe reads data files beside its code, but {__file__} is in a zip archive: unpack it or use pip install"
+    )
 RENAMED = {  # former names
     "told_apart": "roc_auc", "with_own_speed": "with_estimated_speed", "disc": "gear_member", "gear_pair": "gear_pair_machine",
     "face_load": "face_load_distribution", "law_within": "converged_force_law",

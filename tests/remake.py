@@ -2,6 +2,7 @@
 
 - ``readme``: the README's picture, comparison table, five rows of article S4 and output of its program;
 - ``tutorials``: what the scripts of the documentation print, in ``tests/docs/printed``;
+- ``notebooks``: the tutorials of `NOTEBOOKS` as Jupyter notebooks;
 - ``own_model``: a stiffness curve as MATLAB's ``writetable`` leaves it: 15 digits, CRLF, the unit in the variable name.
 """
 
@@ -31,6 +32,7 @@ SITE = ROOT / "gearfe" / "docs"
 RECORD = ROOT / "tests" / "docs" / "printed"
 EXAMPLE = PAGES / "matlab_curve.csv"
 ROWS = 128  # of the example
+NOTEBOOKS = "tutorial_01_first_curve", "tutorial_07_measured_signal"
 
 
 def five_rows():
@@ -106,6 +108,18 @@ def tutorials():
         print(f"{script.stem}: {len(done.stdout.splitlines())} lines")
 
 
+def notebooks():
+    """Write some tutorials as notebooks without output."""
+    from sphinx_gallery.gen_gallery import DEFAULT_GALLERY_CONF
+    from sphinx_gallery.notebook import jupyter_notebook, save_notebook
+    from sphinx_gallery.py_source_parser import split_code_and_text_blocks
+
+    for name in NOTEBOOKS:
+        script = SITE / "tutorials" / f"{name}.py"
+        made = jupyter_notebook(split_code_and_text_blocks(script)[1], DEFAULT_GALLERY_CONF, script.parent)
+        save_notebook(made, script.with_suffix(".ipynb"))
+
+
 def example_text():
     """Return the example's text: the textbook's total stiffness of the first pair of `planetary_pitting`."""
     chosen = gf.load_scene("planetary_pitting").pair()
@@ -122,4 +136,4 @@ def own_model():
 
 
 if __name__ == "__main__":
-    {"readme": readme, "tutorials": tutorials, "own_model": own_model}[sys.argv[1]]()
+    {"readme": readme, "tutorials": tutorials, "notebooks": notebooks, "own_model": own_model}[sys.argv[1]]()

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -76,12 +77,14 @@ def test_former_keys_are_none_of_today():
     assert not today & set(FORMER)
 
 
-def test_former_options_of_the_command_work(capsys):
+def test_former_options_of_the_command_work(tmp_path, capsys):
     run = ["planetary_pitting", "--forces", "1000", "--phases", "8"]
-    assert main(["te", *run]) == 0
+    files = [str(tmp_path / f"{name}.csv") for name in ("te", "former")]
+    assert main(["te", *run, "-o", files[0]]) == 0
     printed = capsys.readouterr()
-    assert main(["stiffness", *run]) == 0
+    assert main(["stiffness", *run, "-o", files[1]]) == 0
     former = capsys.readouterr()
-    assert former.out == printed.out
+    assert former.out == printed.out.replace(*files)
+    assert Path(files[0]).read_text() == Path(files[1]).read_text()
     assert "--forces is now gearfe te --forces" in former.err
     assert main(["compare", "planetary_pitting", "--cases", "--case", "x"]) == 1

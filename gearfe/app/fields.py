@@ -154,6 +154,8 @@ def checked_state(given: Any) -> dict[str, Any]:
 
 
 def _value(field, value):
+    if value is None:
+        raise ValueError(f"{field.label}: the field is empty; enter a {'whole ' * field.whole}number")
     stated = f"{field.label} ({field.name}) = {shown(value)}{field.unit and ' ' + field.unit}"
     if field.choices:
         if value not in field.choices:

@@ -58,6 +58,13 @@ async function rest() {
   history.replaceState(null, "", link());
   const answer = await ask("fine", { state }, { signal: restful.signal });
   if (own === version && !answer.stale) { take(answer, true); $("spoken").textContent = answer.headline ?? answer.refused; }
+  if (own !== version || answer.stale || answer.refused) return;
+  if (!$("program").hidden) showProgram(await ask("python", { state }));
+  if (answer.section) demand("solid");
+}
+
+function showProgram(answer) {
+  $("program").querySelector("pre").textContent = answer.text ?? answer.refused ?? "";
 }
 
 function take(answer, last) {
@@ -200,7 +207,7 @@ async function carry(kind) {
   if (kind === "python") {
     $("program").hidden = false;
     $("program").open = true;
-    $("program").querySelector("pre").textContent = answer.text;
+    showProgram(answer);
     $("program").scrollIntoView({ block: "nearest" });
   } else save(answer.file, new Blob([answer.text], { type: answer.kind }));
   say(kind === "python" ? "The program stands below." : `${answer.file} is in your downloads.`);
@@ -283,10 +290,23 @@ function traces() {
   return out;
 }
 
+// Phases with one number of tooth pairs in contact: those with the fewest are shaded, every number is printed.
+function bands() {
+  const { phase, value } = shown.share, count = phase.map((_, i) => value.filter((one) => one[i]).length), shapes = [], annotations = [];
+  for (let first = 0, i = 1; i <= phase.length; i += 1) {
+    if (i < phase.length && count[i] === count[first]) continue;
+    const edge = (k) => (phase[Math.max(k - 1, 0)] + phase[Math.min(k, phase.length - 1)]) / 2, [x0, x1] = [edge(first), edge(i)];
+    if (count[first] === Math.min(...count)) shapes.push({ type: "rect", x0, x1, y0: 0, y1: 1, yref: "paper", fillcolor: faint(colour("pin")), line: { width: 0 }, layer: "below" });
+    if (x1 - x0 > 0.1) annotations.push({ x: (x0 + x1) / 2, y: 0.24, yref: "paper", showarrow: false, font: { size: 10 }, text: `${count[first]} pair${count[first] > 1 ? "s" : ""}` });
+    first = i;
+  }
+  return { shapes, annotations };
+}
+
 function drawCurves() {
   const { grid, ...plain } = look();
   const axis = (title, low, high, more = {}) => ({ ...grid, title: { text: title, standoff: 4 }, domain: [low, high], ...more });
-  const layout = { ...plain, xaxis: { ...grid, title: { text: "mesh phase" }, anchor: "y3" },
+  const layout = { ...plain, ...bands(), xaxis: { ...grid, title: { text: "mesh phase" }, anchor: "y3" },
     yaxis: axis("k [N/µm]", 0.52, 1), yaxis2: axis("trans. error<br>[µm]", 0.27, 0.47), yaxis3: axis("load share", 0, 0.22, { range: [0, 1.05] }) };
   const fresh = !$("curves").data;
   Plotly.react($("curves"), traces(), layout, OPTIONS);

@@ -79,7 +79,7 @@ def _answer(state, method, phases, *, error):
         comparison, further = compared(scene, method, phases, error=error)
     curve = comparison.reference
     return {
-        "headline": comparison.headline,
+        "headline": "Transverse section alone: " * bool(left_out or further) + comparison.headline,
         "named": f"{title_of(state)}; {state['force']:g} N in the line of action, {state['b_1']:g} and {state['b_2']:g} mm wide",
         "definition": comparison.definition,
         "method": f"{method}: {phases} phases in a mesh cycle"

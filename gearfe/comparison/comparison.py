@@ -227,6 +227,10 @@ class Comparison:
             body.append(last)
         return Table(columns, body, "errors of each method")
 
+    def __repr__(self) -> str:
+        """Headline in one line."""
+        return f"<Comparison: {self.headline}>"
+
     def _repr_html_(self) -> str:
         """Headline and table of errors, which notebooks display."""
         return f"<p>{escape(self.headline)}</p>{self.table().html()}"

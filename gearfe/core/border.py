@@ -31,7 +31,14 @@ def _number(name, value):
 PLAIN = {float: _number, int: whole, bool: truth}
 WORDS = {float: "a number", int: "a whole number", bool: "True or False", str: "a text", type(None): "None"}
 WORDS[os.PathLike] = "a path"
-RESULTS = ("Contact3D", "Kurtogram", "Spectrogram", "Spectrum")  # results that are no public names
+MADE = {  # how users get these records; not all are public names
+    "Machine": "gf.build_machine(scene), gf.single_mesh(...), gf.planetary(...)", "Scene": "gf.load_scene(name)",
+    "StiffnessCurve": "gf.mesh_stiffness(pair, force, material)", "Response": "gf.simulate(machine, duration)",
+    "SetCurves": "gf.planetary_stiffness(case)", "Runs": "gf.open_runs(folder)", "Dataset": "gf.open_dataset(folder)",
+    "ForceLaw": "gf.force_law(pair, forces, material)", "Contact3D": "gf.contact_pattern(pair, force, material)",
+    "Spectrum": "gf.spectrum(signal)", "Spectrogram": "gf.spectrogram(signal)", "Kurtogram": "gf.fast_kurtogram(signal)",
+    "Campbell": "gf.campbell(machine, speeds)",
+}  # fmt: skip
 NUMERIC = {"f": "iuf", "i": "iu"}  # kinds of arrays that arrays of floats and of whole numbers are made of
 
 
@@ -59,7 +66,7 @@ class _Public(dict[str, Any]):
         package = sys.modules[__name__.partition(".")[0]]
         if name in package.__all__:
             return getattr(package, name)
-        if name in RESULTS:
+        if name in MADE:
             return _Named(name, (), {})
         raise KeyError(name)
 
@@ -136,7 +143,9 @@ def _rules(function, called):
         if parameter.kind is parameter.VAR_KEYWORD and hint is not None:
             table = next(iter(typing.get_args(hint)), hint)
             hints = typing.get_type_hints(table) if hasattr(table, "__total__") else {}
-            named |= {key: (f"{called}: {key}", _rule(value), parameter.empty) for key, value in hints.items()}
+            named |= {
+                key: (f"{called}: {key}", BY_NAME.get(key) or _rule(value), parameter.empty) for key, value in hints.items()
+            }
     return places, named
 
 
@@ -170,7 +179,7 @@ def _rule(hint):
     if origin is tuple and inner[-1:] != (...,):
         return _row([_rule(one) for one in inner])
     if issubclass(origin, Iterable):
-        return _sequence(_rule(inner[0]), Iterable if origin is Iterable else Collection)
+        return _sequence(_rule(inner[0]), Iterable if origin is Iterable else Collection, tuple if origin is tuple else None)
     return _Rule("a function", functools.partial(_is_a, Callable, "a function")) if origin is Callable else _instance(origin)
 
 
@@ -178,6 +187,8 @@ def _any_of(rules):
     if None in rules:
         return None
 
+    *first, last = dict.fromkeys(rule.words for rule in rules)
+    words = f"{', '.join(first)} or {last}" if first else last
     classes_first = sorted(rules, key=lambda rule: "number" in rule.words)  # some classes are rows of numbers
 
     def settled(name, value):
@@ -190,7 +201,6 @@ def _any_of(rules):
                 misfit = misfit if general else error
         raise misfit or _wrong(name, value, words)
 
-    words = " or ".join(dict.fromkeys(rule.words for rule in rules))
     return _Rule(words, settled)
 
 
@@ -199,7 +209,8 @@ def _instance(kind):
     words = WORDS.get(kind, f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}")
     made = inspect.signature(kind).parameters.values() if dataclasses.is_dataclass(kind) else ()
     needs = ", ".join(one.name for one in made if one.default is one.empty)
-    return _Rule(words, functools.partial(_is_a, kind, f"{words}: gf.{kind.__name__}({needs})" if needs else words))
+    how = MADE.get(kind.__name__, f"gf.{kind.__name__}({needs})" if needs else "")
+    return _Rule(words, functools.partial(_is_a, kind, f"{words}: {how}" if how else words))
 
 
 def _is_a(kind, words, name, value):
@@ -229,8 +240,8 @@ def _even(name, value):
     return value
 
 
-def _sequence(rule, kind):
-    words = f"a sequence, each {rule.words}" if rule else "a sequence"
+def _sequence(rule, kind, made):
+    words = f"a list, each entry {rule.words}" if rule else "a list"
 
     def settled(name, value):
         if (
@@ -240,7 +251,7 @@ def _sequence(rule, kind):
         ):
             raise _wrong(name, value, words)
         if rule and type(value) in (list, tuple):
-            return type(value)([rule.settled(name, one) for one in value])
+            return (made or type(value))([rule.settled(name, one) for one in value])
         if (
             rule
             and isinstance(value, np.ndarray)
@@ -253,7 +264,7 @@ def _sequence(rule, kind):
 
 
 def _row(rules):
-    words = f"a sequence of {len(rules)}"
+    words = f"a list of {len(rules)}"
 
     def settled(name, value):
         if (
@@ -280,7 +291,7 @@ def _mapping(inner):
             raise _wrong(name, value, words)
         for key, one in value.items() if rule else ():
             if one is not None:  # None is as good as missing, one record as good as a list of it
-                alone = rule.words.startswith("a sequence") and dataclasses.is_dataclass(one)
+                alone = rule.words.startswith("a list") and dataclasses.is_dataclass(one)
                 rule.settled(f"{name}[{key!r}]", [one] if alone else one)
         return value
 

@@ -13,7 +13,7 @@ from ..geometry.checks import is_finite, shown
 from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import Crack, check_apart
 from ..geometry.damage.hollow import warning_together
-from ..geometry.damage.kinds import BROKEN, Damage, by_side, check_broken, split, why_wide
+from ..geometry.damage.kinds import BROKEN, Damage, by_side, check_broken, parts_of, split, why_wide
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.pair.flanks import Misalignment, flank_forms
 from ..geometry.pair.gear_pair import GearPair
@@ -218,6 +218,7 @@ class Case:
         return overlap(self.pair, face or self.runs, self.groove)
 
 
+LIGHTEST = 1e-12  # force or torque: below, terms of contact overflow
 FIRST = ("pair", "force", "material", "face", "groove")
 GIVEN = tuple(own for own in fields(Case) if own.init)
 NAMES = tuple(own.name for own in GIVEN)
@@ -285,8 +286,9 @@ def forces_of(pair: GearPair, force: Any, torque: Any) -> list[float]:
     if values.ndim > 1 or values.size == 0:
         raise ValueError(f"{name} = {given!r}, but give one {name} or a non-empty list of {name}s [{unit.strip()}]")
     for value in values.tolist():
-        if not (math.isfinite(value) and value > 0):
-            raise ValueError(f"{name} = {value}{unit}, but a mesh is pressed together: give a finite {name} > 0")
+        if not (math.isfinite(value) and value >= LIGHTEST):
+            least = f", at least {LIGHTEST:g}{unit}" if value > 0 else ""
+            raise ValueError(f"{name} = {value}{unit}, but a mesh is pressed together: give a finite {name} > 0{least}")
     return (values if torque is None else values * (1e3 / pair.gear_1.r_b)).tolist()
 
 
@@ -311,6 +313,7 @@ def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Any, ...], ...], .
     """Cracks, hollows (pits, spalls) and broken teeth of pinion and wheel, numbered in each gear's own frame."""
     cracks, pits, broken = [], [], []
     for (_, sense), gear, defects in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
+        defects = parts_of(gear, defects)
         hollows = [[one for one in split(defects)[1] if (one.tooth, one.side) == place] for place in _flanks(defects)]
         together = (warning_together(gear, found) for found in hollows)
         for text in filter(None, (*(defect._warning(gear) for defect in defects), *together)):

@@ -92,7 +92,7 @@ def checked_refine(refine: Any) -> float:
         raise ValueError(f"refine = {refine!r}, but give a finite number: it divides the edge lengths")
     if not COARSEST <= refine <= FINEST:
         why = (
-            "meshes follow it no further and their results are not to be trusted"
+            "coarser meshes give wrong results"
             if refine < COARSEST
             else "k changes by less than 1e-6 from 16 on, and the memory is full"
         )

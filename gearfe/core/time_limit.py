@@ -12,8 +12,8 @@ VARIABLE, HOURS = "GEARFE_MAX_HOURS", 2.0
 SURE = 10.0  # elapsed time [s] from which the first parts show what the rest costs
 
 
-def check_time(what: str, seconds: float, remedy: str) -> None:
-    """Raise ValueError if the estimate [s] of `what` exceeds the limit; the message has both, and the `remedy`."""
+def hours_allowed() -> float:
+    """Return the limit [h]; ValueError if the environment variable is no positive number."""
     stated = os.environ.get(VARIABLE) or str(HOURS)
     try:
         limit = float(stated)
@@ -21,6 +21,12 @@ def check_time(what: str, seconds: float, remedy: str) -> None:
         limit = math.nan
     if not limit > 0:
         raise ValueError(f"{VARIABLE} = {stated!r}, but give a number of hours above 0")
+    return limit
+
+
+def check_time(what: str, seconds: float, remedy: str) -> None:
+    """Raise ValueError if the estimate [s] of `what` exceeds the limit; the message has both, and the `remedy`."""
+    limit = hours_allowed()
     if not seconds <= 3600 * limit:
         raise ValueError(
             f"{what}: about {seconds / 3600:.2g} hours of computing, but the limit is {limit:g}: {remedy}, or raise the limit "

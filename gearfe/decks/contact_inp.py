@@ -15,6 +15,8 @@ from .contact_deck import ContactDeck, write_contact_section
 from .contact_solid import write_contact_solid
 from .pressing import Pressing
 
+FURTHEST = 1e6  # phase [mesh cycles] up to which rounding does not move contacts
+
 GIVEN = ("face", "damage", "flanks", "misalignment")  # options of a case
 
 
@@ -111,6 +113,8 @@ def write_contact_inp(
         case = case_of(pair, force, materials, **of_case)
     else:
         case = case_of(pair, **of_case)
+    if not abs(phase) <= FURTHEST:
+        raise ValueError(f"phase = {phase} mesh cycles, but give a phase within {FURTHEST:g} cycles")
     if not approach > 0:
         raise ValueError(f"approach = {approach} mm, but the gears are pressed together: give approach > 0")
     if case.face is None:

@@ -16,6 +16,7 @@ from ..core.files import written
 from ..geometry.aliases import Floats, StrPath
 from ..stiffness.solve import Solve
 from .mesh_table import mesh_table
+from .xml_template import filled
 
 
 def write_fmu(path: StrPath, case: Case, how: Solve | None = None) -> None:
@@ -87,8 +88,5 @@ def _compiled(compiler, source, folder):
 
 def _description(name, guid, backlash):
     """``modelDescription.xml``."""
-    import jinja2
-
-    text = resources.files(__package__).joinpath("fmu.xml").read_text(encoding="utf-8")
-    template = jinja2.Template(text, autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    return template.render(name=name, guid=guid, backlash=backlash, date=datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"))
+    date = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    return filled("fmu.xml", name=name, guid=guid, backlash=backlash, date=date)

@@ -13,7 +13,7 @@ from ..geometry.pair.gear_pair import free_centre_distance
 from ..scene.load import Scene, scene_of
 from .rexs_file import Component, Model, read_model
 from .rexs_flank import flank_row
-from .rexs_gear import GEARS, GearReader
+from .rexs_gear import GEARS, GearReader, outward, pitch_radius
 from .rexs_power import Power, PowerMesh
 from .rexs_shifts import Shifts
 
@@ -206,10 +206,9 @@ class _Unit:
         radii = []
         for gear, key in zip(gears, names, strict=True):
             row = self.rows[key]
-            beta = math.radians(row["beta_deg"])
-            radius = row["z"] * row["m_n_mm"] / math.cos(beta) / 2
-            radius *= math.cos(math.atan(math.tan(math.radians(row["alpha_n_deg"])) / math.cos(beta)))
-            radii.append(-radius if gear.type == "ring_gear" else radius)
+            alpha_n, beta = (math.radians(row[key]) for key in ("alpha_n_deg", "beta_deg"))
+            alpha_t = math.atan(math.tan(alpha_n) / math.cos(beta))
+            radii.append(outward(gear) * pitch_radius(row) * math.cos(alpha_t))
         self.meshes.append(PowerMesh(name, tuple(gear.id for gear in gears), tuple(radii), *planets))
 
     def _named(self, gear, stated):

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from .rexs_file import Component
-from .rexs_gear import GearReader
+from .rexs_gear import GearReader, outward, pitch_radius
 
 EXPONENTS = {"linear": 1.0, "parabolic": 2.0, "circular": 2.0, None: 1.0}
 UM = 1e3  # um per mm
@@ -45,8 +45,6 @@ def _add(out, key, value):
 
 
 def _relief(end):
-    letter = {"tip": "tip", "root": "root"}[end]
-
     def read(reader, one, out, gear, row, name):
         depth, shape = one.number(f"{end}_relief_depth", "mm"), one.value("shape_of_relief")
         if shape not in EXPONENTS:
@@ -58,18 +56,18 @@ def _relief(end):
         length = one.number(f"{end}_relief_datum_length", "mm")
         if not depth or (diameter is None and length is None):
             return
-        start = {f"{letter}_start_diameter_mm": diameter} if diameter is not None else {f"{letter}_start_length_mm": length}
+        start = {f"{end}_start_diameter_mm": diameter} if diameter is not None else {f"{end}_start_length_mm": length}
         at = one.number(f"{end}_relief_evaluation_reference", "mm")
         depth *= _extended(gear, row, diameter, at, EXPONENTS[shape]) if end == "tip" else 1.0
-        out |= {f"{letter}_relief_um": UM * depth, f"{letter}_exponent": EXPONENTS[shape]} | start
+        out |= {f"{end}_relief_um": UM * depth, f"{end}_exponent": EXPONENTS[shape]} | start
 
     return read
 
 
 def _extended(gear, row, start, at, exponent):
     """Amount at the tip over the amount at the diameter `at` where it is stated."""
-    outward, r = -1 if gear.type == "ring_gear" else 1, row["z"] * row["m_n_mm"] / math.cos(math.radians(row["beta_deg"])) / 2
-    tip = 2 * (r + (outward * row["addendum"] + row["x"]) * row["m_n_mm"])
+    r = pitch_radius(row)
+    tip = 2 * (r + (outward(gear) * row["addendum"] + row["x"]) * row["m_n_mm"])
     slope = math.tan(math.radians(row["alpha_n_deg"])) / math.cos(math.radians(row["beta_deg"]))
     base = 2 * r * math.cos(math.atan(slope))
     if at is None or start is None or abs(at - tip) < 1e-3 or min(at, start, tip) < base:

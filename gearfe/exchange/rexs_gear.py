@@ -10,6 +10,21 @@ STEEL = {"E_MPa": 206_000.0, "nu": 0.3}
 NEAR = 0.02  # tolerance of radii for rounding [modules]
 
 
+def outward(gear: Component) -> int:
+    """Return 1, of a ring -1: in which direction its teeth stand."""
+    return -1 if gear.type == "ring_gear" else 1
+
+
+def pitch_radius(row: dict[str, Any]) -> float:
+    """Radius of the pitch circle [mm]."""
+    return row["z"] * row["m_n_mm"] / math.cos(math.radians(row["beta_deg"])) / 2
+
+
+def root_radius(gear: Component, row: dict[str, Any]) -> float:
+    """Radius of the root circle of a nominal gear [mm]."""
+    return pitch_radius(row) - (outward(gear) * row["dedendum"] - row["x"]) * row["m_n_mm"]
+
+
 class GearReader:
     """Reader of the gears of a model; missing values become assumptions, `assumed` as ``(what, why)``."""
 
@@ -71,7 +86,7 @@ class GearReader:
 
     def allowance(self, gear: Component, row: dict[str, Any], name: str) -> float:
         """Mean normal tooth thickness allowance E_sn [um] of span, chordal thickness or generating profile shift; 0: none."""
-        alpha, m_n, outward = math.radians(row["alpha_n_deg"]), row["m_n_mm"], -1 if gear.type == "ring_gear" else 1
+        alpha, m_n = math.radians(row["alpha_n_deg"]), row["m_n_mm"]
         limits = ("upper_backlash_allowance_referenced_to_span", "lower_backlash_allowance_referenced_to_span")
         found = [(what := "span measurement", [gear.number(one, "mum") for one in limits], 1 / math.cos(alpha))]
         chord = ("chordal_tooth_thickness_upper_deviation", "chordal_tooth_thickness_lower_deviation")
@@ -84,7 +99,7 @@ class GearReader:
                 return value
         cut = self._generating_shift(gear)
         if cut is not None and abs(cut - row["x"]) > 1e-9:
-            value = 2e3 * m_n * math.tan(alpha) * (cut - row["x"]) * outward
+            value = 2e3 * m_n * math.tan(alpha) * (cut - row["x"]) * outward(gear)
             self.assume(f"gear {name}: E_sn = {value:.4g} um", f"generating profile shift coefficient x_E = {cut:g}")
             return value
         series = gear.value("tooth_thickness_deviation_tolerance_series_din_3967_1978")
@@ -105,17 +120,16 @@ class GearReader:
 
     def rack(self, gear: Component, row: dict[str, Any], name: str) -> None:
         """Set the basic rack of a row with its shift: from tip and root diameters, else from the tool, else of ISO 53."""
-        m_n, outward = row["m_n_mm"], -1 if gear.type == "ring_gear" else 1
-        r = row["z"] * m_n / math.cos(math.radians(row["beta_deg"])) / 2
-        cut = row["x"] + outward * row["E_sn_um"] / (2e3 * m_n * math.tan(math.radians(row["alpha_n_deg"])))
+        m_n, r, sign = row["m_n_mm"], pitch_radius(row), outward(gear)
+        cut = row["x"] + sign * row["E_sn_um"] / (2e3 * m_n * math.tan(math.radians(row["alpha_n_deg"])))
         tool = next(iter(self.tools(gear)[::-1]), None)
         scale = ((tool and tool.number("normal_module", "mm")) or m_n) / m_n
         self._tool(gear, tool, row, name, scale)
         tip, root = (gear.number(f"{end}_diameter", "mm") for end in ("tip", "root"))
-        if tip is not None and outward * (tip / 2 - r) / m_n + row["x"] * -outward > -1:
-            row["addendum"] = outward * ((tip / 2 - r) / m_n - row["x"])
-        if root is not None and not ("dedendum" in row and abs(self._root(gear, row) - root / 2) < NEAR * m_n):  # a nominal root
-            dedendum = outward * ((r - root / 2) / m_n + cut)
+        if tip is not None and (addendum := sign * ((tip / 2 - r) / m_n - row["x"])) > -1:
+            row["addendum"] = addendum
+        if root is not None and not ("dedendum" in row and abs(root_radius(gear, row) - root / 2) < NEAR * m_n):  # a nominal root
+            dedendum = sign * ((r - root / 2) / m_n + cut)
             if 0.5 < dedendum < 2:
                 row["dedendum"] = dedendum
             else:
@@ -151,7 +165,7 @@ class GearReader:
         own = [gear, *(one for one in bodies if one.type == "gear_body")]
         wanted = "inner_diameter" if inside else "outer_diameter"
         held = next((value for one in own if (value := one.number(wanted, "mm"))), None) or self._section(gear)
-        root = 2 * self._root(gear, row)
+        root = 2 * root_radius(gear, row)
         if held is not None and (held < 0.97 * root if inside else held > 1.01 * root):
             row["r_bore_mm" if inside else "r_rim_mm"] = held / 2
             return
@@ -159,11 +173,6 @@ class GearReader:
         row["r_bore_mm" if inside else "r_rim_mm"] = guess / 2
         why = "the file states none" if held is None else f"{held:g} mm of its shaft do not leave a rim"
         self.assume(f"gear {name}: held at a diameter of {guess:g} mm", f"{why}; the bore changes k by tens of percent")
-
-    def _root(self, gear, row):
-        outward, m_n = (-1 if gear.type == "ring_gear" else 1), row["m_n_mm"]
-        r = row["z"] * m_n / math.cos(math.radians(row["beta_deg"])) / 2
-        return r - (outward * row["dedendum"] - row["x"]) * m_n
 
     def _section(self, gear):
         """Outer diameter of the shaft at the middle of a gear [mm], None if it is not known."""

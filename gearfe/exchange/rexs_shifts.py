@@ -4,7 +4,9 @@ import math
 from typing import Any
 
 from .rexs_file import Component
-from .rexs_gear import GearReader
+from .rexs_gear import GearReader, outward, pitch_radius, root_radius
+
+CLEARANCE = 0.25  # modules, ISO 53, profile A
 
 
 class Shifts:
@@ -14,7 +16,7 @@ class Shifts:
         self.reader, self.rows, self.gears, self.pairs = reader, rows, gears, pairs
 
     def _outward(self, name):
-        return -1 if self.gears[name].type == "ring_gear" else 1
+        return outward(self.gears[name])
 
     def distance(self, stage, name):
         """Centre distance of a stage [mm]: stated, or of the positions of both gears; None if neither."""
@@ -34,13 +36,13 @@ class Shifts:
                 row["x"] = stated[name]
         for _ in range(2):
             for name, (one, two, _stage) in self.pairs.items():
-                sum_x, outward = self._sum(name), self._outward(two)
+                sum_x, sign = self._sum(name), self._outward(two)
                 if sum_x is None:
                     continue
                 if "x" in self.rows[one] and "x" not in self.rows[two]:
-                    self.rows[two]["x"] = round(outward * (sum_x - self.rows[one]["x"]), 9)
+                    self.rows[two]["x"] = round(sign * (sum_x - self.rows[one]["x"]), 9)
                 elif "x" in self.rows[two] and "x" not in self.rows[one]:
-                    self.rows[one]["x"] = round(sum_x - outward * self.rows[two]["x"], 9)
+                    self.rows[one]["x"] = round(sum_x - sign * self.rows[two]["x"], 9)
                 else:
                     continue
                 self.reader.assume(
@@ -58,7 +60,7 @@ class Shifts:
         """Choose the sign of a ring's shift with which the centre distance closes, since files have either sign."""
         for name, (one, two, _stage) in self.pairs.items():
             x, sum_x = self.rows[two]["x"], self._sum(name)
-            if self.gears[two].type != "ring_gear" or not stated.get(two) or sum_x is None:
+            if self._outward(two) > 0 or not stated.get(two) or sum_x is None:
                 continue
             wanted = self.rows[one]["x"] - sum_x
             self.rows[two]["x"] = min((x, -x), key=lambda value: abs(value - wanted))
@@ -68,11 +70,10 @@ class Shifts:
         """Sum of the profile shifts that the centre distance of a pair requires; None if it is not known."""
         one, two, stage = self.pairs[name]
         a = self.distance(stage, name)
-        first, second = self.rows[one], self.rows[two]
-        outward = self._outward(two)
+        first, second, sign = self.rows[one], self.rows[two], self._outward(two)
         beta, alpha = (math.radians(first[key]) for key in ("beta_deg", "alpha_n_deg"))
         alpha_t = math.atan(math.tan(alpha) / math.cos(beta))
-        teeth = first["z"] + outward * second["z"]
+        teeth = first["z"] + sign * second["z"]
         cosine = abs(teeth) * first["m_n_mm"] / math.cos(beta) / 2 * math.cos(alpha_t) / a if a else 2.0
         if cosine >= 1:
             return None
@@ -80,32 +81,24 @@ class Shifts:
         return (math.tan(alpha_w) - alpha_w - math.tan(alpha_t) + alpha_t) * teeth / (2 * math.tan(alpha))
 
     def tips(self):
-        """Addenda of gears without tip diameter: 1, shortened where the mate's root would leave less than 0.25 modules."""
+        """Addenda of gears without tip diameter: 1, shortened where the mate's root would leave less than `CLEARANCE`."""
         for name, row in self.rows.items():
             if "addendum" in row:
                 continue
             row["addendum"] = 1.0
             for pair, (one, two, stage) in self.pairs.items():
                 if name in (one, two):
-                    mate, a = self.rows[two if name == one else one], self.distance(stage, pair)
-                    row["addendum"] = min(row["addendum"], self._room(name, row, mate, one, two, a) if a else 1.0)
+                    mate, a = two if name == one else one, self.distance(stage, pair)
+                    row["addendum"] = min(row["addendum"], self._room(name, mate, a) if a else 1.0)
             row["addendum"] = round(row["addendum"], 6)
             self.reader.assume(
                 f"gear {name}: addendum {row['addendum']:g}",
-                "the file states no tip diameter; ISO 53, profile A, with clearance 0.25",
+                f"the file states no tip diameter; ISO 53, profile A, with clearance {CLEARANCE}",
             )
 
-    def _room(self, name, row, mate, one, two, a):
-        m_n, signs = (
-            row["m_n_mm"],
-            [self._outward(key) for key in (name, two if name == one else one)],
-        )
-        r, mate_r = (each["z"] * m_n / math.cos(math.radians(row["beta_deg"])) / 2 for each in (row, mate))
-        mate_root = mate_r - (signs[1] * mate["dedendum"] - mate["x"]) * m_n
-        if signs == [1, 1]:
-            tip = a - mate_root - 0.25 * m_n
-        elif signs == [1, -1]:
-            tip = mate_root - a - 0.25 * m_n
-        else:
-            tip = a + mate_root + 0.25 * m_n
-        return signs[0] * ((tip - r) / m_n - row["x"])
+    def _room(self, name, mate, a):
+        """Return the addendum with which a tip leaves `CLEARANCE` to the root of its mate."""
+        row, own, other = self.rows[name], self._outward(name), self._outward(mate)
+        mate_root = root_radius(self.gears[mate], self.rows[mate])
+        tip = other * a - own * other * mate_root - own * CLEARANCE * row["m_n_mm"]
+        return own * ((tip - pitch_radius(row)) / row["m_n_mm"] - row["x"])

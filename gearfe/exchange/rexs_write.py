@@ -4,7 +4,6 @@ import math
 from collections.abc import Mapping
 from datetime import UTC, datetime
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 
@@ -13,8 +12,7 @@ from ..geometry.aliases import StrPath
 from ..scene.load import Scene
 from ..stiffness.curve import StiffnessCurve
 from .rexs_file import Component, Relation
-
-VERSION = "1.7"  # more programs read this version than 2.0.0
+from .xml_template import filled
 
 
 def write_rexs(path: StrPath, scene: Scene, curves: Mapping[str, StiffnessCurve] | None = None) -> None:
@@ -40,32 +38,9 @@ def write_rexs(path: StrPath, scene: Scene, curves: Mapping[str, StiffnessCurve]
         raise ValueError(f"{path}: REXS is written as .rexs")
     for name in curves or ():
         scene.pair(name)
-    unit = _UnitWriter(scene, curves or {})
-    date = datetime.now(UTC).isoformat(timespec="seconds")
-    root = ElementTree.Element("model", version=VERSION, applicationId="gearfe", applicationVersion="1", date=date)
-    relations, components = (ElementTree.SubElement(root, kind) for kind in ("relations", "components"))
-    for number, relation in enumerate(unit.relations, 1):
-        one = ElementTree.SubElement(relations, "relation", id=str(number), type=relation.type)
-        if relation.order:
-            one.set("order", str(relation.order))
-        for role, other in relation.refs.items():
-            ElementTree.SubElement(one, "ref", id=str(other), role=role, hint=unit.components[other - 1].type)
-    for component in unit.components:
-        one = ElementTree.SubElement(components, "component", id=str(component.id), type=component.type, name=component.name)
-        for key, (value, measure) in component.values.items():
-            _write_value(ElementTree.SubElement(one, "attribute", id=key, unit=measure), value)
-    ElementTree.indent(root)
+    unit, date = _UnitWriter(scene, curves or {}), datetime.now(UTC).isoformat(timespec="seconds")
     with written(path) as name:
-        ElementTree.ElementTree(root).write(name, encoding="utf-8", xml_declaration=True)
-
-
-def _write_value(attribute, value):
-    if isinstance(value, list):
-        array = ElementTree.SubElement(attribute, "array")
-        for one in value:
-            ElementTree.SubElement(array, "c").text = repr(one)
-    else:
-        attribute.text = str(value).lower() if isinstance(value, bool) else str(value)
+        Path(name).write_text(filled("rexs.xml", unit=unit, date=date), encoding="utf-8")
 
 
 class _UnitWriter:

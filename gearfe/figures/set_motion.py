@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.files import new_file, written
+from ..core.files import checked_dpi, new_file, written
 from ..core.steps import steps
 from ..geometry.aliases import Floats, StrPath
 from .set_plot import BRIGHT, LARGEST, draw_set
@@ -45,7 +45,7 @@ def draw_motion(
     top = max(float(np.percentile(one.stress, BRIGHT)) for one in every)
     times = magnified or 10 ** math.floor(math.log10(LARGEST * radius / largest)) * 2
     reach = AROUND * (radius + times * largest)
-    writer = PillowWriter(fps=rate)
+    writer, dpi = PillowWriter(fps=rate), checked_dpi(dpi)
     with written(path) as name:
         for i, (shapes, supports) in enumerate(steps(positions)):
             figure = draw_set(shapes, supports, None, magnified=times, dpi=dpi)

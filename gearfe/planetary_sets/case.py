@@ -12,9 +12,10 @@ from ..core.checks import numbers, truth
 from ..core.frozen import Frozen
 from ..core.material import Material
 from ..core.record import ranged, settle
+from ..geometry.checks import is_whole
 from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import Crack, check_apart, check_through
-from ..geometry.damage.kinds import check_broken
+from ..geometry.damage.kinds import check_broken, why_wide
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.planetary import PlanetarySet
@@ -153,7 +154,9 @@ class PlanetaryCase:
         if not isinstance(given, Mapping):
             raise ValueError(f"{what} = {given!r}, but give them by gear: {{'sun': ..., 'planet': ..., 'ring': ...}}")
         planets = [planet_name(i) for i in range(self.planets)]
-        former = {("planet", i): name for i, name in enumerate(planets) if ("planet", i) in given}
+        former = {
+            one: planets[one[1]] for one in given if one in [("planet", i) for i in range(len(planets))] and is_whole(one[1])
+        }
         for old, new in former.items():
             warn_renamed(f"{what} of {old}", repr(new))
         given = {former.get(name, name): value for name, value in given.items()}
@@ -185,6 +188,8 @@ class PlanetaryCase:
             check_through(cracks, "the section of a planetary set")
             check_apart(gear, cracks)
             check_broken(gear, damage)
+            if why := why_wide(damage):
+                raise ValueError(f"damage of {name!r}: {why}, but a section is two-dimensional: leave width out")
             flank = self.flanks.get(name)
             if flank and (flank.tip_rounding or flank.tip_chamfer) and any(isinstance(one, Chip) for one in damage):
                 raise ValueError(f"chips of rounded or chamfered tips: leave out the tip edges of {name!r}, or its chips")

@@ -27,6 +27,8 @@ from .curves import SetCurves
 from .loaded_gears import drawable, meshed, placed, touching
 from .standing import directions
 
+MOST = 200  # edges across half a contact
+
 
 @dataclass(frozen=True, slots=True)
 class SetDeck:
@@ -127,6 +129,8 @@ def write_set_inp(
         raise ValueError("cracks of a set are not in its deck: give curves of a case without them")
     for name, value in (("per_width", per_width), ("penalty", penalty)):
         ranged(name, value, above=0.0)
+    if per_width > MOST:
+        raise ValueError(f"per_width = {per_width:g} edges across half a contact, but give at most {MOST}")
     refine = checked_refine(refine)
     pressed, bodies = touching(case, stand, curves, at), placed(case, stand, curves, at)
     assembly, places = Assembly(), []

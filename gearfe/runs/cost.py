@@ -9,6 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..core.time_limit import VARIABLE, hours_allowed
+
 
 @dataclass(frozen=True, slots=True)
 class Cost:
@@ -35,6 +37,8 @@ class Cost:
             f"disk: about {_size(self.disk)}, {_size(self.free)} are free",
             f"from {self.tried} case{'s' * (self.tried > 1)} computed now, {self.failed} of them failed",
         ]
+        if self.seconds / self.workers > 3600 * (limit := hours_allowed()):
+            out.append(f"limit: {limit:g} h of elapsed time; the environment variable {VARIABLE} raises it")
         return "\n".join([*out, *([f"the first that failed: {self.error}"] if self.error else [])])
 
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
 from html import escape
 from importlib import resources
 from pathlib import Path
@@ -181,6 +182,16 @@ def load_scene(name_or_path: StrPath, values: Mapping[str, Any] | None = None) -
     return scene_of(file, set_values(tables, values) if values else tables)
 
 
+def _no_scene(name):
+    """Return the message on a scene that does not exist."""
+    if name.endswith(".toml"):
+        kind = "not a file" if Path(name).exists() else "no such file"
+        return f"{name}: {kind}; give the path of a .toml file, or a built-in scene: {', '.join(scene_names())}"
+    near = get_close_matches(name, scene_names(), 1)
+    nearest = f" (nearest: {near[0]})" if near else ""
+    return f"no scene {name!r}{nearest}: built in are {', '.join(scene_names())}; or give a .toml file"
+
+
 def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
     """Name and unchecked tables of a scene's file, as `scene_of` takes them."""
     if isinstance(name_or_path, str) and name_or_path in scene_names():
@@ -189,7 +200,7 @@ def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
         check_path("scene", name_or_path)
         file = Path(name_or_path)
         if not file.is_file():
-            raise ValueError(f"no scene {str(name_or_path)!r}: built in are {', '.join(scene_names())}; or give a .toml file")
+            raise ValueError(_no_scene(str(name_or_path)))
     return file.name, read_toml(file)
 
 

@@ -1,5 +1,6 @@
 """`new_scene`: a commented scene file as a starting point."""
 
+import contextlib
 import math
 from pathlib import Path
 from typing import Any
@@ -129,7 +130,8 @@ def new_scene(
     amount, length = tip_relief_um or round(numbers["amount"], 1), tip_length_mm or round(numbers["length"], 3)
     flanks = {side: {"gear": side, "tip_relief_um": amount, "tip_start_length_mm": length} for side in ("pinion", "wheel")}
     stated |= {} if tip_relief_um is None else {"flank": flanks}
-    scene_of(path.name, stated).case(case="cracked")
+    with _of_torque(torque_Nm):
+        scene_of(path.name, stated).case(case="cracked")
     asleep: dict[str, Any] = {kind: [{}] for kind in DAMAGE} | {"support": {"output": {}}, "shaft": {"drive": {}}}
     asleep |= ({} if "flank" in stated else {"flank": flanks}) | ({} if ring else {"machine": {}})
     as_length = f"or as a length: length_mm = {path_length(pair.gear_1, Crack(level=0.3)):.2f}"
@@ -152,6 +154,17 @@ def _numbers(pair, force):
         "diameter": 2 * math.hypot(gear.r_b, roll), "angle": math.degrees(roll / gear.r_b), "reach": 2 * b,
         "whole": 4 * b, "thick": 2 * gear.r_bore, "torque": force * gear.r_b * 1e-3, "a": pair.a, "span": 3 * b,
     }  # fmt: skip
+
+
+@contextlib.contextmanager
+def _of_torque(torque):
+    """Messages on the force begin with the torque that was given."""
+    try:
+        yield
+    except ValueError as error:
+        if torque is None or not str(error).startswith("force = "):
+            raise
+        raise ValueError(f"torque = {torque:g} N m: {error}") from error
 
 
 def _force(pinion, width, torque):

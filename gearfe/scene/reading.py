@@ -120,6 +120,12 @@ def _limit(value):
     return f", below {LARGEST:g}" if isinstance(value, (int, float)) and abs(value) >= MOST else ""
 
 
+def check_no_scene(file: str, kind: str, data: Mapping[str, Any]) -> None:
+    """Raise ValueError if a file that should be of a `kind` is a scene."""
+    if "scene" not in data and "gear" in data:
+        raise ValueError(f"{file} is a scene, but give a {kind}: a TOML file that names the scene, scene = {file!r}")
+
+
 def unknown(name: Any, names: Iterable[str]) -> str:
     """Return the message on an unknown key, with the nearest of the known `names`."""
     from difflib import get_close_matches

@@ -62,8 +62,12 @@ def bearing_lines(
     roller, pitch, contact_angle = number("roller", roller), number("pitch", pitch), number("contact_angle", contact_angle)
     if not math.isfinite(number("outer", outer)) or outer == turns:
         raise ValueError(f"outer = {outer!r} Hz with an inner ring of {turns} Hz: give a finite number, other than that")
-    if not 0 < roller < pitch * math.sin(math.pi / whole("rollers", rollers, 3)) * (1 + 1e-9):
-        raise ValueError(f"{rollers} rollers of diameter {roller} do not fit on a circle of diameter {pitch}")
+    largest = pitch * math.sin(math.pi / whole("rollers", rollers, 3))
+    if not 0 < roller < largest * (1 + 1e-9):
+        raise ValueError(
+            f"roller = {roller}, but {rollers} rollers fit on the pitch diameter pitch = {pitch} only below {largest:.4g}: give "
+            "both diameters in the same unit"
+        )
     if not 0 <= contact_angle < math.pi / 2:
         raise ValueError(f"contact_angle = {contact_angle} rad, but it lies from 0 to below pi / 2")
     c, apart = roller * math.cos(contact_angle) / pitch, abs(turns - outer)

@@ -76,10 +76,10 @@ def _axis(path, found, channel, names, factors, rate=None):
         step = float(values[-1] - values[0]) / (len(values) - 1)
         unit = next((one for one, factor in factors.items() if abs(rate * factor * step - 1) <= AGREE), "")
     if unit not in factors:
+        stated = f"{chosen[0]} [{next(iter(factors))}]"
         raise ValueError(
-            f"{path}: column {chosen[0]!r} has {f'unit {unit!r}' if unit else 'no unit'}, but must state one of "
-            f"{', '.join(factors)}: '{chosen[0]} [{next(iter(factors))}]' in the file, for a text table in header=, "
-            "the names of all its columns, or for times the rate= that fits them"
+            f"{path}: column {chosen[0]!r} has {f'unit {unit!r}' if unit else 'no unit'}, but needs one of {', '.join(factors)}: "
+            f"call it {stated!r} in the file, or give the names of all columns in header= (of times: give rate=)"
         )
     return factors[unit] * values
 

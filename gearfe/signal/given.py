@@ -7,8 +7,10 @@ from scipy.signal import get_window
 
 from ..core.checks import is_number
 from ..geometry.aliases import Floats
+from ..geometry.checks import shown
 
 SMALLEST, LARGEST = 1e-30, 1e30  # limits of the largest value of a record in any unit, for eighth powers
+ROWS = {"average": ": gf.synchronous_average(signal)[0]"}  # where such a row comes from
 HERTZ = (1e-12, 1e15)  # limits of frequencies
 
 
@@ -24,9 +26,8 @@ def samples(name: str, values: Any) -> Floats:
     except ValueError as error:  # rows of different lengths
         raise ValueError(f"{name}: give a row of real numbers ({error})") from error
     if values.ndim != 1 or values.size < 2 or values.dtype.kind not in "fiu":
-        raise ValueError(
-            f"{name}: values of shape {values.shape} and type {values.dtype}, but give a row of two or more real numbers"
-        )
+        stated = shown(values.item()) if not values.ndim else f"values of shape {values.shape} and type {values.dtype}"
+        raise ValueError(f"{name}: {stated}, but give a row of two or more real numbers{ROWS.get(name, '')}")
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
         raise ValueError(

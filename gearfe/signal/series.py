@@ -156,7 +156,8 @@ def decimate(signal: Signal, rate: float) -> Signal:
     ratio = Fraction(rate / signal.rate).limit_denominator(1000) if 0 < rate <= signal.rate else Fraction(0)
     if not ratio or abs(ratio * signal.rate / rate - 1) > 1e-9:
         raise ValueError(
-            f"rate = {rate} Hz, but {signal.name} has {signal.rate:g} Hz: give that over a whole number, or p/q of it up to 1"
+            f"rate = {rate} Hz, but {signal.name} has {signal.rate:g} Hz: give a smaller rate that is p / q of it with whole p "
+            f"and q, for example {signal.rate / 2:g} Hz"
         )
     values = resample_poly(signal.values, ratio.numerator, ratio.denominator, window=("kaiser", 5.0), padtype="line")
     angle = None if signal.angle is None else np.interp(np.arange(values.size) / rate, signal.time, signal.angle)

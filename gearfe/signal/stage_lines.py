@@ -116,7 +116,9 @@ def _check(sun, ring, n_planets, carrier, damaged, angles):
             "the first; angles are radians"
         )
     if angles is None and (sun + ring) % n_planets:
-        raise ValueError(f"{n_planets} equally spaced planets cannot be assembled: ({sun} + {ring}) / {n_planets} is not whole")
+        raise ValueError(
+            f"{n_planets} equally spaced planets cannot be assembled: ({sun} + {ring}) / {n_planets} is not whole; give angles"
+        )
     hertz("carrier", carrier)
     if damaged not in (None, "sun", "planet", "ring"):
         raise ValueError(f"damaged = {damaged!r}, but it must be 'sun', 'planet' or 'ring'")

@@ -11,7 +11,7 @@ from .series import Signal
 
 SIGMAS = 6.0  # standard deviations of the kurtosis of noise above 3; white noise exceeds it in less than 0.1 % of averages
 # Deviations of healthy teeth from each other exceed these in less than 1 % of gears, see tests/signal/test_false_alarms.py.
-RISE = 2.5  # times the FM4 that the deviations of the healthy teeth alone would give
+RISE = 2.5  # times the FM4 of the healthy record, whose difference signal has the same variance
 ALONE = 24.0  # FM4 without a healthy record
 FEWEST = 4  # revolutions, two for each half of the record
 
@@ -53,7 +53,8 @@ class ToothVerdict(NamedTuple):
             )
         place = f", once per revolution, at {math.degrees(self.angle):.0f} degrees"
         if self.level == "likely":
-            return f"{text}{place}. The verdict changes if another record of the gear has FM4 below the limit or another angle."
+            change = ", or if the healthy record is of another gear" * (RISE * self.healthy >= self.FM4)
+            return f"{text}{place}. The verdict changes if another record has FM4 below the limit or another angle{change}."
         if self.limit >= self.FM4:
             return f"{text}. Deviations of healthy teeth from each other do this, too: compare with a healthy record of the gear."
         halves = f"its halves differ: the largest impulse moves by {math.degrees(self.apart):.0f} degrees"
@@ -65,7 +66,7 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
 
     ::
 
-        limit = max(3 + SIGMAS sqrt(24 / n), RISE (3 + (FM4_healthy - 3) min(1, v_healthy / v)^2)),  ALONE without healthy record
+        limit = 3 + SIGMAS sqrt(24 / n) + (RISE FM4_healthy - 3) min(1, v_healthy / v)^2,  ALONE without a healthy record
 
     FM4 of n samples of white noise has the mean 3 and the variance 24 / n. v are the variances of the difference signals. Fourth
     cumulants of independent parts add, so that the deviations of healthy teeth count by their part of the signal: rounding
@@ -78,7 +79,7 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
         With `angle` or `shaft_frequency` of the gear's shaft.
     teeth : int
     healthy : Signal, optional
-        Record of the healthy gear with its shaft.
+        Record of the same gear with its shaft, when it was healthy.
 
     Raises
     ------
@@ -102,7 +103,7 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
         part = min(1.0, before / now) if now else 1.0
     halves = _halves(record, average.size, revolutions)
     noise = 3 + SIGMAS * math.sqrt(24 / average.size)
-    limit = max(noise, ALONE if math.isnan(known) else RISE * (3 + (known - 3) * part**2))
+    limit = max(noise, ALONE) if math.isnan(known) else noise + (RISE * known - 3) * part**2
     values = [gear_indicators(one, teeth)["FM4"] for one in (average, *halves)]
     angles = [2 * math.pi * int(np.argmax(np.abs(residual_signal(one, teeth, sidebands=1)))) / one.size for one in halves]
     apart = abs((angles[0] - angles[1] + math.pi) % (2 * math.pi) - math.pi)

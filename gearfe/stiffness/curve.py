@@ -35,7 +35,7 @@ class StiffnessCurve:
     k : ndarray, shape (n,)
         Secant stiffness [N/m]: force divided by `deflection`.
     k_tangent : ndarray, shape (n,)
-        Tangent stiffness dF/dx [N/m].
+        Tangent stiffness dF/dx [N/m]; nan of a surrogate.
     deflection : ndarray, shape (n,)
         Loaded minus unloaded transmission error, as a length on the line of action [m]; ``k = force / deflection``, also if a
         light load leaves pairs open.

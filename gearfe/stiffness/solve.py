@@ -116,7 +116,7 @@ class Solve:
         if not custom and not (isinstance(self.method, str) and self.method in METHOD_NAMES):
             from difflib import get_close_matches
 
-            near = get_close_matches(self.method, METHOD_NAMES, 1) if isinstance(self.method, str) else ()
+            near = get_close_matches(self.method.lower(), METHOD_NAMES, 1) if isinstance(self.method, str) else ()
             more = f"; nearest: {near[0]}" if near else "" if isinstance(self.method, str) else ", or an OwnFlexibility"
             raise ValueError(f"method = {self.method!r}, but it must be one of {', '.join(METHOD_NAMES)}{more}")
         for name in ("error", "extended"):
@@ -342,7 +342,11 @@ def split_arguments(
     """Return the `Case` and the `Solve` of the arguments of a function that takes both; TypeError for an unknown option."""
     unknown = sorted(set(options) - {*NAMES, *OPTIONS})
     if unknown:
-        raise TypeError(f"{function}() has no argument {unknown[0]!r}; it has {', '.join((*NAMES, *OPTIONS))}")
+        from difflib import get_close_matches
+
+        near = get_close_matches(unknown[0], known := (*NAMES, *OPTIONS), 1)
+        there = f"nearest: {near[0]!r}" if near else f"it has {', '.join(known)}"
+        raise TypeError(f"{function}() has no argument {unknown[0]!r}; {there}")
     of_case = {name: value for name, value in options.items() if name in NAMES}
     how = Solve(**{name: value for name, value in options.items() if name in OPTIONS})
     return case_of(pair, force, material, torque=torque, **of_case), how

@@ -31,7 +31,7 @@ class TransmissionError:
         Under each load, the unloaded part included [m].
     unloaded : ndarray, shape (n,)
         Without load [m]: 0 for involutes.
-    curves : tuple of StiffnessCurve, shape (m,)
+    curves : tuple of StiffnessCurve
         One for each load: stiffness, load sharing, pressure.
     """
 

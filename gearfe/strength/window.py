@@ -39,11 +39,13 @@ def plotting(**options):
             "(`ulimit -v`)"
         )
     with _turn:
-        plotter = drawing_library().Plotter(off_screen=True, **options)
-        try:
-            yield plotter
-        finally:
-            plotter.close()
+        library = drawing_library()
+        with library.vtk_verbosity("off"):  # its messages steer terminals
+            plotter = library.Plotter(off_screen=True, **options)
+            try:
+                yield plotter
+            finally:
+                plotter.close()
 
 
 def renderer_name():

@@ -62,7 +62,8 @@ class GearPair:
         """Reject gears that cannot mesh; trim a ring's tip."""
         pinion, wheel = self.gear_1, self.gear_2
         if not isinstance(pinion, Gear) or not isinstance(wheel, Gear):
-            raise ValueError("gear_1 and gear_2 must be Gear objects")
+            name, value = ("gear_1", pinion) if not isinstance(pinion, Gear) else ("gear_2", wheel)
+            raise ValueError(f"{name} = {value!r}, but give a Gear: Gear(z, m_n, alpha_n, b, r_bore)")
         if pinion.internal:
             raise ValueError("gear_1 is a ring; give the external gear first and the ring as gear_2")
         for name, unit in (("m_n", "mm"), ("alpha_n", "rad")):
@@ -173,6 +174,11 @@ class GearPair:
     def relative_radius(self, roll_1: Floats, roll_2: Floats) -> Floats:
         """Relative radius of curvature [mm]."""
         return roll_1 * roll_2 / (roll_2 + self.outward * roll_1)
+
+    @property
+    def pitch_relative_radius(self) -> float:
+        """Relative radius of curvature at the pitch point [mm]: the measure where no parabola describes the contact."""
+        return abs(float(self.relative_radius(*self.curvature_radii(self.pitch_phase))))
 
     @property
     def backlash(self) -> float:

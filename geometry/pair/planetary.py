@@ -36,7 +36,7 @@ class PlanetarySet:
     def __post_init__(self) -> None:
         """Check closure, spacing and neighbours."""
         if not self.ring.internal or self.sun.internal or self.planet.internal:
-            raise ValueError("sun and planet are external gears (r_bore), the ring is given by r_rim")
+            raise ValueError("a set needs two external gears and a ring: give r_bore for sun and planet, r_rim for the ring")
         if not is_whole(self.n_planets) or self.n_planets < 1:
             raise ValueError(f"n_planets = {self.n_planets!r}, but a set has a whole number of planets, at least 1")
         if self.a is None:

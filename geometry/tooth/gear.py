@@ -115,7 +115,7 @@ class Gear:
             if value is None and field.name in ("r_bore", "r_rim"):
                 continue
             if not is_number(value) or not abs(value) < LARGEST:
-                raise ValueError(f"{field.name} = {value!r}, but a gear needs a finite number here")
+                raise ValueError(f"{field.name} = {value!r}, but give a {'whole' if field.name == 'z' else 'finite'} number")
             object.__setattr__(self, field.name, float(value))
         if self.z != int(self.z):
             raise ValueError(f"z = {self.z:g}, but the number of teeth is an integer")

@@ -147,10 +147,9 @@ class Flank:
             needed = getattr(self, f"{end}_relief") != 0
             if len(given) != needed and (needed or given):
                 names = ", ".join(f"{end}_start_{how}" for how in STARTS)
-                raise ValueError(
-                    f"{end}_relief = {getattr(self, f'{end}_relief'):g} mm with {len(given)} starts: give one of {names}, "
-                    "and none without relief"
-                )
+                one = "without it leave out" if not needed else "give one of"
+                there = f"{len(given)} of its starts" if given else "no start"
+                raise ValueError(f"{end}_relief = {getattr(self, f'{end}_relief'):g} mm with {there}: {one} {names}")
             if getattr(self, f"{end}_exponent") < 1:
                 raise ValueError(f"{end}_exponent = {getattr(self, f'{end}_exponent'):g}, but a relief needs an exponent >= 1")
         for name in ("pitch", "tooth_scale"):

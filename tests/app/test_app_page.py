@@ -82,13 +82,35 @@ def test_a_refusal_is_told_and_the_picture_stays(browser, page):
     assert "the bore must lie inside the root circle" in browser.run(page, "$('said').textContent")
     assert browser.run(page, "$('curves').data.length > 0 && $('headline').textContent.length > 10")
     browser.run(page, "$('held_1').value = ''; $('held_1').dispatchEvent(new Event('input')); 1")
-    browser.until(page, "$('said').textContent.includes('expected a finite number')")
+    browser.until(page, "$('said').textContent.includes('the field is empty')")
+
+
+def test_the_program_and_the_bands_follow_the_gears(browser, page):
+    browser.run(page, "document.querySelector('[data-file=python]').click()")
+    browser.until(page, "$('program').textContent.includes('gf.Gear(z=22')")
+    browser.run(page, "change(fields.find((one) => one.name === 'z_1'), 25); 1")
+    browser.until(page, "$('program').textContent.includes('gf.Gear(z=25')")
+    share = browser.run(page, "shown.share")
+    fewest = [sum(bool(one[i]) for one in share["value"]) == 1 for i in range(len(share["phase"]))]
+    shaded = browser.run(page, "$('curves').layout.shapes.map((one) => [one.x0, one.x1])")
+    inside = [any(low < phase < high or phase in (low, high) for low, high in shaded) for phase in share["phase"]]
+    assert inside == fewest
+
+
+def test_helical_teeth_get_their_own_result_without_being_asked(browser, place):
+    session = browser.page(f"{place}#beta=15.0")
+    browser.until(session, READY)
+    assert browser.run(session, "$('headline').textContent").startswith("Transverse section alone: ")
+    browser.until(session, "shown.method.includes('ritz3d') && !document.body.classList.contains('dim')", 60.0)
+    wanted = json.loads(answer("solid", checked_state(START | {"beta": 15.0})))["headline"]
+    assert browser.run(session, "$('headline').textContent") == wanted
 
 
 def test_every_control_has_a_name_and_the_phone_no_wider_page(browser, place):
     session = browser.page(place, width=390, height=844, touch=True)
     browser.until(session, READY)
     assert browser.run(session, "document.documentElement.scrollWidth") <= 390
+    assert browser.run(session, "document.querySelector('.wide').scrollWidth <= document.querySelector('.wide').clientWidth")
     assert browser.run(session, "state.z_2") == 60, "the scene that the command named"
     nameless = "all('input, select, button, summary').filter((one) => !(one.ariaLabel || one.labels?.length || one.textContent))"
     assert browser.run(session, f"{nameless}.map((one) => one.id)") == []

@@ -119,7 +119,7 @@ def test_messages_speak_of_options(tmp_path, capsys):
         told = capsys.readouterr().err
         assert said in told
         assert "=\n" not in told
-    assert shell.as_options(ValueError("rate = 3, give rate= or rates="), ["rate"]) == "rate = 3, give --rate or rates="
+    assert shell.as_options(ValueError("rate = 3, give rate= or rates="), ["rate"]) == "--rate = 3, give --rate or rates="
 
 
 def test_tables_keep_their_columns():

@@ -38,6 +38,7 @@ def test_sections_are_judged_by_finite_elements(found):
 
 
 def test_notebooks_display_the_headline_and_the_table(found):
+    assert repr(found) == f"<Comparison: {found.headline}>"
     page = found._repr_html_()
     assert f"<p>{found.headline}</p>" in page
     assert found.table().html() in page

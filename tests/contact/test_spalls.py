@@ -147,7 +147,7 @@ def test_both_halves_of_a_herringbone_gear(tmp_path):
     [
         ({"method": "ritz"}, "spalls with method = 'ritz', a transverse section: use ritz3d, fe3d"),
         ({"method": "coupled"}, "damage with method = 'coupled'"),
-        ({"damage": {"pinion": [1.5]}}, "= 1.5, but give a Crack or a Pit or a Spall"),
+        ({"damage": {"pinion": [1.5]}}, "= 1.5, but give a Crack, a Pit, a Spall"),
         ({"damage": {"pinion": [replace(SPALL, z=13.0)]}}, "spall at z = 13 mm"),
     ],
 )

@@ -6,6 +6,7 @@ import pytest
 
 from gearfe.core.steps import steps
 from gearfe.core.time_limit import check_time
+from gearfe.runs.cost import Cost
 from gearfe.runs.runner import Tally
 
 
@@ -62,3 +63,9 @@ def test_the_limit_is_a_positive_number_of_hours(monkeypatch, stated):
     monkeypatch.setenv("GEARFE_MAX_HOURS", stated)
     with pytest.raises(ValueError, match="give a number of hours above 0"):
         check_time("work", 1.0, "")
+
+
+@pytest.mark.parametrize(("hours", "said"), [(1.0, False), (100.0, True)])
+def test_a_plan_states_a_limit_that_it_exceeds(hours, said):
+    cost = Cost("9 cases in 3 blocks", 9, 3, 2 * 3600 * hours, 2, 1e8, 1e6, 1e12, 1, 0, "")
+    assert ("limit: 2 h" in cost.text()) == said

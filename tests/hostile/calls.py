@@ -7,12 +7,14 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from comparison.test_machine_fit import DAMPING, TRAIN
 from dynamics.test_models import PAIRS
 from planetary_sets.sets import STEEL, gears
 from planetary_sets.sets import case as set_case
 from runs.datasets.test_dataset_plan import SMALL
 
 import gearfe as gf
+from gearfe.scene.toml_file import toml
 
 PLACE = Path("hostile")  # folder of the files that functions write
 STUDY = {
@@ -100,6 +102,22 @@ def rexs():
 @cache
 def meshes():
     return gf.export_mesh(file("parts.msh"), pair().gear_1, refine=0.4)
+
+
+@cache
+def train():
+    return written("train.toml", toml(TRAIN))
+
+
+@cache
+def healthy_record():
+    response = gf.simulate(gf.build_machine(gf.load_scene(train())), 0.2, rate=12800.0)
+    return response.signal("a.theta acceleration")
+
+
+@cache
+def machine_fit():
+    return gf.fit_machine(**called(CALLS["fit_machine"]))
 
 
 def fields(record):
@@ -190,6 +208,7 @@ CALLS = {  # values that are functions without arguments are called, so that not
     "Chip": {"depth": 1.0},
     "Convergence": lambda: fields(gf.convergence(gf.Case(**called(CASE)), gf.Solve("ritz", phases=[0.5]), refines=(0.5, 1.0))),
     "Crack": {"level": 0.3},
+    "CrackModel": {},
     "Dataset": lambda: {name: getattr(gf.dataset(SMALL, file("set"), workers=1), name) for name in ("folder", "about")},
     "Fault": {"gear": "sun", "tooth": 0, "what": "pit", "frequency": 1.0, "turning": 2.0},
     "Flank": {},
@@ -206,6 +225,7 @@ CALLS = {  # values that are functions without arguments are called, so that not
     "Layout": {"bodies": BODIES},
     "Load": {"name": "l", "row": ROW, "value": 1.0},
     "Machine": {"dofs": ("one.x",), "mass": np.ones(1), "springs": (gf.Spring("s", ROW, 1e6),), "meshes": (), "spin": 0.0},
+    "MachineFit": lambda: fields(machine_fit()),
     "Material": {"E": 2e5, "nu": 0.3},
     "Member": {"mass": 1.0, "inertia": 1e-3, "bearing": 1e8, "r_b": 0.03, "torsion": 1.0},
     "MeshCycle": lambda: fields(gf.mesh_cycle(gf.Case(**called(CASE | {"damage": {"pinion": [CRACK]}})), gf.Solve("textbook",
@@ -267,6 +287,8 @@ CALLS = {  # values that are functions without arguments are called, so that not
     "face_load_distribution": {"contact": lambda: contact()},
     "fast_kurtogram": {"signal": signal, "levels": 2},
     "find_lines": {"found": lambda: gf.spectrum(signal()), "lines": {"mesh": 200.0}},
+    "fit_machine": {"scene": lambda: train(), "record": lambda: healthy_record(), "vary": {DAMPING: (1e-6, 2e-5)},
+        "channel": "a.theta acceleration", "harmonics": 2},
     "fit_surrogate": FIT,
     "force_law": {"pair": pair, "forces": [500.0, 1000.0], "material": STEEL, "phases": 8, "method": "textbook"},
     "frequency_response": {"machine": stage, "frequencies": [10.0, 20.0], "output": "sun.x", "input": "sun.x"},

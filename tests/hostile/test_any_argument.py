@@ -20,6 +20,7 @@ SLOW = (  # more than a tenth of a second for a valid call
     "stress_intensity", "stress_intensity_along_front", "sweep_report", "with_estimated_speed", "write_contact_inp",
     "write_line_inp", "write_set_inp", "write_step", "SetCurves", "planetary_stiffness", "with_set", "plot_contact", "plot_pair",
     "Runs", "curve_bands", "main_effects", "open_runs", "plan_sweep", "sweep", "batch", "Convergence",
+    "MachineFit", "fit_machine",
 )  # fmt: skip
 NAMES = sorted(set(calls.CALLS) - set(SLOW))
 WORDS = st.sampled_from(["no", "1", "", "a\0b", "a$b$"])
@@ -60,7 +61,8 @@ def stated_by_gearfe(error):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("_place")
-def test_any_argument_of_any_public_name():
+@pytest.mark.parametrize(("names", "count"), [(NAMES, 400), (SLOW, 150)], ids=["quick", "slow"])
+def test_any_argument_of_any_public_name(names, count):
     told = {"answered": 0, "refused": 0}
 
     def check(name, place, value):
@@ -79,6 +81,6 @@ def test_any_argument_of_any_public_name():
         assert not dataclasses.is_dataclass(result) or repr(result)
         np.testing.assert_array_equal(numbers_in(result), numbers_in(again), err_msg=f"{name}({chosen}={value!r})")
 
-    drawn = given(name=st.sampled_from(NAMES), place=st.integers(0, 40), value=VALUES)
-    settings(max_examples=300, **QUIET)(drawn(check))()
+    drawn = given(name=st.sampled_from(names), place=st.integers(0, 40), value=VALUES)
+    settings(max_examples=count, **QUIET)(drawn(check))()
     assert min(told.values()) > 10, told

@@ -227,7 +227,7 @@ def commands(tmp_path):
             yield [verb, name, *out], ["scene"]
         yield [verb, scene, "--case", "nope", *out], ["case"]
         yield [verb], ["required"]
-        yield [verb, scene, "--nothing", *out], ["unrecognized"]
+        yield [verb, scene, "--nothing", *out], ["unknown argument"]
     for verb in ("stiffness", "compare", "render"):
         out = ["-o", str(tmp_path / "x.png")] if verb == "render" else []
         yield [verb, scene, "--pair", "nope", *out], ["pair"]
@@ -258,7 +258,7 @@ def commands(tmp_path):
     yield ["signal", str(tmp_path)], ["no records"]
     yield ["signal", "x.xlsx"], ["no format"]
     yield [], ["required"]
-    yield ["stifness", scene], ["invalid choice"]
+    yield ["stifness", scene], ["unknown choice"]
     for value in ("nan", "inf", "x"):
         yield ["render", scene, "--phase", value, "-o", str(tmp_path / "x.png")], ["phase"]
 

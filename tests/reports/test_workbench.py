@@ -4,6 +4,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.app.cli import main
+from gearfe.comparison.vibration import simulated_gear
 
 
 @pytest.fixture
@@ -56,3 +57,29 @@ def test_parts_of_records_and_an_estimated_speed(files, capsys):
     assert "the average keeps" not in printed.err
     assert main(["signal", str(files / "b.csv"), "--speeds", "19", "21"]) == 1
     assert "give --teeth" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_a_simulated_machine_stands_beside_the_record(tmp_path, capsys):
+    """Its frequencies, teeth and indicators are those of the wheel, which is not the default gear."""
+    rng, angle = np.random.default_rng(0), 2 * np.pi * 8.0 * np.arange(40960) / 10240
+    x = np.cos(31 * angle) + 0.2 * rng.standard_normal(angle.size)
+    x += np.exp(-(((np.mod(angle, 2 * np.pi) - 3.8) / 0.04) ** 2)) * np.cos(124 * angle)
+    np.savetxt(tmp_path / "b.csv", x, header="rate = 10240 Hz\nacc [g]")
+    scene = gf.new_scene(tmp_path / "own.toml", teeth=(21, 31), crack=(2.0, 60.0))
+    text = scene.read_text().replace('case = "cracked"\ngear = "pinion"', 'case = "cracked"\ngear = "wheel"')
+    scene.write_text(f'{text}\n[machine]\nmodel = "helical_pair"\nspeed_rpm = {60 * 8.0 * 31 / 21}\ntorque_Nm = 50.0\n')
+    folder = tmp_path / "bench"
+    named = ["--scene", str(scene), "--gear", "wheel", "--case", "cracked", "-o", str(folder)]
+    assert main(["signal", str(tmp_path / "b.csv"), *named]) == 0
+    printed = capsys.readouterr().out
+    assert "31 teeth: mesh 248 Hz, fault 8 Hz, shaft 8 Hz" in printed
+    simulated = simulated_gear(gf.load_scene(scene), "cracked", "wheel")
+    row = next(line for line in printed.split("simulated mesh force")[1].splitlines() if line.startswith("| FM4"))
+    table = gf.gear_indicator_table(simulated, 31)
+    assert_allclose([float(one) for one in row.split("|")[2:4]], [of["FM4"] for of in table.values()], rtol=1e-3)
+    verdicts = [line for line in printed.splitlines() if "tooth fault of the 31-tooth gear" in line]
+    assert [line.startswith("simulated mesh force: ") for line in verdicts] == [False, True]
+    assert "31-tooth gear: likely" in verdicts[1]
+    assert (folder / "simulated_average_simulated_cracked.csv").exists()
+    assert "simulated mesh force: tooth fault" in (folder / "page.html").read_text(encoding="utf-8")

@@ -127,7 +127,8 @@ def test_the_command_line_prints_and_draws_the_map(tmp_path, capsys):
     assert "peak-to-peak" in text
     assert len([line for line in text.splitlines() if line.split()[1:2] in (["1000"], ["3000"])]) == 2
     assert (tmp_path / "te.svg").stat().st_size > 1000
-    assert main(["stiffness", str(path), "--forces", "1000", "-o", str(tmp_path / "te.csv")]) == 1
+    assert main(["stiffness", str(path), "--forces", "1000", "--force", "1000"]) == 1
+    assert main(["stiffness", str(path), "--forces", "1000", "-o", str(tmp_path / "te.csv")]) == 0
 
 
 @pytest.mark.parametrize("gear", ["pinion", "ring"])
@@ -151,5 +152,5 @@ def test_a_relief_may_start_at_a_length_below_the_tip(tmp_path, gear):
     with pytest.raises(ValueError, match=r"tip_start_length_mm = 200.*mm long in roll length"):
         gf.load_scene(path)
     path.write_text(own + f"[flank.one]\ngear = '{side}'\n" + lengths + "tip_start_diameter_mm = 70\n")
-    with pytest.raises(ValueError, match="with 2 starts"):
+    with pytest.raises(ValueError, match="with 2 of its starts"):
         gf.load_scene(path)

@@ -48,8 +48,8 @@ def test_bearings():
     assert_allclose(both["inner"], one["inner"] * 20 / 30, rtol=1e-12)
     assert_allclose(both["cage"], 10.0 + (one["cage"]) * 20 / 30, rtol=1e-12)  # seen from the outer ring, and its turns
     for given, said in (
-        ((30.0, 30, 10.0, 50.0), "do not fit"),
-        ((30.0, 8, 60.0, 50.0), "do not fit"),
+        ((30.0, 30, 10.0, 50.0), "rollers fit on the pitch diameter"),
+        ((30.0, 8, 60.0, 50.0), "rollers fit on the pitch diameter"),
         ((30.0, 8, 10.0, 50.0, 2.0), "contact_angle = 2.0"),
         ((0.0, 8, 10.0, 50.0), "turns = 0.0"),
     ):

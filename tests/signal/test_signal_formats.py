@@ -121,7 +121,8 @@ def test_channels_are_named_after_what_the_file_calls_them(tmp_path):
 @pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning")  # of pyuff's writer
 def test_binary_universal_files_and_other_functions_in_them(tmp_path):
     write_uff(tmp_path / "b.uff", binary=1)
-    assert_array_equal(gf.read_signal(tmp_path / "b.uff", column="force 8-z").values, Y)
+    for column in ("force 8-z", "8-z"):  # names begin with the title of the record, which differs from file to file
+        assert_array_equal(gf.read_signal(tmp_path / "b.uff", column=column).values, Y)
     spectrum = uff_set("frf", X, 1, func_type=4)
     pyuff.UFF(str(tmp_path / "f.uff")).write_sets([spectrum], "add")
     with pytest.raises(ValueError, match="it has a data set function type 4"):

@@ -144,5 +144,5 @@ def test_three_dimensions_from_the_lightest_to_the_heaviest_load(pair, steel, da
 def test_the_command_line_refuses_the_heaviest_load_in_three_dimensions(capsys):
     assert main(["stiffness", "planetary_pitting", "--method", "ritz3d", "--force", "5e6"]) == 1
     said = capsys.readouterr().err
-    assert said.startswith("gearfe: force = 5e+06 N on 20 mm")
+    assert said.startswith("gearfe: --force = 5e+06 N on 20 mm")
     assert len(said.splitlines()) == 1

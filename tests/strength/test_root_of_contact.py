@@ -39,6 +39,14 @@ def test_bad_input_is_refused(contact, index, change, message):
 
 
 @pytest.mark.slow
+def test_the_standard_is_above_the_largest_stress_of_the_engagement_by_a_little():
+    """By 2.3 %: ISO 6336-3 puts the load on one line, contact shares it and gives the rest to the other pairs."""
+    contact = gf.contact_pattern(PAIR, 1800.0, STEEL, phases=[0.75, 0.9, 1.05])
+    largest = max(gf.root_stress_of_contact(PAIR, contact, k, STEEL, refine=0.5).largest for k in range(3))
+    assert 0.0 < gf.iso_root_stress(PAIR, 1800.0).stress / largest - 1 < 0.06
+
+
+@pytest.mark.slow
 def test_more_stress_than_under_an_even_load(contact):
     """Both lie on the same line with the same sum; the contact's load is larger towards the end that touched first."""
     cells = contact.cells[0]

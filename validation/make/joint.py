@@ -3,6 +3,7 @@
 import importlib
 
 import numpy as np
+from scipy.stats import hypergeom
 
 import gearfe as gf
 from gearfe.core.table import Column, Table
@@ -70,13 +71,9 @@ def decides(name, held):
 
 def by_chance(apart, held, inputs):
     """Probability that halves of the draws differ by as many or more for one of so many inputs if none plays a part."""
-    from math import comb
-
-    half, yes = held.size // 2, int(held.sum())
-    ways = sum(
-        comb(half, a) * comb(half, yes - a) for a in range(max(0, yes - half), min(half, yes) + 1) if abs(2 * a - yes) >= apart
-    )
-    return 1 - (1 - ways / comb(held.size, yes)) ** inputs
+    above, yes = np.arange(held.size // 2 + 1), int(held.sum())
+    chance = hypergeom.pmf(above, held.size, yes, held.size // 2)[abs(2 * above - yes) >= apart].sum()
+    return float(1 - (1 - chance) ** inputs)
 
 
 def judged(name):

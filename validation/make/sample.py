@@ -11,6 +11,7 @@ from gearfe.core.threads import own_warnings
 
 from ..shared import kept_rows, page
 from ..shared.places import TABLES
+from ..shared.spread import ratio, spread_table
 from ..shared.table_rows import rows_of, write_table
 from . import sample_three
 
@@ -94,12 +95,18 @@ def run(again=True):
     page.write("sample", answer(rows, solid), HOW, coverage(rows, solid), section(rows), sample_three.section(solid))
 
 
+def largest(rows):
+    """Return name and values of each row for `spread_table`."""
+    names = (f"{row['pair']}{', ' if row['damage'] else ''}{row['damage']}, seed {row['seed']}" for row in rows)
+    return [(name, {key: float(row[key]) for key in FIELDS[5:10]}) for name, row in zip(names, rows, strict=True)]
+
+
 def coverage(rows, solid):
     """Table of what the estimate of each method covers and how large it is."""
     out = ["| method | pairs covered at every phase | median estimate over median error |", "|---|---|---|"]
-    out += [f"| `{name}` | {_count(rows, f'{name}_covered')} | {_ratio(rows, name):.1f} |" for name in ("fe", "ritz")]
+    out += [f"| `{name}` | {_count(rows, f'{name}_covered')} | {ratio(largest(rows), name):.1f} |" for name in ("fe", "ritz")]
     pairs, count = sample_three.covered(solid)
-    ratios = (sample_three.ratio(solid, name) for name in ("ritz3d", "fe3d"))
+    ratios = (ratio(sample_three.largest(solid), name) for name in ("ritz3d", "fe3d"))
     known = zip(("ritz3d", "fe3d"), pairs, ratios, strict=True)
     return out + [f"| `{name}` | {covered} of {count} | {ratio:.1f} |" for name, covered, ratio in known]
 
@@ -124,33 +131,13 @@ def section(rows):
         """,
         '(`meta["error_of_contact"]`) is therefore left out here: it would hide what the rest does not cover.',
         "",
-        "| in percent of k | median | 95th percentile | worst | of the pair |",
-        "|---|---|---|---|---|",
-        _line(rows, "difference", "`fe` against `ritz`"),
-        _line(rows, "fe_error", "error of `fe`"),
-        _line(rows, "fe_estimate", "its estimate"),
-        _line(rows, "ritz_error", "error of `ritz`"),
-        _line(rows, "ritz_estimate", "its estimate"),
+        *spread_table(largest(rows), "fe", "ritz"),
         "",
-        f"The median estimate is {_ratio(rows, 'fe'):.1f} times the median error of `fe` and {_ratio(rows, 'ritz'):.1f} times "
-        "that of `ritz`. None of these pairs was looked at before the estimates were settled. "
+        "None of these pairs was looked at before the estimates were settled. "
         "Pairs in which the estimates cover at every phase: "
         f"the difference by the sum of both {_count(rows, 'apart_covered')}, the error of `fe` {_count(rows, 'fe_covered')}, the "
         f"error of `ritz` {_count(rows, 'ritz_covered')}.",
     ]
-
-
-def _line(rows, name, text):
-    values = np.array([float(r[name]) for r in rows])
-    worst = rows[int(values.argmax())]
-    spread = f"{np.median(values):.3f} | {np.quantile(values, 0.95):.3f} | {values.max():.3f}"
-    return f"| {text} | {spread} | {worst['pair']}{', ' if worst['damage'] else ''}{worst['damage']}, seed {worst['seed']} |"
-
-
-def _ratio(rows, name):
-    """Median estimate over median error of a method."""
-    said, off = (np.median([float(row[f"{name}_{what}"]) for row in rows]) for what in ("estimate", "error"))
-    return float(said / off)
 
 
 def _count(rows, name):

@@ -18,6 +18,7 @@ from gearfe.geometry.damage.hollow import check_hollows
 
 from ..shared.kept_rows import kept, stored
 from ..shared.solid_pair import solid_contact
+from ..shared.spread import spread_table
 
 TABLE = "sample_three"
 # by kind: first seed, teeth of the pinion, of the wheel (of a ring: more than the pinion), width [m_n], resolution of `fe3d`,
@@ -205,18 +206,34 @@ def covered(found):
     return [sum(bool(one[name].all()) for one in said) for name in reversed(ASKED)][:2], len(said)
 
 
-def ratio(found, name):
-    """Median estimate of a method over its median error, both of the worst phase of each pair."""
-    solved = [one for one in found if "failed" not in one]
-    off = [np.abs(np.subtract(one[name], one["fine"]) / one["fine"]).max() for one in solved]
-    return float(np.median([np.divide(one[f"{name}_error"], one["fine"]).max() for one in solved]) / np.median(off))
+def largest(found):
+    """Return name and values of each solved pair for `spread_table`."""
+    out = []
+    for one in (one for one in found if "failed" not in one):
+        brute, energy, fine = (np.array(one[name]) for name in ("fe3d", "ritz3d", "fine"))
+        away = {"difference": brute - energy, "fe3d_error": brute - fine, "ritz3d_error": energy - fine}
+        away |= {f"{name}_estimate": np.array(one[f"{name}_error"]) for name in ("fe3d", "ritz3d")}
+        values = {name: 100 * float(np.max(np.abs(value) / fine)) for name, value in away.items()}
+        out.append((f"{one['pair']}, {one['row']}", values))
+    return out
 
 
 def section(found):
     """Lines of the page, from `rows`."""
     count = sum(one[5] for one in KINDS.values())
     done = f"{len(found)} of {count} pairs are computed so far." if len(found) < count else f"All {count} pairs are computed."
-    parts = [*TEXT.strip().splitlines(), "", done, "", *_counts(found), "", *_misses(found), "", *_spread(found), ""]
+    parts = [
+        *TEXT.strip().splitlines(),
+        "",
+        done,
+        "",
+        *_counts(found),
+        "",
+        *_misses(found),
+        "",
+        *spread_table(largest(found), "fe3d", "ritz3d"),
+        "",
+    ]
     return [*parts, *SETTLED.strip().splitlines()]
 
 
@@ -249,19 +266,3 @@ def _misses(rows):
                 gap = abs(one[first][at] - one[second][at]) / one["fine"][at]
                 out.append(f"- {one['row']}, {one['pair']}, phase {phase:.3f}: {name} {100 * gap:.3f} %, said {100 * said:.3f} %")
     return ["Not covered:" if out else "Nothing is left uncovered.", "", *out] if out else ["Nothing is left uncovered."]
-
-
-def _spread(rows):
-    """Table of differences and estimates, the largest of the phases of each pair, in percent."""
-    out = ["| in percent of k | median | 95th percentile | worst | of the pair |", "|---|---|---|---|---|"]
-    rows = [one for one in rows if "failed" not in one]
-    asked = [("`fe3d` against `ritz3d`", "fe3d", "ritz3d")]
-    asked += [("error of `fe3d`", "fe3d", "fine"), ("its estimate", "fe3d_error", None)]
-    asked += [("error of `ritz3d`", "ritz3d", "fine"), ("its estimate", "ritz3d_error", None)]
-    for text, one, other in asked:
-        away = [np.abs(np.array(row[one]) - (np.array(row[other]) if other else 0.0)) / np.array(row["fine"]) for row in rows]
-        values = 100 * np.array([a.max() for a in away])
-        worst = rows[int(values.argmax())]
-        spread = f"{np.median(values):.3f} | {np.quantile(values, 0.95):.3f} | {values.max():.3f}"
-        out.append(f"| {text} | {spread} | {worst['pair']}, {worst['row']} |")
-    return out

@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import re
 import tomllib
 from importlib import resources
 
@@ -26,6 +27,36 @@ def _ratio(text):
         raise argparse.ArgumentTypeError(f"{text!r} is not a speed ratio: give for example 29/95 or 0.305") from None
 
 
+class _Parser(argparse.ArgumentParser):
+    """Parser whose messages are plain words and give the nearest verb or option."""
+
+    def parse_known_args(self, args=None, namespace=None):
+        """Parse; a verb refuses what it does not know, so that the message is its own."""
+        found, rest = super().parse_known_args(args, namespace)
+        if rest:
+            options = [option for action in self._actions for option in action.option_strings]
+            near = _nearest(rest[0].partition("=")[0], options)
+            self.error(f"unknown argument {rest[0]!r}{near}; {self.prog} --help lists all")
+        return found, rest
+
+    def error(self, message):
+        """End with the usage and a message."""
+        if choice := re.search(r"invalid choice: '(.*?)' \(choose from (.*)\)$", message, re.DOTALL):
+            names = re.findall(r"'(.*?)'", choice[2])
+            message = (
+                f"{message[: choice.start()]}unknown choice {choice[1]!r}{_nearest(choice[1], names)}; give {', '.join(names)}"
+            )
+        message = re.sub(r"invalid int value: (.*)", r"\1, but give a whole number", message)
+        super().error(re.sub(r"invalid float value: (.*)", r"\1, but give a number", message))
+
+
+def _nearest(word, names):
+    from difflib import get_close_matches
+
+    near = get_close_matches(word, names, 1)
+    return f" (nearest: {near[0]})" if near else ""
+
+
 TYPES = {"int": int, "float": float, "ratio": _ratio}
 MODULES = {"exchange": exchange, "filling": filling, "sets": sets, "signals": signals, "tools": tools, "verbs": verbs}
 
@@ -33,9 +64,7 @@ MODULES = {"exchange": exchange, "filling": filling, "sets": sets, "signals": si
 def main(argv=None):
     """Run the command line; returns the exit code."""
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # before numpy loads: on small matrices more threads wait for each other
-    parser = argparse.ArgumentParser(
-        prog="gearfe", description="Compute gear mesh stiffness, transmission error and gearbox vibration."
-    )
+    parser = _Parser(prog="gearfe", description="Compute gear mesh stiffness, transmission error and gearbox vibration.")
     parser.add_argument("--version", action=_Version, help="print the version and exit")
     known = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     tables = tomllib.loads((resources.files(__package__) / "verbs.toml").read_text(encoding="utf-8"))

@@ -61,6 +61,9 @@ def as_options(error, options):
     text, names = str(error), "|".join(map(re.escape, options))
     if not names:
         return text
+    # the option that the message begins with; forces of Python are one force each
+    text = re.sub(rf"^({names})(?= = )", lambda match: f"--{match[1].replace('_', '-')}", text)
+    text = text.replace("force = ", "--forces = ", 1) if "forces" in options and text.startswith("force = ") else text
     # names of the options --mesh and --fault of `gearfe signal`
     text = re.sub(rf"\b({names})_frequency = ", lambda match: f"--{match[1]} ", text)
     return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda match: f"--{match[1]}", text)

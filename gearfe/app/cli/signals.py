@@ -6,6 +6,8 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+PRINTED = 30  # lines of a spectrum
+
 
 def signal(arguments):
     """``gearfe signal``."""
@@ -45,7 +47,9 @@ def signal(arguments):
 
         table, named = named_table(list(analysed.spectra.values())[-1], load_scene(arguments.scene))
         tables[named] = table
-        print(f"\n{named}\n\n{table}")
+        large = sorted(sorted(table.rows, key=lambda row: -row[1])[:PRINTED])
+        more = f"; the {PRINTED} largest are printed, all are in the page of -o" * (len(large) < len(table.rows))
+        print(f"\n{named}{more}\n\n{replace(table, rows=large)}")
     verdict, extra = _of_gear(signals, arguments, tables) if arguments.teeth is not None else ("", {})
     if arguments.output:
         from ...reports.workbench import signal_workbench
@@ -77,14 +81,17 @@ def _of_gear(signals, arguments, tables):
             table = tabulate_gear_indicators(gear_indicator_table(records, arguments.teeth))
             tables[heading := f"gear of {arguments.teeth} teeth, from its synchronous average (TSA){told}"] = table
             print(f"\n{heading}\n\n{table}")
-    healthy, *others = signals.values()
-    try:
-        verdict = tooth_verdict(others[-1] if others else healthy, arguments.teeth, healthy if others else None)
-    except ValueError as error:
-        print(f"\nno verdict: {error}")
-        return "", simulated
-    print(f"\n{verdict.told(arguments.teeth)}")
-    return verdict.told(arguments.teeth), simulated
+    said = []
+    for told, records in parts.items():
+        if records:
+            healthy, *others = records.values()
+            try:
+                verdict = tooth_verdict(others[-1] if others else healthy, arguments.teeth, healthy if others else None)
+                said.append(f"{told[2:]}: " * bool(told) + verdict.told(arguments.teeth))
+            except ValueError as error:
+                print(f"\nno verdict: {error}")
+    print("", *said, sep="\n")
+    return " ".join(said), simulated
 
 
 def _command():

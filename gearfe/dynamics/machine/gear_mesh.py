@@ -103,10 +103,14 @@ class GearMesh:
         """Make the tables; raise ValueError for values that are out of range or do not go together."""
         settle_row(self, "mesh")
         what = f"mesh {self.name}"
-        settle_numbers(self, what, "frequency phase")
-        settle_numbers(self, what, "damping damping_per_stiffness zeta depth gap film", least=0.0)
+        settle_numbers(self, what, "frequency", " Hz")
+        settle_numbers(self, what, "phase")
+        settle_numbers(self, what, "damping", " N s/m", least=0.0)
+        settle_numbers(self, what, "damping_per_stiffness", " s", least=0.0)
+        settle_numbers(self, what, "zeta film", least=0.0)
+        settle_numbers(self, what, "depth gap", " m", least=0.0)
         settle_numbers(self, what, "power", least=1.0)
-        settle_numbers(self, what, "backlash", least=0.0, finite=False)
+        settle_numbers(self, what, "backlash", " m", least=0.0, finite=False)
         settle(
             self, push=truth(f"{what}: push", self.push), contact=law_of(self.power, self.depth) if self.law is None else self.law
         )

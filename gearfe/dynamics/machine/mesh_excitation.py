@@ -70,7 +70,7 @@ def harmonics(error: Any, frequency: float, phase: float) -> list[tuple[float, f
     ValueError
         If it is none of these, or not over whole mesh cycles.
     """
-    if np.ndim(error) == 0 and not isinstance(error, Samples):
+    if not isinstance(error, (Samples, list, tuple)) and np.ndim(error) == 0:
         if not is_finite(error):
             raise ValueError(
                 f"profile = {shown(error)}, but give an amplitude [m], samples over a mesh cycle, or Samples(phase, error)"

@@ -51,7 +51,7 @@ from ...geometry.aliases import StrPath
 from ...scene.dotted_keys import check_key, set_values
 from ...scene.load import Scene, scene_of
 from ...scene.parts import DAMAGE
-from ...scene.reading import checked
+from ...scene.reading import check_no_scene, checked
 from ...scene.study_tables import is_gearbox, tables_near
 from ...scene.toml_file import given_tables
 from ..sweeps.axes import RUNS
@@ -108,6 +108,7 @@ def read_plan(given: StrPath | Mapping[str, Any]) -> Plan:
         Naming file, table and key if anything is unknown, missing or impossible.
     """
     file, place, data = given_tables(given, "data set")
+    check_no_scene(file, "data set", data)
     top = checked(RUNS, "dataset", file, "top level", data)
     top["fault"] = tuple(_fault(file, f"fault {i + 1}", entry) for i, entry in enumerate(top["fault"]))
     top["sensor"] = tuple(top["sensor"])

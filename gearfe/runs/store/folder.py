@@ -70,6 +70,10 @@ def begin(folder: StrPath, about: Mapping[str, Any], shape: Mapping[str, Any]) -
     if not os.fspath(folder):
         raise ValueError("the name of the folder is empty: give a name")
     try:
+        os.fspath(folder).encode()
+    except UnicodeEncodeError as error:
+        raise ValueError(f"folder = {os.fspath(folder)!r}, but give a name in Unicode: the Parquet files are in it") from error
+    try:
         Path(folder).mkdir(parents=True, exist_ok=True)
         empty = not _inside(folder)
     except OSError as error:

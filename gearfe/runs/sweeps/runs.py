@@ -14,7 +14,7 @@ from ...core.record import check_keys
 from ...geometry.aliases import StrPath
 from ..store.folder import COUNT, read_about
 from ..store.shards import ShardColumn, fields_of, frame, opened, read, shard_names
-from .study import inputs_of
+from .study import count_of, inputs_of
 
 if TYPE_CHECKING:
     import pandas
@@ -37,8 +37,12 @@ class Runs:
     fields: dict[str, ShardColumn]
 
     def __post_init__(self) -> None:
-        """Raise ValueError if a description is missing."""
+        """Raise ValueError if a description is missing, or the number of cases is not that of the study."""
         check_keys("Runs: about", self.about, ("title", "cases", "study"))
+        check_keys("Runs: study", self.about["study"], ("axes", "sample"))
+        count = count_of(self.about["study"]["axes"], self.about["study"]["sample"])
+        if count != self.about["cases"]:
+            raise ValueError(f"{self.folder}: cases = {self.about['cases']}, but its study has {count}: the folder was changed")
 
     def __repr__(self):
         """Return one line: the study and the number of finished cases."""

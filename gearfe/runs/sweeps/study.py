@@ -46,7 +46,7 @@ from ...geometry.aliases import StrPath
 from ...scene.dotted_keys import check_key
 from ...scene.load import scene_of
 from ...scene.parts import DAMAGE
-from ...scene.reading import check_listed, check_named, checked
+from ...scene.reading import check_listed, check_named, check_no_scene, checked
 from ...scene.study_tables import is_gearbox, tables_near, trimmed
 from ...scene.toml_file import given_tables
 from . import samples
@@ -94,6 +94,7 @@ def _study(file, place, data):
     for kind in DAMAGE:
         check_listed(file, kind, data.get(kind, []))
     check_named(file, "flank", data.get("flank", {}))
+    check_no_scene(file, "study", data)
     top = checked(RUNS, "study", file, "top level", data)
     kind = KINDS[top["kind"]]
     name, tables = _scene(file, place, top["scene"], {name: top[name] for name in ADDED if top[name]})
@@ -101,8 +102,7 @@ def _study(file, place, data):
     options = checked(RUNS, kind.options, file, "options", top["options"])
     grid = tuple(axes(file, top["vary"], top["along"]))
     sample = checked_sample(file, top["sample"])
-    cases = math.prod([len(next(iter(axis.values()))) for axis in grid]) * sample.get("count", 1)
-    if cases > MOST:
+    if (cases := count_of(grid, sample)) > MOST:
         raise ValueError(f"{file}: {cases} cases, but a study has at most {MOST:.0e}: vary fewer values, or split the study")
     keys = inputs_of(grid, sample)
     for key in keys:
@@ -141,6 +141,13 @@ def inputs_of(grid: Iterable[Mapping[str, Any]], sample: Mapping[str, Any]) -> t
     """Keys that vary, of the axes of a grid and of a sample, with those that take the value of another."""
     drawn = [key for name, spec in sample.get("of", {}).items() for key in (name, *spec.get("also", []))]
     return (*(key for axis in grid for key in axis), *drawn)
+
+
+def count_of(grid: Iterable[Mapping[str, Any]], sample: Mapping[str, Any]) -> int:
+    """Return the number of cases: each draw of the sample meets each combination of the grid."""
+    combinations = math.prod(len(next(iter(axis.values()))) for axis in grid)
+    draws = sample.get("count", 1) * (len(sample["of"]) + 2 if sample.get("method") == "saltelli" else 1)
+    return int(combinations * draws)
 
 
 def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:

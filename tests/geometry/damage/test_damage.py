@@ -264,7 +264,7 @@ def test_cache_can_be_switched_off(counted, monkeypatch, tmp_path):
     ("damage", "message"),
     [
         ({"sun": [gf.Crack(level=0.3)]}, "'pinion' and 'wheel'"),
-        ({"pinion": [0.3]}, "= 0.3, but give a Crack or a Pit"),
+        ({"pinion": [0.3]}, "= 0.3, but give a Crack, a Pit"),
         ({"pinion": [gf.Crack(length=30.0)]}, "sector|held edge"),
         ({"pinion": [gf.Crack(level=0.3), gf.Crack(level=0.1)]}, "two cracks on the loaded side"),
         ({"pinion": [gf.Crack(level=0.5), gf.Crack(level=0.5, side="unloaded")]}, "two cracks of tooth 0 meet"),

@@ -51,9 +51,9 @@ def test_derivatives_are_those_of_the_amount():
 @pytest.mark.parametrize(
     ("given", "text"),
     [
-        ({"tip_relief": 0.02}, "with 0 starts: give one of tip_start_diameter, tip_start_roll, tip_start_angle"),
-        ({"tip_relief": 0.02, "tip_start_roll": 9.0, "tip_start_angle": 0.4}, "with 2 starts"),
-        ({"tip_start_roll": 9.0}, "tip_relief = 0 mm with 1 starts"),
+        ({"tip_relief": 0.02}, "with no start: give one of tip_start_diameter, tip_start_roll, tip_start_angle"),
+        ({"tip_relief": 0.02, "tip_start_roll": 9.0, "tip_start_angle": 0.4}, "with 2 of its starts"),
+        ({"tip_start_roll": 9.0}, "tip_relief = 0 mm with 1 of its starts"),
         ({"tip_relief": 20.0, "tip_start_diameter": 44.0}, r"20 mm removed .* amounts are in mm \(20 um are 0.02\)"),
         ({"tip_relief": 0.02, "tip_start_diameter": 22.0}, "tip_start_diameter = 22 mm is not inside the flank of z = 21"),
         ({"tip_relief": 0.02, "tip_start_angle": 25.0}, "tip_start_angle = 25 rad is not inside the flank"),

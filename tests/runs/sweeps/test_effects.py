@@ -13,11 +13,17 @@ from gearfe.runs.sweeps.runs import FORMAT, SHAPE
 from gearfe.runs.sweeps.samples import cube
 
 
-def stored(folder, points, outputs, sample, extra=None):
+def stored(folder, points, outputs, sample, extra=None, cases=None):
     """Runs of drawn inputs a, b, c with an output ``y`` and a curve."""
     names = ("a", "b", "c")
     study = {"kind": "stiffness", "pair": "p", "case": "c", "options": {}, "axes": [], "sample": sample, "seed": 0, "block": 1}
-    about = {"format": FORMAT, "title": "known", "cases": len(points), "study": json.loads(json.dumps(study)), "made": {}}
+    about = {
+        "format": FORMAT,
+        "title": "known",
+        "cases": cases or len(points),
+        "study": json.loads(json.dumps(study)),
+        "made": {},
+    }
     place.begin(folder, about, SHAPE)
     fields = {"number": ShardColumn("whole"), "point": ShardColumn("whole"), "draw": ShardColumn("whole")}
     fields |= {name: ShardColumn("number") for name in names} | {
@@ -74,7 +80,7 @@ def test_main_effects_and_bands_of_a_sum(tmp_path):
 def test_a_missing_draw_is_said(tmp_path):
     points = cube("saltelli", 8, 3, 1)
     sample = {"method": "saltelli", "count": 8, "of": {name: {"uniform": [0, 1]} for name in "abc"}}
-    runs = stored(tmp_path / "runs", points[:-1], points[:-1, 0], sample)
+    runs = stored(tmp_path / "runs", points[:-1], points[:-1, 0], sample, cases=40)
     with pytest.raises(ValueError, match="each of the 40 draws once, but there are 39"):
         gf.sobol_indices(runs, "y")
 
