@@ -100,8 +100,8 @@ def in_fillet(pair, roll_1, roll_2):
 
 def plain_radius(pair, roll_1, roll_2):
     """Relative radius of curvature of involutes [mm]; of a tip in a fillet, where no parabola counts, that at the pitch point."""
-    radius, middle = pair.relative_radius(roll_1, roll_2), pair.relative_radius(*pair.curvature_radii(pair.pitch_phase))
-    return np.where((radius > 0) & ~in_fillet(pair, roll_1, roll_2), radius, np.abs(middle))
+    radius = pair.relative_radius(roll_1, roll_2)
+    return np.where((radius > 0) & ~in_fillet(pair, roll_1, roll_2), radius, pair.pitch_relative_radius)
 
 
 def _reached(pair, end, line_load, modulus):

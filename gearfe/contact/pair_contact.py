@@ -115,7 +115,7 @@ class PairContact:
             )
         unloaded = least if self.flanks is not None or least.any() else None
         marked = (tuple(open_[which].tolist()) for which in (closed, fillet))
-        doubt = left_out(self, line, closing, beyond)
+        doubt = left_out(self, line, closing, beyond, np.isin(np.arange(least.size), open_[closed]))
         return Solved(points.order, closing, tangent, line, pressure, *marked, unloaded, left_out=doubt)
 
     def problems(self, line_load, phases, possible, corners, kink, tilt):
@@ -238,7 +238,7 @@ class PairContact:
         start, end = self.path
         mate = self.pair.mate_roll(points.nominal)
         radius = np.where(points.corner > 0, self.pair.relative_radius(points.nominal, mate), self.radius)
-        width = half_width(line_load, np.where(radius > 0, radius, 1.0), self.modulus)
+        width = half_width(line_load, np.where(radius > 0, radius, self.pair.pitch_relative_radius), self.modulus)
         pressed = sum(self.coefficients) * line_load * (np.log(2 * gear.m_n / width) + 0.5)
         away = np.abs(arc_at(gear, points.corner_roll[0]) - arc_at(gear, points.roll_1))
         wheel = self.pair.gear_2  # the row is finer on the side of the corner's gear, so that neither gear is preferred

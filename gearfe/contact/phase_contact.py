@@ -100,8 +100,7 @@ class PhaseContact:
         self.bands = bands_of(pair, case.runs, case.groove)
         self.width = sum(abs(last - first) for first, last in self.bands)
         self.beta_b = abs(pair.gear_1.beta_b)
-        radius = pair.relative_radius(*pair.curvature_radii(pair.pitch_phase)) / math.cos(self.beta_b)
-        self.radius, self.modulus = abs(float(radius)), contact_modulus(materials)
+        self.radius, self.modulus = pair.pitch_relative_radius / math.cos(self.beta_b), contact_modulus(materials)
         self.furthest = max((float(gap[-1]) for _, gap in gaps(pair) if gap.size), default=0.0) if extended else 0.0
         unit = self.modulus * pair.gear_1.m_n * self.width
         self.sized = unit * ROW ** math.ceil(math.log(force / unit, ROW) - 1e-9)
@@ -293,24 +292,27 @@ class PhaseContact:
         loaded = replace(cells, load=np.tile(load, times), pressure=np.tile(pressure, times))
         way = np.zeros(n) if yields is None else yields @ load / cos
         given = float(load @ way / load.sum()), float(way.min())
-        slide, unsure = self._slid(solved, bodies, load, shared.approach, closed)
-        unsure += cracks_beyond_lines(solved, bodies, load, shared.approach)
+        gap = cos * solved.gap - (solved.floor if self.flanks is None else 0.0)
+        closing = shared.approach - float(gap.min())
+        slide, unsure = self._slid(solved, bodies, load, closing, closed)
+        unsure += cracks_beyond_lines(solved, bodies, load, closing)
         tangent = 1 / (1 / shared.tangent - 2 * slide / load.sum())
         beyond_it = off_path(self, solved, load, radius, shared.approach)
         return Carried(loaded, (shared.approach - slide) / cos, times * tangent * cos**2, closed, *given, unsure, beyond_it)
 
-    def _slid(self, cells, bodies, load, approach, closed):
+    def _slid(self, cells, bodies, load, closing, closed):
         """Part of the approach at right angles to the flanks [mm] saved by sliding, and what is unsure of the rest, relative.
 
-        What sliding saves at corners is in their law, but for cracks. With `closed` faces it is left out.
+        `closing` is the approach beyond the first touch [mm]. What sliding saves at corners is in their law, but for cracks. With
+        `closed` faces it is left out.
         """
         slide, share = slid(cells, bodies, load, self._radius(cells)), load / load.sum()
         alike = (cells.half[:, None] == cells.half) & (cells.order[:, None] == cells.order)
-        open_, healthy = share * np.minimum(slide, MOST * approach)
-        saved = np.minimum(open_, share * MOST * approach * (alike @ share))
+        open_, healthy = share * np.minimum(slide, MOST * closing)
+        saved = np.minimum(open_, share * MOST * closing * (alike @ share))
         smooth = (cells.corner == 0) & (self._ends(cells) < 0)
         unsure = np.where(smooth, healthy if closed else open_ - saved, np.abs(open_ - healthy))
-        return 0.0 if closed else float(saved[smooth].sum()), float(unsure.sum() / approach)
+        return 0.0 if closed else float(saved[smooth].sum()), float(unsure.sum() / closing)
 
     def _radius(self, cells):
         """Relative radii of curvature of cells at right angles to the flanks [mm]."""

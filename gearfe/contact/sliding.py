@@ -1,6 +1,7 @@
 """Motion of contacts along the flanks under load: towards more compliant places, with shifted gaps."""
 
 import math
+from itertools import zip_longest
 
 import numpy as np
 
@@ -90,7 +91,7 @@ def bounded(contact, line_load, phases=slice(None), stiffness=None):
     return np.minimum(slides, MOST * np.maximum(yields, 0.0) / line_load)
 
 
-def left_out(contact, line, closing, beyond):
+def left_out(contact, line, closing, beyond, shut):
     """Part of the approach ``(phases,)`` that is unsure: bent teeth also move along each other, and chamfers take material.
 
     A tooth's tip bends across its centre-line, so that a part tan(alpha_wt) of the approach is movement u along the flanks. On
@@ -98,12 +99,13 @@ def left_out(contact, line, closing, beyond):
     the flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
 
     Of line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``; `closing` ``(phases,)`` is how far the
-    load moves the gears [mm]. What cracks add far away, or in thin teeth, is unsure, too.
+    load moves the gears [mm]. What cracks add far away, in thin teeth, or by large displacements is unsure, too. At the phases
+    `shut` faces of cracks touch.
     """
     points, (start, end) = contact.found, contact.path
     off = (line > 0) & ((points.nominal < start) | (points.nominal > end))
     softer = _cut_away(contact, line) + UNSURE * np.abs(contact.thinner) * line
-    softer = softer + _cracks_beyond(contact, line) + _cracks_in_thin_teeth(contact, line)
+    softer = softer + _cracks_beyond(contact, line) + _cracks(contact, line, shut)
     if not (off.any() or softer.any()):
         return np.zeros(closing.size)
     closed = closing[:, None] - beyond
@@ -134,14 +136,14 @@ def off_path(contact, cells, load, radius, approach):
     return float(stiff @ _changed(contact, radius[on], gap, closed, closing) / stiff.sum() / closing)
 
 
-def cracks_beyond_lines(cells, bodies, load, approach):
-    """Part of the `approach` [mm] that cracks further away than their solved teeth may add (see `slid`)."""
+def cracks_beyond_lines(cells, bodies, load, closing):
+    """Part of the approach beyond first touch, `closing` [mm], that cracks beyond their solved teeth may add (see `slid`)."""
     out = 0.0
     for half in np.unique(cells.half).tolist():
         on = cells.half == half
         for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
             out += body.cracks_beyond(sense * cells.order[on], roll[on], cells.depth[on] + offset, load[on])
-    return out / load.sum() / approach
+    return out / load.sum() / closing
 
 
 def _cracks_beyond(contact, line):
@@ -154,17 +156,22 @@ def _cracks_beyond(contact, line):
     return out
 
 
-def _cracks_in_thin_teeth(contact, line):
-    """Deflection ``(phases, pairs)`` [mm] that cracks add in teeth which modified flanks have left thinner.
+def _cracks(contact, line, shut):
+    """Deflection ``(phases, pairs)`` [mm] by cracks that is unsure: in thin teeth, and where displacements are large.
 
-    The flexibility of a crack of a given part of the thickness h goes by ``h**-2``; it is that of the whole tooth.
+    The flexibility of a crack of a given part of the thickness h goes by ``h**-2``; it is that of the whole tooth. A tooth turns
+    about the tip of its crack by about the deflection u by the crack over the height of the tooth. By that part the lever arm and
+    the direction of the force differ from those of small displacements. At the phases `shut`, faces of cracks touch.
     """
     out, stop, order = np.zeros(line.shape), 0, contact.found.order
-    for flexible, thin, teeth in zip(contact.flexibility, contact.thinning, (order, -order), strict=False):
+    for flexible, teeth, thin in zip_longest(contact.flexibility, (order, -order), contact.thinning):
         if flexible.seam is not None:
             faces = slice(stop, stop := stop + flexible.seam.influence.shape[0])
-            opening, lost = contact.opening[..., faces], np.array([thin.lost(tooth) for tooth in teeth.tolist()])
-            out += ((1 - lost) ** -2 - 1) * np.einsum("pcf,fg,pcg->pc", opening, flexible.seam.stiffness, opening) * line
+            opening = contact.opening[..., faces]
+            lost = np.array([thin.lost(tooth) for tooth in teeth.tolist()] if thin else 0.0)
+            by_crack = np.einsum("pcf,fg,pcg->pc", opening, flexible.seam.stiffness, opening) * line
+            turn = np.where(shut[:, None], 0.0, by_crack / abs(flexible.gear.r_a - flexible.gear.r_f))
+            out += ((1 - lost) ** -2 - 1 + turn) * by_crack
     return out
 
 

@@ -164,7 +164,7 @@ def touching(pair: GearPair, nominal: NDArray, *, extended: bool = True) -> Touc
         roll_1[at_corner], roll_2[at_corner], corner[at_corner] = rolls_1[chosen], rolls_2[chosen], chosen[0] + 1
         gap[at_corner] = np.where(np.abs(gaps[chosen]) < ROUNDING * pair.gear_1.m_n, 0.0, gaps[chosen])
     radius = pair.relative_radius(roll_1, roll_2)
-    radius = np.where(np.isfinite(gap) & (radius > 0), radius, 1.0)
+    radius = np.where(np.isfinite(gap) & (radius > 0), radius, pair.pitch_relative_radius)
     return Touch(roll_1, roll_2, gap, corner, corner_gap, corner_roll, radius)
 
 

@@ -176,6 +176,11 @@ class GearPair:
         return roll_1 * roll_2 / (roll_2 + self.outward * roll_1)
 
     @property
+    def pitch_relative_radius(self) -> float:
+        """Relative radius of curvature at the pitch point [mm]: the measure where no parabola describes the contact."""
+        return abs(float(self.relative_radius(*self.curvature_radii(self.pitch_phase))))
+
+    @property
     def backlash(self) -> float:
         """Normal backlash: distance of the back flanks along the line of action [mm] (negative: the teeth overlap)."""
         pinion, wheel = self.gear_1, self.gear_2

@@ -115,7 +115,10 @@ def first_touch(
 
 
 def _radius(pair, forms, roll_1, roll_2, there):
-    """Relative radii of curvature of modified flanks ``(n,)`` [mm]; 1 where they do not meet, or are hollow as involutes."""
+    """Relative radii of curvature of modified flanks ``(n,)`` [mm].
+
+    It is that of the pitch point where they do not meet, or where their involutes are hollow.
+    """
     plain = np.where(there, pair.relative_radius(roll_1, roll_2), 1.0)
     involute = np.where(there & (plain > 0), 1 / np.where(plain > 0, plain, 1.0), 0.0)
     bend = np.where(there, forms[0].bend(roll_1) + forms[1].bend(roll_2), 0.0)
@@ -126,7 +129,7 @@ def _radius(pair, forms, roll_1, roll_2, there):
             f"the modified flanks conform at roll lengths {roll_1[i]:.5g} and {roll_2[i]:.5g} mm of pinion and wheel: no "
             "line contact there; smooth the table, or lower the amounts"
         )
-    return np.where(involute > 0, 1 / np.where(involute > 0, involute + bend, 1.0), 1.0)
+    return np.where(involute > 0, 1 / np.where(involute > 0, involute + bend, 1.0), pair.pitch_relative_radius)
 
 
 def _inside(pair, forms, nominal, order, start):

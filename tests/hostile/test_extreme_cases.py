@@ -119,7 +119,7 @@ SOLIDS = {  # name: pair, damage of the pinion, options, mean k/b of the page [N
     "pit over the whole contact line": (wide, [replace(PIT, axes=(8.0, 20.0))], {}, 8.499),
     "pit finer than a cell": (wide, [replace(PIT, axes=(0.01, 0.01))], {}, 16.543),
     "crack of 95 %": (wide, [gf.Crack(level=0.95)], {}, 11.915),
-    "crack on the unloaded side": (wide, [gf.Crack(level=0.8, side="unloaded")], {}, 15.918),
+    "crack on the unloaded side": (wide, [gf.Crack(level=0.8, side="unloaded")], {}, 15.951),  # corrected after the page
     "crack that runs out": (wide, [gf.Crack(level=0.8, ends=(1.0, 0.0))], {}, 14.701),
     "crack in one half": (lambda: wide(28.0), [gf.Crack(level=0.8, width=(0.0, 12.0))], HALF, 12.408),
     "b/m = 0.5": (lambda: wide(1.0), [], {}, 2.782),

@@ -69,14 +69,29 @@ def test_a_herringbone_tooth_is_broken_in_both_halves():
 @pytest.mark.slow
 @pytest.mark.parametrize("broken", BROKEN)
 def test_finite_elements_agree(broken):
-    """Both methods share the contact and the law of corners; the bodies, the hats' influence and the estimates are their own."""
+    """Both methods share the contact and the law of corners; the bodies, the hats' influence and the estimates are their own.
+
+    At phase 1 the teeth beside a missing one touch at a tip corner and an end face alone. There hexahedra are too stiff, by 3.9 %
+    here and 3.2 % at a refinement of 0.8, within their estimate of 8.7 %. CalculiX decides in the next test.
+    """
     one, phases = case("pinion", broken, beta=math.radians(8)), np.array([-0.1, 0.3, 1.0, 1.5])
     energy, brute = (
         gf.solve(one, gf.Solve(method, phases, refine=refine, error=True)) for method, refine in (("ritz3d", 1.0), ("fe3d", 0.6))
     )
-    print(brute.k / energy.k - 1, energy.error / energy.k, brute.error / brute.k)
     assert (abs(brute.k - energy.k) <= brute.error + energy.error).all()
-    assert_allclose(brute.k, energy.k, rtol=1e-2)
+    on_flanks = np.array([True, True, broken != "missing", True])
+    assert_allclose(brute.k[on_flanks], energy.k[on_flanks], rtol=1e-2)
+
+
+@pytest.mark.slow
+def test_calculix_agrees_beside_a_missing_tooth():
+    """Whole gears by `gf.write_contact_inp` (phase 1, approach 0.04 mm, face helical, refine 0.6): 1688.2 N, large displacements.
+
+    The torques of both bores give 1719 and 1657 N, since the contact is off the path.
+    """
+    whole = case("pinion", beta=math.radians(8))
+    curve = gf.mesh_stiffness(whole.pair, 1688.2, STEEL, method="ritz3d", phases=[1.0], damage=whole.damage)
+    assert_allclose(curve.k, 1688.2 / 0.04e-3, rtol=1e-2)
 
 
 def test_exported_meshes_have_lost_the_tooth_or_its_tip(tmp_path):
