@@ -235,3 +235,20 @@ def test_a_zip_archive_is_no_installation(tmp_path):
     command = [sys.executable, "-c", "import gearfe"]
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert "is in a zip archive: unpack it" in done.stderr.splitlines()[-1]
+
+
+def test_a_link_stays_and_a_pipe_is_no_file(tmp_path):
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "target.csv").write_text("old")
+    (tmp_path / "link.csv").symlink_to(tmp_path / "data" / "target.csv")
+    os.mkfifo(tmp_path / "pipe.csv")
+    (tmp_path / "full.csv").symlink_to("/dev/full")
+    pair = gf.GearPair(*[gf.Gear(z=z, m_n=2.0, alpha_n=0.35, b=20.0, r_bore=10.0) for z in (25, 31)])
+    curve = gf.mesh_stiffness(pair, 1000.0, gf.Material(), method="textbook", phases=4)
+    curve.to_csv(tmp_path / "link.csv")
+    assert (tmp_path / "link.csv").is_symlink()
+    assert (tmp_path / "data" / "target.csv").read_text() != "old"
+    for name in ("pipe.csv", "full.csv"):
+        with pytest.raises(ValueError, match="pipe or a device"):
+            curve.to_csv(tmp_path / name)
+    assert len(list(tmp_path.rglob("*"))) == 5

@@ -31,15 +31,13 @@ def _number(name, value):
 PLAIN = {float: _number, int: whole, bool: truth}
 WORDS = {float: "a number", int: "a whole number", bool: "True or False", str: "a text", type(None): "None"}
 WORDS[os.PathLike] = "a path"
-RESULTS = ("Contact3D", "Kurtogram", "Spectrogram", "Spectrum")  # results that are no public names
-MADE = {  # how users get these records
+MADE = {  # how users get these records; not all are public names
     "Machine": "gf.build_machine(scene), gf.single_mesh(...), gf.planetary(...)", "Scene": "gf.load_scene(name)",
     "StiffnessCurve": "gf.mesh_stiffness(pair, force, material)", "Response": "gf.simulate(machine, duration)",
     "SetCurves": "gf.planetary_stiffness(case)", "Runs": "gf.open_runs(folder)", "Dataset": "gf.open_dataset(folder)",
-    "ForceLaw": "gf.force_law(pair, forces, material)", "Spectrum": "gf.spectrum(signal)",
+    "ForceLaw": "gf.force_law(pair, forces, material)", "Contact3D": "gf.contact_pattern(pair, force, material)",
+    "Spectrum": "gf.spectrum(signal)", "Spectrogram": "gf.spectrogram(signal)", "Kurtogram": "gf.fast_kurtogram(signal)",
     "Campbell": "gf.campbell(machine, speeds)",
-    "Contact3D": "gf.contact_pattern(pair, force, material)", "Spectrogram": "gf.spectrogram(signal)",
-    "Kurtogram": "gf.fast_kurtogram(signal)",
 }  # fmt: skip
 NUMERIC = {"f": "iuf", "i": "iu"}  # kinds of arrays that arrays of floats and of whole numbers are made of
 
@@ -68,7 +66,7 @@ class _Public(dict[str, Any]):
         package = sys.modules[__name__.partition(".")[0]]
         if name in package.__all__:
             return getattr(package, name)
-        if name in RESULTS:
+        if name in MADE:
             return _Named(name, (), {})
         raise KeyError(name)
 
@@ -287,6 +285,7 @@ def _is_row(value, size):
 def _mapping(inner):
     rule = _rule(inner[1])
     words = f"a dict, each value {rule.words}" if rule else "a dict"
+    words = "a dict by gear: {'pinion': [gf.Crack(level=0.3)]}" if "Crack" in words else words
 
     def settled(name, value):
         if not isinstance(value, Mapping):

@@ -13,7 +13,7 @@ from ..geometry.checks import is_finite, shown
 from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import Crack, check_apart
 from ..geometry.damage.hollow import warning_together
-from ..geometry.damage.kinds import BROKEN, Damage, by_side, check_broken, split, why_wide
+from ..geometry.damage.kinds import BROKEN, Damage, by_side, check_broken, parts_of, split, why_wide
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.pair.flanks import Misalignment, flank_forms
 from ..geometry.pair.gear_pair import GearPair
@@ -313,6 +313,7 @@ def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Any, ...], ...], .
     """Cracks, hollows (pits, spalls) and broken teeth of pinion and wheel, numbered in each gear's own frame."""
     cracks, pits, broken = [], [], []
     for (_, sense), gear, defects in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
+        defects = parts_of(gear, defects)
         hollows = [[one for one in split(defects)[1] if (one.tooth, one.side) == place] for place in _flanks(defects)]
         together = (warning_together(gear, found) for found in hollows)
         for text in filter(None, (*(defect._warning(gear) for defect in defects), *together)):

@@ -52,19 +52,27 @@ class Content:
 
 @contextlib.contextmanager
 def written(path):
-    """Give the path of a temporary file that replaces `path` when the block ends without an error.
+    """Give the path of a temporary file that replaces `path`, or the target of this link, when the block ends without an error.
 
-    ValueError if the folder does not exist or cannot be written.
+    ValueError if the folder does not exist or cannot be written, or `path` is a pipe or a device.
     """
-    name = new_file(path)
+    target, name = _placed(path)
     try:
         yield name
-        os.replace(name, path)
+        os.replace(name, target)
     except OSError as error:
         raise ValueError(f"cannot write {path}: {error.strerror or error}") from error
     finally:
         with contextlib.suppress(FileNotFoundError):
             os.unlink(name)
+
+
+def _placed(path):
+    """Return the file that is written, of a link its target, and the name of a new file in its folder."""
+    target = Path(os.path.realpath(path)) if os.path.exists(path) else Path(path)
+    if os.path.exists(target) and not (os.path.isfile(target) or os.path.isdir(target)):
+        raise ValueError(f"cannot write {path}: it is a pipe or a device; give the name of a file")
+    return target, new_file(target.with_name(Path(path).name) if target.name else target)
 
 
 def new_file(path):
@@ -102,7 +110,7 @@ def check_output(path, kind):
     suffix_of(path, kind)
     if os.path.isdir(path):  # unlike pathlib, this returns False for invalid names
         raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
-    os.unlink(new_file(path))
+    os.unlink(_placed(path)[1])
 
 
 def suffixes(kind, *, reading=False):

@@ -1,4 +1,7 @@
-"""Arrays and numbers of a record compared with its docstring: it states shapes, and where nan or infinity may occur."""
+"""Arrays and numbers of a record compared with its docstring: it states shapes, and where nan or infinity may occur.
+
+Without docstrings (``python -OO``) nothing is compared.
+"""
 
 import dataclasses
 import functools
@@ -25,7 +28,7 @@ def _attributes(kind):
     """Fields of a record that its docstring describes, by name."""
     defaults = {field.name: field.default for field in dataclasses.fields(kind) if field.init}
     stated, names = {}, []
-    for line in inspect.getdoc(kind).splitlines():
+    for line in ((kind.__doc__ and inspect.getdoc(kind)) or "").splitlines():
         if found := ATTRIBUTE.fullmatch(line):
             names = [name for name in found[1].split(", ") if name in defaults]
             shape = SHAPE.search(found[2])

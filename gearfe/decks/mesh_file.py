@@ -9,7 +9,7 @@ from ..core.checks import checked_refine
 from ..core.files import check_output, suffix_of, written
 from ..flexibility.finite_elements.folds import check_folds
 from ..flexibility.finite_elements.one_tooth import check_gear
-from ..geometry.damage.kinds import BROKEN, NAMES, Damage, are, split
+from ..geometry.damage.kinds import BROKEN, NAMES, Damage, are, parts_of, split
 from ..geometry.damage.missing import missing_teeth
 from ..geometry.mesh.holes import holed_sector
 from ..geometry.mesh.solid import solid
@@ -67,6 +67,7 @@ def export_mesh(
     refine, suffix = checked_refine(refine), suffix_of(path, "mesh")
     if not are(damage):
         raise ValueError(f"damage = {damage!r}, but give a list of {' and '.join(NAMES)} of this gear, [] for none")
+    damage = parts_of(gear, damage)
     cracks, pits = split(damage)
     broken = tuple(one for one in damage if isinstance(one, BROKEN))
     cells = cells or ("tetrahedra" if pits or teeth is not None else "hexahedra")

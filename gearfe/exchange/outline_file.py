@@ -11,7 +11,7 @@ from ..core.extras import missing
 from ..core.files import written
 from ..geometry.aliases import Floats, StrPath
 from ..geometry.damage.chip import Chip
-from ..geometry.damage.kinds import Damage
+from ..geometry.damage.kinds import Damage, parts_of
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.mesh.outline import outline, stations
 from ..geometry.tooth.gear import Gear
@@ -33,6 +33,7 @@ def outline_lines(gear: Gear, damage: Sequence[Damage] = ()) -> OutlineLines:
 
     Missing teeth and chips are not in the outline. Cracks, and pits and spalls over their height, are separate lines.
     """
+    damage = parts_of(gear, damage)
     broken = [one for one in damage if isinstance(one, (MissingTooth, Chip))]
     size = FINE * gear.m_n
     teeth = outline(gear, {0: stations(gear, size)}, fillet_size=size, size=size, far_size=size, broken=broken)[0][:, ::2]

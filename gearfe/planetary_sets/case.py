@@ -15,7 +15,7 @@ from ..core.record import ranged, settle
 from ..geometry.checks import is_whole
 from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import Crack, check_apart, check_through
-from ..geometry.damage.kinds import check_broken
+from ..geometry.damage.kinds import check_broken, why_wide
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.planetary import PlanetarySet
@@ -188,6 +188,8 @@ class PlanetaryCase:
             check_through(cracks, "the section of a planetary set")
             check_apart(gear, cracks)
             check_broken(gear, damage)
+            if why := why_wide(damage):
+                raise ValueError(f"damage of {name!r}: {why}, but a section is two-dimensional: leave width out")
             flank = self.flanks.get(name)
             if flank and (flank.tip_rounding or flank.tip_chamfer) and any(isinstance(one, Chip) for one in damage):
                 raise ValueError(f"chips of rounded or chamfered tips: leave out the tip edges of {name!r}, or its chips")

@@ -12,7 +12,9 @@ from ..aliases import Floats
 from ..tooth.gear import Gear, shortened
 from ..tooth.profile import arc_at, cartesian, flank
 from .given import finite, tooth_and_side
+from .spall import Spall
 
+DEEPEST = 0.9  # largest depth of a chip of a part of the width, as a part of half the tooth
 LEFT = 0.5  # arc of the flank that a chip leaves, at least [m_n]
 FLAT = 1e-3  # least angle between the cut and the chord of the flank that it takes off [rad]
 
@@ -21,7 +23,7 @@ Piece = tuple[float, Callable[[Floats], Floats]]
 
 @dataclass(frozen=True, slots=True)
 class Chip:
-    r"""A chipped tip: a plane parallel to the tooth cuts off tip and edge through the whole face width.
+    r"""A chipped tip: a plane parallel to the tooth cuts off tip and edge, through the whole face width or a part of it.
 
     The plane leaves a new corner on one flank. That corner carries load as a tip corner does::
 
@@ -42,6 +44,9 @@ class Chip:
         Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0.
     side : {"loaded", "unloaded"}
         Flank that ends at the corner.
+    width : (float, float), optional
+        Heights between which the tip is lost [mm], counted as that of a `Pit`; default: the whole face width. A part of the width
+        needs three dimensions. It acts as a spall from the corner to the tip, which takes contact away.
 
     Raises
     ------
@@ -56,11 +61,11 @@ class Chip:
     angle: float = math.pi / 4
     tooth: int = 0
     side: str = "loaded"
+    width: tuple[float, float] | None = None
 
     _nouns: ClassVar[tuple[str, str]] = ("chip", "chips")
     _adjective: ClassVar[str] = "chipped"
     _removes_contact: ClassVar[None] = None  # a chip shortens the flank and adds a corner
-    through: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         """Check all numbers."""
@@ -71,6 +76,46 @@ class Chip:
         if not 0 < self.angle <= math.pi / 2:
             raise ValueError(f"angle = {self.angle} rad, but it must lie between 0 and pi/2; angles are radians in Python")
         object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
+        if self.width is not None:
+            width = tuple(finite("chip", "width", end) for end in self.width)
+            if len(width) != 2 or not 0 <= width[0] < width[1]:
+                raise ValueError(f"width = {self.width!r}, but give two rising heights from 0 on [mm]")
+            object.__setattr__(self, "width", width)
+
+    @property
+    def through(self) -> bool:
+        """Whether it is the same in every transverse section."""
+        return self.width is None
+
+    def recesses(self, gear: Gear) -> "tuple[Chip | Spall, ...]":
+        """Return what takes its place: itself, or for a part of the width one recess on each flank that it shortens.
+
+        A recess is as deep as the cut at the tip, at most nearly half the tooth. ValueError if its width ends beyond the face.
+        """
+        if self.width is None:
+            return (self,)
+        if self.width[1] > gear.b * (1 + 1e-9):
+            raise ValueError(f"chip from z = {self.width[0]:g} to {self.width[1]:g} mm, but the face ends at {gear.b:g} mm")
+        roll, where, other = self.cut(gear)
+        half = gear.half_thickness(gear.r_a)
+        corner, edge = cartesian(*flank(gear, roll)), gear.r_a * np.array([math.sin(half), math.cos(half)])
+        along = np.array([-math.sin(self.angle), gear.outward * math.cos(self.angle)])
+        away = edge - corner
+        depth = min(abs(float(away[0] * along[1] - away[1] * along[0])), DEEPEST * half * gear.r_a)
+        ends = {self.side: roll} | ({"unloaded" if self.side == "loaded" else "loaded": other} if where == "flank" else {})
+        middle, length = sum(self.width) / 2, self.width[1] - self.width[0]
+        return tuple(
+            Recess(
+                gear.r_a,
+                middle,
+                (2 * abs(float(arc_at(gear, gear.roll_a) - arc_at(gear, end))), length),
+                depth,
+                0.0,
+                self.tooth,
+                side,
+            )
+            for side, end in ends.items()
+        )
 
     def cut(self, gear: Gear) -> tuple[float, str, float]:
         """Roll length of the corner [mm]; where the cut ends: on the tip at an angle [rad], or on the flank at a roll length.
@@ -148,11 +193,20 @@ class Chip:
 
     def _description(self, gear: Gear) -> str:
         """Return it in words."""
-        return f"chip {self.depth:.3g} mm deep at {math.degrees(self.angle):.3g} degrees"
+        part = f" from z = {self.width[0]:g} to {self.width[1]:g} mm" if self.width else ""
+        return f"chip {self.depth:.3g} mm deep at {math.degrees(self.angle):.3g} degrees{part}"
 
     def _warning(self, gear: Gear) -> str:
         """Return no warning."""
         return ""
+
+
+class Recess(Spall):
+    """Spall in place of a chip of a part of the width."""
+
+    __slots__ = ()
+    _nouns: ClassVar[tuple[str, str]] = ("chip", "chips")
+    _adjective: ClassVar[str] = "chipped"
 
 
 def _line(start, stop):

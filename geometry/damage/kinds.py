@@ -55,6 +55,11 @@ def _listed(damage, side):
     return list(damage or ())
 
 
+def parts_of(gear: Gear, damage: Iterable[Damage]) -> list[Damage]:
+    """Return damage with chips of a part of the width as the recesses that take their place (`Chip.recesses`)."""
+    return [part for one in damage for part in (one.recesses(gear) if isinstance(one, Chip) else (one,))]
+
+
 def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     """Return damage that weakens the body, and damage that removes contact: two tuples."""
     damage = tuple(damage)

@@ -1,11 +1,13 @@
 """Records are compared with the shapes and exceptions that their docstrings state."""
 
+import dataclasses
 import math
 
 import numpy as np
 import pytest
 
 import gearfe as gf
+from gearfe.core.stated_shapes import check_stated
 
 THREE = np.ones(3)
 
@@ -31,3 +33,12 @@ def test_records_that_contradict_their_docstring(made, message):
 def test_stated_exceptions_are_allowed():
     assert gf.Support(radial=1e5).tilt == math.inf
     assert gf.ParisLaw(1e-13, 3.0).K_Ic == math.inf
+
+
+def test_without_docstrings_nothing_is_compared(monkeypatch):
+    @dataclasses.dataclass
+    class Plain:
+        value: float
+
+    monkeypatch.setattr(Plain, "__doc__", None)
+    check_stated(Plain(math.nan))

@@ -193,3 +193,32 @@ def test_a_ring_and_a_shortened_gear():
     )
     assert_allclose(ritz.k, fe.k, rtol=3e-3)
     assert ritz.k[0] < 0.9 * healthy.k[0]
+
+
+def test_a_chip_of_a_part_of_the_width():
+    """Over the whole width it is the whole chip within the estimates; the part of the width that is left carries."""
+    phases = np.array([0.3, 1.1, 1.45, 1.55])
+    whole, part, half, healthy = (
+        gf.solve(one, gf.Solve("ritz3d", phases, error=True))
+        for one in (case(), case(width=(0, 15)), case(width=(0, 7.5)), HEALTHY)
+    )
+    assert (abs(part.k - whole.k) <= part.error + whole.error).all()
+    assert_allclose(part.k[3], whole.k[3], rtol=2e-3)
+    gone = phases > 1.4
+    assert (half.k[gone] > 1.05 * part.k[gone]).all()
+    assert (half.k[gone] < 0.95 * healthy.k[gone]).all()
+    mirrored = gf.solve(case(width=(7.5, 15)), gf.Solve("ritz3d", phases))
+    assert_allclose(mirrored.k, half.k, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("width", "method", "message"),
+    [
+        ((0, 7.5), "ritz", "chips with method = 'ritz', a transverse section"),
+        ((0, 16), "ritz3d", "chip from z = 0 to 16 mm, but the face ends at 15 mm"),
+        ((7, 3), "ritz3d", "give two rising heights from 0 on"),
+    ],
+)
+def test_a_part_of_the_width_needs_three_dimensions_and_the_face(width, method, message):
+    with pytest.raises(ValueError, match=message):
+        gf.solve(case(width=width), gf.Solve(method, 4))

@@ -15,7 +15,7 @@ SECONDS, SETTLE = 10.0, 0.25
 DRAWN, DRAWN_SETTLE = 1.0, 0.25  # settings of a draw of the unprinted inputs
 RATE = 10000.0  # S0: 100 000 steps in 10 s
 FINE = 256 * 280.0  # above twice the highest natural frequency, 16.5 kHz; a multiple of f_m
-OWN, ROWS, LINEAR = "impact law", "impact law, rows of five", "linear stiffness"
+OWN, ROWS, LINEAR, ALONE = "impact law", "impact law, rows of five", "linear stiffness", "linear stiffness, isolated pairs"
 STEADY = ", no pulses"
 CARRIER, FORCE, SENSOR, HOUSING = (
     "carrier.theta acceleration",
@@ -38,9 +38,9 @@ def _built(case, impact, layout):
 
 
 @cache
-def linear(case):
-    """Machine with linear stiffness curves."""
-    return machine(NAME, case)
+def linear(case, law=LINEAR):
+    """Machine with linear stiffness curves, of the whole set or of isolated pairs."""
+    return gf.build_machine(replace(scene(NAME), set=None), case, method="ritz3d") if law == ALONE else machine(NAME, case)
 
 
 @cache
@@ -49,9 +49,9 @@ def record_of(case, impact, law=OWN):
     name = None if case == "healthy" else case
     if isinstance(law, Draw):
         return record(changed(_built(name, float(impact), OWN), law), DRAWN, RATE, DRAWN_SETTLE)
-    if law != LINEAR:
+    if law not in (LINEAR, ALONE):
         return record(_built(name, float(impact), law), SECONDS, RATE, SETTLE)
-    made = linear(name)
+    made = linear(name, law)
     options = scene(NAME).machine["impact"]
     made = knocked(made, "carrier torque", options, SECONDS + SETTLE) if impact else made
     return record(made, SECONDS, RATE, SETTLE)
@@ -61,7 +61,7 @@ def record_of(case, impact, law=OWN):
 def finer(case, law=OWN):
     """Amplitudes of the force without pulses, sampled so often that nothing folds, over whole periods of its lines."""
     name = None if case == "healthy" else case
-    made = linear(name) if law == LINEAR else _built(name, 0.0, law)
+    made = linear(name, law) if law in (LINEAR, ALONE) else _built(name, 0.0, law)
     return spectrum(signal(record(made, 0.3, FINE, SETTLE), FORCE))
 
 

@@ -21,6 +21,7 @@ from .scene_curves import scene_machine, stage_of
 from .springs import Spring
 from .tables import Machine
 
+WIDEST = 10  # widest relief groove [face widths]
 HALVES = {"L": -1, "R": 1}
 
 
@@ -189,6 +190,8 @@ def _neck(layout, name, gear, options):
     """Springs of the hollow shaft under the relief groove, between the faces of both halves."""
     width, G, apart, zeta = options
     width, G = ranged("groove", width, " mm", above=0.0), ranged("shear_modulus", G, " Pa", above=0.0)
+    if width > WIDEST * gear.b:
+        raise ValueError(f"groove = {width:g} mm, but give at most {WIDEST * gear.b:g} mm, {WIDEST} face widths")
     outer, inner, length = 1e-3 * gear.r_f, 1e-3 * gear.r_bore, 1e-3 * width
     area, second = math.pi * (outer**2 - inner**2), math.pi / 4 * (outer**4 - inner**4)
     bend = 2.6 * G * second / length

@@ -5,6 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...geometry.damage.pit import Pit
+from ...geometry.damage.spall import Spall
 from ...geometry.pair.lines import contact_lines, lost_length
 from ...scene.schema import scene_schema
 from .contact_cycle import impact_cycle
@@ -89,7 +91,7 @@ def pits_of(damage):
         If there is other damage.
     """
     pits = list(damage.get("pinion", ()))
-    if damage.get("wheel") or not all(pit._removes_contact for pit in pits) or len({pit.tooth for pit in pits}) > 1:
+    if damage.get("wheel") or not all(isinstance(pit, (Pit, Spall)) for pit in pits) or len({pit.tooth for pit in pits}) > 1:
         raise ValueError("the impact law models damage of one flank of the pinion (sun) only: use contact = 'linear'")
     return pits
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from ...core.record import ranged, settle_numbers
 from ...geometry.tooth.gear import Gear
 
+LIGHTEST, HEAVIEST = 1.0, 1e5  # densities [kg/m3]: beyond all solids
+
 
 @dataclass(frozen=True, slots=True)
 class Member:
@@ -59,7 +61,8 @@ def gear_member(gear: Gear, density: float, bearing: float, *, width: float | No
         If `density` or `width` is not positive, or `bearing` is negative.
     """
     low, high = sorted((gear.held, gear.z * gear.m_n / (2 * math.cos(gear.beta))))
-    density = ranged("density", density, " kg/m3", above=0.0)
+    if not LIGHTEST <= ranged("density", density, " kg/m3", above=0.0) <= HEAVIEST:
+        raise ValueError(f"density = {density:g} kg/m3, but give {LIGHTEST:g} to {HEAVIEST:g}: steel has 7850")
     width = ranged("width", gear.b if width is None else width, " mm", above=0.0)
     mass = density * math.pi * (high**2 - low**2) * width * 1e-9
     return Member(mass, mass * (low**2 + high**2) / 2 * 1e-6, bearing, 1e-3 * gear.r_b)
