@@ -291,6 +291,7 @@ def _is_row(value, size):
 def _mapping(inner):
     rule = _rule(inner[1])
     words = f"a dict, each value {rule.words}" if rule else "a dict"
+    words = "a dict by gear: {'pinion': [gf.Crack(level=0.3)]}" if "Crack" in words else words
 
     def settled(name, value):
         if not isinstance(value, Mapping):

@@ -27,6 +27,7 @@ from .whole_gear import PLACES, between_teeth, whole_gear
 CHECKED = 8  # number of positions at which the error is estimated
 COARSER, ORDER = 0.7, 3  # its resolution relative to that of the curves, and the order of its polynomials
 BYTES, SECONDS = 1.4e8, 0.65  # memory and time of a first position by refine, measured at 1, 2 and 4
+EACH = 0.005  # time of a further position [s], measured at refine 1
 PASSES = 5  # maximum number of repetitions until corners, kinks and pairs in reach agree with the loads of the meshes
 
 
@@ -135,8 +136,9 @@ def _positions(positions, cycles):
     """Return the rotations of the sun [pitches] ``(p,)`` from the arguments of `planetary_stiffness`."""
     at = numbers("positions", positions, " [pitches of the sun]")
     if not at.ndim:
-        count = whole("positions", positions, 1)
-        return np.arange(count * whole("cycles", cycles, 1)) / count
+        count, cycles = whole("positions", positions, 1), whole("cycles", cycles, 1)
+        check_time(f"{count * cycles} positions of a set", EACH * count * cycles, "give fewer positions or cycles")
+        return np.arange(count * cycles) / count
     if at.ndim != 1 or not at.size or not np.isfinite(at).all() or np.abs(at).max() > FURTHEST:
         raise ValueError(f"positions = {positions!r}, but give a row of numbers within {FURTHEST:g} pitches, one at least")
     return at

@@ -5,11 +5,13 @@ import re
 
 import numpy as np
 import pytest
+from planetary_sets.sets import case as set_case
 
 import gearfe as gf
 from gearfe.app.cli import main
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+PAIR = gf.GearPair(*[gf.Gear(z, r_bore=9.2, **RACK) for z in (21, 31)])
 SIGNAL = gf.Signal(np.sin(np.arange(2048.0)), 2048.0, "m/s^2", shaft_frequency=10.0)
 KEYS = [  # what stands in the scene, what a user writes instead, and words of the message
     ("alpha_n_deg = 20.0", "alpha_n_deg = 0.35", "[gear.pinion] alpha_n_deg = 0.35, but it must lie between 5 and 45 degrees"),
@@ -40,7 +42,13 @@ CALLS = [
     (lambda: gf.Gear(z="21", r_bore=9.2, **RACK), "z = '21', but give a whole number"),
     (lambda: gf.Flank(tip_relief=0.02), "tip_relief = 0.02 mm with no start: give one of tip_start_diameter"),
     (lambda: gf.bearing_lines(10, 8, 50, 30), "roller = 50.0, but 8 rollers fit .* only below 11.48"),
+    (lambda: gf.planetary_stiffness(set_case(), 10**7), "10000000 positions of a set: about 14 hours .*GEARFE_MAX_HOURS"),
+    (lambda: gf.planetary_stiffness(set_case(), 1, refine=64), "refine = 64: one position of a set .*give a smaller refine"),
     (lambda: gf.decimate(SIGNAL, 5000), "rate = 5000 Hz, but .* has 2048 Hz: .*for example 1024 Hz"),
+    (
+        lambda: gf.mesh_stiffness(PAIR, 2000.0, gf.Material(), damage=gf.Crack(level=0.3)),
+        r"damage = Crack.*give a dict by gear: {'pinion'",
+    ),
     (lambda: gf.GearPair(gf.Gear(21, r_bore=9.2, **RACK), 5), r"gear_2 = 5, but give a Gear: Gear\(z"),
 ]
 

@@ -40,7 +40,10 @@ class Runs:
         """Raise ValueError if a description is missing, or the number of cases is not that of the study."""
         check_keys("Runs: about", self.about, ("title", "cases", "study"))
         check_keys("Runs: study", self.about["study"], ("axes", "sample"))
-        count = count_of(self.about["study"]["axes"], self.about["study"]["sample"])
+        axes = self.about["study"]["axes"]
+        if not all(axis and all(isinstance(values, (list, tuple)) for values in axis.values()) for axis in axes):
+            raise ValueError(f"{self.folder}: the axes of its study are no lists of values: the folder was changed")
+        count = count_of(axes, self.about["study"]["sample"])
         if count != self.about["cases"]:
             raise ValueError(f"{self.folder}: cases = {self.about['cases']}, but its study has {count}: the folder was changed")
 
