@@ -87,12 +87,19 @@ def test_an_error_gives_the_threads_back(two):
 def test_a_curve_is_solved_by_one_thread_and_hexahedra_by_all(two, monkeypatch):
     """Also where ``auto`` chooses hexahedra, as of a gear that is one piece with its shaft."""
     seen = []
-    monkeypatch.setattr("gearfe.stiffness.solve.phase_array", lambda *given: (seen.append(counts()), phase_array(*given))[1])
+
+    def counted(*given):
+        seen.append(counts())
+        if len(seen) == 2:
+            raise ValueError("the threads of hexahedra are counted")
+        return phase_array(*given)
+
+    monkeypatch.setattr("gearfe.stiffness.solve.phase_array", counted)
     pair = gf.GearPair(*(gf.Gear(z=z, m_n=2.0, alpha_n=radians(20), b=20.0, r_bore=7.0) for z in (21, 31)))
     steel = gf.Material(E=207e3, nu=0.3)
     gf.mesh_stiffness(pair, 1000.0, steel, method="textbook", phases=4)
     shaft = gf.Shaft(segments=[(60, 14)], bearings=(0, 60), gear=30, material=steel, torque=0, integral=True)
-    with pytest.raises(ValueError, match="phases"):
-        gf.mesh_stiffness(pair, 1000.0, steel, supports={"pinion": shaft}, phases=0)
+    with pytest.raises(ValueError, match="threads"):
+        gf.mesh_stiffness(pair, 1000.0, steel, supports={"pinion": shaft}, phases=4)
     assert seen == [{1}, {2}]
     assert counts() == {2}

@@ -68,7 +68,7 @@ def written(path):
 
 
 def _placed(path):
-    """Return the file that is written, of a link its target, and the name of a new file beside it."""
+    """Return the file that is written, of a link its target, and the name of a new file in its folder."""
     target = Path(os.path.realpath(path)) if os.path.exists(path) else Path(path)
     if os.path.exists(target) and not (os.path.isfile(target) or os.path.isdir(target)):
         raise ValueError(f"cannot write {path}: it is a pipe or a device; give the name of a file")

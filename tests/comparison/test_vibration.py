@@ -15,13 +15,13 @@ from gearfe.comparison.vibration import analyse, analysis, in_words, responses
 SCENE = gf.load_scene("compound_planetary")
 
 
-@pytest.fixture(scope="module")
 def alarms(found):
     """Lines of the fault that stand out of spectrum or envelope of the last case; empty if it shows nothing."""
     lines = [name for name in found.standing() if "f_fault" in name]
     return [*lines, *(f"{name} of the envelope" for name in found._demodulated()[1])] if found.fault else []
 
 
+@pytest.fixture(scope="module")
 def found():
     return responses(SCENE, "crack50", duration=1.0, phases=32)
 

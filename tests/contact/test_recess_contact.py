@@ -40,8 +40,11 @@ def widened(case, lines, gear, per_edge, refine, pits):
     return (cut - full + (cut - full).T) / 2
 
 
-def losses(name, monkeypatch, *, per_edge=2.0, refine=1.0):
-    """Relative losses of k of a case by the material that pits lack: solved anew, under fixed loads, and the estimate."""
+def losses(name, monkeypatch, *, per_edge=1.0, refine=0.5):
+    """Relative losses of k of a case by the material that pits lack: solved again, under fixed loads, and the estimate.
+
+    Twice as many edges change the first by 1 %.
+    """
     case = gf.load_scene("herringbone_contact_line").pairs["sun_planet"].case(name)
     gear, half, pits = holed._own(case.pair, 0, case.runs, case.groove, case.pits[0])
     assert not half, "both halves are alike; the lower one is solved"

@@ -82,4 +82,6 @@ def test_a_simulated_machine_stands_beside_the_record(tmp_path, capsys):
     assert [line.startswith("simulated mesh force: ") for line in verdicts] == [False, True]
     assert "31-tooth gear: likely" in verdicts[1]
     assert (folder / "simulated_average_simulated_cracked.csv").exists()
+    lines = (folder / "lines.csv").read_text(encoding="utf-8").splitlines()
+    assert f"of {len(lines) - 1} lines of 10 times the local median are named" in printed
     assert "simulated mesh force: tooth fault" in (folder / "page.html").read_text(encoding="utf-8")

@@ -46,10 +46,13 @@ def signal(arguments):
         from ...scene.load import load_scene
 
         table, named = named_table(list(analysed.spectra.values())[-1], load_scene(arguments.scene))
-        tables[named] = table
-        large = sorted(sorted(table.rows, key=lambda row: -row[1])[:PRINTED])
-        more = f"; the {PRINTED} largest are printed, all are in the page of -o" * (len(large) < len(table.rows))
-        print(f"\n{named}{more}\n\n{replace(table, rows=large)}")
+        large = replace(table, rows=sorted(sorted(table.rows, key=lambda row: -row[1])[:PRINTED]))
+        named += f"; the {PRINTED} largest are shown, all are in lines.csv of -o" * (len(large.rows) < len(table.rows))
+        tables[named] = large
+        if arguments.output:
+            Path(arguments.output).mkdir(parents=True, exist_ok=True)
+            table.save(Path(arguments.output) / "lines.csv")
+        print(f"\n{named}\n\n{large}")
     verdict, extra = _of_gear(signals, arguments, tables) if arguments.teeth is not None else ("", {})
     if arguments.output:
         from ...reports.workbench import signal_workbench

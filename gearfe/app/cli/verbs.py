@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from ...core.steps import part
 from .progress import working
 
 
@@ -51,13 +52,18 @@ def stiffness(arguments):
             error=arguments.error, tell=tell, pose=arguments.pose,
         )  # fmt: skip
         name = arguments.pair or next(iter(scene.pairs))
-        found = beside_health(case, how, returns=returns_of(scene, name, arguments.case))
+        with part("", 0.0, 0.8 if scene.set else 1.0):
+            found = beside_health(case, how, returns=returns_of(scene, name, arguments.case))
+        in_set = ""
+        if scene.set is not None:
+            from ...comparison.told_set import told_in_set  # only sets need it: 0.1 s
+
+            with part("stiffness in the whole set", 0.8, 1.0):
+                in_set = told_in_set(scene, name, found.reference)
     curve, meta = found.reference, found.reference.meta
     print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:\n")
-    if scene.set is not None:
-        from ...comparison.told_set import told_in_set  # only sets need it: 0.1 s
-
-        print(f"{told_in_set(scene, name, curve)}\n")
+    if in_set:
+        print(f"{in_set}\n")
     for one in found.by_tooth() if case.damaged else ():
         print(f"{one.headline};\n{one.definition}\n\n{one.loss_table()}\n")
     print(f"{found.definition}\n\n{found.table(digits=5)}")
