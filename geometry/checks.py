@@ -39,7 +39,10 @@ def is_whole(value: object) -> TypeGuard[int]:
 
 
 def by_gear(what: str, values: Any, example: str) -> tuple[Any, Any]:
-    """Return the entries of pinion and wheel, None if missing; ValueError, with an `example`, if it is not given by gear."""
+    """Return the entries of pinion and wheel, None if missing.
+
+    Raises ValueError, with an `example`, if it is not given by gear.
+    """
     values = {} if values is None else values
     if not isinstance(values, Mapping):
         raise ValueError(f"{what} = {values!r}, but give {what} by gear: {example}")

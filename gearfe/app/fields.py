@@ -1,4 +1,4 @@
-"""The fields of the page, from ``fields.toml`` and the schema of scenes; the browser makes its form from them."""
+"""The fields of the page, from ``fields.toml`` and the schema of scenes. The browser makes its form from them."""
 
 import json
 import math

@@ -57,7 +57,7 @@ def program(scene: Scene, phases: int = 64, solid: int = 16) -> str:
 
 
 def said(one: Any) -> str:
-    """Return a value as source text; of gearfe's own classes only what is not their default.
+    """Return a value as source text. Arguments of gearfe's classes are omitted where they have their default.
 
     >>> from gearfe import Crack
     >>> said({"pinion": [Crack(length=2.0)]})

@@ -32,7 +32,7 @@ PORT, LARGEST_SCENE = 8033, 90_000  # characters, so that a request with it is b
 
 
 class Answer(Response):
-    """Lines of JSON on a waiting task, and its answer; closing the page cancels the task."""
+    """Lines of JSON with the progress of a task, then its answer. Closing the page cancels the task."""
 
     def __init__(self, pool: Pool, lane: str, kind: str, given: dict[str, Any]):
         super().__init__(media_type="application/x-ndjson")
@@ -198,7 +198,10 @@ def serve(
 
 
 def running(app: Any, *, proxy: bool = False) -> uvicorn.Server:
-    """Return a server of an application for a socket; behind a `proxy` on this computer it trusts the client address of that."""
+    """Return a server of an application for a socket.
+
+    Behind a `proxy` on this computer it trusts the client address of that.
+    """
     config = uvicorn.Config(
         app, log_level="warning", ws="none", server_header=False, proxy_headers=proxy, forwarded_allow_ips="127.0.0.1",
         limit_concurrency=400, timeout_graceful_shutdown=2,

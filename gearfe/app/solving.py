@@ -229,7 +229,10 @@ TASKS = {
 
 
 def begin() -> None:
-    """Make a new solver process ready: little memory for solved gears, no disk; one pair loads what methods load late."""
+    """Make a new solver process ready: little memory for solved gears, no disk.
+
+    One pair loads what methods load late.
+    """
     PROCESS.most = KEPT
     os.environ["GEARFE_CACHE"] = ""  # a slider passes thousands of gears that are not needed again
     answer("quick", START)

@@ -21,7 +21,7 @@ CLOSE = 1e-9  # relative tolerance of equal numbers, because torques are compute
 
 
 class SeveralError(ValueError):
-    """A scene is more than one pair in one case; `choices` are its cases by pair, ``""`` being healthy."""
+    """A scene is more than one pair in one case. `choices` are its cases by pair, ``""`` being healthy."""
 
     def __init__(self, text: str, choices: dict[str, list[str]]):
         super().__init__(text)
@@ -155,7 +155,7 @@ def _same(one, other):
 
 
 def _fields(tables, values, torque):
-    """Return the fields from values by dotted key; other values are found when `read` compares."""
+    """Return the fields from values by dotted key. Other values are found when `read` compares."""
     out = START | {"source": tables["source"]}
     bore = {"gear.wheel.r_bore_mm": values["gear.wheel.r_bore_mm"] or values["gear.wheel.r_rim_mm"]}
     for field in FIELDS:

@@ -49,7 +49,7 @@ def _work(pipe: Connection, memory: int) -> None:
 
 
 class Worker:
-    """Solver process with its pipe; `ended` is the reason of its end, empty while it runs."""
+    """Solver process with its pipe. `ended` is the reason of its end, empty while it runs."""
 
     def __init__(self, context: Any, memory: int):
         self.pipe, other = context.Pipe()
@@ -64,7 +64,7 @@ class Worker:
         other.close()
 
     def ask(self, kind: str, given: dict[str, Any]) -> bytes:
-        """Answer to a task in JSON; blocks. If the process ends, or takes too long and is ended, that is the answer."""
+        """Answer to a task in JSON. Blocks. If the process ends, or takes too long and is ended, that is the answer."""
         seconds = LIMIT.get(kind, QUICK_LIMIT)
         self.starting.join()
         try:
@@ -109,7 +109,7 @@ class Task:
 
 
 class Pool:
-    """Solver processes and waiting tasks; all its methods are called in one event loop.
+    """Solver processes and waiting tasks. All its methods are called in one event loop.
 
     There are `count` processes, at least 2, as one is kept free of tasks that take seconds, each with `memory` [bytes]. Of
     tasks that wait there are `most`; others are refused in a sentence.
@@ -183,7 +183,7 @@ class Pool:
         self._deal()
 
     def end(self) -> None:
-        """Kill the processes that are free; those at work are daemons, which end with the server."""
+        """Kill the processes that are free. Those at work are daemons, which end with the server."""
         while self.free:
             self.free.pop().end()
 

@@ -156,7 +156,7 @@ def compare_cases(
 
 
 def beside_health(case: Case, how: Solve, pair: str = "pair", *, returns: Mapping[int, str] | None = None) -> Comparison:
-    """Compare a damaged pair with itself without damage by one method; of a healthy pair its curve alone.
+    """Compare a damaged pair with its healthy state by one method. A healthy pair gives its curve alone.
 
     Of a damaged pair a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth. `returns` is as
     of `told_teeth`.
@@ -235,7 +235,10 @@ def damage_cycle(chosen: Case | ScenePair) -> NDArray:
 
 
 def _on_file(case, phase, k, tooth, estimate, seconds):
-    """Curve of finite elements on file (`read_curves`) and its seconds; of the tooth pairs the damaged one alone is known."""
+    """Curve of finite elements on file (`read_curves`) and its seconds.
+
+    Of the tooth pairs the damaged one alone is known.
+    """
     deflection, nothing = case.forces[0] / k, np.full((k.size, 1), np.nan)
     meta = {"method": "fe3d", "force_N": case.forces[0], "face": case.runs, "eps_alpha": case.pair.eps_alpha}
     meta |= {"stored": True}
@@ -298,7 +301,10 @@ def _methods(case, reference):
 
 
 def why_not(row: Method, case: Case, solid: str) -> str:
-    """Return why a comparison has no column of a method; `solid` is the reason for three dimensions, if there is one."""
+    """Return why a comparison has no column of a method.
+
+    `solid` is the reason for three dimensions, if there is one.
+    """
     pair = case.pair
     if pair.gear_2.internal and row.rings != "yes" and row.rings not in RING_FOUNDATIONS:
         return "not for rings"

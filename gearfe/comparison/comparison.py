@@ -20,7 +20,7 @@ Key = tuple[str, str | None]  # pair and case of damage; None: healthy
 
 
 class Row(NamedTuple):
-    """One method in one zone: stiffness [N/m] and its cost [s]; nan if missing.
+    """One method in one zone: stiffness [N/m] and its cost [s], or nan if missing.
 
     `estimate` is the estimated relative discretisation error of k. `error` is the difference from the reference. `loss` is the
     relative loss of stiffness by the damage, and `doubt` the estimated error of the loss.
@@ -85,7 +85,10 @@ class Comparison:
 
     @property
     def healthy(self) -> dict[str, StiffnessCurve]:
-        """Curves of the same pair without its damage by method, at the same phases; empty of a healthy pair."""
+        """Curves of the same pair without its damage by method, at the same phases.
+
+        The result is empty for a healthy pair.
+        """
         pair, case = self.subject
         return {} if case is None else self.of(pair, None)
 
@@ -101,7 +104,7 @@ class Comparison:
 
     @property
     def kind(self) -> str:
-        """Adjective of the damaged teeth: "cracked", "pitted" or "damaged"; empty for healthy pairs."""
+        """Adjective of the damaged teeth: "cracked", "pitted" or "damaged". The result is empty for healthy pairs."""
         kinds = {kind_of(case.damage) for key in self.asked if (case := self.cases[key]).damaged}
         return "damaged" if len(kinds) > 1 else "".join(kinds)
 
@@ -126,7 +129,9 @@ class Comparison:
         return {name: within(curve, self.first_tooth(over or key)[1]) for name, curve in self.of(*key).items()}
 
     def losses(self, key: Key | None = None) -> dict[str, dict[str, float]]:
-        """Return the relative loss of stiffness by method and zone, and its maximum over the phase; empty for a healthy pair.
+        """Return the relative loss of stiffness by method and zone, and its maximum over the phase.
+
+        The result is empty for a healthy pair.
 
         `key` names pair and case, by default those of the `subject`.
         """
@@ -164,7 +169,10 @@ class Comparison:
 
     @property
     def headline(self) -> str:
-        """Answer in one sentence: the loss of mesh stiffness; for a healthy pair its mean stiffness and the errors of methods."""
+        """Answer in one sentence: the loss of mesh stiffness.
+
+        For a healthy pair its mean stiffness and the errors of methods.
+        """
         key = self.subject
         which = f"{key[0]}, {key[1] or 'healthy'}: " if len(self.asked) > 1 else ""
         if self.losses(key):
@@ -202,7 +210,7 @@ class Comparison:
         return [*labels, *(column for _, column, _ in cells)], body
 
     def table(self, zones: Collection[str] | None = None, *, digits: int = 4, mark: float = math.inf) -> Table:
-        """`Table` of the reference [N/um] and every method with its error, by zone; the last row has the seconds.
+        """`Table` of the reference [N/um] and every method with its error, by zone. The last row has the seconds.
 
         Parameters
         ----------

@@ -60,7 +60,7 @@ def engaged_phases(case: Case, phases: int) -> NDArray:
 
 
 def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
-    """Damage by number of the tooth pair that it is in, and by side; tooth k of both gears is in pair k."""
+    """Damage by number of the tooth pair that it is in, and by side. Tooth k of both gears is in pair k."""
     out: dict[int, dict[str, list[Damage]]] = {}
     for side, found in (case.damage or {}).items():
         for hurt in found:
@@ -69,7 +69,7 @@ def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
 
 
 def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int, str]:
-    """Damage in words by number of the tooth pair; teeth are named unless the only one is tooth 0 of the pinion.
+    """Damage in words by number of the tooth pair. Teeth are named unless the only one is tooth 0 of the pinion.
 
     `returns` is how often they mesh, in words (`gearfe.comparison.returns.returns_of`).
 
@@ -91,7 +91,7 @@ def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int
 
 
 def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
-    """Return the part of a curve at these of its phases; all of it if None."""
+    """Return the part of a curve at some of its phases, or the whole curve if None."""
     if phases is None:
         return curve
     rows = np.flatnonzero(np.abs(curve.phase[:, None] - phases).min(axis=1) < 1e-9)

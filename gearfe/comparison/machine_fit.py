@@ -249,7 +249,7 @@ def _gain(path, frequency):
 
 
 def _frequencies(machine, record, harmonics):
-    """Mesh lines [Hz] of a machine that the record resolves; ValueError if the record has another speed."""
+    """Mesh lines [Hz] of a machine that the record resolves. Raises ValueError if the record has another speed."""
     meshes = {abs(mesh.frequency) for mesh in machine.meshes if mesh.frequency}
     every = sorted(n * mesh for mesh in meshes for n in range(1, harmonics + 1) if n * mesh < BAND * record.rate)
     least = APART / record.duration

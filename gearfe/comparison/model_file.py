@@ -120,7 +120,7 @@ class ModelFile:
             )
 
     def single(self, pair: GearPair, radius: ArrayLike) -> Floats:
-        """Stiffness of one tooth pair touching at `radius` on the pinion [mm], linear between rows; units as `total`.
+        """Stiffness of one tooth pair in contact at `radius` on the pinion [mm], interpolated linearly. Units as in `total`.
 
         ValueError if the rows do not cover the path of contact or are more than `COARSEST` of it apart.
         """
@@ -265,7 +265,7 @@ def _stiffness(path, cell):
 
 
 def _stiffness_unit(cell):
-    """Factor to SI, and whether it is per width; None if the unit is not known."""
+    """Factor to SI, and whether it is per width, or None if the unit is not known."""
     unit = _name_and_unit(cell)[1].replace("_per_", "/").replace("_", " ")
     for sign, plain in (("µ", "u"), ("μ", "u"), ("·", " "), ("*", " ")):
         unit = unit.replace(sign, plain)

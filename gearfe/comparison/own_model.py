@@ -27,7 +27,7 @@ FAR = 10.0  # ratio to the reference that hints at a wrong unit
 
 @dataclass(frozen=True, slots=True)
 class PairModel:
-    """The stiffness of one tooth pair as a function of where it touches; the mesh is the plain sum of its pairs.
+    """The stiffness of one tooth pair as a function of where it touches. The mesh is the plain sum of its pairs.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ OwnModel = OneModel | tuple[OneModel, OneModel]  # models of the damaged and of 
 
 
 def own_models(models, taken=()):
-    """Models by name; files are read.
+    """Models by name. Files are read.
 
     Models are functions ``f(phase) -> k`` (mesh phases from 0 to 1, ndarray of shape (n,), to the total stiffness [N/m] over the
     whole width), `PairModel`, `OwnFlexibility`, ``"file.py:name"`` of one of these in a Python file, which is run, paths of
@@ -75,14 +75,14 @@ def own_models(models, taken=()):
 
 
 def _parts(model):
-    """Models of the damaged and of the healthy pair, or one; a comma in the name of a file parts nothing."""
+    """Models of the damaged and of the healthy pair, or one. A comma in the name of a file does not separate models."""
     if isinstance(model, tuple):
         return model
     return model.split(",") if isinstance(model, str) and not Path(model).is_file() else (model,)
 
 
 def _read(name, model):
-    """Return a model, read if it is a path; ValueError if it is none."""
+    """Return a model, read if it is a path. Raises ValueError if it is none."""
     if isinstance(model, (str, os.PathLike)):
         match = re.fullmatch(r"(.+\.py)(?::(.*))?", str(model), re.DOTALL)
         return _in_file(*match.groups()) if match else read_model(model)
@@ -180,7 +180,7 @@ def _single(name, model, pair, roll_1, roll_2, width):
 
 
 def _total(name, model, pair, phase, width):
-    """Total mesh stiffness [N/m]; a function is called with phases from 0 up to, not including, 1."""
+    """Total mesh stiffness [N/m]. A function is called with phases from 0 up to, not including, 1."""
     if isinstance(model, ModelFile):
         return model.total(pair, phase) * (width * 1e-3 if model.per_width else 1.0)
     phase = phase % 1.0

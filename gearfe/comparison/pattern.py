@@ -17,7 +17,7 @@ PLACES = 400  # along the width
 
 @dataclass(frozen=True, slots=True)
 class Pattern:
-    """Contact over a mesh cycle; for a damaged pair with its damaged tooth in the middle of its engagement.
+    """Contact over a mesh cycle. The damaged tooth of a pair is in the middle of its engagement.
 
     `contact` is the result of `gearfe.contact_pattern`. `pressure` is the largest Hertzian pressure [MPa], at `phase`, at
     `radius` on the pinion and height `z` [mm]. `factor` is the largest over the mean load per width (`face_load_distribution`).
@@ -63,7 +63,7 @@ def pattern_of(case: Case, phases: int = 24) -> Pattern:
 
 
 def render_pattern(case: Case, path: StrPath, *, title: str = "") -> Pattern:
-    """Picture of a case's contact pattern (`gearfe.plot_contact`); gives what `pattern_of` does."""
+    """Picture of a case's contact pattern (`gearfe.plot_contact`). Returns the result of `pattern_of`."""
     pattern = pattern_of(case)
     plot_contact(case.pair, pattern.contact, None, path, case.pits[0], title)
     return pattern

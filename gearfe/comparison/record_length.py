@@ -6,7 +6,7 @@ from ..signal.indicators import LOBES
 
 
 def resolving_seconds(fault, turning=None, carrier=None):
-    """Return the seconds of a record that resolve the lines of a fault, with Hann's window; 0 without a fault.
+    """Return the seconds of a record that resolve the lines of a fault, with Hann's window, or 0 without a fault.
 
     ::
 
@@ -30,7 +30,9 @@ def resolving_seconds(fault, turning=None, carrier=None):
 
 
 def too_short(seconds, needed):
-    """Return the remedy for a record of `seconds` if `needed` seconds resolve the lines; empty if it is long enough.
+    """Return the remedy for a record of `seconds` if `needed` seconds resolve the lines.
+
+    The result is empty if it is long enough.
 
     >>> too_short(0.3, 1.2001)
     '0.3 s cannot resolve the fault sidebands: record at least 1.21 s'

@@ -6,7 +6,9 @@ from ..stiffness.mesh_cycle import NAMES as SIDES
 
 
 def returns_of(scene: Scene, pair: str, case: str | None) -> dict[int, str]:
-    """Frequency and body of each damaged tooth by number of its tooth pair, as text; empty without a machine.
+    """Frequency and body of each damaged tooth by number of its tooth pair, as text.
+
+    The result is empty without a machine.
 
     Examples
     --------

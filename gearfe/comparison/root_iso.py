@@ -99,7 +99,7 @@ def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRo
 
 
 def _beyond(pair):
-    """Why a pair is not one of those that are known here; empty if it is."""
+    """Reason why the formula does not apply to a pair. The result is empty if it applies."""
     if pair.gear_2.internal:
         return "this is a ring pair"
     ratio = pair.eps_alpha / math.cos(pair.gear_1.beta_b) ** 2

@@ -169,7 +169,10 @@ def _set(scene: Scene) -> Iterator[str]:
 
 
 def told_supports(curve: StiffnessCurve) -> str:
-    """Return the share of shafts and springs in the deflection, in words; empty if the hubs are held rigidly."""
+    """Return the share of shafts and springs in the deflection, in words.
+
+    The result is empty if the hubs are held rigidly.
+    """
     if curve.support_deflection is None:
         return ""
     part, k_teeth = float(curve.support_deflection.mean() / curve.deflection.mean()), curve.without_supports().k.mean()

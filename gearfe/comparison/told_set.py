@@ -59,7 +59,7 @@ def set_numbers(curves: SetCurves) -> dict[str, float]:
 
 
 def set_headline(curves: SetCurves, healthy: SetCurves | None = None) -> str:
-    """State the answer in one sentence; for a damaged set relative to the `healthy` one, at the same positions."""
+    """State the answer in one sentence. For a damaged set relative to the `healthy` one, at the same positions."""
     found, said = set_numbers(curves), []
     for kind in MESHES:
         inside, alone = found[f"k_{kind.replace('-', '_')}"], found[f"k_{kind.replace('-', '_')}_alone"]
@@ -108,7 +108,10 @@ def told_set(case: PlanetaryCase) -> str:
 
 
 def told_in_set(scene: Scene, pair: str, curve: StiffnessCurve) -> str:
-    """Return the mean stiffness of a pair in the set of its scene and as an isolated pair, in words; empty without a set."""
+    """Return the mean stiffness of a pair in the set of its scene and as an isolated pair, in words.
+
+    The result is empty without a set.
+    """
     if scene.set is None or pair not in scene.set.pairs or (added := added_compliance(scene)) is None:
         return ""
     kind = scene.set.pairs.index(pair)

@@ -58,7 +58,10 @@ class Analysis:
 
     @property
     def too_short(self):
-        """Remedy if the record is too short to resolve the lines of the fault; empty if it is long enough."""
+        """Remedy if the record is too short to resolve the lines of the fault.
+
+        The result is empty if it is long enough.
+        """
         return too_short(min(signal.duration for signal in self.signals.values()), self.resolving)
 
     @property
@@ -90,7 +93,7 @@ class Analysis:
         return Table(columns, [[in_words(n), self.lines[n], *(of_case[n] for of_case in sizes)] for n in self.standing()])
 
     def hidden_lines(self):
-        """Sentence on the lines that do not stand out; empty if all do."""
+        """Sentence on the lines that do not stand out. The result is empty if all do."""
         shown = self.standing()
         hidden = [f"{in_words(name)} ({value:.2f} Hz)" for name, value in self.lines.items() if name not in shown]
         if not hidden:
@@ -129,7 +132,7 @@ class Analysis:
         return tabulate_indicators(self.indicators)
 
     def plot(self, path=None, title=""):
-        """Spectra below each other under a `title` (default: the channel); returns the figure."""
+        """Spectra below each other under a `title` (default: the channel). Returns the figure."""
         from ..figures.vibration_plots import plot_spectra
 
         return plot_spectra(self.spectra, self.lines, path, title=title or self.channel)
@@ -156,7 +159,10 @@ def _floor(found, frequency):
 
 
 def _risen(found: Demodulated, name, before):
-    """Return a line of an envelope in words if it is above its floor and its former value; empty if not."""
+    """Return a line of an envelope in words if it is above its floor and its former value.
+
+    The result is empty if not.
+    """
     frequency, size = found.lines[name]
     if size <= FLOOR * found.background or (before and size <= RISE * before[1]):
         return ""

@@ -68,7 +68,7 @@ def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility
 
 
 def bodies_of(case, bands, flexible, ahead=None):
-    """Return ``[[(Flexibility3D, offset [mm]), ...], ...]`` of both gears in each band; contact begins at the offset.
+    """Return ``[[(Flexibility3D, offset [mm]), ...], ...]`` of both gears in each band. Contact begins at the offset.
 
     `Bodies` describes `flexible` and `ahead`, which gets the number of neighbours. `geometry.pair.lines.bands_of` makes `bands`.
     Gears that are one piece with their shaft get it as ``shaft``, seen from the end that touches first.
@@ -176,7 +176,7 @@ def mirrors_of(cells, bodies):
 
 
 def faces_of(cells, bodies):
-    """Faces of the cracks of all bodies, as `joined_lines.System` takes them; None without cracks.
+    """Faces of the cracks of all bodies, as `joined_lines.System` takes them, or None without cracks.
 
     Returns
     -------

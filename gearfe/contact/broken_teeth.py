@@ -31,7 +31,7 @@ def with_broken(points, pair, flexibility, extended, flanks=None):
 
 
 def _chipped(points, pair, flexibility, extended, path, flanks):
-    """Contacts in which flanks end at the corners of chips; the ends of their path are put into `path`."""
+    """Contacts in which flanks end at the corners of chips. The ends of their path are put into `path`."""
     cut = [getattr(own, "tips", {}) for own in flexibility]
     if not any(cut):
         return points

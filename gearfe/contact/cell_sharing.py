@@ -21,7 +21,7 @@ SLOPE = 1e-4  # relative step of the line load for the derivative of the local l
 
 
 class SharedLoad(NamedTuple):
-    """Forces on the cells, then on the faces [N]; approach [mm]; tangent stiffness d load / d approach [N/mm]."""
+    """Result of the contact problem: forces on cells and crack faces [N], approach [mm], tangent stiffness [N/mm]."""
 
     force: Floats
     approach: float
@@ -29,7 +29,7 @@ class SharedLoad(NamedTuple):
 
 
 class SharedLines:
-    """Cells of contact lines that can push but not pull, in many contact problems at once; solves them for any loads.
+    """Cells of contact lines that can push but not pull, in many contact problems at once. Solves them for any loads.
 
     Cells of one line act on each other and themselves as the half-space does, each a strip of Hertz's pressure
     (`halfspace.pair_kernel`). The strips' widths follow from the loads of the step before, averaged along the line so that the

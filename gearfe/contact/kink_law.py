@@ -57,7 +57,7 @@ class KinkLaw:
                     self.zones.append((nominal, *kept.get(("kink", *case), partial(_table, *case[:3], forms, *case[4:], kept))))
 
     def __call__(self, inside, nominal, line_load):
-        """Add to ``ln(2 / a) + 1/2`` ``(n,)`` at line loads ``(n,)`` [N/mm]; only where `inside`."""
+        """Term added to ``ln(2 / a) + 1/2`` ``(n,)`` at line loads ``(n,)`` [N/mm], for contacts `inside` only."""
         out = np.zeros(nominal.size)
         for at, unit, stays, (spline, least, most) in self.zones:
             load = np.clip(line_load, least, most)
@@ -68,7 +68,7 @@ class KinkLaw:
 
 
 def _place(away, wide, stays):
-    """Return places in the table: -1 to 1 within the `wide` contacts, up to 2 over the length `stays` on the kink."""
+    """Coordinates in the table of the kink law: -1 to 1 within the contact width `wide`, up to 2 on the kink over `stays`."""
     further = np.abs(away) - wide
     return np.where(further < 0, away / wide, np.sign(away) * (1 + further / np.where(away < 0, *stays)))
 

@@ -56,7 +56,7 @@ def _aligned(rows):
 
 
 class PairContact:
-    """Two gears' flexibilities and the contacts of a pair at some phases; solves for any load.
+    """Two gears' flexibilities and the contacts of a pair at some phases. Solves for any load.
 
     Of the `Flexibility` of pinion and wheel; `extended`, `state` as of a `Solve`, `flanks` the forms of a `Case`.
     """

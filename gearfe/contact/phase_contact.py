@@ -149,7 +149,10 @@ class PhaseContact:
         return [carried for part in steps(parts, weights=[len(part) for part in parts]) for carried in self._part(part, bodies)]
 
     def _part(self, phases, bodies):
-        """`solve` of phases that are solved at once; how far cells reach depends on their own phase alone, so that k does."""
+        """`solve` of phases that are solved at once.
+
+        How far cells reach depends on their own phase alone, so that k does.
+        """
         done = [None] * len(phases)
         reaches, closings, open_ = np.full(len(phases), self.least + self.reach), np.zeros(len(phases)), list(range(len(phases)))
         while open_:
@@ -220,7 +223,7 @@ class PhaseContact:
         return cells_of(*arguments, longer=self.longer, fine=fine, pair_of=self.pair_of)
 
     def _batch(self, cells, bodies):
-        """`CellBatch` of phases; two halves that are alike are solved once."""
+        """`CellBatch` of several phases. The equal halves of a herringbone pair are solved once."""
         cos, halves = math.cos(self.beta_b), bodies(max(int(np.ptp(group.order)) for group in cells))
         double = len(halves) > 1 and self.hubs is None and _same(*halves)
         alike = np.array([double and _alike(group, group.half == 0, ALIKE * self.pair.p_bt) for group in cells])
@@ -249,7 +252,7 @@ class PhaseContact:
         return [self._told(*case, batch.bodies) for case in cases]
 
     def _local(self, cells):
-        """Local law of the cells, as `SharedLines.solve` takes it; None if it is Hertz's everywhere."""
+        """Local law of the cells, as `SharedLines.solve` takes it, or None if it is Hertz's everywhere."""
         laws, kinks = self._laws_at(cells), self.kinks
         at = self._ends(cells)
         for end, form in enumerate((self.flanks or ())[::-1]):

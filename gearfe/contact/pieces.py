@@ -185,7 +185,10 @@ def _left(piece, taken, width):
 
 
 def _taken(pair_of, pits, bands, pieces, slope):
-    """Intervals of depth that pits take from each piece; beyond the path a line is bent, so it is looked at in `PARTS`."""
+    """Intervals of depth that pits take from each piece.
+
+    Beyond the path a line is bent, so it is looked at in `PARTS`.
+    """
     if not (any(pits) and pieces):
         return [[] for _ in pieces]
     pair = pair_of(pieces[0].order)

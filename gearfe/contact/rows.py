@@ -106,7 +106,7 @@ def _apart(places, least, last):
 
 
 def _knots(tops, ends):
-    """Start, top and end ``(3, n)`` of the hats; those at an end of contact are one-sided, others need a neighbour."""
+    """Start, top and end ``(3, n)`` of the hats. Those at an end of contact are one-sided, others need a neighbour."""
     start, stop = np.append(tops[0], tops[:-1]), np.append(tops[1:], tops[-1])
     knots = np.array([start, tops, stop])
     return knots[:, slice(None if ends[0] else 1, None if ends[1] else -1)]
@@ -195,7 +195,10 @@ def hat_rows(contact, at, knots, kernels, host, tips):
 
 
 def _between(knots, kernel, on):
-    """`gearfe.flexibility.hertz.hat_logarithm` of those knots that are `on`; `kernel` is that of all, if it is known."""
+    """`gearfe.flexibility.hertz.hat_logarithm` of those knots that are `on`.
+
+    `kernel` is that of all, if it is known.
+    """
     if kernel is None:
         return hat_logarithm(knots[:, on], knots[:, on])
     return kernel if on.all() else kernel[np.ix_(on, on)]

@@ -66,7 +66,10 @@ class Thinning:
         return out
 
     def _loads(self, roll):
-        """Heights of unit loads, and M = moment - lever y, V and N under them; loads in the fillet stand at the form point."""
+        """Heights of unit loads, and M = moment - lever y, V and N under them.
+
+        Loads in the fillet stand at the form point.
+        """
         at = np.clip(roll, *sorted((self.form.low, self.form.high)))
         radius, angle = flank(self.gear, at)
         turn = self.gear.base_half_angle - self.gear.outward * at / self.gear.r_b

@@ -73,7 +73,10 @@ class _Public(dict[str, Any]):
 
 @functools.cache
 def bordered(public: Any, name: str) -> Any:
-    """Return a public function that checks its arguments first; records are checked where they are built, and stay themselves."""
+    """Return a public function that checks its arguments first.
+
+    Records are checked where they are built, and stay themselves.
+    """
     if inspect.isfunction(public):
         out = _checked(public, name)
         out.__module__, out.__qualname__ = "gearfe", name  # other processes find it there
@@ -107,7 +110,7 @@ def _checked(function, called, record=False):
 
 
 def _own_message(function, args, options, kind):
-    """Raise the error of a record's own check as one of this `kind`; return if it has none."""
+    """Raise the error of a record's own check as one of this `kind`. Return if it has none."""
     try:
         function(*args, **options)
     except ValueError as error:
@@ -117,7 +120,10 @@ def _own_message(function, args, options, kind):
 
 
 def _settled(name, rule, default, value, infinite):
-    """Argument to be passed on; the default is valid whatever its annotation. Records decide whether they may be `infinite`."""
+    """Argument to be passed on.
+
+    The default is valid whatever its annotation. Records decide whether they may be `infinite`.
+    """
     if value is default:
         return value
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
@@ -161,7 +167,7 @@ def _hint(function, annotation):
 
 
 def _rule(hint):
-    """Rule of a type; None if anything may be given."""
+    """Rule of a type, or None if anything may be given."""
     origin, inner = typing.get_origin(hint), typing.get_args(hint)
     if hint is Any:
         return None
@@ -205,7 +211,7 @@ def _any_of(rules):
 
 
 def _instance(kind):
-    """Rule of a class; its message shows how a record is made."""
+    """Rule of a class. Its message shows how a record is made."""
     words = WORDS.get(kind, f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}")
     made = inspect.signature(kind).parameters.values() if dataclasses.is_dataclass(kind) else ()
     needs = ", ".join(one.name for one in made if one.default is one.empty)
@@ -232,7 +238,7 @@ def _array(kind, name, value):
 
 
 def _even(name, value):
-    """Return what an array can be made of; the functions read it themselves."""
+    """Return what an array can be made of. The functions read it themselves."""
     try:
         np.ndim(value)
     except ValueError:

@@ -151,7 +151,7 @@ class Case:
         return {name: value for name, (value, default) in given.items() if name in FIRST or value != default}
 
     def keys(self) -> Any:
-        """Return the names of `as_dict`; deprecated, as all of a case's use as a mapping."""
+        """Return the names of `as_dict`. The use of a case as a mapping is deprecated."""
         return _as_mapping(self).keys()
 
     def __getitem__(self, name: str) -> Any:
@@ -187,7 +187,7 @@ class Case:
 
     @property
     def why_wide(self) -> str:
-        """Reason for a three-dimensional model; empty if the transverse section is sufficient."""
+        """Reason for a three-dimensional model. The result is empty if the transverse section is sufficient."""
         if why := why_wide([one for defects in (*self.cracks, *self.pits) for one in defects]):
             return why
         if self.runs != "spur":
@@ -210,7 +210,7 @@ class Case:
 
     @property
     def first_tooth(self) -> int | None:
-        """Number of the tooth pair that the first crack or pit is in; None without damage."""
+        """Number of the tooth pair that the first crack or pit is in, or None without damage."""
         return next(iter(self.damaged_pairs), None)
 
     def overlap(self, face: str | None = None) -> float:
@@ -225,7 +225,10 @@ NAMES = tuple(own.name for own in GIVEN)
 
 
 class CaseOptions(TypedDict, total=False):
-    """Options of a `Case` other than pair, load and materials, for functions that accept both; `Case` describes them."""
+    """Options of a `Case` other than pair, load and materials, for functions that accept both.
+
+    `Case` describes them.
+    """
 
     damage: Mapping[str, Sequence[Damage]] | None
     flanks: Mapping[str, Flank] | None
@@ -243,7 +246,7 @@ def _as_mapping(case):
 
 
 def _stated(given):
-    """Read-only copy of what is given by gear, without empty entries; None if nothing is left."""
+    """Read-only copy of what is given by gear, without empty entries, or None if nothing is left."""
     return Frozen({name: value for name, value in given.items() if value}) if given and any(given.values()) else None
 
 
@@ -267,7 +270,7 @@ def two_materials(material: Any) -> tuple[Material, Material]:
 
 
 def overlap(pair: GearPair, face: str | None, groove: float) -> float:
-    """Overlap ratio of a pair (of one half, if herringbone) whose teeth run as `face` says; 0 for spur."""
+    """Overlap ratio of a pair (of one half, if herringbone) whose teeth run as `face` says, or 0 for spur."""
     width = min(pair.gear_1.b, pair.gear_2.b)
     if face == "herringbone":
         width = (width - groove) / 2

@@ -17,7 +17,10 @@ FINEST = 64.0  # at finer meshes k changes by less than the errors of rounding a
 
 
 def number(name: str, value: Any) -> float:
-    """Return the number as a float; ValueError for no number, nan or a truth value. Arrays without axes count."""
+    """Return the number as a float.
+
+    Raises ValueError for no number, nan or a truth value. Arrays without axes count.
+    """
     value = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 and not np.ma.is_masked(value) else value
     if is_whole(value) and not is_number(value):
         raise ValueError(f"{name} = {shown(value)}, but the maximum is {LARGEST:.2g}")
@@ -51,14 +54,14 @@ def one_of(name: str, value: Any, known: Collection[str]) -> None:
 
 
 def truth(name: str, value: Any) -> bool:
-    """Return `value` if it is true or false; text and numbers are rejected, since ``bool("no")`` is true."""
+    """Return `value` if it is true or false. Text and numbers are rejected, since ``bool("no")`` is true."""
     if not isinstance(value, (bool, np.bool_)):
         raise WrongTypeError(f"{name} = {shown(value)}, but give True or False")
     return bool(value)
 
 
 def numbers(name: str, value: Any, unit: str) -> NDArray:
-    """Return one number or several as an array of floats; text, truth values and complex numbers are rejected."""
+    """Return one number or several as an array of floats. Text, truth values and complex numbers are rejected."""
     try:
         array = np.asarray(value)
     except ValueError as error:

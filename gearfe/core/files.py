@@ -1,4 +1,4 @@
-"""Files: `FORMATS` lists the formats and their contents; a written file is complete, or absent.
+"""Files: `FORMATS` lists the formats and their contents. A written file is complete, or absent.
 
 A curve or a response becomes a `Content`, which every format of numbers can hold. Pictures and fields are drawn by their
 libraries into the path from `written`. Readers return lines of text or arrays by name.
@@ -99,7 +99,7 @@ def check_path(name, path):
 
 
 def check_output(path, kind):
-    """Raise ValueError if `path` is not writable; call it before work begins.
+    """Raise ValueError if `path` is not writable. Call it before work begins.
 
     A file is made in the folder and taken away again, so that nothing is left to chance; what stands at `path` is not touched.
     `kind` is what will be written, as `FORMATS` names it (``curve``, ``picture``...). ValueError if the name is empty, a folder,
@@ -161,7 +161,7 @@ def checked_dpi(dpi):
 
 
 def save_figure(figure, path, dpi):
-    """Draw a matplotlib figure into a file, unless `path` is None; gives the figure back."""
+    """Draw a matplotlib figure into a file, unless `path` is None. Return the figure."""
     if path is not None:
         suffix_of(path, "picture")
         checked_dpi(dpi)
@@ -198,13 +198,13 @@ def write_csv(name, content):
 
 
 def write_npz(name, content):
-    """Write a numpy archive; ``meta`` and ``units_json`` are JSON strings."""
+    """Write a numpy archive. ``meta`` and ``units_json`` are JSON strings."""
     with open(name, "wb") as file:
         np.savez(file, **content.arrays, **_told(content))
 
 
 def write_mat(name, content):
-    """Write a MATLAB 5 file; ``meta`` and ``units_json`` are JSON (``jsondecode``), rows of text are cell arrays."""
+    """Write a MATLAB 5 file. ``meta`` and ``units_json`` are JSON (``jsondecode``), rows of text are cell arrays."""
     from scipy.io import savemat
 
     arrays = {key: value.astype(object) if value.dtype.kind == "U" else value for key, value in content.arrays.items()}
@@ -240,7 +240,7 @@ def read_text(path):
 
 
 def _decoded(content):
-    """Return text of bytes and its encoding; None if it has none of the usual encodings of tables."""
+    """Return text of bytes and its encoding, or None if it has none of the usual encodings of tables."""
     marks = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16", codecs.BOM_UTF8: "utf-8-sig"}
     marked = next((name for mark, name in marks.items() if content.startswith(mark)), None)
     wide = {"utf-16-le": content[1:400:2], "utf-16-be": content[:400:2]}  # in text of Latin letters every second byte is zero
@@ -300,7 +300,7 @@ def _opened(path):
 
 
 class Format(NamedTuple):
-    """Contents of files of a suffix, and their writers and readers; None if a drawing library writes it."""
+    """Contents of files of a suffix, and their writers and readers, or None if a drawing library writes it."""
 
     writes: tuple = ()
     reads: tuple = ()

@@ -55,7 +55,7 @@ class Material:
         return self.E / (2 * (1 + self.nu))
 
     def lame(self, state: str) -> tuple[float, float]:
-        """Plane Lame constants (lambda, mu) [MPa]; `state` is "plane strain" or "plane stress"."""
+        """Plane Lame constants (lambda, mu) [MPa]. `state` is "plane strain" or "plane stress"."""
         mu = self.shear_modulus
         if check_state(state) == "plane stress":
             return self.E * self.nu / (1 - self.nu**2), mu

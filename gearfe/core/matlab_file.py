@@ -30,7 +30,7 @@ MOST_PACKED = 1032  # largest expansion of one byte of deflate [bytes]
 
 
 class Unread(NamedTuple):
-    """Variable whose numbers are not read; `why` is its type and the remedy."""
+    """Variable whose numbers are not read. `why` is its type and the remedy."""
 
     why: str
 
@@ -58,7 +58,7 @@ class _Bytes:
         return struct.unpack(f"{self.order}{count}i", self.take(4 * count))
 
     def element(self) -> "tuple[int, _Bytes]":
-        """Kind and content of the next element; small ones stand in their own tag."""
+        """Kind and content of the next element. Small ones stand in their own tag."""
         (word,) = struct.unpack(f"{self.order}I", self.take(4))
         if word >> 16:
             held = self.take(4)
@@ -77,7 +77,7 @@ def _fits(count, most):
 
 
 def variables(data: bytes) -> dict[str, Any]:
-    """Variables of a file by name, from all its bytes; ValueError if it is no such file, or damaged.
+    """Variables of a file by name, from all its bytes. Raises ValueError if it is no such file, or damaged.
 
     Numbers are arrays of MATLAB's class (truth is uint8), texts arrays of str without their last axis, cells arrays of objects,
     structs structured arrays of objects; anything else is `Unread`.
@@ -168,7 +168,7 @@ def _text(element):
 
 
 def _fields(file):
-    """Names of the fields of a struct; one that is there twice gets a number."""
+    """Names of the fields of a struct. Repeated names get a number."""
     size = file.element()[1].numbers(1)[0]
     text = bytes(file.element()[1].data)
     if size < 1 or len(text) % size:
@@ -206,7 +206,10 @@ def _characters(kind, content, shape) -> NDArray[Any]:
 
 
 def _rows(text, shape):
-    """Text of a matrix of characters, stored by columns, as an array of its rows; trailing blanks go, as numpy has it."""
+    """Text of a matrix of characters, stored by columns, as an array of its rows.
+
+    Trailing blanks are removed, as in numpy.
+    """
     count = math.prod(shape)
     if not count:
         return np.empty(0, dtype="U1")

@@ -36,7 +36,10 @@ def _process_free():
 
 
 def _group_free():
-    """Return the unused part of the control group of this process (a container); versions 1 and 2 have different files."""
+    """Return the unused part of the control group of this process (a container).
+
+    Versions 1 and 2 have different files.
+    """
     left = math.inf
     for limit, used, details, cached in CONTROL_GROUP:
         try:

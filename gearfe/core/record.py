@@ -55,7 +55,10 @@ def ranged(
 
 
 def settle_numbers(record: Any, what: str, names: str, unit: str = "", **limits: Any) -> None:
-    """Set the fields `names`, with blanks between them, to floats in the `limits` of `ranged`; `what` begins its message."""
+    """Set the fields `names`, with blanks between them, to floats in the `limits` of `ranged`.
+
+    `what` begins its message.
+    """
     for name in names.split():
         settle(record, **{name: ranged(f"{what}: {name}", getattr(record, name), unit, **limits)})
 

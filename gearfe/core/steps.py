@@ -41,7 +41,7 @@ def is_heard() -> bool:
 
 @contextlib.contextmanager
 def part(text: str, low: float, high: float) -> Iterator[None]:
-    """Declare the block as the work from `low` to `high`, both 0 to 1; an empty text keeps the former one."""
+    """Declare the block as the work from `low` to `high`, both 0 to 1. An empty text keeps the former one."""
     whole = _range.get()
     if whole is None:
         yield

@@ -38,7 +38,7 @@ class Column(NamedTuple):
         return f"{name} [{self.unit}]" if self.unit and self.unit != "%" else name
 
     def text(self, cell: Any) -> str:
-        """Text of a cell; that of None and nan is empty."""
+        """Text of a cell, empty for None and nan."""
         value, form = cell if isinstance(cell, tuple) else (cell, self.form)
         if value is None or isinstance(value, str):
             return " ".join((value or "").splitlines())
@@ -132,7 +132,7 @@ class Table:
         return shown.get().strip()
 
     def html(self, *, words: bool = False) -> str:
-        """Return a ``<table>`` that scrolls in its ``<div>``; `words` if its cells are sentences."""
+        """Return a ``<table>`` that scrolls in its ``<div>``. With `words`, its cells are sentences."""
         head, *_ = self.cells()
         rows = self._texts(lambda text, marked: f"<td{FAR if marked else ''}>{escape(text)}</td>")
         label = escape(self.title or "table")
@@ -169,7 +169,7 @@ class Table:
         return out.getvalue()
 
     def save(self, path: StrPath) -> None:
-        """Write to `path`; its suffix decides: ``.csv``, ``.md`` or ``.tex``. ValueError if it cannot be written."""
+        """Write to `path`. Its suffix decides: ``.csv``, ``.md`` or ``.tex``. ValueError if it cannot be written."""
         text = {".csv": self.csv, ".md": self.markdown, ".tex": self.latex}[suffix_of(path, "table")]()
         with written(path) as name, open(name, "w", encoding="utf-8") as file:
             file.write(text if text.endswith("\n") else f"{text}\n")

@@ -122,7 +122,7 @@ _dealing = Shared(_dealt)
 
 @contextlib.contextmanager
 def own_warnings(kind: type[Warning] = UserWarning) -> Iterator[list[Any]]:
-    """In the block the list that is given gets the warnings of a kind that this thread makes; they are not shown.
+    """In the block the list that is given gets the warnings of a kind that this thread makes. They are not shown.
 
     As ``warnings.catch_warnings(record=True)``, which several threads may not use at once: warnings of another thread would
     come into the list, and filters that one has set could stay for good.

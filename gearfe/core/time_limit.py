@@ -13,7 +13,7 @@ SURE = 10.0  # elapsed time [s] from which the first parts show what the rest co
 
 
 def hours_allowed() -> float:
-    """Return the limit [h]; ValueError if the environment variable is no positive number."""
+    """Return the limit [h]. Raises ValueError if the environment variable is no positive number."""
     stated = os.environ.get(VARIABLE) or str(HOURS)
     try:
         limit = float(stated)
@@ -25,7 +25,7 @@ def hours_allowed() -> float:
 
 
 def check_time(what: str, seconds: float, remedy: str) -> None:
-    """Raise ValueError if the estimate [s] of `what` exceeds the limit; the message has both, and the `remedy`."""
+    """Raise ValueError if the estimate [s] of `what` exceeds the limit. The message has both, and the `remedy`."""
     limit = hours_allowed()
     if not seconds <= 3600 * limit:
         raise ValueError(
@@ -35,13 +35,16 @@ def check_time(what: str, seconds: float, remedy: str) -> None:
 
 
 class Clock:
-    """Estimates work in parts by those that are done; the first ones count for nothing, because they load and compile."""
+    """Estimates work in parts by those that are done.
+
+    The first ones count for nothing, because they load and compile.
+    """
 
     def __init__(self, idle: int = 1) -> None:
         self.idle, self.started, self.before = idle, 0.0, 0.0
 
     def check(self, what: str, share: float, remedy: str) -> None:
-        """Raise ValueError if all of the work would exceed the limit; a `share` of it, 0 to 1, is done."""
+        """Raise ValueError if all of the work would exceed the limit. A `share` of it, 0 to 1, is done."""
         now = time.perf_counter()
         if self.idle:
             self.idle, self.started, self.before = self.idle - 1, now, share

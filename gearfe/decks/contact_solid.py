@@ -104,7 +104,10 @@ class Touching:
 
 
 def nominal_at(pair: GearPair, phase: float, z: Floats | float) -> Floats:
-    """Abscissa [mm] of pair 0 on the line of action at heights z [mm] of the common width; `phase` is that of the end ahead."""
+    """Abscissa [mm] of pair 0 on the line of action at heights z [mm] of the common width.
+
+    `phase` is that of the end ahead.
+    """
     slope = math.tan(pair.gear_1.beta_b)
     origin = min(pair.gear_1.b, pair.gear_2.b) if slope > 0 else 0.0
     return pair.path[0] + phase * pair.p_bt + slope * (np.asarray(z) - origin)
@@ -222,7 +225,7 @@ def _strip(gear, found, number, k, tooth, low, per_width):
 
 
 def _holed(gear: Gear, damage, strips, how) -> DeckBody:
-    """Mesh a whole gear in tets, its pits cut out or not; its damaged tooth is tooth 0 during meshing."""
+    """Mesh a whole gear in tets, its pits cut out or not. Its damaged tooth is tooth 0 during meshing."""
     cracks, holes = split(damage)
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
         raise ValueError("a gear with holes may have one crack only, through the whole width: leave out the others")

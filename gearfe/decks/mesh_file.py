@@ -117,7 +117,7 @@ def _write(path, suffix, part, kind):
 
 
 def _deck(part, sets):
-    """Lines of a deck; meshio 5.3.5 writes elements, numbers and lines that CalculiX rejects."""
+    """Lines of a deck. Meshio 5.3.5 writes elements, numbers and lines that CalculiX rejects."""
     yield "** gearfe: mesh of one gear, in mm, to be used by *INCLUDE"
     yield "*NODE, NSET=ALL"
     yield from node_lines(part, 0)

@@ -109,7 +109,7 @@ def _check_strips(gear, off, strips):
 
 
 def placed(part: DeckBody, points: Floats, *, mirrored: bool = False) -> DeckBody:
-    """Return a body with its nodes at `points`; `mirrored` if they are its mirror image."""
+    """Return a body with its nodes at `points`. With `mirrored`, they form its mirror image."""
     cells = part.cells[MIRRORED[len(part.cells)]] if mirrored else part.cells
     return replace(part, points=points, cells=cells)
 
@@ -130,7 +130,7 @@ def node_lines(part, first=0):
 
 
 def cell_lines(part, name, first=0, element=0):
-    """Elements of the set `name`, numbered from `element` + 1; RuntimeError if some fold."""
+    """Elements of the set `name`, numbered from `element` + 1. Raises RuntimeError if some fold."""
     if len(part.cells) > 6:
         check_folds(part.points, part.cells)
     out = [f"*ELEMENT, TYPE={KINDS[len(part.cells)]}, ELSET={name}"]

@@ -29,7 +29,7 @@ class OutlineLines(NamedTuple):
 
 
 def outline_lines(gear: Gear, damage: Sequence[Damage] = ()) -> OutlineLines:
-    """Lines of a gear in its transverse section at z = 0; tooth 0 points along y.
+    """Lines of a gear in its transverse section at z = 0. Tooth 0 points along y.
 
     Missing teeth and chips are not in the outline. Cracks, and pits and spalls over their height, are separate lines.
     """

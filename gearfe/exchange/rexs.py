@@ -99,7 +99,7 @@ def import_rexs(path: StrPath, *, load_case: int = 1) -> Imported:
 
 
 def _left_out(model: Model, copies: set[int]) -> Iterator[str]:
-    """Contents of a model that gearfe does not read, in words; `copies` are components equal to one that was read."""
+    """Contents of a model that gearfe does not read, in words. `copies` are components equal to one that was read."""
     yield from model.notes
     looked_at = [one for one in model.components.values() if one.id not in copies]
     unread = Counter(one.type for one in looked_at if not one.read and one.type not in SILENT)
@@ -212,7 +212,7 @@ class _Unit:
         self.meshes.append(PowerMesh(name, tuple(gear.id for gear in gears), tuple(radii), *planets))
 
     def _named(self, gear, stated):
-        """Name of a gear in the scene; its row is made the first time."""
+        """Name of a gear in the scene. Its row is made the first time."""
         for name, known in self.gears.items():
             if known is gear:
                 return name
@@ -269,7 +269,7 @@ class _Unit:
         return row
 
     def _stage_torque(self, name):
-        """Torque of the driving gear that the data of a stage state [N m]; None if they do not."""
+        """Torque of the driving gear that the data of a stage state [N m], or None if they do not."""
         one, _, stage = self.pairs[name]
         for data in self.model.related("stage_gear_data", "stage", stage.id, "stage_gear_data"):
             if self.gears[one] in self.model.related("stage_gear_data", "stage_gear_data", data.id, "gear"):

@@ -41,7 +41,7 @@ class Component:
     read: set[str] = field(default_factory=set)
 
     def value(self, name: str, *units: str) -> Any:
-        """Value of an attribute in one of these units; None if it is missing, or in another unit."""
+        """Value of an attribute in one of these units, or None if it is missing, or in another unit."""
         value, unit = self.values.get(name, (None, "none"))
         if value is None or unit not in (*units, "none"):
             return None
@@ -111,7 +111,7 @@ def read_model(path: StrPath) -> Model:
 
 
 def _text(path):
-    """Name and text of the model in a file; of a zip file of the first model."""
+    """Name and text of the model in a file. In a zip file, it is the first model."""
     if zipfile.is_zipfile(path):
         try:
             with zipfile.ZipFile(path) as archive:
@@ -172,7 +172,7 @@ def _xml_value(element):
 
 
 def _plain(text):
-    """Return number, truth or text of a written value; None if it is empty."""
+    """Return number, truth or text of a written value, or None if it is empty."""
     text = (text or "").strip()
     if NUMBER.fullmatch(text):
         return float(text) if set(text) & set(".eE") else int(text)

@@ -26,7 +26,7 @@ def root_radius(gear: Component, row: dict[str, Any]) -> float:
 
 
 class GearReader:
-    """Reader of the gears of a model; missing values become assumptions, `assumed` as ``(what, why)``."""
+    """Reader of the gears of a model. Missing values become assumptions, `assumed` as ``(what, why)``."""
 
     def __init__(self, model: Model):
         self.model = model
@@ -72,7 +72,7 @@ class GearReader:
         return value
 
     def tools(self, gear: Component) -> list[Component]:
-        """Tools of a gear; the last step cuts the flank that remains."""
+        """Tools of a gear. The last step cuts the flank that remains."""
         steps = [self.model.related("manufacturing_step", "workpiece", flank.id, "tool") for flank in self.flanks(gear).values()]
         return next(filter(None, steps), []) or self.model.related("ordered_reference", "origin", gear.id, "referenced")
 
@@ -190,7 +190,7 @@ class GearReader:
         return None
 
     def material(self, gear: Component, name: str) -> str:
-        """Name of the material of a gear, added to `materials`; steel if the file has none."""
+        """Name of the material of a gear, added to `materials`. The default is steel."""
         for one in self.model.related("reference", "origin", gear.id, "referenced"):
             elastic, poisson = one.number("elastic_modulus", "MPa"), one.number("poisson_ratio")
             if one.type == "material" and elastic is not None and poisson is not None:

@@ -19,7 +19,7 @@ class Shifts:
         return outward(self.gears[name])
 
     def distance(self, stage, name):
-        """Centre distance of a stage [mm]: stated, or of the positions of both gears; None if neither."""
+        """Centre distance of a stage [mm]: stated, or of the positions of both gears, or None if neither."""
         stated = stage.number("center_distance", "mm")
         if stated is not None:
             return stated
@@ -67,7 +67,7 @@ class Shifts:
             self.reader.assume(f"gear {two}: x = {self.rows[two]['x']:g}", "the sign with which the centre distance closes")
 
     def _sum(self, name):
-        """Sum of the profile shifts that the centre distance of a pair requires; None if it is not known."""
+        """Sum of the profile shifts that the centre distance of a pair requires, or None if it is not known."""
         one, two, stage = self.pairs[name]
         a = self.distance(stage, name)
         first, second, sign = self.rows[one], self.rows[two], self._outward(two)

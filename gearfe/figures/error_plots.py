@@ -8,7 +8,7 @@ from .stiffness_plots import periodic, told
 
 
 def plot_transmission_error(found, path=None, title=None, plain=None):
-    """Draw a `gearfe.stiffness.transmission_error.TransmissionError`; save to `path` (png, svg, pdf) if given.
+    """Draw a `gearfe.stiffness.transmission_error.TransmissionError`. Save to `path` (png, svg, pdf) if given.
 
     Each curve is drawn without its mean, which the legend states.
     The `title` is by default teeth, damage and width, see `gearfe.figures.stiffness_plots.told`. With `plain`, that of the same

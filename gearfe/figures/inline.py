@@ -32,6 +32,6 @@ def line_svg(x, y, x_name, y_name, *, largest=800):
 
 
 def _scale(values, length):
-    """Scale values from 0 to `length`; constant values to the middle."""
+    """Scale values to the range 0 to `length`. Constant values go to the middle."""
     low, high = np.nanmin(values), np.nanmax(values)
     return np.full(values.shape, length / 2) if high == low else (values - low) / (high - low) * length

@@ -12,7 +12,7 @@ UNEVEN = ("pitch", "tooth_scale", "eccentricity")  # flank deviations that diffe
 
 
 def plot_curves(curves, path=None, title=None):
-    """Draw stiffness curves by name over the phase [N/um], the load shares of the first below; save to `path` if given.
+    """Draw stiffness curves by name over the phase [N/um], the load shares of the first below. Save to `path` if given.
 
     Curves differ by colour and by dashes. A jump, where a curve without contact off the path of contact gains or loses a pair,
     is drawn at its phase. The axis of stiffness starts at zero unless that would squash the curves. The `title` is by default
@@ -87,7 +87,7 @@ def closed(curve):
 
 
 def _extended(phase, k, rows, place):
-    """Return the straight line through two samples at `place`; outside the curve the nearer sample."""
+    """Interpolate linearly between two samples at `place`. Outside the curve, return the nearer sample."""
     a, b = rows
     if a < 0 or b >= phase.size or phase[a] == phase[b]:
         return k[min(max(a, 0), phase.size - 1)] if a >= 0 else k[b]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def plot_train(scene: "Scene", path: str | os.PathLike[str] | None = None, *, dpi: int = 120) -> "Figure":
-    """Draw the shafts of a gearbox, one below the other along the flow of power; save to `path` if given.
+    """Draw the shafts of a gearbox, one below the other along the flow of power. Save to `path` if given.
 
     Axes are drawn in one plane at their centre distances, whatever the directions of the pairs.
 

@@ -28,7 +28,7 @@ def plot_spectra(
     dpi: int = 120,
     title: str = "",
 ) -> "Figure":
-    """Draw spectra of one unit below each other, expected lines dotted and named; save to `path` if given.
+    """Draw spectra of one unit below each other, expected lines dotted and named. Save to `path` if given.
 
     Parameters
     ----------
@@ -83,7 +83,10 @@ def _apart(places, least):
 def plot_averages(
     averages: Mapping[str, tuple[Floats, Floats]], path: StrPath | None = None, *, unit: str = "", title: str = ""
 ) -> "Figure":
-    """Draw synchronous averages and their difference signals over the angle of the shaft, by record; save to `path` if given."""
+    """Draw synchronous averages and their difference signals over the angle of the shaft, by record.
+
+    Save to `path` if given.
+    """
     figure, rows = blank((9, 0.5 + 2.4 * len(averages)), len(averages), 2, sharex=True, sharey="col", squeeze=False)
     for pair, (name, shown) in zip(rows, averages.items(), strict=True):
         for axes, values, told in zip(pair, shown, ("average", "difference signal"), strict=True):
@@ -101,7 +104,10 @@ def plot_averages(
 
 
 def plot_trend(rows: Mapping[str, Mapping[str, float]], path: StrPath | None = None) -> "Figure":
-    """Draw indicators of records in the order of their measurement, relative to the first record; save to `path` if given."""
+    """Draw indicators of records in the order of their measurement, relative to the first record.
+
+    Save to `path` if given.
+    """
     figure, axes = blank((9, 4))
     names = list(next(iter(rows.values())))
     for number, name in enumerate(names):
@@ -114,7 +120,7 @@ def plot_trend(rows: Mapping[str, Mapping[str, float]], path: StrPath | None = N
 
 
 def plot_kurtogram(kurtogram: "Kurtogram", path: StrPath | None = None, title: str = "") -> "Figure":
-    """Draw a `gearfe.signal.kurtogram.Kurtogram` under a `title`, the best band framed; save to `path` if given."""
+    """Draw a `gearfe.signal.kurtogram.Kurtogram` under a `title`, the best band framed. Save to `path` if given."""
     from matplotlib import cm, colormaps, colors
 
     figure, axes = blank((7, 4))
@@ -139,7 +145,7 @@ def plot_kurtogram(kurtogram: "Kurtogram", path: StrPath | None = None, title: s
 
 
 def plot_spectrogram(spectrogram: "Spectrogram", path: StrPath | None = None, title: str = "") -> "Figure":
-    """Draw a `gearfe.signal.time_frequency.Spectrogram`, 80 dB deep, under a `title`; save to `path` if given."""
+    """Draw a `gearfe.signal.time_frequency.Spectrogram`, 80 dB deep, under a `title`. Save to `path` if given."""
     figure, axes = blank((9, 4))
     largest = max(float(spectrogram.values.max()), 1e-300)
     shown = 20 * np.log10(np.maximum(spectrogram.values / largest, 1e-4))
@@ -151,7 +157,7 @@ def plot_spectrogram(spectrogram: "Spectrogram", path: StrPath | None = None, ti
 
 
 def plot_cepstrum(found: "Spectrum", path: StrPath | None = None, title: str = "") -> "Figure":
-    """Draw a cepstrum, `gearfe.cepstrum`, from a thousandth of its length on; save to `path` if given."""
+    """Draw a cepstrum, `gearfe.cepstrum`, from a thousandth of its length on. Save to `path` if given."""
     figure, axes = blank((9, 3))
     first = max(1, found.values.size // 1000)  # skip the beginning of the cepstrum, which contains the shape of the spectrum
     axes.plot(found.frequency[first:], found.values[first:], linewidth=0.7)
@@ -167,7 +173,10 @@ def plot_phase(
     path: StrPath | None = None,
     title: str = "",
 ) -> "Figure":
-    """Draw a phase portrait, `gearfe.phase_portrait`, with the points of a Poincare section; save to `path` if given."""
+    """Draw a phase portrait, `gearfe.phase_portrait`, with the points of a Poincare section.
+
+    Save to `path` if given.
+    """
     if portrait[0].shape != portrait[1].shape:
         raise ValueError(
             f"portrait: {portrait[0].size} displacements and {portrait[1].size} velocities, but give as many of both"

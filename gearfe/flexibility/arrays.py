@@ -1,4 +1,4 @@
-"""Flexibilities as arrays with a description of their contents, and back; files hold nothing else.
+"""Flexibilities as arrays with a description of their contents, and back. Files hold nothing else.
 
 What is read back is the same to the last bit. The gear is not written: who reads names the gear it asks for.
 """
@@ -19,7 +19,10 @@ CUBIC = 3  # degree of all splines
 
 
 def described(value: Any, arrays: list[NDArray]) -> list[Any]:
-    """Append the arrays of a flexibility to `arrays`; return its description, without them and its gear, as JSON holds it."""
+    """Append the arrays of a flexibility to `arrays`.
+
+    Return its description, without them and its gear, as JSON holds it.
+    """
     if isinstance(value, np.ndarray):
         arrays.append(value)
         return ["array"]

@@ -26,7 +26,9 @@ def hat_knots(arc: NDArray, *, corner: bool = False) -> NDArray:
 
 
 def wider(knots: NDArray) -> NDArray:
-    """Weights ``(n, n)`` that combine hats of unit resultant ``(3, n)`` into hats twice as wide; the first and the last stay.
+    """Weights ``(n, n)`` that combine hats of unit resultant ``(3, n)`` into hats twice as wide.
+
+    The first and the last stay.
 
     A hat with its top at knot i and its ends two knots further is, on the knots between, a sum of the three hats there. Each hat
     has to start at the top of the one before and end at the top of the one after.

@@ -121,7 +121,7 @@ def solved_gears(cache: "bool | SolvedGears") -> SolvedGears:
 
 
 def memory(value) -> int:
-    """Memory of a result [bytes]: the arrays in it, however deep; what is in it twice counts twice."""
+    """Memory of a result [bytes]: the arrays in it, however deep. What is in it twice counts twice."""
     if isinstance(value, np.ndarray):
         return value.nbytes
     if isinstance(value, PPoly):

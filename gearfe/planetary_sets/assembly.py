@@ -69,7 +69,7 @@ class _Block(NamedTuple):
 
 
 class Set:
-    """Flexibilities of a case, and solver of its positions; `planetary_stiffness` describes `coupled`."""
+    """Flexibilities of a case, and solver of its positions. `planetary_stiffness` describes `coupled`."""
 
     def __init__(self, case: PlanetaryCase, bodies: BodyTables, stand: Standing, coupled: bool) -> None:
         self.case, self.bodies, self.stand, self.coupled = case, bodies, stand, coupled

@@ -40,7 +40,9 @@ class Problem(NamedTuple):
     load: Floats
 
     def with_more(self, flexibility: Floats, closing: Floats) -> "Problem":
-        """Return the problem with m more contacts, without gaps and logarithms; `flexibility` ``(n + m, n + m)`` is that of all.
+        """Return the problem with m more contacts, without gaps and logarithms.
+
+        `flexibility` ``(n + m, n + m)`` is that of all.
 
         `closing` ``(n + m, motions)``.
         """

@@ -90,7 +90,7 @@ class PlanetaryCase:
     pairs: tuple[GearPair, GearPair] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Bring all values into one form; raise ValueError for a set that is impossible."""
+        """Bring all values into one form. Raise ValueError for a set that is impossible."""
         if not isinstance(self.gears, PlanetarySet):
             raise ValueError(f"gears = {self.gears!r}, but give a PlanetarySet")
         settle(self, pairs=(self.gears.sun_planet, self.gears.planet_ring))
@@ -199,7 +199,7 @@ class PlanetaryCase:
         return {"sun": self.gears.sun, "ring": self.ring_gear}.get(name, self.gears.planet)
 
     def with_(self, **changed: Any) -> "PlanetaryCase":
-        """Return the case with other values; flanks and damage are replaced as a whole.
+        """Return the case with other values. Flanks and damage are replaced as a whole.
 
         Gears with another number of planets stand equally spaced unless `planet_angles` are given.
 

@@ -36,7 +36,7 @@ class CrackContacts(NamedTuple):
 def crack_contacts(
     cracked: dict[Any, CrackOpenings], blocks: list[Any], n: int, lugs: int, *, apart: bool
 ) -> CrackContacts | None:
-    """`CrackContacts` of the `cracked` gears in the meshes `blocks`; None without cracks.
+    """`CrackContacts` of the `cracked` gears in the meshes `blocks`, or None without cracks.
 
     The last `lugs` of the n loads are those of the ring's lugs. `apart`: each mesh has the cracks of its gears for itself.
     """

@@ -103,11 +103,11 @@ class SetCurves:
             return np.where(self.k > 0, self.force / (self.force / self.k - self.rim), 0.0)
 
     def save(self, path: StrPath) -> None:
-        """Write to `path`; its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
+        """Write to `path`. Its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
         save(path, "curve", content(self))
 
     def plot(self, path: StrPath | None = None, *, dpi: int = 120) -> "Figure":
-        """Draw stiffness and load of every mesh and the transmission error; save to `path` if given."""
+        """Draw stiffness and load of every mesh and the transmission error. Save to `path` if given."""
         return draw_curves(self, path, dpi=dpi)
 
     @classmethod

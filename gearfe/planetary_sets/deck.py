@@ -74,7 +74,10 @@ class SetDeck:
         }
 
     def moved(self, path: StrPath) -> tuple[NDArray, NDArray]:
-        """Angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad]; how they move outwards, clockwise ``(n, 2)`` [mm]."""
+        """Angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad].
+
+        Also their displacements outwards and clockwise ``(n, 2)`` [mm].
+        """
         displacements = read_rows(path, "displacements")
         u = np.array([displacements[n] for n in self.rim.tolist()])[:, :2]
         angle = np.arctan2(*self.around)

@@ -58,6 +58,6 @@ def first_pass(case: Any) -> float:
 
 
 def turned(damage: Any, tooth: int) -> Any:
-    """Return damage on the other side of a tooth; a missing tooth has no side."""
+    """Return damage on the other side of a tooth. A missing tooth has no side."""
     side = {} if isinstance(damage, MissingTooth) else {"side": "unloaded" if damage.side == "loaded" else "loaded"}
     return replace(damage, tooth=tooth, **side)

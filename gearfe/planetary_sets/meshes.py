@@ -84,7 +84,7 @@ class PlacedContacts(NamedTuple):
 
 
 class Meshes:
-    """All meshes of a case at the positions of a `Standing`; equal planets share their solutions.
+    """All meshes of a case at the positions of a `Standing`. Equal planets share their solutions.
 
     The bodies have their cracks and missing teeth if the pair is `alone`. In the set, `gearfe.planetary_sets.cracked` adds these
     to bodies without.
@@ -168,7 +168,10 @@ def near_load(line_load: float, unit: float) -> float:
 
 
 def _contacts(contact: Any, i: int, line_load: float, reach: float) -> MeshContacts:
-    """`MeshContacts` at phase i, chosen as `PairContact.solve` does; `reach` is the least approach [mm] they are chosen for."""
+    """`MeshContacts` at phase i, chosen as `PairContact.solve` does.
+
+    `reach` is the least approach [mm] they are chosen for.
+    """
     candidates, tilt = contact.found, bounded(contact, line_load)
     least = candidates.gap.min(axis=1)
     reaches = np.maximum(contact._reach(line_load), reach)

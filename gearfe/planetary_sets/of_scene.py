@@ -69,7 +69,7 @@ def _support(row: dict[str, Any]) -> "str | RimBed | RimSupports":
 
 
 def _flanks(scene: Scene, outer: ScenePair, inner: ScenePair) -> dict[str, Any]:
-    """Flanks by gear; a planet has the same on both sides of its teeth."""
+    """Flanks by gear. A planet has the same on both sides of its teeth."""
     planet = outer.flanks.get("wheel"), inner.flanks.get("pinion")
     if planet[0] != planet[1]:
         raise ValueError(
@@ -109,7 +109,7 @@ def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, i
 
 
 def _gear_name(body, gear, case, given):
-    """Name of a gear of the set; the planet without a body is the first."""
+    """Name of a gear of the set. The planet without a body is the first."""
     known = [planet_name(i) for i in range(len(given.errors))] if gear == "planet" else [gear]
     if body is not None and body not in known:
         raise ValueError(f"case {case!r} damages body {body!r}, but the {gear} of the set is {', '.join(known)}")

@@ -37,7 +37,7 @@ class Pads:
 
 
 def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray[np.complex128]) -> Pads:
-    """Return the `Pads` of a ring; the face `width` [mm] shares their stiffness. `Pads` describes `moved`."""
+    """Return the `Pads` of a ring. The face `width` [mm] shares their stiffness. `Pads` describes `moved`."""
     gear, z, nodes = whole.gear, whole.gear.z, whole.angle.size
     step = 4 * math.pi / (z * nodes)  # angle of an edge of the rim
     terms = 1 if support.pushes else TERMS

@@ -56,7 +56,7 @@ class Rim(NamedTuple):
 
 
 def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: float) -> Rim:
-    """Return the `Rim` of a ring by its support; the face `width` [mm] shares the stiffness of pads.
+    """Return the `Rim` of a ring by its support. The face `width` [mm] shares the stiffness of pads.
 
     ValueError for the reasons of `check_support`, or if the ring could move without force.
     """
@@ -95,7 +95,7 @@ def _springs(bed):
 
 
 def ring_faces(rim: Rim, support: "str | RimBed | RimSupports", teeth: tuple[CrackedTooth, ...]) -> CrackOpenings:
-    """`CrackOpenings` of a ring's cracks on its support; lugs are left to the contact problem."""
+    """`CrackOpenings` of a ring's cracks on its support. Lugs are left to the contact problem."""
     whole = rim.whole
     held = faces_of(whole, teeth, whole.held_inverse())
     if isinstance(support, RimBed):
@@ -123,7 +123,9 @@ def _moves(gear):
 
 
 def rim_moved(rim: Rim, loads: Floats, tractions: NDArray, whole: NDArray) -> Floats:
-    """Displacement ``(nodes, 2)`` of the rim's nodes, outwards and clockwise [mm]; their angles are those of `rim_angles`.
+    """Displacement ``(nodes, 2)`` of the rim's nodes, outwards and clockwise [mm].
+
+    Their angles are those of `rim_angles`.
 
     Of a ring on pads under `loads` ``(z, PLACES)`` on the teeth and `tractions` ``(p,)`` of the pads [N/mm], moved as a `whole`
     ``(3,)``: along x, y [mm], clockwise turn [rad].

@@ -36,7 +36,7 @@ def set_error(found: Any, coarse: Any, some: Any) -> dict[str, Any]:
 
 
 def _worst(apart):
-    """Largest plus mean difference ``(2, planets)`` over the positions; nan where there is none."""
+    """Largest plus mean difference ``(2, planets)`` over the positions, or nan where there is none."""
     counts = np.isfinite(apart)
     values, number = np.where(counts, apart, 0.0), counts.sum(axis=1)
     return np.where(number > 0, values.max(axis=1) + values.sum(axis=1) / np.maximum(number, 1), np.nan)

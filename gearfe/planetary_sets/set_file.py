@@ -1,4 +1,4 @@
-"""Contents of a file with the curves of a planetary set; the formats are those of `gearfe.core.files`."""
+"""Contents of a file with the curves of a planetary set. The formats are those of `gearfe.core.files`."""
 
 from typing import Any
 

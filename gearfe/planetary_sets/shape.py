@@ -42,7 +42,7 @@ class Shape(NamedTuple):
 def plot_planetary_set(
     curves: SetCurves, at: int = 0, path: str | os.PathLike[str] | None = None, *, magnified: float | None = None, dpi: int = 150
 ) -> "Figure":
-    """Draw one position of a loaded set, all gears deformed and coloured by von Mises stress; save to `path` if given.
+    """Draw one position of a loaded set, all gears deformed and coloured by von Mises stress. Save to `path` if given.
 
     Each gear is solved separately by finite elements under the loads of the set's meshes. Rigid rotations and shifts of sun and
     planets are not drawn. Each load acts on three nodes: near it the stress is not meaningful. Faces of cracks are free.

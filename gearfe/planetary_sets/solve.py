@@ -120,7 +120,7 @@ def _check_small(case, found):
 
 
 def _curves(case, at, coupled, options):
-    """`SetCurves` without an estimate; `options` are those of `gearfe.flexibility.energy.ritz.plane.flexibility`."""
+    """`SetCurves` without an estimate. `options` are those of `gearfe.flexibility.energy.ritz.plane.flexibility`."""
     started = time.perf_counter()
     stand = standing(case.gears, np.array(case.planet_angles), at)
     bodies = bodies_of(case if coupled else case.with_(ring="held"), refine=options["refine"], cache=options["cache"])

@@ -34,7 +34,7 @@ def blank(x=None, y=None, **layout):
 
 
 def part_of_page(figure, name):
-    """Return a figure as an element of a page, with this name; the page itself contains plotly."""
+    """Return a figure as an element of a page, with this name. The page itself contains plotly."""
     return figure.to_html(include_plotlyjs=False, full_html=False, config=CONFIG, div_id=name)
 
 

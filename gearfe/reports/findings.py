@@ -45,12 +45,12 @@ class Findings:
 
     @property
     def hurt_pair(self):
-        """Name of the first pair that the case damages; without one the first pair."""
+        """Name of the first pair that the case damages, or of the first pair if there is none."""
         return next((name for name, pair in self.scene.pairs.items() if self.case in pair.damage), next(iter(self.scene.pairs)))
 
 
 def find(scene, case=None, *, duration=0.2, phases=64):
-    """Compute all `Findings` that a report shows; arguments are those of `gearfe.report`."""
+    """Compute all `Findings` that a report shows. Arguments are those of `gearfe.report`."""
     if duration != 0:
         check_run(duration)
     scene = load_scene(scene) if not hasattr(scene, "pairs") else scene

@@ -83,7 +83,7 @@ def report(
 
 
 def _numbered():
-    """Return a function that makes a figure an element of a page; the elements are numbered."""
+    """Return a function that makes a figure an element of a page. The elements are numbered."""
     numbers = itertools.count(1)
     return lambda figure: part_of_page(figure, f"figure-{next(numbers)}")
 

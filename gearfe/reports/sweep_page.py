@@ -94,7 +94,7 @@ def _effects(runs, output):
 
 
 def _bands(runs, curve):
-    """Return the median and the 5 to 95 % band of the curves; empty if they have no common places."""
+    """Return the median and the 5 to 95 % band of the curves. The result is empty if they have no common places."""
     if curve is None:
         return ""
     try:

@@ -1,4 +1,4 @@
-"""A page of one file from its template, with style and plotly in it; pictures as its data."""
+"""HTML page in one file from its template. The file contains style, plotly and pictures."""
 
 import base64
 import os
@@ -11,7 +11,7 @@ from ..core.files import check_output, written
 
 
 def page_maker(path: str | os.PathLike[str], name: str) -> Any:
-    """Check that a page can be written; give a function that fills the template `name` with values and writes it.
+    """Check that a page can be written. Give a function that fills the template `name` with values and writes it.
 
     ValueError if the page could not be written.
     """

@@ -1,4 +1,4 @@
-"""Many cases over several processes, each timed; a case that fails has its error in place of its result."""
+"""Many cases over several processes, each timed. A failed case has its error in place of its result."""
 
 import multiprocessing
 import pickle
@@ -92,7 +92,10 @@ def batch(
 
 
 def _of_script(work, cases):
-    """Return True if workers need definitions of the caller's script; ValueError if the work cannot be sent to them."""
+    """Return True if workers need definitions of the caller's script.
+
+    Raises ValueError if the work cannot be sent to them.
+    """
     try:
         return any(b"__main__" in pickle.dumps((work, case)) for case in cases)
     except (AttributeError, TypeError, pickle.PicklingError) as error:

@@ -58,7 +58,7 @@ def count_of(workers: int | None, jobs: Sequence[Any]) -> int:
 def results(
     work: Callable[[Any], Any], jobs: Sequence[Any], workers: int | None, *, scheduler: str | None = None, own: bool = False
 ) -> Iterator[tuple[Any, Any]]:
-    """Each job with what `work` gives of it, in the order in which they end; None for a job that is lost.
+    """Each job with what `work` gives of it, in the order in which they end, or None for a job that is lost.
 
     Lost is a job that ends its process also when it is computed alone, or with which workers of a scheduler were lost as often as
     its ``allowed-failures`` says (default 3). ValueError if there is no scheduler at the address, or it has no workers;

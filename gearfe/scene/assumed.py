@@ -1,4 +1,4 @@
-"""Assumptions of a scene that still hold after a user has changed its numbers; each belongs to values.
+"""Assumptions of a scene that still hold after a user has changed its numbers. Each belongs to values.
 
 An ``[[assumption]]`` may list the values it speaks of, and ``[given]`` those that the scene's source prints, both by dotted key::
 

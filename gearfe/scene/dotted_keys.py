@@ -28,7 +28,7 @@ def check_key(dotted: str, tables: Tables, options: Mapping[str, Any]) -> None:
 
 
 def find_key(dotted: str, tables: Tables) -> Key:
-    """Return the `Key` of a dotted key; ValueError if it is no single value of a scene's `tables`."""
+    """Return the `Key` of a dotted key. Raises ValueError if it is no single value of a scene's `tables`."""
     schema, parts = scene_schema(), dotted.split(".")
     table, home, inner = schema["scene"], cast(Any, tables), cast(Any, None)
     kinds = [name for name, key in table.keys.items() if key.of and name not in PRINTED and (tables.get(name) or "set" in tables)]
@@ -54,7 +54,7 @@ def find_key(dotted: str, tables: Tables) -> Key:
 
 
 def set_values(tables: Tables, values: Mapping[str, Any]) -> Tables:
-    """Copy of a scene's `tables` with `values` by key; keys of other things (`OUTSIDE`, options) are left aside.
+    """Copy of a scene's `tables` with `values` by key. Keys of other things (`OUTSIDE`, options) are left aside.
 
     A whole number such as 21.0 of a key of whole numbers becomes an integer.
     """

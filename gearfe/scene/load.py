@@ -59,7 +59,7 @@ class ScenePair:
         return {case: {side: _of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
 
     def case(self, name: str | None = None) -> Case:
-        """Return the pair as a `Case` with a case of damage; None: healthy. ValueError if the pair has no such case."""
+        """Return the pair as a `Case` with a case of damage, or healthy if None. Raises ValueError for an unknown case."""
         if name is not None and name not in self.damage:
             raise ValueError(f"no case {name!r} of this pair; it has {', '.join(self.damage) or 'none'}")
         given = {own: getattr(self, own) or None for own in ("flanks", "misalignment", "supports", "face")}
@@ -123,7 +123,7 @@ class Scene:
         return f"<p>{escape(self.title)}</p>{Table(columns, rows).html()}"
 
     def pair(self, name: str | None = None) -> ScenePair:
-        """Return the pair called `name`; the first one if None. ValueError if there is no such pair."""
+        """Return the pair called `name`, or the first one if None. Raises ValueError if there is no such pair."""
         if name is None:
             return next(iter(self.pairs.values()))
         if name not in self.pairs:
@@ -205,7 +205,7 @@ def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
 
 
 def scene_of(file: str, data: dict[str, Any]) -> Scene:
-    """Scene of the tables that a file of that name holds; the messages of its errors begin with the name."""
+    """Scene of the tables that a file of that name holds. The messages of its errors begin with the name."""
     reading = Reading(file, scene_schema())
     rows = reading.row("scene", "top level", data)
     reading.check_references(rows)
@@ -237,7 +237,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
 
 
 def _gear(x_E: float | None = None, **given: Any) -> Gear:
-    """Gear of a row; a generating profile shift gives its allowance."""
+    """Gear of a row. A generating profile shift gives its allowance."""
     gear = Gear(**given)
     if x_E is None:
         return gear
@@ -258,7 +258,7 @@ def _with_backlash(pair: GearPair, wanted: float) -> GearPair:
 
 
 def _pair(file, name, rows, gears, materials, forces):
-    """Return the `ScenePair` of the checked tables of a scene; `forces` are those of the pairs of a gearbox [N]."""
+    """Return the `ScenePair` of the checked tables of a scene. `forces` are those of the pairs of a gearbox [N]."""
     row = rows["pair"][name]
     names = row["gear_1"], row["gear_2"]
     torque = row["torque_Nm"]

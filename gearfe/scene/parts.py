@@ -143,7 +143,7 @@ def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[st
 
 
 def misalignment_of(pair: GearPair, row: Row) -> Misalignment | None:
-    """Misalignment of a pair, from its row; None if it has none."""
+    """Misalignment of a pair, from its row, or None if it has none."""
     amounts = ("F_beta_x_um", "f_sigma_beta_um", "f_sigma_delta_um")
     if not any(row[amount] for amount in amounts):
         return None

@@ -15,14 +15,17 @@ PLAIN = {"boolean": bool, "values": dict}  # types of keys that are neither numb
 
 @dataclass(slots=True)
 class Reading:
-    """The reading of one file by the `tables` of a schema; `references` (place, type, key, name) are keys that name a table."""
+    """The reading of one file by the `tables` of a schema.
+
+    `references` (place, type, key, name) are keys that name a table.
+    """
 
     file: str
     tables: Mapping[str, KeyTable]
     references: list[tuple[str, str, str, str]] = field(default_factory=list)
 
     def row(self, name: str, where: str, given: Any) -> dict[str, Any]:
-        """Values of the table ``[where]``, that is `given`, with defaults filled in; nested tables too.
+        """Values of the `given` table ``[where]`` and its nested tables, with defaults filled in.
 
         Parameters
         ----------
@@ -107,7 +110,7 @@ def fits(value: Any, kind: str, count: int | None = None) -> bool:
 
 
 def _wrong(key, value):
-    """Return the message on a value that the schema does not permit; empty if it is permitted."""
+    """Return the message on a value that the schema does not permit. The result is empty if it is permitted."""
     if not fits(value, key.type, key.count):
         return f": expected {key.expected}{_limit(value)}"
     if key.distinct and not 0 < len(set(value)) == len(value):

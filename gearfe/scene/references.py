@@ -60,7 +60,10 @@ class Reference:
 
 
 def read_references(file, tables):
-    """Return the references of the checked [[reference]] tables of a scene file; ValueErrors state file, table and key."""
+    """Return the references of the checked [[reference]] tables of a scene file.
+
+    ValueErrors state file, table and key.
+    """
     out = tuple(_reference(file, f"reference {i + 1}, {row['id']}", row) for i, row in enumerate(tables))
     names = [reference.id for reference in out]
     twice = sorted({name for name in names if names.count(name) > 1})

@@ -40,7 +40,7 @@ QUANTITY = r" = (?:[\[(][^\])]*[\])]|[-+\w.]+)(?: (?:N mm/rad|N/mm(?:\^3)?|rad/N
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """One key of a table; `keys.toml` describes its attributes."""
+    """One key of a table. `keys.toml` describes its attributes."""
 
     name: str
     text: str
@@ -65,7 +65,7 @@ class Key:
 
     @property
     def unit(self) -> str:
-        """Unit at the end of its name, such as ``N/um``; empty if there is none."""
+        """Unit at the end of its name, such as ``N/um``. The result is empty if there is none."""
         found = UNIT.search(self.name)
         return found[1].replace("_per_", "/") if found and not self.of else ""
 
@@ -92,7 +92,7 @@ class Key:
 
     @property
     def permitted(self) -> str:
-        """Permitted range or choices in words, after "must"; empty if everything is permitted."""
+        """Permitted range or choices in words, after "must". The result is empty if everything is permitted."""
         unit = f" {SPELLED.get(self.unit, self.unit)}" if self.unit else ""
         if self.choices:
             return f"be one of {', '.join(self.choices)}"
@@ -113,7 +113,7 @@ class Key:
         return all(compare(one, bound) for bound, compare in rules if bound is not None for one in numbers)
 
     def in_python(self, value: Any) -> Any:
-        """Return the value in the units of the library; a list as a tuple."""
+        """Return the value in the units of the library. A list becomes a tuple."""
         convert = IN_PYTHON.get(self.unit, lambda one: one)
         return tuple(map(convert, value)) if isinstance(value, (list, tuple)) else convert(value)
 
@@ -163,7 +163,7 @@ def schema_of(package: str, file: str = "keys.toml") -> dict[str, KeyTable]:
 
 
 def scene_schema() -> dict[str, KeyTable]:
-    """Tables by name of the schema of scenes; ``"scene"`` is the top level of a file."""
+    """Tables by name of the schema of scenes. ``"scene"`` is the top level of a file."""
     return schema_of("gearfe.scene")
 
 

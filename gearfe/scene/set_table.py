@@ -31,7 +31,7 @@ class SceneSet:
 
 
 def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet | None:
-    """`SceneSet` of the checked `rows` of a scene, None if it has no set; `pairs` are the scene's.
+    """`SceneSet` of the checked `rows` of a scene, None if it has no set. `pairs` are the scene's.
 
     ValueError, with the place, if the set is impossible, or there is a table of a set but no ``[set]``.
     """

@@ -12,7 +12,7 @@ COLUMNS = ("pair", "case", "print", "phase", "k [N/m]", "own tooth [N/m]", "esti
 
 
 def fingerprint(case):
-    """Eight letters that change with any number of a `Case`; fields left at their default do not count."""
+    """Eight letters that change with any number of a `Case`. Fields left at their default do not count."""
     run = case.as_dict()
     text = ";".join(f"{name}={_plain(run[name])}" for name in sorted(run))
     return hashlib.sha256(text.encode()).hexdigest()[:8]
@@ -31,7 +31,7 @@ def _plain(value):
 
 
 def stored_file(scene):
-    """Return the file of the stored curves of a built-in scene; it may not exist."""
+    """Return the file of the stored curves of a built-in scene. It may not exist."""
     return resources.files("gearfe.scene.scenes") / f"{scene.name}_fe3d.csv"
 
 

@@ -20,7 +20,7 @@ FORMER = {  # former keys
 
 
 def read_toml(file: Any) -> dict[str, Any]:
-    """Tables of a file (a path, or a resource of the package); ValueError that names it if it is not TOML."""
+    """Tables of a file (a path, or a resource of the package). Raises ValueError that names it if it is not TOML."""
     try:
         return _renamed(file.name, tomllib.loads(file.read_text(encoding="utf-8-sig")))
     except (OSError, ValueError, RecursionError) as error:  # ValueError: no UTF-8, no TOML, integers of more than 4300 digits
@@ -28,7 +28,7 @@ def read_toml(file: Any) -> dict[str, Any]:
 
 
 def given_tables(given: StrPath | Mapping[str, Any], what: str) -> tuple[str, Path, dict[str, Any]]:
-    """Name of a file, its folder and its tables; of a dictionary `what` it is, the present folder, and plain values.
+    """Name of a file, its folder and its tables. Of a dictionary `what` it is, the present folder, and plain values.
 
     ValueError if there is no such file, or it is not TOML.
     """

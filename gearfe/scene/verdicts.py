@@ -192,7 +192,7 @@ def marked(verdict):
 
 
 def notes_of(references, rows):
-    """Return source, tolerance and reasons of each reference by its id; references may share a text."""
+    """Return source, tolerance and reasons of each reference by its id. References may share a text."""
     codes, usual = reason_codes(references, rows), usual_tolerance(references, rows)
     return {one.id: _told(one, [row for row in rows if row.id == one.id], codes, usual) for one in references}
 
@@ -205,7 +205,10 @@ def number_of(references, rows):
 
 
 def usual_tolerance(references, rows):
-    """Return the tolerance that most references have, as a sentence; empty if fewer than three share one."""
+    """Return the tolerance that most references have, as a sentence.
+
+    The result is empty if fewer than three share one.
+    """
     known = Counter(_stated(one, [row for row in rows if row.id == one.id]) for one in references)
     del known[""]
     return next((size for size, count in known.most_common(1) if count > 2), "")

@@ -38,7 +38,7 @@ def array_file(path: StrPath) -> Found:
 
 
 def hdf_file(path: StrPath) -> Found:
-    """Channels of an HDF5 file, MATLAB's version 7.3 among them; attributes ``unit`` and ``rate`` are read."""
+    """Channels of an HDF5 file, MATLAB's version 7.3 among them. Attributes ``unit`` and ``rate`` are read."""
     with needing("h5py"):
         import h5py
     recording = Found({})

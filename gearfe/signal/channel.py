@@ -30,7 +30,7 @@ def signal_of(
     shaft_frequency: float | None = None,
     scale: float = 1.0,
 ) -> Signal:
-    """Return a channel with its rate, unit and angle; arguments and errors are those of `gearfe.read_signal`."""
+    """Return a channel with its rate, unit and angle. Arguments and errors are those of `gearfe.read_signal`."""
     if not (is_number(scale) and math.isfinite(scale) and scale):
         raise ValueError(f"scale = {scale!r}, but give a finite factor other than 0")
     time, angle = _axis(path, found, name, TIMES, TIME, rate), _axis(path, found, name, ANGLES, TURN)
@@ -62,7 +62,7 @@ def _unit(path, found, name, given, scale):
 
 
 def _axis(path, found, channel, names, factors, rate=None):
-    """Return time [s] or angle [rad] of a channel: that of its group, else of the whole file; None if there is none.
+    """Return time [s] or angle [rad] of a channel: that of its group, else of the whole file, or None if there is none.
 
     Times without a unit have the one that fits the `rate`.
     """

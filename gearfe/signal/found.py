@@ -30,7 +30,10 @@ class Found:
     parts: bool = False  # True if the values are parts of an unknown full scale (WAV files)
 
     def add(self, name: str, values: NDArray[Any], unit: Any = "", step: Any = 0, start: Any = 0.0) -> None:
-        """Add a channel; its name gets a number if it is already used. A `step` [s] above 0 states rate and `start` [s]."""
+        """Add a channel.
+
+        Its name gets a number if it is already used. A `step` [s] above 0 states rate and `start` [s].
+        """
         same = [other for other in self.vectors if other == name or other.startswith(f"{name} (")]
         name = f"{name} ({len(same) + 1})" if same else name
         self.vectors[name], self.units[name] = values, str(unit).strip()

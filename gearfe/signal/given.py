@@ -60,7 +60,7 @@ def window_values(window: Any, n: int) -> Floats:
 
 
 def oscillation(values: Floats, told: str) -> Floats:
-    """Values without their mean; ValueError, with what is `told`, if they are constant."""
+    """Values without their mean. Raises ValueError, with the text `told`, if they are constant."""
     x = values - values.mean()
     if not np.abs(x).max() > 1e-12 * np.abs(values).max():
         raise ValueError(told)
@@ -68,14 +68,14 @@ def oscillation(values: Floats, told: str) -> Floats:
 
 
 def hertz(name: str, value: Any) -> float:
-    """Return a frequency [Hz] as a float; ValueError unless it is a number within `HERTZ`."""
+    """Return a frequency [Hz] as a float. Raises ValueError unless it is a number within `HERTZ`."""
     if not (is_number(value) and HERTZ[0] <= value <= HERTZ[1]):
         raise ValueError(f"{name} = {value!r}, but give a positive number of Hz")
     return float(value)
 
 
 def band_of(band: Any, rate: float, name: str) -> tuple[float, float]:
-    """Return the ends (low, high) [Hz] of a band within half the rate; of all of it if None.
+    """Return the ends (low, high) [Hz] of a band within half the sampling rate. None means the whole range.
 
     ValueError if `band` is not two numbers with ``0 <= low < high <= rate / 2``.
     """

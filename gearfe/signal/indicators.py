@@ -128,7 +128,7 @@ def _around(found, mesh_frequency, fault_frequency):
 
 
 def both_given(mesh_frequency, fault_frequency):
-    """Whether both frequencies are given, positive numbers of Hz; ValueError for one alone."""
+    """Whether both frequencies are given, positive numbers of Hz. Raises ValueError for one alone."""
     if (mesh_frequency is None) != (fault_frequency is None):
         raise ValueError(f"mesh_frequency = {mesh_frequency}, fault_frequency = {fault_frequency}: give both, or neither")
     for name, value in {"mesh_frequency": mesh_frequency, "fault_frequency": fault_frequency}.items():

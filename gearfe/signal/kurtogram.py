@@ -129,7 +129,7 @@ def _split(x, parts):
 
 
 def _split_antoni(x, parts):
-    """Split by the filters of Antoni's program; the high-pass filter has a tap less."""
+    """Split by the filters of Antoni's program. The high-pass filter has a tap less."""
     taps, cut = {2: (17, 0.4), 3: (25, 0.8 / 3)}[parts]
     k = np.arange(taps)
     low_pass = firwin(taps, cut)

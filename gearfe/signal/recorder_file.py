@@ -1,4 +1,4 @@
-"""Channels of files that recorders write: WAV, universal file 58 (UFF), TDMS, Parquet; each read by its own library."""
+"""Channels of files that recorders write: WAV, universal file 58 (UFF), TDMS, Parquet. Each is read by its own library."""
 
 import logging
 import os
@@ -151,13 +151,13 @@ def labview_file(path: StrPath, lines: list[str]) -> Found:
 
 
 def _entry(segment, key, column):
-    """Entry of a column in a line of the header; an empty text if it is too short."""
+    """Entry of a column in a line of the header. It is empty if the line is too short."""
     values = segment.get(key, [])
     return values[column] if column < len(values) else ""
 
 
 def parquet_file(path: StrPath) -> Found:
-    """Columns of a Parquet file; units in the names, ``a [m/s^2]``, or as ``unit`` in the metadata of a field."""
+    """Columns of a Parquet file. Units are in the names, ``a [m/s^2]``, or as ``unit`` in the metadata of a field."""
     with needing("pyarrow"):
         import pyarrow as pa
         import pyarrow.parquet as pq

@@ -94,13 +94,16 @@ class Signal:
         return self[start:stop]
 
     def __getitem__(self, inside: slice) -> "Signal":
-        """Return a slice of whole samples, ``signal[1000:5000]``, with its angles; TypeError for anything else."""
+        """Return a slice of whole samples, ``signal[1000:5000]``, with its angles.
+
+        Raises TypeError for anything else.
+        """
         if not isinstance(inside, slice) or inside.step not in (None, 1):
             raise TypeError(f"signal[{inside}]: give a slice of samples without a step, signal[start:stop]")
         return replace(self, values=self.values[inside], angle=None if self.angle is None else self.angle[inside])
 
     def between(self, start: float = 0.0, stop: float = math.inf) -> "Signal":
-        """Return the samples from `start` to before `stop` [s]; ValueError if the record has none there."""
+        """Return the samples from `start` to before `stop` [s]. Raises ValueError if the record has none there."""
         first, last = (math.ceil(min(max(at, 0.0), self.duration) * self.rate - 1e-6) for at in (start, stop))
         if not 0 <= start < stop or last - first < 2:
             raise ValueError(f"start = {start:g} s, stop = {stop:g} s, but {self.name} has 0 to {self.duration:g} s")

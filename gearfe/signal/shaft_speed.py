@@ -94,7 +94,10 @@ def with_estimated_speed(
 
 
 def _path(signal, order, speeds, count, size):
-    """Middles of windows and the speed in each, by the path whose lines hold most; ValueError if noise would give as much."""
+    """Middles of windows and the speed in each, by the path whose lines hold most.
+
+    Raises ValueError if noise would give as much.
+    """
     x = signal.values - signal.values.mean()
     frequency, time, lines = stft(x, signal.rate, nperseg=size, noverlap=size // 2, nfft=2 * size, boundary=None, padded=False)
     bin_ = signal.rate / size

@@ -33,7 +33,7 @@ def read_signal(
     header: str | None = None,
     scale: float = 1.0,
 ) -> Signal:
-    """Read one channel of a file of measured signals; `read_signals` reads several.
+    """Read one channel of a file of measured signals. `read_signals` reads several.
 
     The rate is ``rate`` (or ``fs``, ``sampling_rate``, ``sample_rate``, ``sampling_frequency``) [Hz] in the file, or follows from
     ``time`` (or ``t``), or is an argument. If it is given twice, the values must agree. The unit is in the file or an argument.
@@ -97,7 +97,7 @@ def read_signals(
     level: float | None = None,
     **stated: Any,
 ) -> dict[str, Signal]:
-    """Read channels of a file, by name; see `read_signal` for the formats.
+    """Read channels of a file, by name. See `read_signal` for the formats.
 
     Channels that begin or end at different times, as TDMS and universal files may state, are cut to the time that they share,
     to the nearest sample.

@@ -83,7 +83,7 @@ def _times(n, name):
 def find_lines(
     found: Spectrum, lines: Mapping[str, float], tolerance: float | None = None, *, between: bool = False
 ) -> dict[str, tuple[float, float]]:
-    """Find the largest bin near each expected line; bins nearer to another one (a bin or more away) do not count.
+    """Find the largest bin near each expected line. Bins nearer to another one (a bin or more away) do not count.
 
     Parameters
     ----------

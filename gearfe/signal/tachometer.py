@@ -69,7 +69,7 @@ def tachometer_angle(
 
 
 def shaft_ratio(ratio: object) -> float:
-    """Ratio of two shafts' speeds as a float; ValueError if it is not positive and finite."""
+    """Ratio of two shafts' speeds as a float. Raises ValueError if it is not positive and finite."""
     if not (is_number(ratio) and 0 < ratio < math.inf):
         raise ValueError(f"ratio = {ratio!r}, but give the speed of the gear's shaft over that of the tachometer's, above 0")
     return float(ratio)

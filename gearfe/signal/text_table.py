@@ -56,7 +56,7 @@ class Way(NamedTuple):
         return cells + [""] * min((count or 0) - len(cells), empty)
 
     def number(self, cell: str) -> float | None:
-        """Return the number of a cell; None if it is none."""
+        """Return the number of a cell, or None if it is none."""
         if self.group and GROUPS[self.mark][self.group].fullmatch(cell):
             cell = re.sub(self.group, "", cell)
         elif self.mark == "," and "." in cell:
@@ -199,7 +199,7 @@ def _by_cell(path, rows, way, count):
 
 
 def _clocks(path, found, first):
-    """Turn a column of clock times into the time, and drop dates; `first` are the cells of the first row."""
+    """Turn a column of clock times into the time, and drop dates. `first` are the cells of the first row."""
     for name, cell in zip(list(found.vectors), first, strict=True):
         if DATE.fullmatch(cell):
             found.other.append(f"{name!r} (dates)")

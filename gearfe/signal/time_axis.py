@@ -1,4 +1,4 @@
-"""Sampling rate of a column of times: equal steps, also if printed with few digits; gaps differ from rounding."""
+"""Sampling rate of a column of times: equal steps, also if printed with few digits. Gaps differ from rounding."""
 
 import warnings
 from typing import Any
@@ -52,7 +52,7 @@ def step_of(path: Any, time: Floats, rate: float | None = None) -> float:
 
 
 def _gap(time):
-    """Advice on a gap in times that rise evenly elsewhere; empty if there is none."""
+    """Advice on a gap in times that rise evenly elsewhere. The result is empty if there is none."""
     steps = np.diff(time)
     usual = float(np.median(steps))
     leaps = np.flatnonzero(steps > 1.5 * usual)

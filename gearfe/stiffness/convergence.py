@@ -63,7 +63,10 @@ class Convergence:
         return Table(columns, [[self.method, *row] for row in rows], f"Convergence of {self.method}")
 
     def plot(self, path: str | os.PathLike[str] | None = None) -> Any:
-        """Draw largest estimate and largest difference over the resolution, a line for each order; save to `path` if given."""
+        """Draw largest estimate and largest difference over the resolution, a line for each order.
+
+        Save to `path` if given.
+        """
         estimate, away = 100 * (self.error / self.k).max(axis=1), 100 * (self.difference / self.k[-1]).max(axis=1)
         return plot_convergence(self.method, np.array(self.refine), self.order, estimate, away, path)
 

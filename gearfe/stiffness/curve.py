@@ -174,7 +174,7 @@ class StiffnessCurve:
 
     @property
     def share(self) -> Floats:
-        """Load sharing ratio of each pair ``(n, pairs)``; rows sum to 1."""
+        """Load sharing ratio of each pair ``(n, pairs)``. Rows sum to 1."""
         return self.force / self.force.sum(axis=1, keepdims=True)
 
     def zones(self) -> dict[str, float]:
@@ -186,7 +186,10 @@ class StiffnessCurve:
         return out | {"mean": float(self.k.mean()), "max": float(self.k.max())}
 
     def zone_errors(self) -> dict[str, float]:
-        """Relative error estimates of `zones`, of a mean that of the mean; empty if none was asked for."""
+        """Relative error estimates of `zones`, of a mean that of the mean.
+
+        The result is empty if none was asked for.
+        """
         if self.error is None:
             return {}
         means = {"mean": slice(None), **self._rows()}
@@ -203,20 +206,23 @@ class StiffnessCurve:
         return {name: rows for name, rows in zones.items() if rows.any()}
 
     def save(self, path: StrPath) -> None:
-        """Write to `path`; its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
+        """Write to `path`. Its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
         save(path, "curve", content(self))
 
     def to_csv(self, path: StrPath) -> None:
-        """Write a CSV table with a header of units and meta data; `from_csv` reads it back exactly if the phases rise."""
+        """Write a CSV table with a header of units and meta data.
+
+        `from_csv` reads it back exactly if the phases rise.
+        """
         save_as(".csv", path, content(self))
 
     @classmethod
     def from_csv(cls, path: StrPath) -> "StiffnessCurve":
-        """Read a table of `to_csv`; ValueError if the file is not such a table, or its phases do not rise."""
+        """Read a table of `to_csv`. Raises ValueError if the file is not such a table, or its phases do not rise."""
         return cls(**read_fields(path))
 
     def plot(self, path: StrPath | None = None, title: str | None = None) -> "Figure":
-        """Draw the curve under a `title` (default: teeth, damage and load); save to `path` if given.
+        """Draw the curve under a `title` (default: teeth, damage and load). Save to `path` if given.
 
         The figure's ``axes`` are two: the stiffness, and below it the load shares. A notebook shows it.
         """

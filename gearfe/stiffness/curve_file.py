@@ -1,4 +1,4 @@
-"""Contents of a file with a stiffness curve, and its reader; the formats are those of `gearfe.core.files`."""
+"""Contents of a file with a stiffness curve, and its reader. The formats are those of `gearfe.core.files`."""
 
 import json
 
@@ -28,7 +28,7 @@ def content(curve):
 
 
 def read_fields(path):
-    """Fields of the `StiffnessCurve` in a CSV table, by name; see `StiffnessCurve.from_csv`."""
+    """Fields of the `StiffnessCurve` in a CSV table, by name. See `StiffnessCurve.from_csv`."""
     lines = read_text(path)
     if len(lines) < 4 or lines[0] != FIRST_LINE or not lines[1].startswith("# meta: "):
         raise ValueError(f"{path} is not a curve written by gearfe: its first line must be {FIRST_LINE!r}")

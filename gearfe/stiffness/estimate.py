@@ -74,7 +74,7 @@ def estimate(phase, periodic, k, coarse, finer, *, energy):
 
 
 def other_solves(refine, order=None):
-    """Options of the coarser solve and of that with finer hats; the energy model has an `order`."""
+    """Options of the coarser solve and of that with finer hats. The energy model has an `order`."""
     coarse = (
         {"refine": COARSER["fe"] * refine} if order is None else {"refine": COARSER["ritz"] * refine, "order": max(order - 1, 2)}
     )

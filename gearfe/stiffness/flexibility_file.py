@@ -23,7 +23,10 @@ def _digest(key, content):
 
 
 def write_flexibility(path: Path, key: str, found: Any) -> None:
-    """Write a flexibility with the key it belongs to; the file is in place when it is complete, or not at all (ValueError)."""
+    """Write a flexibility with the key it belongs to.
+
+    The file is in place when it is complete, or not at all (ValueError).
+    """
     arrays: list[Any] = []
     about = json.dumps(described(found, arrays)).encode()
     out = io.BytesIO()
@@ -33,7 +36,7 @@ def write_flexibility(path: Path, key: str, found: Any) -> None:
 
 
 def read_flexibility(path: Path, key: str, gear: Gear) -> Any:
-    """Flexibility of `gear` in a file; None if the file is not there, damaged, or made for another key."""
+    """Flexibility of `gear` in a file, or None if the file is not there, damaged, or made for another key."""
     try:
         content = path.read_bytes() if path.is_file() else b""
     except OSError:

@@ -213,7 +213,7 @@ def _commonest(values):
 
 
 def _windows(case, side, n):
-    """`Window` of each group of teeth of a gear that differ; groups whose windows overlap are one."""
+    """`Window` of each group of teeth of a gear that differ. Groups whose windows overlap are one."""
     z, teeth = _gears(case)[side].z, differing(case, side)
     if not teeth:
         return []
@@ -285,7 +285,7 @@ def _solved(curve, case, how, n, samples, position):
 
 
 def _checked(curve):
-    """Return a curve; ValueError for what is none."""
+    """Return a curve. Raises ValueError for anything else."""
     if not hasattr(curve, "phase"):
         raise WrongTypeError(f"mesh cycle: curve = {shown(curve)}, but give a StiffnessCurve or a ForceLaw")
     return curve

@@ -187,7 +187,7 @@ class OwnGear:
 
 @dataclass(frozen=True, slots=True)
 class OwnMatrix:
-    """User's object with ``matrix(roll, teeth)``, with the interface that contact needs; its values are checked."""
+    """User's object with ``matrix(roll, teeth)``, with the interface that the contact solver requires. Its values are checked."""
 
     made: Any
     gear: Gear
@@ -245,7 +245,10 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Flo
 
 
 def flexibility_of(own: OwnFlexibility, side: int, gear: Gear, material: Material, state: str, named: Callable) -> Any:
-    """Return the flexibility of one gear (side 0: pinion, 1: wheel); ``named(row, gear, material)`` is that of a method."""
+    """Return the flexibility of one gear (side 0: pinion, 1: wheel).
+
+    ``named(row, gear, material)`` is that of a method.
+    """
     model = own.gears[side]
     if isinstance(model, str):
         return named(METHODS[model], gear, material)

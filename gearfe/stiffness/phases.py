@@ -17,7 +17,7 @@ LONG = SPANS[2:]  # spans of many cycles
 
 
 def check_phases(phases: Any) -> int | Floats:
-    """Return a number of phases, or an array ``(n,)`` of finite ones; ValueError for others."""
+    """Return a number of phases, or an array ``(n,)`` of finite ones. Raises ValueError for others."""
     if np.ndim(phases) == 0:
         return check_count(phases)
     out = numbers("phases", phases, "")

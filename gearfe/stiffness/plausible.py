@@ -1,4 +1,4 @@
-"""Limits of linear elasticity for a stiffness curve; checked once at the end of `mesh_stiffness`.
+"""Limits of linear elasticity for a stiffness curve. They are checked once at the end of `mesh_stiffness`.
 
 The limits hold for every material, because they are strains. A force F on a tooth of width b bends it to about ``4 F / (b m)`` at
 the root, and the mesh approaches by ``F / (b c')`` with ``c' = E / 14`` or so: an approach of 1 % of the module comes with root
@@ -25,7 +25,7 @@ DENTED = 0.035  # limit of the largest pressure [contact modulus E*] for a warni
 
 
 def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Material, Material]) -> None:
-    """Reject NaN and non-positive stiffness; reject, or warn of, a curve beyond small strains.
+    """Reject NaN and non-positive stiffness. Large strains cause a warning or an error.
 
     ValueError if the gears approach by more than `REFUSE` modules, or k is not positive and finite. UserWarning if they approach
     by more than `WARN` modules at the median phase, or the pressure is larger than `DENTED` E* there.
@@ -56,6 +56,6 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
 
 
 def _pressure(curve):
-    """Largest pressure of the pairs [MPa], at the median phase; 0 without any."""
+    """Largest pressure of the pairs [MPa], at the median phase, or 0 without any."""
     known = np.where(np.isfinite(curve.pressure), curve.pressure, 0.0)
     return float(np.median(known.max(axis=1, initial=0.0))) / 1e6

@@ -1,4 +1,4 @@
-"""Metadata of a stiffness curve: gears, materials, options and versions; no computation depends on them."""
+"""Metadata of a stiffness curve: gears, materials, options and versions. No computation depends on them."""
 
 from dataclasses import asdict, replace
 from functools import lru_cache

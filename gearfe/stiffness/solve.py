@@ -339,7 +339,10 @@ def mesh_stiffness(
 def split_arguments(
     function: str, pair: GearPair | Case, force: Any, material: Materials, torque: Any, options: Mapping[str, Any]
 ) -> tuple[Case, Solve]:
-    """Return the `Case` and the `Solve` of the arguments of a function that takes both; TypeError for an unknown option."""
+    """Return the `Case` and the `Solve` of the arguments of a function that takes both.
+
+    Raises TypeError for an unknown option.
+    """
     unknown = sorted(set(options) - {*NAMES, *OPTIONS})
     if unknown:
         from difflib import get_close_matches

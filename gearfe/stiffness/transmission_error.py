@@ -89,7 +89,7 @@ class TransmissionError:
         return Table(tuple(shown), list(zip(*shown.values(), strict=True)))
 
     def plot(self, path: str | Path | None = None, title: str | None = None) -> Any:
-        """Draw it over phase, and peak-to-peak over load; save to `path` if given. Returns the matplotlib figure."""
+        """Draw the error over the phase and its peak-to-peak value over the load. Save to `path` if given. Returns the figure."""
         return plot_transmission_error(self, path, title)
 
 

@@ -1,4 +1,4 @@
-"""Curves over many mesh cycles, one revolution or the hunting period; equal cycles are solved once."""
+"""Curves over many mesh cycles, one revolution or the hunting period. Equal cycles are solved once."""
 
 import math
 from dataclasses import replace
@@ -48,7 +48,7 @@ def over_turns(solve, phase, pair, span, differs):
 
 
 def _later(curve, phase, cycles):
-    """Return the same curve a number of mesh `cycles` later; the numbers of its tooth pairs are lower by as much."""
+    """Return the same curve a number of mesh `cycles` later. The numbers of its tooth pairs are lower by as much."""
     if not cycles:
         return curve
     meta = curve.meta | {name: [at + cycles for at in curve.meta[name]] for name in MARKS if name in curve.meta}

@@ -123,7 +123,10 @@ def _bodies(how):
 
 
 def _foretold(how, bodies, *, neighbours):
-    """Raise RuntimeError if a body does not fit, before the first solve; report the cost of all, with those of an estimate."""
+    """Raise RuntimeError if a body does not fit, before the first solve.
+
+    Report the cost of all, with those of an estimate.
+    """
     levels = [{"refine": how.refine}, {"refine": COARSER[0] * how.refine, "section": how.refine, "less": LESS}][: 1 + how.error]
     plans = {}
     for level in levels:

@@ -11,7 +11,7 @@ END = 0.25  # a tip has reached a boundary that is nearer than this part of a st
 
 
 def stopped(values, law):
-    """Outcome and reason if the crack does not grow from here; None if it does."""
+    """Outcome and reason if the crack does not grow from here, or None if it does."""
     largest, _, least = values
     if largest <= 0:
         return "arrested", f"the crack is pressed shut: the largest K_I is {largest:.3g} MPa sqrt(mm)"
@@ -26,7 +26,7 @@ def stopped(values, law):
 
 
 def reached(gear: Gear, tip, ahead, step):
-    """Outcome and reason if the next step reaches a boundary; None if it does not."""
+    """Outcome and reason if the next step reaches a boundary, or None if it does not."""
     if gear.outward * (np.hypot(*ahead) - gear.held) < END * step + 0.02 * gear.m_n:
         edge = "outside of the ring" if gear.internal else "bore"
         return "rim cut", f"the crack reaches the {edge} at {math.degrees(math.atan2(*ahead)):.3g} degrees from its tooth"

@@ -138,7 +138,7 @@ def _edges(points, cells):
 
 
 def _own(pair, side, face, groove, pits):
-    """Return the drawn gear, its half (0 or 1), and its pits there; half 1 is drawn as its mirror image."""
+    """Return the drawn gear, its half (0 or 1), and its pits there. Half 1 is drawn as its mirror image."""
     gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
     if face != "herringbone":
         return replace(gear, beta=sense * pair.gear_1.beta), 0, pits

@@ -34,7 +34,7 @@ def kinked(k_1: float, k_2: float, angle: float) -> tuple[float, float]:
 
 
 def turn_angle(k_1: float, k_2: float, criterion: str = "tangential") -> float:
-    """Angle [rad] by which a crack turns, positive to the left seen along it; nan if K_I is not positive.
+    """Angle [rad] by which a crack turns, positive to the left seen along it, or nan if K_I is not positive.
 
     Parameters
     ----------

@@ -76,7 +76,7 @@ def tooth_flexibility(
 
 
 def _displacement(body, moved, x, y):
-    """Displacement (2,) at one inner point; triangles there have straight edges."""
+    """Displacement (2,) at one inner point. Triangles there have straight edges."""
     mesh = body.mesh
     linear = MeshTri(mesh.doflocs[:, : mesh.nvertices].copy(), mesh.t)
     point = np.array([[x], [y]])

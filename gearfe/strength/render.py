@@ -161,7 +161,10 @@ def _text(title, told):
 
 @contextlib.contextmanager
 def _picture(path, size, text, top):
-    """Return a plotter and a function that draws stress; text and colour bar are added, and the picture is written to `path`."""
+    """Return a plotter and a function that draws stress.
+
+    Text and colour bar are added, and the picture is written to `path`.
+    """
     with plotting(window_size=list(size), lighting="none") as plotter:
         plotter.set_background("white")
         look = {"scalars": MISES, "clim": [0, top], "cmap": COLOURS, "above_color": ABOVE, "show_scalar_bar": False}
@@ -178,7 +181,7 @@ def _picture(path, size, text, top):
 
 
 def _label(plotter, text, position, size):
-    """Add a text on white; its style."""
+    """Add a text on a white background."""
     plotter.add_text(text.encode(errors="replace").decode(), position=position, viewport=True, color="black", font_size=1)
     style = plotter.actors[next(reversed(plotter.actors))].prop
     style.SetFontSize(round(size))
@@ -258,7 +261,7 @@ def _draw_gears(pair, fields, told, path, size):
 
 
 def _draw_tooth(pair, fields, told, path, size):
-    """Draw the loaded flank of tooth 0; the tooth before it is cut away, because it would hide it."""
+    """Draw the loaded flank of tooth 0. The tooth before it is cut away, because it would hide it."""
     import pyvista
 
     (field,), gear, scale = fields, told["sector"].gear, told["enlarged"]

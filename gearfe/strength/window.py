@@ -18,7 +18,10 @@ OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGL
 
 
 def drawing_library():
-    """Return pyvista with a window that it can open; RuntimeError with the package to install if something is missing."""
+    """Return pyvista with a window that it can open.
+
+    Raises RuntimeError with the package to install if something is missing.
+    """
     with _turn:
         try:
             import pyvista
@@ -31,7 +34,7 @@ def drawing_library():
 
 @contextlib.contextmanager
 def plotting(**options):
-    """Return a plotter without a screen, closed in any case; other threads wait."""
+    """Return a plotter without a screen, closed in any case. Other threads wait."""
     free = free_memory()
     if free < ADDRESSES:
         raise RuntimeError(
@@ -49,7 +52,7 @@ def plotting(**options):
 
 
 def renderer_name():
-    """Name of the window that pictures would be drawn in; nothing is opened."""
+    """Name of the window that pictures would be drawn in. Nothing is opened."""
     drawing_library()
     return os.environ.get("VTK_DEFAULT_OPENGL_WINDOW", "the display's" if os.environ.get("DISPLAY") else "the system's")
 

@@ -202,7 +202,7 @@ class Chip:
 
 
 class Recess(Spall):
-    """Spall in place of a chip of a part of the width."""
+    """Recess that replaces a chip which covers only a part of the face width."""
 
     __slots__ = ()
     _nouns: ClassVar[tuple[str, str]] = ("chip", "chips")
@@ -224,7 +224,7 @@ def _arc(radius, first, last):
 
 
 def chip_of(gear: Gear, broken: Iterable[Any], tooth: int) -> Chip | None:
-    """Return the chip of a tooth among damage; None if it has none."""
+    """Return the chip of a tooth among damage, or None if it has none."""
     return next((one for one in broken if isinstance(one, Chip) and (one.tooth - tooth) % gear.z == 0), None)
 
 

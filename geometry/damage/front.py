@@ -22,13 +22,16 @@ SAMPLES = 801  # heights at which a front is looked at first
 
 
 def open_part(crack, b, z):
-    """Part of its length over which a crack is open at heights `z` [mm] of a face of width `b` [mm]; 0 beyond its ends."""
+    """Part of its length over which a crack is open at heights `z` [mm] of a face of width `b` [mm].
+
+    0 beyond its ends.
+    """
     low, high = crack.width or (0.0, b)
     return np.where((z >= low) & (z <= high), front(crack, b, z)[0], 0.0)
 
 
 def shallowest(crack):
-    """Least depth between the crack's ends, in the largest; 0 if it runs out."""
+    """Least depth between the crack's ends, in the largest, or 0 if it runs out."""
     low, high = (max(value, 0.0) for value in extremes(crack))
     part = low / high if low > SLACK else 0.0
     return math.sqrt(part) if crack.rounded else part

@@ -92,7 +92,7 @@ def takes_all(gear, hollow):
 
 
 def warning_of(gear, hollow, size):
-    """Return a warning for a hollow of a `size` in words on its gear; empty if there is none."""
+    """Return a warning for a hollow of a `size` in words on its gear. The result is empty if there is none."""
     if not takes_all(gear, hollow):
         return ""
     return (
@@ -102,7 +102,10 @@ def warning_of(gear, hollow, size):
 
 
 def warning_together(gear, hollows):
-    """Return a warning if several hollows of one flank together remove all of it; empty if not, or if one alone does."""
+    """Return a warning if several hollows of one flank together remove all of it.
+
+    The result is empty if not, or if one alone does.
+    """
     arcs = arc_at(gear, np.linspace(gear.roll_f, gear.roll_a, PLACES))
     if len(hollows) < 2 or any(takes_all(gear, hollow) for hollow in hollows):
         return ""

@@ -1,4 +1,4 @@
-"""All types of damage and their common functions; a new type is a class and a name in `Damage`.
+"""All types of damage and their common functions. A new type is a class and a name in `Damage`.
 
 Damage acts in two ways, `split`: a crack weakens the body it runs into; pits and spalls take contact away (and with it a
 little material, which plain sums and holes in meshes see). Missing teeth and chipped tips are `BROKEN`: they do both and are in
@@ -101,6 +101,9 @@ def called(damage: Iterable[Damage]) -> str:
 
 
 def why_wide(damage: Sequence[Damage]) -> str:
-    """Return which damage changes along the width and is not modelled in a transverse section; empty if none does."""
+    """Return which damage changes along the width and is not modelled in a transverse section.
+
+    The result is empty if none does.
+    """
     nouns = {defect._nouns[1] for defect in damage if not defect.through}
     return next((f"{kind._nouns[1]} change along the width" for kind in get_args(Damage) if kind._nouns[1] in nouns), "")

@@ -112,7 +112,7 @@ class Pit:
         return "1 pit"
 
     def _warning(self, gear: Gear) -> str:
-        """Return a warning for the pit on its gear; empty if there is none."""
+        """Return a warning for the pit on its gear. The result is empty if there is none."""
         return warning_of(gear, self, f"semi-axes {self.axes[0]:g} x {self.axes[1]:g}")
 
     def mirrored(self, b: float) -> Self:
@@ -125,7 +125,10 @@ class Pit:
         return across * w**2 + 2 * mixed * w * u + along * u**2 <= 1
 
     def span(self, u: Floats) -> tuple[Floats, Floats]:
-        """Heights z [mm] between which it lies at `u` along the profile from its centre [mm]; equal where it does not."""
+        """Heights z [mm] between which it lies at `u` along the profile from its centre [mm].
+
+        Equal where it does not.
+        """
         across, mixed, along = self.form
         root = across - (across * along - mixed**2) * u**2
         half = np.sqrt(np.where(root > 0, root, 0.0)) / across
@@ -163,7 +166,7 @@ class Pit:
 
 
 def pit_row(count, first, last, **numbers):
-    """Return `count` equal pits with centres evenly from z = `first` to `last` [mm]; `Pit` describes `numbers`.
+    """Return `count` equal pits with centres evenly from z = `first` to `last` [mm]. `Pit` describes `numbers`.
 
     Raises
     ------

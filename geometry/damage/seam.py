@@ -4,7 +4,9 @@ import numpy as np
 
 
 def open_seam(points, triangles, chain):
-    """Double the nodes of a chain of edges of a mesh that starts on its boundary; the last one, the tip, is not doubled.
+    """Double the nodes of a chain of edges of a mesh that starts on its boundary.
+
+    The last one, the tip, is not doubled.
 
     `points` are ``(2, n)``, `triangles` ``(3, m)``, `chain` the nodes. Gives the points with the new ones appended; the
     triangles, of which those right of the chain (looking to the tip) use them; and the chain on its right side, the tip

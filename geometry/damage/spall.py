@@ -108,7 +108,7 @@ class Spall:
         return f"{self.sides[0]:.3g} x {self.sides[1]:.3g} mm spall"
 
     def _warning(self, gear: Gear) -> str:
-        """Return a warning for the spall on its gear; empty if there is none."""
+        """Return a warning for the spall on its gear. The result is empty if there is none."""
         return warning_of(gear, self, f"sides of {self.sides[0]:g} x {self.sides[1]:g}")
 
     def mirrored(self, b: float) -> Self:
@@ -124,7 +124,10 @@ class Spall:
         )
 
     def span(self, u: Floats) -> tuple[Floats, Floats]:
-        """Heights z [mm] between which it lies at `u` along the profile from its centre [mm]; equal where it does not."""
+        """Heights z [mm] between which it lies at `u` along the profile from its centre [mm].
+
+        Equal where it does not.
+        """
         beside = np.maximum(np.abs(u) - self.axes[0] + self.corner, 0.0)
         half = self.axes[1] - self.corner + np.sqrt(np.maximum(self.corner**2 - beside**2, 0.0))
         half = np.where(np.abs(u) <= self.axes[0], half, 0.0)

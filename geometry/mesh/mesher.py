@@ -24,7 +24,7 @@ _turn = threading.Lock()
 
 @contextlib.contextmanager
 def gmsh_session():
-    """Open a quiet gmsh session, which is closed in any case; other threads wait until then.
+    """Open a quiet gmsh session, which is closed in any case. Other threads wait until then.
 
     RuntimeError if gmsh or one of its system libraries is missing (the message states the package), or if the program that uses
     gearfe has an open gmsh session.

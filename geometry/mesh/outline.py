@@ -17,7 +17,7 @@ GROWTH = 0.25  # growth of the edge length per length, away from fine places
 
 @dataclass(frozen=True, slots=True)
 class Half:
-    """Half a tooth from tip middle to root middle: vertices at even places, edge middles at odd; the last is left out.
+    """Half a tooth from tip middle to root middle: vertices at even places, edge middles at odd. The last is left out.
 
     `flank`, `fillet` are the vertex numbers of flank (tip to form point) and fillet (form point to root), `mark` that of a
     crack's start.
@@ -70,7 +70,7 @@ def doubled(values):
 
 
 def half(gear, roll, fillet_size, size, *, mark=None, top=None):
-    """Half a tooth with flank vertices at `roll`; `mark` is an arc of `root_curve` and the edge length there [mm].
+    """Half a tooth with flank vertices at `roll`. `mark` is an arc of `root_curve` and the edge length there [mm].
 
     `top` are the pieces of `gearfe.geometry.damage.chip.Chip.top`, without a chip the tip circle.
     """

@@ -40,7 +40,7 @@ class PeriodicSector:
 
 
 def periodic_sector(gear, cracks=(), *, missing=False, refine=1.0):
-    """Mesh one pitch sector of a gear; `refine` divides the edge lengths.
+    """Mesh one pitch sector of a gear. The factor `refine` divides the edge lengths.
 
     `cracks` ``(Crack, ...)`` are those of its tooth, whatever tooth they name; one to a side at most. The sides and the held edge
     of the sector are the same with and without them. A `missing` tooth leaves the root circle and no flanks.

@@ -102,7 +102,7 @@ def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None):
 
 
 def _attempt(gear, cracks, broken, sizes, refine, finer):
-    """Return a sector with all edges but those of the sides divided by `finer`; None if it folds."""
+    """Return a sector with all edges but those of the sides divided by `finer`, or None if it folds."""
     size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
     size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
     pieces = _pieces(gear, size, cracks, broken)

@@ -206,7 +206,7 @@ def _turned(points, heights, rate):
 
 
 def _open(made, cut, part, cracks):
-    """Double the nodes of the open faces of one parting line; the cells of the tooth above get the new ones."""
+    """Double the nodes of the open faces of one parting line. The cells of the tooth above get the new ones."""
     faces = dict(made.faces)
     walls = faces.pop(f"cut {part - 1}")
     height = (made.levels[1:] + made.levels[:-1]) / 2

@@ -18,7 +18,9 @@ TURN = math.radians(2.0)  # rotation of helical teeth between two sections of th
 
 
 def write_step(path: StrPath, gear: Gear) -> float:
-    """Write a spur or helical gear as a solid [mm]; the axis is z, tooth 0 points along y at z = 0. Returns its volume [mm^3].
+    """Write a spur or helical gear as a solid [mm].
+
+    The axis is z, tooth 0 points along y at z = 0. Returns its volume [mm^3].
 
     ValueError if the path does not end in ``.step`` or ``.stp``, or gmsh cannot write it.
     """

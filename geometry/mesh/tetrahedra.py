@@ -10,7 +10,7 @@ GROWTH = 0.5  # growth of the edge length of tets per length, away from fine pla
 
 
 class UnmeshedError(RuntimeError):
-    """Gmsh made no tets of a solid with these edge lengths; with others it may."""
+    """Gmsh made no tets of a solid with these edge lengths. With others it may."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,7 @@ def broken_at(pair: GearPair, broken: Sequence[Any], order: int) -> tuple[Missin
 
 
 def pair_at(pair: GearPair, broken: Sequence[Any], order: int) -> GearPair | None:
-    """Return the pair with the tips of the teeth of a tooth pair; None if one of them is missing."""
+    """Return the pair with the tips of the teeth of a tooth pair, or None if one of them is missing."""
     found = broken_at(pair, broken, order)
     if any(isinstance(one, MissingTooth) for one in found):
         return None

@@ -92,7 +92,7 @@ def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
 def flank_forms(
     pair: Any, flanks: Mapping[str, Flank] | None, misalignment: Misalignment | None = None
 ) -> tuple[FlankForm, FlankForm] | None:
-    """Flanks of pinion and wheel on their gears, each taking half of the misalignment; None if all are involutes.
+    """Flanks of pinion and wheel on their gears, each taking half of the misalignment, or None if all are involutes.
 
     ValueError if `flanks` are not given by gear (``{"pinion": Flank(...), "wheel": Flank(...)}``, or one of them), or do not
     fit.

@@ -23,7 +23,7 @@ OVERLAP = 1e-3  # deeper cuts of one outline into the other are interference [m_
 @renamed(alpha_w="alpha_wt")
 @dataclass(frozen=True, slots=True)
 class GearPair:
-    """Two meshing gears; gear 1 (the pinion, external) drives gear 2, an external gear or a ring.
+    """Two meshing gears. Gear 1 (the pinion, external) drives gear 2, an external gear or a ring.
 
     The line of action is measured from its tangent point on the pinion's base circle, so that the abscissa of a contact
     is the pinion's roll length. Phase 0 is a tooth pair entering at the start of the path of contact (lower end of the
@@ -59,7 +59,7 @@ class GearPair:
     notes: tuple[str, ...] = field(default=(), init=False)
 
     def __post_init__(self) -> None:
-        """Reject gears that cannot mesh; trim a ring's tip."""
+        """Reject gears that cannot mesh. Trim the tips of a ring where they interfere."""
         pinion, wheel = self.gear_1, self.gear_2
         if not isinstance(pinion, Gear) or not isinstance(wheel, Gear):
             name, value = ("gear_1", pinion) if not isinstance(pinion, Gear) else ("gear_2", wheel)
@@ -154,7 +154,7 @@ class GearPair:
 
     @property
     def radial_assembly(self) -> bool:
-        """Whether the pinion can be put into its ring radially; always true without a ring."""
+        """Whether the pinion can be inserted into its ring radially. It is always true without a ring."""
         return not self.gear_2.internal or radial_assembly(self)
 
     @property
@@ -217,7 +217,7 @@ class GearPair:
 
     @property
     def eps_beta(self) -> float:
-        """Overlap ratio of the width both gears have in common, ``b tan(beta_b) / p_bt``; 0 for spur gears."""
+        """Overlap ratio of the width both gears have in common, ``b tan(beta_b) / p_bt``, or 0 for spur gears."""
         return self.eps_beta_of(min(self.gear_1.b, self.gear_2.b))
 
     def eps_beta_of(self, width: float) -> float:

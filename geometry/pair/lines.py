@@ -79,7 +79,7 @@ class Lines:
 
 @dataclass(frozen=True, slots=True)
 class Removed:
-    """Pieces of contact lines inside pits, n of them; they may overlap.
+    """Pieces of contact lines inside pits, n of them. They may overlap.
 
     `phase`, `column`, `band` are indices into the arrays of `Lines`, `low` and `high` heights [mm], `gear` 0 for a pit of the
     pinion and 1 for one of the wheel.

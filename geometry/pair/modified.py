@@ -49,7 +49,10 @@ def flank_contacts(
 def touching_modified(
     pair: GearPair, forms: tuple[FlankForm, FlankForm], nominal: Floats, order: NDArray[np.int64], plain: Touch
 ) -> Touch:
-    """Return the first contact of modified flanks where the unmodified ones meet, in arrays of any shape; see `first_touch`."""
+    """Return the first contact of modified flanks where the unmodified ones meet, in arrays of any shape.
+
+    See `first_touch`.
+    """
     meets, empty = np.isfinite(plain.gap), np.full(plain.gap.shape, np.inf)
     out = Touch(
         plain.roll_1.copy(), plain.roll_2.copy(), empty, np.zeros(meets.shape, dtype=int), np.full_like(plain.corner_gap, np.inf),

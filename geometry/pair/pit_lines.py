@@ -105,7 +105,10 @@ def in_both_halves(gear, pits, face):
 
 
 def _band(pair, gear, face, groove, middle):
-    """`Band` of the face at height `middle` of a gear, in the gear's own heights; rolls fall from the end that touches first."""
+    """`Band` of the face at height `middle` of a gear, in the gear's own heights.
+
+    Rolls fall from the end that touches first.
+    """
     below = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2  # the gears lie centred on each other
     for first, last in bands_of(pair, face, groove):
         low, high = sorted((first + below, last + below))

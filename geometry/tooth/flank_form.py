@@ -80,7 +80,10 @@ class FlankForm:
         return out
 
     def at(self, z: ArrayLike | None) -> "FlankForm":
-        """Return the flank at heights `z` [mm], for the leading axes of roll lengths; None: without changes along the width."""
+        """Return the flank at heights `z` [mm], for the leading axes of roll lengths.
+
+        None: without changes along the width.
+        """
         out = copy(self)
         out._z = None if z is None or not self.wide else np.asarray(z, dtype=float)
         return out

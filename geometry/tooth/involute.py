@@ -1,4 +1,4 @@
-"""The involute function and its inverse; roll length is the parameter of every flank here.
+"""The involute function and its inverse. Roll length is the parameter of every flank here.
 
 The roll length ``rho = sqrt(R**2 - r_b**2)`` of a flank point is the length of the base tangent to it, hence its
 radius of curvature; the arc of the flank from the base circle is ``rho**2 / (2 r_b)`` (ISO 21771:2007, 5.1).

@@ -74,7 +74,10 @@ def two_ends(flank: Any) -> list[tuple[float, float]]:
 
 
 def checked_topography(given: Any) -> tuple[tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...]]:
-    """Roll lengths, heights and amounts of a measured flank, as tuples; ValueError unless a full grid with rising axes."""
+    """Roll lengths, heights and amounts of a measured flank, as tuples.
+
+    Raises ValueError unless a full grid with rising axes.
+    """
     try:
         rolls, heights, amounts = (np.asarray(part, dtype=float) for part in given)
     except (TypeError, ValueError) as error:

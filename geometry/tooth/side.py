@@ -60,7 +60,7 @@ def side(gear: Gear, roll: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def place(gear: Gear, radius: ArrayLike) -> Place:
-    """`Place` of the loaded side at some radii [mm]; beyond the tip or root circle all but the roll length is nan."""
+    """`Place` of the loaded side at some radii [mm]. Beyond the tip or root circle all but the roll length is nan."""
     shape, radius = np.shape(radius), np.atleast_1d(radius)
     roll = np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0))
     angle, arm, lean = flank(gear, roll)[1], np.full(radius.shape, gear.r_b), roll.copy()

@@ -9,7 +9,7 @@ from .gear import Gear
 
 
 def numbers(name: str, values: Any) -> list[float]:
-    """Return a row of finite numbers as a list; ValueError if something else is given."""
+    """Return a row of finite numbers as a list. Raises ValueError if something else is given."""
     try:
         out = np.asarray(values, dtype=float)
     except (TypeError, ValueError, OverflowError) as error:
@@ -20,7 +20,7 @@ def numbers(name: str, values: Any) -> list[float]:
 
 
 def table(name: str, given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Rising roll lengths, and as many amounts; ValueError if something else is given."""
+    """Rising roll lengths, and as many amounts. Raises ValueError if something else is given."""
     try:
         rolls, amounts = given
     except (TypeError, ValueError) as error:
@@ -34,7 +34,7 @@ def table(name: str, given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def worn(given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Wear over roll lengths: a `table` of depths; ValueError if material has grown."""
+    """Wear over roll lengths: a `table` of depths. Raises ValueError if material has grown."""
     rolls, depths = table("wear", given)
     if min(depths) < 0:
         raise ValueError(f"wear: depth {min(depths):g} mm, but wear removes material: give depths from 0")
@@ -42,14 +42,14 @@ def worn(given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def each_tooth(name: str, values: tuple[float, ...], gear: Gear) -> np.ndarray:
-    """Values by tooth, empty if none are given; ValueError unless there is one for each tooth."""
+    """Values by tooth, empty if none are given. Raises ValueError unless there is one for each tooth."""
     if len(values) not in (0, gear.z):
         raise ValueError(f"{name} has {len(values)} values, but z = {gear.z}: give one for each tooth")
     return np.array(values)
 
 
 def covering(values: tuple, gear: Gear) -> np.ndarray:
-    """Return a table ``(2, n)`` of roll lengths and amounts [mm]; ValueError unless it covers the flank."""
+    """Return a table ``(2, n)`` of roll lengths and amounts [mm]. Raises ValueError unless it covers the flank."""
     rows = np.array(values)
     rolls = rows[0]
     least, most = sorted((gear.roll_f, gear.roll_a))

@@ -101,7 +101,7 @@ class TipEdge:
         return np.arctan2(first[0] + t * cut[0], first[1] + t * cut[1])
 
     def removed(self, roll: Floats) -> Floats:
-        """Material removed at roll lengths [mm]; beyond the tip circle as much as at it."""
+        """Material removed at roll lengths [mm]. It is constant beyond the tip circle."""
         gear, on = self.gear, self.on(roll)
         low, high = sorted((self.start, gear.roll_a))
         at = np.clip(np.where(on, roll, self.start), low, high)

@@ -196,7 +196,7 @@ def compute():
 
 
 def run(again=True):
-    """Write the page; `again`: compute its rows again."""
+    """Write the page. With `again`, its stored rows are computed again."""
     if again:
         compute()
         conventions(again)

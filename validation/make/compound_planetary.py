@@ -49,7 +49,10 @@ def _made(case):
 
 @cache
 def _response(case, law=HEARD):
-    """Response of a machine; `law` is that of the scene, another backlash [m] (0: meshes never open) or a draw of the inputs."""
+    """Response of a machine.
+
+    `law` is that of the scene, another backlash [m] (0: meshes never open) or a draw of the inputs.
+    """
     if isinstance(law, Draw):
         return record(changed(_made(case), law), DRAWN, SAMPLED, DRAWN_SETTLE)
     return record(_made(case) if law == HEARD else _made(case).with_meshes(backlash=law), SECONDS, SAMPLED, SETTLE)

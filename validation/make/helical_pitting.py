@@ -29,7 +29,7 @@ def _found(case, law=OWN, channel=FORCE):
 
 @cache
 def _heard(case, law=OWN, channel=FORCE):
-    """Return a channel; a draw adds noise, relative to the standard deviation of the minor case."""
+    """Return a channel. A draw adds noise, relative to the standard deviation of the minor case."""
     one = _clean(case, law, channel)
     if not isinstance(law, Draw):
         return one

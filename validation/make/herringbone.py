@@ -21,7 +21,7 @@ REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}  # refinement of the finite el
 
 
 def reference():
-    """Compute the finite elements of the ten rows; each is kept at once."""
+    """Compute the finite elements of the ten rows. Each is kept at once."""
     scene = gf.load_scene(SCENE)
     begin(Path(stored_file(scene)))
     kept = read_curves(scene)
@@ -40,7 +40,7 @@ def reference():
 
 
 def _estimate(curve):
-    """Mean relative error estimate of a curve; nan without one."""
+    """Mean relative error estimate of a curve, or nan without one."""
     return math.nan if curve.error is None else float((curve.error / curve.k).mean())
 
 
@@ -88,7 +88,7 @@ def _sentences(name, count=1):
 
 
 def run(again=True):
-    """Write the page; `again`: compute its rows again."""
+    """Write the page. With `again`, its stored rows are computed again."""
     if again:
         herringbone_statements.rows(again)
         every_case()

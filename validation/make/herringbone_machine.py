@@ -72,7 +72,7 @@ def largest_displacement():
 
 
 def measured_displacement():
-    """Measured on the housing: ours is that of the sun."""
+    """Verdict on a displacement measured on the housing. gearfe computes the displacement of the sun."""
     return largest_displacement()
 
 

@@ -57,7 +57,7 @@ def settled(own):
 
 @cache
 def heard(case, errors=ERRING, channel=TURNING):
-    """Return a channel; a draw adds noise, relative to the standard deviation of the healthy one."""
+    """Return a channel. A draw adds noise, relative to the standard deviation of the healthy one."""
     one = clean(case, errors, channel)
     if not isinstance(errors, Draw):
         return one

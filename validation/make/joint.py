@@ -41,7 +41,7 @@ def rows_of(name):
 
 
 def compute(name, again=False):
-    """Rows of a page; `again`: compute them again."""
+    """Rows of a page. With `again`, stored rows are computed again."""
     for draw in joint_inputs.draws(name):
         key = f"{name} {draw.number:02d}"
         kept(NAME, key, lambda draw=draw: {"inputs": dict(draw.values)} | home(name).drawn(draw), again)
@@ -90,7 +90,7 @@ def counts(name):
 
 
 def sentence(name):
-    """Return the counts in words; empty without rows."""
+    """Return the counts in words. The result is empty without rows."""
     every, none, some = counts(name)
     return (
         f"of its {every + none + some} statements {every} {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
@@ -189,7 +189,7 @@ def ranges():
 
 
 def run(again=True):
-    """Write the page; `again`: compute its rows again."""
+    """Write the page. With `again`, its stored rows are computed again."""
     for name in joint_inputs.RANGES:
         compute(name, again)
     tell()

@@ -224,7 +224,7 @@ def compute(page):
 
 
 def run(page, again=True):
-    """Write a page; `again`: compute its rows again."""
+    """Write a page. With `again`, its stored rows are computed again."""
     if again:
         compute(page)
     write_page(page)

@@ -80,7 +80,7 @@ def ring_shift():
 
 
 def contact_ratio():
-    """By the involute geometry; S0's formula is the same for equal shifts."""
+    """By the involute geometry. S0's formula is the same for equal shifts."""
     outer, inner = stage()
     return {"sun and planet": outer.pair.eps_alpha, "planet and ring": inner.pair.eps_alpha}
 
@@ -104,7 +104,7 @@ def lengths(count=400):
 
 
 def _printed_chord(pair, phase, pit: Pit):
-    """S0's l(t) [mm] of one pit; d is the distance along the profile from the pit's edge to the contact."""
+    """S0's l(t) [mm] of one pit. D is the distance along the profile from the pit's edge to the contact."""
     roll = pair.path[0] + phase * pair.p_bt
     arc = (roll**2 + pair.gear_1.r_b**2 - pit.radius**2) / (2 * pair.gear_1.r_b)
     half = pit.axes[0]

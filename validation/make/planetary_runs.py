@@ -75,7 +75,7 @@ def ring_path(foundation=1.0):
 
 @cache
 def signal_of(case, impact, channel=FORCE, law=OWN):
-    """Return a channel; a draw adds noise, relative to the standard deviation of the mild case without pulses."""
+    """Return a channel. A draw adds noise, relative to the standard deviation of the mild case without pulses."""
     one = _clean(case, impact, channel, law)
     if not isinstance(law, Draw):
         return one

@@ -51,7 +51,7 @@ def ledger():
 
 
 def kind(row):
-    """Which of `KINDS` a row is; ValueError if it is none or several."""
+    """Which of `KINDS` a row is. Raises ValueError if it is none or several."""
     found = [name for name in KINDS if row.get(name)]
     if len(found) != 1:
         raise ValueError(f"{row['article']}, {row['what']}: it has {found or 'none'} of {', '.join(KINDS)}; give one")

@@ -23,7 +23,7 @@ FINE = {"refine": 2.0, "order": 5}  # refinement of `ritz`, the reference of bot
 
 
 def random_case(seed):
-    """Pair, line load [N/mm] and damage of a seed; ValueError where no such gears exist."""
+    """Pair, line load [N/mm] and damage of a seed. Raises ValueError where no such gears exist."""
     rng = np.random.default_rng(seed)
     m, width = float(rng.choice([1.0, 2.0, 4.0])), 10.0
     rack = {"m_n": m, "alpha_n": math.radians(rng.choice([17.5, 20.0, 25.0])), "b": width, "rack_tip_radius": 0.2}
@@ -80,7 +80,7 @@ def reference():
 
 
 def run(again=True):
-    """Write the page; `again`: compute its rows again."""
+    """Write the page. With `again`, its stored rows are computed again."""
     if again:
         kept_rows.begin(TABLE)
     rows = rows_of(TABLE)

@@ -71,7 +71,7 @@ CalculiX judges it in [three.md](three.md).
 
 
 def drawn(kind, seed):
-    """Pair, line load [N/mm], damage and phases of a seed; ValueError where no such gears exist."""
+    """Pair, line load [N/mm], damage and phases of a seed. Raises ValueError where no such gears exist."""
     rng, (_, first, second, widths, *_) = np.random.default_rng(seed), KINDS[kind]
     m = float(rng.choice([1.0, 2.0, 4.0]))
     beta = math.radians(rng.uniform(5, 28)) if rng.random() < 0.6 else 0.0

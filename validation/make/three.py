@@ -32,7 +32,7 @@ def reference():
 
 
 def run(again=True):
-    """Write the page; `again`: compute its rows again."""
+    """Write the page. With `again`, its stored rows are computed again."""
     outsider.refresh(again)
     page.write("three", *text())
 

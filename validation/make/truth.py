@@ -30,7 +30,7 @@ REASONS = {  # rows outside their tolerance
 
 
 class SourceRow(NamedTuple):
-    """A value of a source and ours; `tolerance` is relative, or absolute if `absolute`."""
+    """A value of a source and ours. `tolerance` is relative, or absolute if `absolute`."""
 
     table: str
     case: str
@@ -306,7 +306,7 @@ def compute():
 
 
 def run(again=True):
-    """Write the page; `again`: compute its rows again."""
+    """Write the page. With `again`, its stored rows are computed again."""
     if again:
         compute()
     page.put("truth", text())

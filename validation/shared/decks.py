@@ -18,7 +18,7 @@ def digest(path):
 
 
 def calculix(folder, name):
-    """Run CalculiX and give its CPU seconds; RuntimeError with its last words if it has no result."""
+    """Run CalculiX and give its CPU seconds. Raises RuntimeError with its last words if it has no result."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     done = subprocess.run(["ccx", "-i", name], cwd=folder, capture_output=True, text=True, check=False)
     if not (folder / f"{name}.dat").exists() or not (folder / f"{name}.dat").stat().st_size:

@@ -215,7 +215,7 @@ def stored():
 
 
 def refresh(again=False):
-    """Compute what `ritz3d` finds in the cases; `again`: compute it again."""
+    """Compute the cases by `ritz3d`. With `again`, stored results are computed again."""
     for name in (*cases(), *lines()):
         kept_rows.kept(OURS, name, lambda name=name: ritz3d_row(name), again)
 

@@ -38,7 +38,7 @@ MACHINES = {
 
 
 def text(name, answer, *sections):
-    """Return a page as Markdown; a section is a text, or lines and texts of several lines, indented or not."""
+    """Return a page as Markdown. A section is a text, or lines and texts of several lines, indented or not."""
     lines = [f"# {QUESTIONS[name]}", "", answer]
     for section in sections:
         lines += ["", *filled([section] if isinstance(section, str) else section)]
@@ -66,7 +66,7 @@ def put(name, lines):
 
 
 def read(name):
-    """Markdown of a page, and its foot; empty if there is none."""
+    """Markdown of a page, and its foot. The result is empty if there is none."""
     path = PAGES / f"{name}.md"
     whole = path.read_text(encoding="utf-8") if path.is_file() else ""
     head, _, last = whole.rstrip("\n").rpartition("\n\n")

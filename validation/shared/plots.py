@@ -60,7 +60,7 @@ def plot_phases(portraits, unit="m", path=None, *, title=""):
 
 
 def plot_lengths(phase, lengths, others=None, path=None, *, title="", told="otherwise"):
-    """Lengths of contact lines [mm] over the phase, by case; `others`, thin in the same look, as `told` says."""
+    """Lengths of contact lines [mm] over the phase, by case. `others`, thin in the same look, as `told` says."""
     figure = Figure(figsize=(7.5, 3.7), layout="constrained")
     axes = figure.subplots()
     for number, (name, length) in enumerate(lengths.items()):

@@ -60,7 +60,7 @@ def healthy_pair(row):
 
 
 def healthy(row, **options):
-    """Mean, max, min stiffness [N/(mm um)] without extended contact; phases in the middle of 32 equal parts."""
+    """Mean, max, min stiffness [N/(mm um)] without extended contact. Phases in the middle of 32 equal parts."""
     pair, steel = healthy_pair(row)
     return _sizes(pair, row["line_load"], steel, **options)
 

@@ -27,7 +27,7 @@ def scene(name):
 
 @cache
 def machine(name, case=None, method="ritz3d"):
-    """Machine of a scene in a case of damage; one method for all that is compared."""
+    """Machine of a scene in a case of damage. All compared machines use one method."""
     return gf.build_machine(scene(name), case, method=method, phases=PHASES.get(name, 64))
 
 

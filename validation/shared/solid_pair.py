@@ -12,7 +12,7 @@ GIVEN = ("face", "groove", "flanks", "misalignment", "supports")  # values of th
 
 
 def solid_contact(pair, force, material, phases=32, *, pits=((), ()), cracks=((), ()), model=None, **options):
-    """`Contact3D` of a pair; pits and cracks of pinion and wheel are numbered in each gear's own frame."""
+    """`Contact3D` of a pair. Pits and cracks of pinion and wheel are numbered in each gear's own frame."""
     both = [
         (name, [replace(one, tooth=sense * one.tooth) for one in (*own, *more)])
         for (name, sense), own, more in zip(SIDES, cracks, pits, strict=True)

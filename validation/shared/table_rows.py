@@ -9,7 +9,7 @@ from .places import TABLES
 
 
 def write_table(table, header, rows):
-    """Write a CSV table; numbers that are no integers with six digits."""
+    """Write a CSV table. Numbers that are not integers have six digits."""
     TABLES.mkdir(exist_ok=True)
     with written(table) as name, open(name, "w", encoding="utf-8", newline="") as file:
         out = csv.writer(file, lineterminator="\n")
@@ -18,7 +18,7 @@ def write_table(table, header, rows):
 
 
 def rows_of(table):
-    """Rows of a CSV table, dicts of texts; none if there is no table."""
+    """Rows of a CSV table as dicts of texts. The list is empty if there is no table."""
     if not table.exists():
         return []
     with table.open(encoding="utf-8", newline="") as file:

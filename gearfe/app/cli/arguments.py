@@ -31,7 +31,7 @@ class _Parser(argparse.ArgumentParser):
     """Parser whose messages are plain words and give the nearest verb or option."""
 
     def parse_known_args(self, args=None, namespace=None):
-        """Parse; a verb refuses what it does not know, so that the message is its own."""
+        """Parse arguments. Each verb rejects unknown options with its own message."""
         found, rest = super().parse_known_args(args, namespace)
         if rest:
             options = [option for action in self._actions for option in action.option_strings]
@@ -62,7 +62,7 @@ MODULES = {"exchange": exchange, "filling": filling, "sets": sets, "signals": si
 
 
 def main(argv=None):
-    """Run the command line; returns the exit code."""
+    """Run the command line, and return the exit code."""
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # before numpy loads: on small matrices more threads wait for each other
     parser = _Parser(prog="gearfe", description="Compute gear mesh stiffness, transmission error and gearbox vibration.")
     parser.add_argument("--version", action=_Version, help="print the version and exit")
@@ -103,7 +103,7 @@ def _check_outputs(arguments):
 
 
 class _Version(argparse.Action):
-    """Prints the version; looked up only if asked for, because that takes time."""
+    """Option that prints the version. The version is looked up only then, because that takes time."""
 
     def __init__(self, option_strings, dest, help=None):
         super().__init__(option_strings, dest, nargs=0, help=help)
@@ -116,7 +116,7 @@ class _Version(argparse.Action):
 
 
 def _add_verb(known, name, table, shared):
-    """Add a verb of ``verbs.toml``; `shared` are the groups of options that several verbs have."""
+    """Add a verb of ``verbs.toml``. `shared` are the groups of options that several verbs have."""
     text, form = table["text"], {}
     if table.get("methods"):
         form = {"formatter_class": argparse.RawDescriptionHelpFormatter, "epilog": f"methods:\n{described()}"}

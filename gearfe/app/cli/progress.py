@@ -27,7 +27,7 @@ def _log(text, interval=INTERVAL):
 
 @contextlib.contextmanager
 def working(text):
-    """Show a bar with elapsed and remaining seconds, in a pipe lines; returns a function that prints a note."""
+    """Show a progress bar with elapsed and remaining seconds (lines in a pipe). Returns a function that prints a note."""
     if sys.stderr is None or not sys.stderr.isatty():
         with contextlib.nullcontext() if is_heard() else listening(_log(text)):
             yield tell

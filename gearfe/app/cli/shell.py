@@ -24,12 +24,12 @@ STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u20
 
 
 def harmless(text):
-    """Return text with escaped control characters of terminals; line ends and tabs stay."""
+    """Return text with escaped control characters of terminals. Line ends and tabs stay."""
     return STEERING.sub(lambda control: ascii(control[0])[1:-1], text)
 
 
 class Harmless:
-    """Stream whose written text is escaped; everything else is the stream's."""
+    """Stream whose written text is escaped. Other attributes are those of the stream."""
 
     def __init__(self, stream):
         self._stream = stream

@@ -67,7 +67,10 @@ def signal(arguments):
 
 
 def _of_gear(signals, arguments, tables):
-    """Print indicators of a gear and the verdict on it, and add the tables; returns the verdict and simulated records."""
+    """Print indicators of a gear and the verdict on it, and add the tables.
+
+    Returns the verdict and simulated records.
+    """
     from ...comparison.vibration import simulated_gear
     from ...scene.load import load_scene
     from ...signal.gear_indicators import gear_indicator_table, tabulate_gear_indicators

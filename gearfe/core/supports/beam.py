@@ -20,7 +20,7 @@ class ShaftPiece(NamedTuple):
 
     @property
     def second_moment(self) -> float:
-        """Second moment about a diameter [mm**4]; the polar one is twice as large."""
+        """Second moment about a diameter [mm**4]. The polar one is twice as large."""
         return math.pi / 64 * (self.diameter**4 - self.bore**4)
 
     def shear_factor(self, nu: float) -> float:

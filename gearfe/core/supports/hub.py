@@ -10,7 +10,7 @@ from ...geometry.aliases import Floats
 
 @dataclass(frozen=True, slots=True)
 class Hub:
-    """Flexibility of the support of a gear, at the middle of its width; the gear follows as a rigid body.
+    """Flexibility of the support of a gear, at the middle of its width. The gear follows as a rigid body.
 
     `bending` (2, 2) is displacement [mm] and slope [rad] by a force [N] and a moment [N mm], the same in every plane through
     the axis; `torsion` the twist [rad] by a torque [N mm]; `axial` the shift by an axial force [mm/N].

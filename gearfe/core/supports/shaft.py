@@ -147,7 +147,7 @@ class Shaft:
         return bending_flexibility(self.segments, self.material, self.bearings, self.bearing_stiffness, np.array([self.gear]))
 
     def twists(self) -> float:
-        """Twist [rad] at the gear by a unit torque there [N mm]; zero without a `torque`."""
+        """Twist [rad] at the gear by a unit torque there [N mm], or zero without a `torque`."""
         if self.torque is None:
             return 0.0
         return float(twist_flexibility(self.segments, self.material, self.torque, np.array([self.gear]))[0, 0])

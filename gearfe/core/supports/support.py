@@ -13,7 +13,7 @@ UNITS = {"radial": "N/mm", "tilt": "N mm/rad", "torsion": "N mm/rad", "axial": "
 
 @dataclass(frozen=True, slots=True)
 class Support:
-    """Springs under the hub of a gear, at the middle of its width; omitted stiffnesses are rigid.
+    """Springs under the hub of a gear, at the middle of its width. Omitted stiffnesses are rigid.
 
     The edge that is otherwise held (the bore, or the rim of a ring) moves as a rigid body. The springs hold it, equally in every
     direction across the axis::

@@ -73,7 +73,7 @@ def back_phase(pair: GearPair) -> float:
 
 
 def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machine:
-    """Return the machine with separate back flanks in the meshes named; the second mesh is called ``NAME back``.
+    """Return the machine with separate back flanks in the meshes named. The second mesh is called ``NAME back``.
 
     Each of the two meshes has front flanks only. The second is one backlash behind. It has the errors of the first: an error that
     opens the front flanks closes the back flanks. Call `with_errors` first. The damping of a `film` between the flanks stays one

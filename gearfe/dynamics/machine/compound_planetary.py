@@ -84,7 +84,7 @@ def branch(pairs):
 
 
 def compound_table(pairs, n_planets, rates=(1.0, 1.0)):
-    """All meshes by name; `rates` are the signed mesh frequencies of both stages [Hz], negative where gear 2 drives.
+    """All meshes by name. `rates` are the signed mesh frequencies of both stages [Hz], negative where gear 2 drives.
 
     Phases are those of `gearfe.dynamics.machine.layout.around` and `through`, 0 for the first mesh of each sun at t = 0.
     """
@@ -226,7 +226,7 @@ def _teeth(pair):
 
 
 def _returns(table, pairs):
-    """Return the mesh frequency of a tooth [Hz] by body of both stages; a ring in both belongs to the driven one."""
+    """Return the mesh frequency of a tooth [Hz] by body of both stages. A ring in both belongs to the driven one."""
     out = [{}, {}]
     for (kind, bodies, _), *_, rate in table.values():
         for body, z in zip(bodies, _teeth(pairs[kind]), strict=True):

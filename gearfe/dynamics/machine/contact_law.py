@@ -62,7 +62,7 @@ def law_of(power: float, full: float) -> Law:
 
 
 def parameters(meshes: Sequence[Any]) -> dict[str, NDArray[Any]]:
-    """Parameters of the contact of meshes by name, ``(m,)`` each; 0 for laws that have none of that name.
+    """Parameters of the contact of meshes by name, ``(m,)`` each, or 0 for laws that have none of that name.
 
     Besides those of the laws: `kind`, the row of `LAWS`; ``damping, damping_per_stiffness, backlash, film``; and `least`, 0 where
     flanks push and never pull, otherwise ``-inf``.

@@ -63,7 +63,7 @@ class ForceLaw:
     secant: Secant = field(init=False)
 
     def __post_init__(self) -> None:
-        """Make the table; ValueError if loads, phases or depths do not rise."""
+        """Make the table. Raises ValueError if loads, phases or depths do not rise."""
         if not self.depth.shape == self.tangent.shape == self.pairs.shape == (self.phase.size, self.load.size):
             raise ValueError("a force law needs depth, tangent stiffness and pairs of the shape (phases, loads)")
         if self.load.size < 2 or not (np.diff(self.load) > 0).all() or not self.load[0] > 0:

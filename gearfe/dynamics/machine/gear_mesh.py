@@ -100,7 +100,7 @@ class GearMesh:
     average: Secant | None = field(init=False)
 
     def __post_init__(self) -> None:
-        """Make the tables; raise ValueError for values that are out of range or do not go together."""
+        """Make the tables. Raise ValueError for values that are out of range or contradict each other."""
         settle_row(self, "mesh")
         what = f"mesh {self.name}"
         settle_numbers(self, what, "frequency", " Hz")

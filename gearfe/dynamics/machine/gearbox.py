@@ -212,7 +212,10 @@ def pair_phases(scene):
 
 
 def _parallel(scene, layout, stiffness, damage):
-    """Meshes between shafts; a positive helix angle is a right-hand helix, whose driver is pushed forward by its rotation."""
+    """Meshes between shafts.
+
+    A positive helix angle is a right-hand helix, whose driver is pushed forward by its rotation.
+    """
     train, out, phases = scene.train, [], pair_phases(scene)
     for link in train.links:
         if link.name not in train.pairs:

@@ -83,7 +83,7 @@ def impact_helical(scene, case):
 
 
 def pits_of(damage):
-    """Return the pits on one pinion tooth of a case of damage; the impact law models no other damage.
+    """Return the pits on one pinion tooth of a case of damage. The impact law models no other damage.
 
     Raises
     ------

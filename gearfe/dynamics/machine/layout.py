@@ -94,7 +94,10 @@ class Layout:
         return row
 
     def point(self, name: str, direction: ArrayLike, arm: ArrayLike = (0.0, 0.0, 0.0)) -> Floats:
-        """Row of the displacement along `direction` of the point at `arm` [m] from a body's centre; missing dofs do not move."""
+        """Row of the displacement along `direction` of the point at `arm` [m] from a body's centre.
+
+        Missing dofs do not move.
+        """
         check_named("body", name, self.bodies)
         direction, arm = np.append(direction, np.zeros(3))[:3], np.append(arm, np.zeros(3))[:3]
         parts = dict(zip(SPACE.split(), (*direction, *np.cross(arm, direction)), strict=True))

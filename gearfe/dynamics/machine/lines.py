@@ -27,7 +27,7 @@ class Line(NamedTuple):
 
 
 def scene_lines(scene: Scene) -> list[Line]:
-    """All frequencies of a scene's machine by rising frequency; nothing is solved.
+    """All frequencies of a scene's machine by rising frequency. Nothing is solved.
 
     Parameters
     ----------
@@ -102,7 +102,10 @@ def _shafts(scene):
 
 
 def _stages(machine: Machine, alone: bool) -> Iterator[Line]:
-    """Return the lines of the stages; `alone`: the machine has no shafts, so that gears of pairs have shaft frequencies."""
+    """Return the lines of the stages.
+
+    `alone`: the machine has no shafts, so that gears of pairs have shaft frequencies.
+    """
     for stage in machine.stages:
         part, z = f"stage {stage.name}", round(stage.mesh / stage.turning)
         driver = stage.driver[0] if len(stage.driver) == 1 else stage.driver[0].rstrip("LR")

@@ -65,7 +65,9 @@ class Load:
 
 
 def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
-    """Return times [s] and values of a history; ValueError unless they are finite, equal in number, and the times rise.
+    """Return times [s] and values of a history.
+
+    Raises ValueError unless they are finite, equal in number, and the times rise.
 
     With `strict` False two times may be equal.
     """

@@ -32,7 +32,7 @@ class Member:
     torsion: float = 0.0
 
     def __post_init__(self) -> None:
-        """Raise ValueError unless mass, inertia and radius are positive, and no stiffness is negative; all finite."""
+        """Raise ValueError unless mass, inertia and radius are positive, and no stiffness is negative. All must be finite."""
         settle_numbers(self, "member", "mass inertia r_b", above=0.0)
         settle_numbers(self, "member", "bearing torsion", least=0.0)
 

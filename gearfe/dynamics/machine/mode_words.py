@@ -58,7 +58,10 @@ def mode_words(machine: Machine, energy: ModalEnergy, mode: int) -> str:
 
 
 def _against(machine, energy, mode, first, moving):
-    """Body that moves most against that of the dof `first`, by the senses of the rotation as a whole; empty if none does."""
+    """Body that moves most against that of the dof `first`, by the senses of the rotation as a whole.
+
+    The result is empty if none does.
+    """
     rigid = np.flatnonzero(energy.frequencies == 0)
     shape = energy.modes[:, mode]
     senses = np.sign(energy.modes[:, rigid[0]].real) if rigid.size else np.ones(len(shape))
@@ -69,7 +72,7 @@ def _against(machine, energy, mode, first, moving):
 
 
 def modes_table(machine: Machine, top: float) -> Table:
-    """Return the table of natural frequencies up to `top` [Hz] with mode shapes; meshes have their mean stiffness."""
+    """Return the table of natural frequencies up to `top` [Hz] with mode shapes. Meshes have their mean stiffness."""
     energy = modal_energy(machine)
     rows = [[i, f, mode_words(machine, energy, i)] for i, f in enumerate(energy.frequencies.tolist()) if f <= top]
     return Table(["mode", Column("natural frequency", "Hz", "{:.5g}"), "shape"], rows, "natural frequencies")

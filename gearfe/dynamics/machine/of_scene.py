@@ -108,7 +108,7 @@ def _in_set(scene, machine, forces):
 
 
 def flat_machine(scene: Scene, case: str | None = None) -> Machine:
-    """Return the machine of a scene with constant mesh stiffness, for its frequencies and faults; nothing is solved.
+    """Return the machine of a scene with constant mesh stiffness, for its frequencies and faults. Nothing is solved.
 
     ValueError if `build_machine` refuses it.
     """

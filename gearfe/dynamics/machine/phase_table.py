@@ -54,7 +54,10 @@ class PhaseTable:
 
 
 def table(values: ArrayLike, start: float, width: float, *, periodic: bool) -> PhaseTable:
-    """`PhaseTable` through equally spaced `values`; `periodic` ones close with the first (F. N. Fritsch, J. Butland, 1984)."""
+    """`PhaseTable` through equally spaced `values`.
+
+    `periodic` ones close with the first (F. N. Fritsch, J. Butland, 1984).
+    """
     values = np.asarray(values, dtype=float)
     values = np.append(values, values[0]) if periodic else values
     rise = np.diff(values)

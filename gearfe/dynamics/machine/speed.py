@@ -45,7 +45,7 @@ class Speed:
     knots: Floats = field(init=False)
 
     def __post_init__(self) -> None:
-        """Integrate; ValueError if times do not rise, or factors are negative or all zero."""
+        """Integrate. Raises ValueError if times do not rise, or factors are negative or all zero."""
         times, factors = rising("speed", self.times, self.factors, strict=True)
         if not ((factors >= 0).all() and factors.any()):
             raise ValueError("speed: the factors must be 0 or more and one of them above 0")

@@ -1,4 +1,4 @@
-"""`Machine`: masses, linear springs, gear meshes and loads as tables; its matrices, modes and state of rest."""
+"""`Machine`: masses, linear springs, gear meshes and loads as tables. Its matrices, modes and state of rest."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -91,7 +91,10 @@ class Machine:
     frame: Floats = field(init=False)
 
     def __post_init__(self) -> None:
-        """Assemble; ValueError for masses that are not positive, springs that are negative, or rows of another length."""
+        """Assemble.
+
+        Raises ValueError for masses that are not positive, springs that are negative, or rows of another length.
+        """
         n, mass = len(self.dofs), numbers("mass", self.mass, " [kg], moments of inertia [kg m2]")
         if mass.shape != (n,) or not (np.isfinite(mass).all() and (mass > 0).all()):
             raise ValueError(f"mass: give {n} positive numbers, one per degree of freedom ({', '.join(self.dofs[:4])}, ...)")
@@ -147,7 +150,7 @@ class Machine:
         return 1.0 if self.speed is None else self.speed.fastest
 
     def stage_of(self, body: str) -> Stage:
-        """Return the stage whose `Stage.returns` contains a body; the driven one, the last, if none does."""
+        """Return the stage whose `Stage.returns` contains a body, or the last (driven) stage if none does."""
         names = {body, body.rstrip("LR"), body.rstrip("LR0123456789")}
         return next((stage for stage in reversed(self.stages) if names & set(stage.returns)), self.stages[-1])
 

@@ -1,4 +1,4 @@
-"""Dynamic model with the mesh stiffnesses of a planetary set; every deflection counts once."""
+"""Dynamic model with the mesh stiffnesses of a planetary set. Every deflection counts once."""
 
 import math
 from dataclasses import replace
@@ -215,7 +215,10 @@ def ring_springs(case: Any) -> Floats:
 
 
 def _on_springs(machine, case):
-    """Return the machine with its ring on the springs of the set, its damping ratios kept; rigid supports keep its springs."""
+    """Return the machine with its ring on the springs of the set, its damping ratios kept.
+
+    Rigid supports keep its springs.
+    """
     springs = list(machine.springs)
     for axis, k in zip(AXES, ring_springs(case), strict=True):
         dof = f"{BODY}.{axis}"

@@ -54,7 +54,7 @@ def _columns(rows, **types):
 
 
 def flatten(machine, times):
-    """`Flat` of a machine; loads that are functions are sampled at `times` and linear between."""
+    """`Flat` of a machine. Loads that are functions are sampled at `times` and linear between."""
     cells, end = [np.zeros((1, 4))], 1
     whole, number = np.int64, float
 

@@ -41,7 +41,7 @@ class Matrices(NamedTuple):
 
 
 def run(plan, machine, flat, z, steps, every, breaks, start=0.0, acting=None):
-    """Integrate `steps` steps from `z` at time `start`; states after each `every` steps, and counts.
+    """Integrate `steps` steps from `z` at time `start`. Return the state after each `every` steps, and counts.
 
     Parameters
     ----------
@@ -182,7 +182,10 @@ def _edge(edges, edge, t):
 
 @compiled
 def _of_part(flat, now, follows, start, h, low, high):
-    """Look up what acts in a part of a step, in the last three rows; `follows`: it starts where the part before ended."""
+    """Look up what acts in a part of a step, in the last three rows.
+
+    `follows`: it starts where the part before ended.
+    """
     begin = now.shape[0] - 3
     if follows:
         for i in range(now.shape[1]):
@@ -194,7 +197,7 @@ def _of_part(flat, now, follows, start, h, low, high):
 
 @kept
 def _run(given, z, clock, states, counts, acting):
-    """Take the steps, filling `states`, `counts` and `acting`; returns how many were done while the state was finite.
+    """Take the steps, filling `states`, `counts` and `acting`. Returns how many were done while the state was finite.
 
     Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic.
     """

@@ -1,4 +1,7 @@
-"""Parts of `motion.loop` that numba compiles: tables looked up, and products along memory; and how they are compiled."""
+"""Parts of `motion.loop` that numba compiles: tables looked up, and products along memory.
+
+The module also states how they are compiled.
+"""
 
 import contextlib
 import warnings
@@ -14,7 +17,7 @@ compiled = njit(error_model="numpy")  # compiled at the first call
 
 
 def kept(function):
-    """Compile at the first call; the result is kept on disk where numba finds a writable folder.
+    """Compile at the first call. The result is kept on disk where numba finds a writable folder.
 
     The result contains the functions it calls, in other files and contact laws too. Any edit of these files compiles it again.
     """
@@ -61,7 +64,10 @@ class _Announcer(event.TimingListener):
 
 @contextlib.contextmanager
 def announced(tell=None):
-    """In the block, `tell` gets a line if something has to be compiled; by default it is a warning. Gives the `_Announcer`."""
+    """In the block, `tell` gets a line if something has to be compiled.
+
+    By default it is a warning. Gives the `_Announcer`.
+    """
     with event.install_listener("numba:compile", _Announcer(tell or warnings.warn)) as announcer:
         yield announcer
 
@@ -90,7 +96,10 @@ def _slope(cells, table, at):
 
 @compiled
 def _load(knots, low, high, t):
-    """Straight between knots ``low <= i < high``, constant before and after them; a knot twice is a jump, and its end counts."""
+    """Straight between knots ``low <= i < high``, constant before and after them.
+
+    A knot twice is a jump, and its end counts.
+    """
     if t >= knots[high - 1, 0]:
         return knots[high - 1, 1]
     if t < knots[low, 0]:
@@ -136,7 +145,9 @@ def _row(now, row, at, shape, which, place, inside):
 
 @compiled
 def secant(table, one, place, u, depth):
-    """Return the stiffness from a part of the tables at a place from `_row`, and a depth [m]; see `machine.secant.Secant`.
+    """Return the stiffness from a part of the tables at a place from `_row`, and a depth [m].
+
+    See `machine.secant.Secant`.
 
     The rows of a column are contiguous in memory, so that the data of the next step are near.
     """

@@ -88,7 +88,10 @@ def is_affine(machine):
 
 
 def plan(machine, h, x=None, adapt=False):
-    """`RunMatrices` of a machine for steps of `h` seconds, its laws at compressions `x` [m]; `adapt`: with what is `allowed`."""
+    """`RunMatrices` of a machine for steps of `h` seconds, its laws at compressions `x` [m].
+
+    `adapt`: with what is `allowed`.
+    """
     K, C, k, c = machine.linear(x)
     squared, modes = modal(K - machine.frame, machine.mass)
     n = len(squared)

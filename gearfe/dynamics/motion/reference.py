@@ -118,7 +118,10 @@ class _Run:
                 return end, hit
 
     def _first_exit(self, path, low, high):
-        """First time in a step at which a contact ends, and the flanks then touched by mesh; its end and None without one."""
+        """First time in a step at which a contact ends, and the flanks then touched by mesh.
+
+        If no contact ends, the end of the step and None.
+        """
         first = high, None
         exits = [(i, *leaving) for i in self.opens for leaving in self._exits(i)]
         at, x = self._looks(path, low, high, {i for i, *_ in exits})

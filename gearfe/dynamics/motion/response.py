@@ -160,7 +160,7 @@ class Response:
         return Signal(self[name], 1 / float(self.time[1] - self.time[0]), self.unit(name), name, angle)
 
     def save(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
-        """Write channels `names` (default: displacements and mesh forces); the suffix decides: .csv, .npz or .mat."""
+        """Write channels `names` (default: displacements and mesh forces). The suffix decides: .csv, .npz or .mat."""
         suffix = suffix_of(path, "response")
         save_as(suffix, path, self._content(names))
 

@@ -24,7 +24,10 @@ def check_initial(machine, state):
 
 
 def initial_state(machine, initial):
-    """Return displacements and velocities ``(n,)`` each; ValueError unless they are finite numbers, one per degree of freedom."""
+    """Return displacements and velocities ``(n,)`` each.
+
+    Raises ValueError unless they are finite numbers, one per degree of freedom.
+    """
     parts = [numbers("initial", part, "") for part in initial] if isinstance(initial, (list, tuple, np.ndarray)) else []
     if [part.shape for part in parts] != 2 * [(len(machine.dofs),)] or not np.isfinite(parts).all():
         raise ValueError(f"initial: give displacements and velocities, {len(machine.dofs)} finite numbers each")

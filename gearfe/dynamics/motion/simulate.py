@@ -186,7 +186,10 @@ def simulate(
 
 
 def check_duration(duration, cost):
-    """Return the seconds of a run at a `cost` for each second of motion; ValueError if they are above the limit."""
+    """Return the seconds of a run at a `cost` for each second of motion.
+
+    Raises ValueError if they are above the limit.
+    """
     what, remedy = (
         f"duration = {duration:g} s, {cost:.2g} s for each second of motion",
         "give a shorter duration, or a longer step=",
@@ -196,7 +199,10 @@ def check_duration(duration, cost):
 
 
 def _reference(machine, duration, count, state, method, rtol, start, filtered):
-    """Return `reference`, its channels filtered if requested; a long run is timed on its first steps before it is begun."""
+    """Return `reference`, its channels filtered if requested.
+
+    A long run is timed on its first steps before it is begun.
+    """
     span = TRIED / 100 * default_step(machine)
     if span < duration / 100:
         started = time.perf_counter()
@@ -220,7 +226,7 @@ class _Runs:
         self.tell = progress or (lambda line: None)
 
     def _watch(self, cost):
-        """Report how long the whole run takes, from the seconds that one simulated second takes; refuse one that takes hours."""
+        """Report the estimated time of the whole run. Reject a run that takes hours."""
         seconds = check_duration(self.duration, cost)
         if seconds > SLOW:
             self.tell(f"{self.duration:.3g} s of motion at this step: about {seconds:.2g} s")

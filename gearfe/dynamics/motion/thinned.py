@@ -21,7 +21,9 @@ STEEP = 2.509  # samples on either side times the transition width, as a part of
 
 
 def stages(every):
-    """Return the decimation of each filter, the last at least nine unless it is alone; their product is `every` or more.
+    """Return the decimation of each filter, the last at least nine unless it is alone.
+
+    Their product is `every` or more.
 
     >>> stages(1), stages(7), stages(40), stages(1000)
     ((2,), (7,), (3, 14), (4, 16, 16))

@@ -29,7 +29,10 @@ SIZES = {"flank": 0.13, "corner": 0.07, "fillet": 0.17, "root": 0.27, "near": 0.
 
 
 def axial_modes(width, m_n):
-    """Highest degree of the patches along a `width` [mm]: 0.8 per normal module plus 2, at least 8; `ritz3d` keeps 2 less."""
+    """Highest degree of the patches along a `width` [mm]: 0.8 per normal module plus 2, at least 8.
+
+    `ritz3d` keeps 2 less.
+    """
     return max(8, math.ceil(0.8 * width / m_n) + 2)
 
 
@@ -135,7 +138,7 @@ def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
 
 
 def _resolved(whole, material, own, degree, cache):
-    """Highest degree that the layers carry: `degree`, or up to `LOST` less; `own` is the influence on one flank."""
+    """Highest degree that the layers carry: `degree`, or up to `LOST` less. `own` is the influence on one flank."""
     gear = whole.gear
     for kept in range(degree, degree - LOST - 1, -1):
         at = np.flatnonzero(np.arange(len(own)) % (degree + 1) <= kept)

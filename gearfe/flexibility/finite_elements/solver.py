@@ -48,7 +48,7 @@ def dissects():
 
 
 def plan(unknowns, *, columns=0, free=None):
-    """Memory and time that the factor of a three-dimensional body takes; RuntimeError if it does not fit.
+    """Memory and time that the factor of a three-dimensional body takes. Raises RuntimeError if it does not fit.
 
     The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers, all of which are read for each
     right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The constants are measured on

@@ -20,7 +20,7 @@ class FaultKind(NamedTuple):
 
     @property
     def damage(self) -> bool:
-        """Whether it is damage of a tooth, a case of the scene; else it is an error of the machine."""
+        """Whether it is damage of a tooth, a case of the scene. Else it is an error of the machine."""
         return not self.key.startswith("machine.")
 
     def enter(self, tables: dict[str, Any], severity: float, row: Mapping[str, Any]) -> None:

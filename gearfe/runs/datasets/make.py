@@ -28,7 +28,7 @@ def dataset(
     workers: int | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> Dataset:
-    """Generate a labelled vibration data set; an interrupted data set is resumed by the same call.
+    """Generate a labelled vibration data set. An interrupted data set is resumed by the same call.
 
     Every condition (a fault, a severity, a speed, a torque, random parameters of the machine) is simulated once. The signals of
     all sensors with all levels of noise are cut into windows and written as one Parquet file in ``windows/``. A file is complete
@@ -123,7 +123,7 @@ def simulate_condition(plan: Plan, condition: Condition) -> tuple[str, bytes, st
 
 
 def plan_dataset(plan: StrPath | Mapping[str, Any], folder: StrPath = ".", workers: int | None = None) -> Cost:
-    """Estimate the cost of a data set without writing anything; its last condition is simulated.
+    """Estimate the cost of a data set without writing anything. Its last condition is simulated.
 
     ValueError if the plan is invalid, like `gearfe.dataset`.
     """

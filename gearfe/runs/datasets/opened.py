@@ -28,7 +28,7 @@ MOST_MAT = 2**31 - 2**20  # bytes of an array in a MATLAB 5 file
 
 @dataclass(frozen=True, slots=True)
 class Dataset:
-    """A data set in a folder; `about` has title, plan, number of conditions, units of the sensors and versions."""
+    """A data set in a folder. `about` has title, plan, number of conditions, units of the sensors and versions."""
 
     folder: Path
     about: dict[str, Any]

@@ -38,7 +38,9 @@ def durable(path: StrPath, content: bytes) -> None:
 
 @contextlib.contextmanager
 def locked(folder: StrPath) -> Iterator[None]:
-    """Be the only one who writes into a folder, until the block ends or the process does; leftovers of killed ones are removed.
+    """Be the only one who writes into a folder, until the block ends or the process does.
+
+    Leftovers of killed ones are removed.
 
     ValueError if another process writes into it, or the folder cannot be written. RuntimeError on a system without ``fcntl``.
     """
@@ -61,7 +63,9 @@ def locked(folder: StrPath) -> Iterator[None]:
 
 
 def begin(folder: StrPath, about: Mapping[str, Any], shape: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the note of an existing folder, to be compared with `about`; a new or empty folder gets `about` as its note.
+    """Return the note of an existing folder, to be compared with `about`.
+
+    A new or empty folder gets `about` as its note.
 
     `about` is JSON, and its ``"format"`` a name such as ``"gearfe sweep 1"``. `read_about` describes `shape`. ValueError if the
     folder cannot be made or written, or contains anything else.

@@ -1,4 +1,7 @@
-"""Shards: Parquet files of rows in a folder, each whole or not there; nothing is ever appended to one. Needs pyarrow."""
+"""Shards: Parquet files of rows in a folder, each whole or not there.
+
+Nothing is ever appended to one. Needs pyarrow.
+"""
 
 import filecmp
 import hashlib
@@ -91,7 +94,7 @@ def where_of(where: Any, names: Sequence[str]) -> Any:
 
 
 def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, ShardColumn]) -> "pyarrow.Table":
-    """Return rows as a table with exactly the columns `fields`; missing values are null.
+    """Return rows as a table with exactly the columns `fields`. Missing values are null.
 
     ValueError if a row has a value that `fields` does not name, or of a wrong type: text among numbers, 1.5 among whole numbers.
     """
@@ -105,7 +108,7 @@ def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, ShardColumn]) 
 
 
 def _column(name, kind, values, schema):
-    """Array of pyarrow; ValueError that names the value that is not of its kind."""
+    """Array of pyarrow. Raises ValueError that names the value that is not of its kind."""
     pa = arrow()
     try:
         if kind == "whole" and any(int(value) != value for value in values if value is not None):
@@ -141,7 +144,7 @@ def encoded(table: "pyarrow.Table") -> bytes:
 
 
 def write_shard(folder: StrPath, name: str, content: bytes) -> None:
-    """Put an `encoded` table into a folder; one of the same name is replaced.
+    """Put an `encoded` table into a folder. One of the same name is replaced.
 
     ValueError if it cannot be written; all other shards stay as they are.
     """
@@ -250,7 +253,7 @@ def read(folder: StrPath, columns: Sequence[str] | None = None, where: Any = Non
 
 
 def frame(found: "pyarrow.Table", fields: Mapping[str, ShardColumn], index: str | None = None) -> "pandas.DataFrame":
-    """Return a table as a pandas table, by `index`; ``attrs["units"]`` has the units by column. Needs pandas."""
+    """Return a table as a pandas table, by `index`. ``attrs["units"]`` has the units by column. Needs pandas."""
     with needing("pandas"):
         data = found.to_pandas()
     data = data if index is None else data.set_index(index).sort_index()

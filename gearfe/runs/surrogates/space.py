@@ -31,7 +31,7 @@ SHAPE = ("z_1", "z_2", "x_1", "x_2")  # they move the contact ratio and the cent
 
 @dataclass(frozen=True)
 class Space:
-    """Ranges of some `INPUTS` about a pair of spur gears; the others are held."""
+    """Ranges of some `INPUTS` about a pair of spur gears. The others are held."""
 
     pair: GearPair  # source of all other values
     ranges: dict[str, tuple[float, float]]  # ends of what varies

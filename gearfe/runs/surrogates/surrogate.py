@@ -164,7 +164,7 @@ class Surrogate:
 
     @classmethod
     def load(cls, path: StrPath) -> "Surrogate":
-        """Read what `save` wrote; nothing is unpickled.
+        """Read what `save` wrote. Nothing is unpickled.
 
         Raises
         ------

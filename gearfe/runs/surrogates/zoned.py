@@ -28,7 +28,7 @@ _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, DEGREE))
 
 
 def breaks_of(eps_alpha: float, solve: Solve, *, cracked: bool) -> Floats:
-    """Rising phases ``(m,)`` between which k is smooth, both ends included; `solve` gives the curve at phases.
+    """Rising phases ``(m,)`` between which k is smooth, both ends included. `solve` gives the curve at phases.
 
     Over a cycle, or, of `cracked` gears, over the engagement of tooth 0, from the middle of the zone of fewer pairs before it to
     that behind. ValueError if a zone is too short to be told from its neighbours, without load or with it.

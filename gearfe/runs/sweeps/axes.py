@@ -15,7 +15,7 @@ SPEC = {*schema_of(RUNS)["steps"].keys, *samples.SHAPES, "choice", "within"}
 
 
 def flat(tables, path=()):
-    """Values of nested tables by dotted key; a table of `SPEC` keys is a value."""
+    """Values of nested tables by dotted key. A table of `SPEC` keys is a value."""
     out = {}
     for name, value in tables.items():
         if isinstance(value, dict) and not _says_values(value):
@@ -26,7 +26,10 @@ def flat(tables, path=()):
 
 
 def _says_values(table):
-    """Return True if a table defines values of one key: `SPEC` keys only; ``count`` may also be a varied key of a scene."""
+    """Return True if a table defines values of one key: `SPEC` keys only.
+
+    ``count`` may also be a varied key of a scene.
+    """
     return bool(table) and set(table) <= SPEC and not isinstance(table.get("count"), (list, dict))
 
 
@@ -89,7 +92,7 @@ def check_values(where, values):
 
 
 def checked_sample(file, given):
-    """Return the checked table ``[sample]``; empty if none is given."""
+    """Return the checked table ``[sample]``. The result is empty if none is given."""
     if not given:
         return {}
     out = checked(RUNS, "sample", file, "sample", given)

@@ -1,4 +1,7 @@
-"""Cases in blocks: sorted so that those that share gears are together; a block is computed by one process and makes one shard."""
+"""Cases in blocks: sorted so that those that share gears are together.
+
+A block is computed by one process and makes one shard.
+"""
 
 import threading
 import time
@@ -102,7 +105,7 @@ def shard(fields: Mapping[str, ShardColumn], made: Sequence[Mapping[str, Any]]) 
 
 
 def rows(study: Study, block: Block) -> list[dict[str, Any]]:
-    """Return rows of a block's cases; a case that fails has its error in its row.
+    """Return rows of a block's cases. A failed case has its error in its row.
 
     Cases that differ in their load only are computed together. If one of them fails or has a note, each is computed alone, so
     that error and note are in the right row.
@@ -154,7 +157,7 @@ def _program():
 
 
 def _computed(study, cases, built):
-    """Rows of cases that differ in their load only; `built` keeps their scene."""
+    """Rows of cases that differ in their load only. `built` keeps their scene."""
     kind, case, key = KINDS[study.kind], cases[0], _key(study, cases[0])
     pair, damage, options = of_case(study, case)
     if key not in built:

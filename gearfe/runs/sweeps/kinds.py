@@ -40,7 +40,7 @@ class Kind(NamedTuple):
 
 
 def curves_of(case: Case, options: dict[str, Any]) -> list[StiffnessCurve]:
-    """Stiffness curves of a case by load; gears are solved once for all cases of this process that share them."""
+    """Stiffness curves of a case by load. Gears are solved once for all cases of this process that share them."""
     span = options["span"] or ("tooth" if case.damaged else "cycle")
     return cast(list[StiffnessCurve], solve(case, Solve(**options | {"span": span, "cache": KEPT})))
 

@@ -25,7 +25,7 @@ def sweep(
     mixed: bool = False,
     progress: Callable[[int, int], object] | None = None,
 ) -> Runs:
-    """Compute all cases of a study and store them in a folder; an interrupted sweep is resumed by the same call.
+    """Compute all cases of a study and store them in a folder. An interrupted sweep is resumed by the same call.
 
     Cases are computed in blocks of some seconds, each written as one file that is complete or absent. If a process is killed or a
     disk is full, only the blocks under way are lost. A case that fails is stored with its error message, and the other cases are

@@ -142,7 +142,7 @@ class Runs:
 
 
 def padded(column: Any) -> np.ndarray:
-    """Return lists of a column as an array ``(n, longest)``, filled up with nan; a null is all nan."""
+    """Return lists of a column as an array ``(n, longest)``, filled up with nan. A null is all nan."""
     lists = [() if values is None else values for values in column.to_numpy(zero_copy_only=False)]
     return np.array(list(zip_longest(*lists, fillvalue=math.nan)), dtype=float).T.reshape(len(lists), -1)
 

@@ -1,4 +1,4 @@
-"""Study: a scene, its variables, and the results of every case; a strict TOML file or an equal dictionary.
+"""Study: a scene, its variables, and the results of every case. A strict TOML file or an equal dictionary.
 
 ::
 
@@ -165,7 +165,7 @@ def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:
 
 
 def _drawn(study):
-    """Values of the sample by key; empty if there is none."""
+    """Values of the sample by key. The result is empty if there is none."""
     sample = study.sample
     if not sample:
         return {}
@@ -189,7 +189,10 @@ def of_case(study: Study, case: Mapping[str, Any]) -> tuple[str, str, dict[str, 
 
 
 def slim(study: Study) -> Study:
-    """Return the study with the tables that its cases need, for other processes; a pair of a gearbox needs all of them."""
+    """Return the study with the tables that its cases need, for other processes.
+
+    A pair of a gearbox needs all of them.
+    """
     if KINDS[study.kind].whole or {"pair", "case"} & set(study.keys) or is_gearbox(study.tables):
         return replace(study, axes=(), sample={})
     return replace(study, axes=(), sample={}, tables=trimmed(study.tables, study.pair, study.case))

@@ -22,7 +22,7 @@ def gradients(u, v):
 
 
 def stiffness(nodes, triangles, young, nu):
-    """Plane-strain stiffness matrix (CSC) of 6-node triangles; degrees of freedom are x and y of node after node."""
+    """Plane-strain stiffness matrix (CSC) of 6-node triangles. Degrees of freedom are x and y of node after node."""
     lame, shear = young * nu / ((1 + nu) * (1 - 2 * nu)), young / (2 * (1 + nu))
     local = gradients(PLACES[:, 0], PLACES[:, 1])
     jacobian = np.einsum("qia,bie->eqab", local, nodes[:, triangles], optimize=True)

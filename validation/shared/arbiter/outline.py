@@ -96,7 +96,7 @@ class Outline:
         return angle - self.removed(radius) / self.r_b
 
     def unloaded(self, radius):
-        """Angle of the other side [rad], counted as `half`: negative; as cut, or modified like the loaded one."""
+        """Angle of the other side [rad], counted as `half`: negative. As cut, or modified like the loaded one."""
         radius = np.clip(radius, *sorted((self.r_f, self.r_a)))
         removed = self.removed(radius) / self.r_b if self.flank is not None and self.flank.both_sides else 0.0
         return removed - self.cut(radius)

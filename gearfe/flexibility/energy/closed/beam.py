@@ -37,7 +37,7 @@ class Validity:
 
 @dataclass(frozen=True, slots=True)
 class Components:
-    """Flexibility of one tooth at some contact positions, itemised; arrays [mm per N/mm of width].
+    """Flexibility of one tooth at contact positions, by component. Arrays [mm per N/mm of width].
 
     `outside` names the ranges of validity that the gear is not in (a tuple of `Validity`).
     """

@@ -133,7 +133,10 @@ def _depth(gear, roll):
 
 
 def _solver(at, count, teeth, law):
-    """`solve` of `plain_sum`: a fixed point of the closing; the contact depends on the load only by a logarithm or F**0.1."""
+    """`solve` of `plain_sum`: a fixed point of the closing.
+
+    The contact depends on the load only by a logarithm or F**0.1.
+    """
 
     def total(values):
         return np.bincount(at.phase, at.weight * values, minlength=count)

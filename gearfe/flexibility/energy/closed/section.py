@@ -80,7 +80,10 @@ class Limit:
 
 
 def limits(gear, damage, foot=None):
-    """Limit lines of the cracks of a `DamagedTooth`; `foot` is where the modelled beam begins if that is not the true fillet."""
+    """Limit lines of the cracks of a `DamagedTooth`.
+
+    `foot` is where the modelled beam begins if that is not the true fillet.
+    """
     if damage.crack_model not in CRACK_MODELS:
         raise ValueError(f"crack_model = {damage.crack_model!r}, but it must be one of {', '.join(CRACK_MODELS)}")
     x, y = cartesian(*flank(gear, gear.roll_a))
@@ -165,7 +168,7 @@ def _left_of(gear, h, y, arc, edges, pits):
 
 
 def _positive(gear, thickness, y):
-    """Return `thickness` [mm]; ValueError where nothing is left."""
+    """Return `thickness` [mm]. Raises ValueError where nothing is left."""
     if (thickness <= 0).any():
         height = abs(y[thickness <= 0].flat[0])
         raise ValueError(

@@ -49,12 +49,12 @@ def faces(pair, face, groove=0.0):
 
 
 def faces_of(case):
-    """`faces` of a `Case`; without `face` its teeth are taken for straight."""
+    """`faces` of a `Case`. Without `face` its teeth are taken for straight."""
     return faces(case.pair, case.face or "spur", case.groove)
 
 
 def stations(case, phase, *, lost="hertz", edges=None):
-    """`Stations` over the contact lines of a `Case` at some phases; exact for what is smooth between the breakpoints.
+    """`Stations` over the contact lines of a `Case` at some phases. Exact for what is smooth between the breakpoints.
 
     Each contact line is cut at the borders of pits and at `edges`; in between 24 Gauss points integrate along the width. No
     slice is a step: the sum is a smooth function of the phase wherever the exact integral is.

@@ -210,7 +210,7 @@ def _depth(z, weight, front, whole, rise):
 
 
 def _pushing(z, band, degree):
-    """Orthonormal polynomials over a band, zero outside; forces have no slope."""
+    """Orthonormal polynomials over a band, zero outside. Forces have no slope."""
     low, high = band
     value = modes(z - low, high - low, degree) * ((z > low) & (z < high))[:, None]
     return value, 0 * value

@@ -15,7 +15,7 @@ from .leaf import leaf
 
 @dataclass(frozen=True, slots=True)
 class SectorBody:
-    """All that the elimination looks up; unknowns are counted in functions along the width.
+    """All that the elimination looks up. Unknowns are counted in functions along the width.
 
     Nodes have numbers from 0, then the insides of the triangles; loads have those from `first_load` on, to k.
 

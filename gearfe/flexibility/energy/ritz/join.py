@@ -64,7 +64,10 @@ def _in_a_row(rows, half):
 
 
 def side_by_side(one, two, half):
-    """Two rows side by side, their common side of `half` unknowns eliminated; of all matrices only the lower triangles count."""
+    """Two rows side by side, their common side of `half` unknowns eliminated.
+
+    Of all matrices only the lower triangles count.
+    """
     left, right, loads = slice(half), slice(half, 2 * half), slice(2 * half, None)
     mine = slice(2 * half, one.shape[0])
     out = np.zeros((one.shape[0] + two.shape[0] - 2 * half,) * 2, order="F")
@@ -86,7 +89,10 @@ def _closed(row, half):
 
 
 def _without(stiffness, across, out):
-    """``out - across stiffness**-1 across'``, lower triangles, by Cholesky, forward only; `across` and `out` are used up."""
+    """``out - across stiffness**-1 across'``, lower triangles, by Cholesky, forward only.
+
+    `across` and `out` are used up.
+    """
     lower, failed = dpotrf(np.asfortranarray(stiffness), lower=1, clean=0, overwrite_a=1)
     if failed:
         raise LinAlgError("the stiffness of the joined sectors is not positive definite")

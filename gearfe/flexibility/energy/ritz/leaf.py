@@ -47,7 +47,10 @@ def _by_component(plane):
 
 
 def _seamed(body, raw, nodes):
-    """Matrix ``(raw, nodes)`` from means and distances of facing nodes to the nodes themselves; others are themselves."""
+    """Matrix ``(raw, nodes)`` from means and distances of facing nodes to the nodes themselves.
+
+    Others are themselves.
+    """
     out = (raw[:, None] == nodes).astype(float)
     for left, right in body.seams:
         mean, apart = (nodes == pair[:, None] for pair in (left, right))
@@ -60,7 +63,7 @@ def _seamed(body, raw, nodes):
 
 
 def _times(body, plane, here, ids, gone, blocks):
-    """Multiply the section's matrices ``(t, n, n)`` and loads by those of the functions along the width; see `leaf`.
+    """Multiply the section's matrices ``(t, n, n)`` and loads by those of the functions along the width. See `leaf`.
 
     Numbers in a row with the same functions are taken together. `blocks` are transposed: upper triangles are written, in rows.
     """

@@ -260,7 +260,7 @@ def _between(material, twist):
 
 
 def _hats(gear, sector, chain, count, knots, order, tilt):
-    """Nodal forces ``(count, 3, n)`` of the hats, in the section at z = 0 (they turn with it); `tilt` is beta_b.
+    """Nodal forces ``(count, 3, n)`` of the hats, in the section at z = 0 (they turn with it). `tilt` is beta_b.
 
     The inward normal of the helicoid is ``(-cos(beta_b) n, sin(beta_b))``, n the section's outward normal with moment r_b:
     it is at right angles to the profile's tangent and to the trace ``(w Y, -w X, 1)``.

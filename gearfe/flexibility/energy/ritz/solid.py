@@ -179,7 +179,7 @@ def _parts(damage):
 
 
 def solid_sector(model, damage, cache=True):
-    """`Panel` of a sector with `damage` of its tooth, loaded by the hats times all modes; a missing tooth has none."""
+    """`Panel` of a sector with `damage` of its tooth, loaded by the hats times all modes. A missing tooth has none."""
     kept, gear = solved_gears(cache), model.gear
 
     def solve():
