@@ -14,7 +14,7 @@ from .pieces import beyond
 
 
 def later_chips(case: Case, approach: float) -> Case | None:
-    """Return the case with partial-width chips shortened for an `approach` [mm], or None if it has no such chips."""
+    """Return the case with partial-width chips of less depth, for an `approach` [mm], or None if it has no such chips."""
     gears, found, damage = (case.pair.gear_1, case.pair.gear_2), False, {}
     for k, ((name, _), gear) in enumerate(zip(SIDES, gears, strict=True)):
         own = []

@@ -100,7 +100,7 @@ def _tops(marks, ends, offsets):
 
 
 def _apart(places, least, last):
-    """Rising places, at least `least` [mm] apart. The place before the `last` one is removed if it is too close."""
+    """Rising places without those closer than `least` [mm] to the previous one (to the next one if `last` is kept)."""
     away = np.diff(places) >= least * (1 - 1e-9)
     return places[np.append(away, True) if last else np.append(True, away)]
 
