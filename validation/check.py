@@ -16,7 +16,7 @@ from gearfe.core.threads import own_warnings
 from .shared.page import MACHINES
 
 PAGES = (
-    *("assumptions", "truth", "sample", "three", "herringbone", "joint"),
+    *("assumptions", "truth", "sample", "random_search", "three", "herringbone", "joint"),
     *MACHINES,
 )
 DAYS = 10  # within which every page has its turn

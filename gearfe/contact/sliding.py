@@ -160,8 +160,8 @@ def _cracks(contact, line, shut):
     """Uncertain deflection ``(phases, pairs)`` [mm] by cracks in thin teeth and at large displacements.
 
     The flexibility of a crack of a given part of the thickness h goes by ``h**-2``; it is that of the whole tooth. A tooth turns
-    about the tip of its crack by about the deflection u by the crack over the height of the tooth. By that part the lever arm and
-    the direction of the force differ from those of small displacements. At the phases `shut`, faces of cracks touch.
+    about the tip of its crack by about the deflection u by the crack over the height of the tooth. By that part the lever arm of
+    the force differs from that of small displacements, and u goes with its square. At the phases `shut`, faces of cracks touch.
     """
     out, stop, order = np.zeros(line.shape), 0, contact.found.order
     for flexible, teeth, thin in zip_longest(contact.flexibility, (order, -order), contact.thinning):
@@ -171,7 +171,7 @@ def _cracks(contact, line, shut):
             lost = np.array([thin.lost(tooth) for tooth in teeth.tolist()] if thin else 0.0)
             by_crack = np.einsum("pcf,fg,pcg->pc", opening, flexible.seam.stiffness, opening) * line
             turn = np.where(shut[:, None], 0.0, by_crack / abs(flexible.gear.r_a - flexible.gear.r_f))
-            out += ((1 - lost) ** -2 - 1 + turn) * by_crack
+            out += ((1 - lost) ** -2 - 1 + 2 * turn) * by_crack
     return out
 
 

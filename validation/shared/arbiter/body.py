@@ -44,7 +44,7 @@ class MeshedBody:
         self.marks, self.refine, self.cracks = marks, refine, cracks
         self.missing = {tooth % side.outline.gear.z for tooth in missing}
         self.unfolded = 0
-        self._vertices = {}  # tooth: places s of the vertices of its loaded side, number of the first of them, +1 or -1
+        self.vertices = {}  # tooth: places s of the vertices of its loaded side, number of the first of them, +1 or -1
         rim, chains = self._rim()
         held = self._held(rim)
         self.nodes, self.triangles = self._mesh(rim, held, chains)
@@ -71,7 +71,7 @@ class MeshedBody:
 
     def loads(self, tooth, s, weights, directions):
         """Columns ``(dofs, m)`` of forces `weights` (n, m) at places `s` of a tooth along `directions` (2, n), own frame."""
-        places, numbers = self._vertices[tooth % self.outline.gear.z]
+        places, numbers = self.vertices[tooth % self.outline.gear.z]
         edge = np.clip(np.searchsorted(places, s, side="right") - 1, 0, places.size - 2)
         x = (s - places[edge]) / (places[edge + 1] - places[edge])
         shapes = (1 - x) * (1 - 2 * x), 4 * x * (1 - x), x * (2 * x - 1)
@@ -86,7 +86,7 @@ class MeshedBody:
     def seam_loads(self):
         """Columns ``(dofs, n)`` of unit forces that press the faces of cracks apart, a pair of nodes each."""
         out = [np.zeros((2 * self.nodes.shape[1], 0))]
-        for left, right, normal in self._seams:
+        for left, right, normal in self.seams:
             columns, number = np.zeros((2 * self.nodes.shape[1], left.size)), np.arange(left.size)
             for nodes, sense in ((left, -1.0), (right, 1.0)):
                 for axis in (0, 1):
@@ -180,7 +180,7 @@ class MeshedBody:
                     # down from the tip: the point on the centre-line is the other side's last
                     s, r, a = s[::-1], r[::-1], a[::-1] - behind
                     numbers = at // 2 + np.arange((s.size + 1) // 2)
-                    self._vertices[tooth] = s[::2][::-1], numbers[::-1]
+                    self.vertices[tooth] = s[::2][::-1], numbers[::-1]
                     if crack is not None:
                         starts[crack] = at // 2 + (s.size - 1 - starts[crack]) // 2
                     shut = self._root_arc(behind) < 1e-4 * gear.m_n  # no root circle left: the next tooth's first point
@@ -201,7 +201,7 @@ class MeshedBody:
             radius.append(np.full(arc.size, self.outline.r_f))
             angle.append(arc)
             at += arc.size
-        for _, numbers in self._vertices.values():
+        for _, numbers in self.vertices.values():
             numbers %= at // 2
         radius, angle = np.concatenate(radius), np.concatenate(angle)
         rim = np.array([radius * np.sin(angle), radius * np.cos(angle)])
@@ -265,7 +265,7 @@ class MeshedBody:
         number = number.reshape(3, -1) + points.shape[1]
         middles = points[:, edges].mean(axis=1)
         self._edges = {(a, b): points.shape[1] + i for i, (a, b) in enumerate(edges.T.tolist())}
-        self._seams = [self._faces(points, chain, double) for chain, double in seams]
+        self.seams = [self._faces(points, chain, double) for chain, double in seams]
         at = 0
         for loop in (rim, held):
             count = loop.shape[1] // 2

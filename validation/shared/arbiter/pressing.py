@@ -41,6 +41,7 @@ class Result:
     dofs: int
     cpu: float
     zones: list = field(default_factory=list)
+    bodies: list = field(default_factory=list)
 
 
 def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), missing=((), ()), refines=(0.8, 1.2)):
@@ -90,6 +91,7 @@ def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), missing=((
         sum(2 * body.nodes.shape[1] for body in bodies),
         time.process_time() - started,
         [(contact.sides, answer) for answer in last],
+        bodies,
     )
 
 
