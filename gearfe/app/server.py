@@ -102,7 +102,7 @@ def application(
 
 
 def _refused(text, status=200):
-    """Return a rejection; for requests of the page itself with status 200, since browsers print others as errors."""
+    """Return a rejection. Requests of the page itself get status 200, because browsers print other statuses as errors."""
     return Response(json.dumps({"refused": text}), status, media_type="application/json")
 
 

@@ -80,7 +80,7 @@ class MachineFit:
 
     @property
     def error(self) -> float:
-        """Root mean square difference of the lines of machine and record over that of the record."""
+        """Root mean square difference between the lines of machine and record, relative to the record."""
         return float(np.linalg.norm(self.fitted - self.measured) / np.linalg.norm(self.measured))
 
     def with_fault(self, case: str) -> tuple[Signal, dict[str, Any]]:
@@ -214,7 +214,7 @@ def _ranges(vary):
 
 
 def _entries(tables, values):
-    """Values by key of scalars: of a list all entries."""
+    """Numbers by key. Each entry of a list is a separate number."""
     out = {}
     for dotted, value in values.items():
         if dotted in PATH:
@@ -267,7 +267,7 @@ def _frequencies(machine, record, harmonics):
 
 
 def _lines(machine, channel, frequency):
-    """Complex amplitudes of the lines of a machine: of its periodic motion if that is short, else of a run."""
+    """Complex amplitudes of the lines of a machine, from its periodic motion, or from a simulation of long periods."""
     period = common_period(machine)
     if period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
         found = steady_state(machine, period=period).response

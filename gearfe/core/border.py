@@ -1,4 +1,4 @@
-"""Border of gearfe: arguments of public functions and records are compared with annotations, and become plain numbers.
+"""Argument checks of public functions and records. Arguments are compared with annotations and converted to plain numbers.
 
 Numbers of any type become floats, lists become arrays where arrays are expected. Masked values, truth values as numbers, nan,
 and in functions infinity without an infinite default are rejected. What a value means is checked by the function itself.
@@ -60,7 +60,7 @@ class _Named(type):
 
 
 class _Public(dict[str, Any]):
-    """Names of annotations that only a type checker imports: public names of gearfe."""
+    """Public names of gearfe in annotations that only a type checker imports."""
 
     def __missing__(self, name):
         package = sys.modules[__name__.partition(".")[0]]
@@ -238,7 +238,7 @@ def _array(kind, name, value):
 
 
 def _even(name, value):
-    """Return what an array can be made of. The functions read it themselves."""
+    """Return a value that can be converted to an array. The functions convert it themselves."""
     try:
         np.ndim(value)
     except ValueError:

@@ -58,7 +58,7 @@ class _Bytes:
         return struct.unpack(f"{self.order}{count}i", self.take(4 * count))
 
     def element(self) -> "tuple[int, _Bytes]":
-        """Kind and content of the next element. Small ones stand in their own tag."""
+        """Type and content of the next element. The content of a small element is part of its tag."""
         (word,) = struct.unpack(f"{self.order}I", self.take(4))
         if word >> 16:
             held = self.take(4)

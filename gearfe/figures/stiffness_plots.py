@@ -52,13 +52,13 @@ def told(curve, *, load=True):
 
 
 def periodic(curve):
-    """Whether a curve repeats after one mesh cycle: without damage, and without teeth that differ."""
+    """Whether a curve repeats after one mesh cycle, that is, without damage and with equal teeth."""
     flanks = curve.meta.get("flanks", {}).values()
     return not curve.meta.get("damage") and not any(flank.get(name) for flank in flanks for name in UNEVEN)
 
 
 def closed(curve):
-    """Phases and stiffness [N/um] as they are drawn: one cycle closed, jumps upright.
+    """Phases and stiffness [N/um] for drawing, with a closed cycle and vertical jumps.
 
     Returns
     -------

@@ -188,7 +188,7 @@ class Set:
         return 1 + 2 * self.case.floating + self.case.planets + 3 * bool(self._lugs)
 
     def _closing(self, block):
-        """How motions of the bodies close a mesh: ``(motions,)``."""
+        """Closure of a mesh by unit motions of the bodies ``(motions,)``."""
         case, out = self.case, np.zeros(self._motions)
         first = 1 + 2 * case.floating
         if block.inner:

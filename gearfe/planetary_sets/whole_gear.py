@@ -79,7 +79,7 @@ class WholeGear:
         return np.concatenate([edge @ self.push, edge[:, :, : self.edge]], axis=2)
 
     def held_inverse(self) -> NDArray:
-        """Inverses ``(h, n, n)`` of the stiffness with the edge held: 0 there."""
+        """Inverses ``(h, n, n)`` of the stiffness with the edge held (zero for its unknowns)."""
         out, inner = np.zeros_like(self.stiffness), slice(self.edge, None)
         out[:, inner, inner] = np.linalg.inv(self.stiffness[:, inner, inner])
         return out

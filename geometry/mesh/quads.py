@@ -174,7 +174,7 @@ class _Draft:
         return list(range(start + 1, len(self.lines) + 1))
 
     def edges(self, lines):
-        """Start and end nodes ``(2, 2 n)`` of the halves of `lines`."""
+        """Start and end nodes ``(2, 2 n)`` of the half edges of `lines`."""
         nodes = np.array(self.lines)[np.array(lines) - 1]
         return np.stack([nodes[:, :2], nodes[:, 1:]], axis=1).reshape(-1, 2).T
 

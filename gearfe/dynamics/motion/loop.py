@@ -1,4 +1,4 @@
-"""The fast path: one step of `gearfe.dynamics.motion.propagator` after the other, in scalar arithmetic that numba compiles.
+"""Time integration by steps of `gearfe.dynamics.motion.propagator`, in scalar arithmetic compiled by numba.
 
 A step in which a mesh opens or closes, or a load bends, is halved up to `motion.propagator.LEVELS` times about it; under a
 law of contact that is not linear so is one whose estimate (`motion.propagator.RunMatrices.told`) is above what is allowed: flanks

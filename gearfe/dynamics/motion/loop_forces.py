@@ -87,7 +87,7 @@ def changed(side, x, now, row, laws):
 
 @compiled
 def losses(side, x, now, row, laws):
-    """Bring the sides up to date; how many meshes that can open have opened."""
+    """Update the side of contact of each mesh, and return the number of meshes that have lost contact."""
     m, lost = side.size, 0
     for i in range(m):
         seen = _side(x[i] - now[row, m + i], laws[i].backlash)

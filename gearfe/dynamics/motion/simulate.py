@@ -273,7 +273,7 @@ class _Runs:
         return replace(out, stats=out.stats | stats | {"seconds": time.perf_counter() - started})
 
     def controlled(self, error):
-        """Run at the chosen step; where contact is lost, until two whole runs agree, or by the reference."""
+        """Run at the chosen step. With contact loss, refine until two whole runs agree, or use the reference integrator."""
         started = time.perf_counter()
 
         def told(one, **more):

@@ -1,4 +1,4 @@
-"""Step control of the fast path: differences of runs with two steps, and a step for which they are small.
+"""Step control of the fast integrator, based on the difference between runs with two step lengths.
 
 The error of a step is set by the mesh cycles, by the modes the meshes excite, by how steep the stiffness curves are and by the
 damaged tooth: no frequency alone determines it. So a short stretch of the motion is run at a step and at half of it, and the
@@ -223,7 +223,7 @@ class Estimate(NamedTuple):
 
 
 def is_rough(machine):
-    """Return True if the error of a step depends on step positions: flanks meet under a nonlinear law or a force law."""
+    """Return True if the error depends on step positions, as in contact under a nonlinear law or a force law."""
     return is_bent(machine) or any(mesh.secants for mesh in machine.meshes)
 
 

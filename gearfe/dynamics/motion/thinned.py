@@ -110,7 +110,7 @@ def _filtered(pieces, count, reach, passed):
 
 
 def _taken(waiting, count, matrix):
-    """Rows that have enough on either side, filtered; those that later ones still need."""
+    """Return filtered rows that have enough neighbours, and the rows that later ones still require."""
     length = matrix.shape[1] - (len(matrix) - 1) * count
     ready, out = (len(waiting) - length) // count + 1, []
     for first in range(0, ready, len(matrix)):
