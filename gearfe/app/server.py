@@ -79,7 +79,7 @@ def application(
         kind = request.path_params["kind"]
         try:
             body = json.loads(await request.body(), parse_constant=_no_number)
-        except ClientDisconnect:  # nobody reads the answer
+        except ClientDisconnect:  # the client has left
             return _refused("the request is incomplete", 400)
         except (json.JSONDecodeError, UnicodeDecodeError, RecursionError):
             return _refused("this is no JSON", 400)

@@ -234,7 +234,7 @@ def begin() -> None:
     One pair loads what methods load late.
     """
     PROCESS.most = KEPT
-    os.environ["GEARFE_CACHE"] = ""  # a slider passes thousands of gears that are not needed again
+    os.environ["GEARFE_CACHE"] = ""  # do not store the many intermediate gears of a moving slider
     answer("quick", START)
 
 

@@ -22,12 +22,12 @@ from ..signal.series import Signal
 from .settled import recorded
 
 PATH = ("path.frequency_Hz", "path.damping_ratio", "path.mass_kg")
-BAND = 0.4  # lines above this part of the rate are not used
+BAND = 0.4  # lines above this part of the sampling rate are not used
 APART = 4.0  # widths 1/T of a spectral line between two lines, so that a Hann window parts them
 STARTS = 6  # starting points per parameter; the best two are refined
 SHORT = 4  # mesh cycles of the common period up to which the periodic motion is solved directly
-CLEAR = 3.0  # times the noise together are lines that can be fitted
-OFF = 0.02  # part of the speed within which a faster or slower record is searched for
+CLEAR = 3.0  # ratio of the summed lines to the noise that a fit requires
+OFF = 0.02  # relative speed difference within which another record speed is searched
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,7 +45,7 @@ class Content:
     title: str  # first line of a text table, "gearfe stiffness curve, version 1"
     columns: dict  # columns of a text table, arrays ``(n,)`` by "name [unit]"
     arrays: dict  # the same for all other formats, by name
-    meta: dict  # all that is needed to repeat it; JSON
+    meta: dict  # all data required to repeat the computation, as JSON
     # units of the arrays: a table in JSON files, JSON text ``units_json`` in the others
     units: dict = field(default_factory=dict)
 

@@ -8,7 +8,7 @@ import numpy as np
 from .rexs_file import Component, Model
 
 COUPLED = ("coupling", "switchable_coupling")
-KNOWN = 1e-9  # part of a unit vector that may lie in the null space
+KNOWN = 1e-9  # tolerance of the torque balance, and of undetermined values (null space)
 
 
 class PowerMesh(NamedTuple):

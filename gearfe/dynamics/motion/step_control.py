@@ -281,7 +281,7 @@ def estimate_along(response, found):
         index = np.searchsorted(time, begin + np.linspace(0.0, duration - length, SPREAD) * (1 - 1e-12)) - 1
         index = np.unique(np.maximum(index, 0))
         values = np.linalg.eigvals(plan(machine, h, machine.working()).levels[0][0])
-        # remaining part of a squared error after a stretch
+        # share of a squared error that is left after one stretch of the run
         left = np.abs(values[values.imag > 0]).max(initial=0.0) ** (2 * length / h)
         grown = math.sqrt(sum(left**i for i in range(math.ceil(duration / length))))
     else:

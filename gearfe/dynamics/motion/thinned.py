@@ -71,7 +71,7 @@ def _weights(count, reach, passed):
     J. F. Kaiser, Proc. IEEE Int. Symp. Circuits Syst. (1974) 20-23; `scipy.signal.firwin`.
     """
     cut = 2 * (passed + STEEP / 2 / max(reach, 1e-9)) / count
-    if cut >= 1:  # no sample is left out
+    if cut >= 1:  # all samples are kept
         return np.eye(1, 2 * reach * count + 1, reach * count)[0]
     return firwin(2 * reach * count + 1, cut, window=("kaiser", WIDTH))
 
