@@ -66,7 +66,7 @@ class PageField:
         return shown and not (self.beside and not state[self.beside]) and (self.absent is None or state[self.name] != self.absent)
 
     def typed(self, value: Any) -> Any:
-        """Return a value as in the scene: true or false for a truth value."""
+        """Return a value of the page in the form that a scene requires."""
         return value == self.choices[1] if key_at(self.places[0]).type == "boolean" else value
 
     def from_typed(self, value: Any) -> Any:

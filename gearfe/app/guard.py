@@ -15,7 +15,7 @@ SAFE = {
     "cross-origin-opener-policy": "same-origin",
     "cross-origin-resource-policy": "same-origin",
 }  # plotly writes styles (no scripts) into the page
-MINUTE, AWAY = 60.0, 300.0  # seconds over which requests are counted, and after which a client has left
+MINUTE, AWAY = 60.0, 300.0  # [s] window of the request count; idle time after which a client is forgotten
 
 
 class Limits:

@@ -79,7 +79,7 @@ def application(
         kind = request.path_params["kind"]
         try:
             body = json.loads(await request.body(), parse_constant=_no_number)
-        except ClientDisconnect:  # nobody reads the answer
+        except ClientDisconnect:  # the client has left
             return _refused("the request is incomplete", 400)
         except (json.JSONDecodeError, UnicodeDecodeError, RecursionError):
             return _refused("this is no JSON", 400)
@@ -102,7 +102,7 @@ def application(
 
 
 def _refused(text, status=200):
-    """Return a rejection; for requests of the page itself with status 200, since browsers print others as errors."""
+    """Return a rejection. Requests of the page itself get status 200, because browsers print other statuses as errors."""
     return Response(json.dumps({"refused": text}), status, media_type="application/json")
 
 

@@ -174,7 +174,7 @@ def spectrum(state: dict[str, Any]) -> dict[str, Any]:
 
 
 def load(given: dict[str, Any]) -> dict[str, Any]:
-    """State of a scene's text, or of a built-in one by its name; the choices if it is more than one pair in one case."""
+    """State of the page for the text of a scene or the name of a built-in one. Several pairs or cases are returned as choices."""
     name, text = str(given.get("name")), given.get("text")
     if text is None and name in scene_names():
         text = (resources.files("gearfe.scene.scenes") / f"{name}.toml").read_text(encoding="utf-8")
@@ -234,7 +234,7 @@ def begin() -> None:
     One pair loads what methods load late.
     """
     PROCESS.most = KEPT
-    os.environ["GEARFE_CACHE"] = ""  # a slider passes thousands of gears that are not needed again
+    os.environ["GEARFE_CACHE"] = ""  # do not store the many intermediate gears of a moving slider
     answer("quick", START)
 
 

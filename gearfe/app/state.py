@@ -16,7 +16,7 @@ from .fields import FIELDS, SIDES, START, checked_state, key_at
 CASE, PAIR = "damaged", "stage"
 RUN = {"model", "speed_rpm", "torque_Nm"}  # keys of a machine that have a field on the page
 SPRUNG = ("flank", "support")  # tables of a gear
-LEFT = (("gear", "gear_1", "gear_2", "pair", "case", "material"), ("pair", "case"))  # keys that name tables; tables of damage
+LEFT = (("gear", "gear_1", "gear_2", "pair", "case", "material"), ("pair", "case"))  # keys that refer to tables; tables of damage
 CLOSE = 1e-9  # relative tolerance of equal numbers, because torques are computed from forces
 
 

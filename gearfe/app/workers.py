@@ -1,4 +1,4 @@
-"""Solver processes with one task each; waiting tasks, of which the newest counts; restart of dead processes.
+"""Solver processes with one task each. The newest waiting task of a page replaces older ones. Dead processes are restarted.
 
 A task has a lane, that of a page or of one of its buttons. A newer task of the same lane takes the place of one that still
 waits. Tasks that take seconds never have all processes, so that a slider of somebody else still moves.
@@ -158,7 +158,7 @@ class Pool:
                 task.worker.kill()
 
     def _deal(self) -> None:
-        """Give free processes to the longest waiting tasks; tasks that take seconds leave one free."""
+        """Give free processes to the tasks that wait longest. One process stays free of long tasks."""
         for task in list(self.waiting):
             if self.free and not (task.slow and self.slow >= self.count - 1):
                 self.waiting.remove(task)

@@ -228,7 +228,7 @@ def solve_fitted(case: Case, how: Solve) -> StiffnessCurve:
 
 
 def damage_cycle(chosen: Case | ScenePair) -> NDArray:
-    """Phases ``(STORED,)`` of curves on file: of the cycle in which the damaged tooth is in the middle of its engagement."""
+    """Phases ``(STORED,)`` of stored curves. The damaged tooth is in the middle of its engagement in this cycle."""
     length = chosen.pair.eps_alpha + overlap(chosen.pair, chosen.face, chosen.groove)
     tooth = (chosen.first_tooth or 0) if isinstance(chosen, Case) else 0
     return length / 2 - 0.5 - tooth + (np.arange(STORED) + 0.5) / STORED

@@ -70,12 +70,12 @@ class Comparison:
 
     @property
     def methods(self) -> tuple[str, ...]:
-        """Names of the methods of what was asked for, the reference first."""
+        """Names of the requested methods, the reference first."""
         return tuple(dict.fromkeys(method for *key, method in self.solved if tuple(key) in self.asked))
 
     @property
     def subject(self) -> Key:
-        """Pair and case that the headline is about: the one that loses most of its mean stiffness."""
+        """Pair and case with the largest loss of mean stiffness, which the headline describes."""
         return max(self.asked, key=lambda key: self.losses(key).get(self.methods[0], {}).get("mean", -math.inf))
 
     @property
@@ -125,7 +125,7 @@ class Comparison:
         return {name: curve for (*key, name), curve in self.solved.items() if tuple(key) == (pair, case)}
 
     def _cut(self, key, over=None):
-        """Curves by method over the phases that zones of `over` (default: the same) are over."""
+        """Curves by method, restricted to the phases of the zones of `over` (default: the same pair and case)."""
         return {name: within(curve, self.first_tooth(over or key)[1]) for name, curve in self.of(*key).items()}
 
     def losses(self, key: Key | None = None) -> dict[str, dict[str, float]]:
@@ -190,7 +190,7 @@ class Comparison:
         return told_cycle(None if len(self.asked) > 1 else self._cut(self.subject)[self.methods[0]].phase, self.kind)
 
     def reasons(self) -> dict[str, str]:
-        """Methods without a curve by why they have none: names with commas."""
+        """Names of methods without a curve, joined by commas, by the reason."""
         whys = dict.fromkeys(self.left_out.values())
         return {why: ", ".join(name for name, reason in self.left_out.items() if reason == why) for why in whys}
 

@@ -1,4 +1,4 @@
-"""Loss of mesh stiffness by damage: damaged and healthy gears at the same phases by the same method.
+"""Loss of mesh stiffness by damage. Damaged and healthy gears are compared at the same phases by the same method.
 
 All numbers of a damaged pair are over one mesh cycle, in which its damaged tooth is in the middle of its engagement. The tooth is
 then always in contact, and a healthy pair has the same mean over it as over any other cycle. A chip lies at the tip: its cycle is
@@ -152,7 +152,7 @@ def kind_of(damage: Mapping[str, Iterable[Damage]] | None) -> str:
 
 
 def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[str, float]) -> str:
-    """One sentence on what damage takes; `said`, `kind`, `found`, `doubt` of `told_damage`, `kind_of`, `loss`, `loss_errors`.
+    """One sentence on the loss of stiffness, from the results of `told_damage`, `kind_of`, `loss` and `loss_errors`.
 
     >>> headline("2 mm crack at 60 degrees", "cracked", {"single": 0.158, "mean": 0.0951}, {"single": 0.0021})
     '2 mm crack at 60 degrees: the mesh is 15.8 ± 0.3 % softer where the cracked tooth carries alone; 9.5 % on average'
@@ -168,7 +168,7 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
 
 
 def percent_with_doubt(value: float, doubt: float) -> str:
-    """Return a ratio in percent with its error, which is rounded up: ``15.8 ± 0.3 %``; without an error the number alone."""
+    """Return a ratio in percent, with its rounded-up error if one is given: ``15.8 ± 0.3 %``."""
     if not math.isfinite(doubt):
         return f"{100 * value:.1f} %"
     return f"{100 * value:.1f} ± {rounded_up(100 * doubt):.1f} %"

@@ -22,12 +22,12 @@ from ..signal.series import Signal
 from .settled import recorded
 
 PATH = ("path.frequency_Hz", "path.damping_ratio", "path.mass_kg")
-BAND = 0.4  # lines above this part of the rate are not used
+BAND = 0.4  # lines above this part of the sampling rate are not used
 APART = 4.0  # widths 1/T of a spectral line between two lines, so that a Hann window parts them
 STARTS = 6  # starting points per parameter; the best two are refined
 SHORT = 4  # mesh cycles of the common period up to which the periodic motion is solved directly
-CLEAR = 3.0  # times the noise together are lines that can be fitted
-OFF = 0.02  # part of the speed within which a faster or slower record is searched for
+CLEAR = 3.0  # ratio of the summed lines to the noise that a fit requires
+OFF = 0.02  # relative speed difference within which another record speed is searched
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ class MachineFit:
 
     @property
     def error(self) -> float:
-        """Root mean square difference of the lines of machine and record over that of the record."""
+        """Root mean square difference between the lines of machine and record, relative to the record."""
         return float(np.linalg.norm(self.fitted - self.measured) / np.linalg.norm(self.measured))
 
     def with_fault(self, case: str) -> tuple[Signal, dict[str, Any]]:
@@ -214,7 +214,7 @@ def _ranges(vary):
 
 
 def _entries(tables, values):
-    """Values by key of scalars: of a list all entries."""
+    """Numbers by key. Each entry of a list is a separate number."""
     out = {}
     for dotted, value in values.items():
         if dotted in PATH:
@@ -267,7 +267,7 @@ def _frequencies(machine, record, harmonics):
 
 
 def _lines(machine, channel, frequency):
-    """Complex amplitudes of the lines of a machine: of its periodic motion if that is short, else of a run."""
+    """Complex amplitudes of the lines of a machine, from its periodic motion, or from a simulation of long periods."""
     period = common_period(machine)
     if period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
         found = steady_state(machine, period=period).response

@@ -108,7 +108,7 @@ class ModelFile:
             raise ValueError(f"{self.path}: rows are up to {step:.4g} of a mesh cycle apart; {finer}")
 
     def _check_origin(self, phase, k):
-        """Warn if k jumps up where no pair enters: most often a curve that counts from elsewhere."""
+        """Warn if k rises steeply where no tooth pair enters. The usual cause is another origin of the phase."""
         rise = np.diff(np.append(k, k[0]))
         top = int(np.argmax(rise))
         after = np.append(phase, phase[0] + 1)[top + 1]

@@ -19,7 +19,7 @@ ROTATIONS, BEARINGS, SIDEBANDS = 5, 3, 30  # harmonics of shafts and of bearing 
 
 
 class Named(NamedTuple):
-    """A line of a spectrum: frequency [Hz], amplitude, how often the local median it is, and its name (empty: none)."""
+    """A spectral line: frequency [Hz], amplitude, its ratio to the local median, and its name (empty if unknown)."""
 
     frequency: float
     amplitude: float

@@ -39,7 +39,7 @@ class PairModel:
     function: Callable[[Floats, Floats], Floats]
 
     def __post_init__(self) -> None:
-        """Raise ValueError for what is not a function."""
+        """Raise ValueError if the model is not a function."""
         if not callable(self.function):
             raise ValueError(f"PairModel({self.function!r}): give a function f(radius_1, radius_2) -> k [N/m]")
 
@@ -209,7 +209,7 @@ def _called(name, function, given, where):
 
 
 def _hint(name, model, k, reference):
-    """Warn of what is most likely a mistake: a unit, or a curve of another pair or load."""
+    """Warn of a probable mistake in the unit, or of a curve for another pair or load."""
     ratio = math.exp(np.log(k / reference.k).mean())
     if not 1 / FAR < ratio < FAR:
         warnings.warn(

@@ -70,7 +70,7 @@ def render_pattern(case: Case, path: StrPath, *, title: str = "") -> Pattern:
 
 
 def face_load_distribution(contact: Contact3D) -> tuple[Floats, Floats]:
-    """Load per width along the face of a contact pattern: that of all tooth pairs together, the mean of its phases.
+    """Load per width along the face, summed over all tooth pairs and averaged over the phases.
 
     Its largest value over its mean is the face load factor. Over a whole mesh cycle the contact lines of helical teeth pass every
     height alike, so that what is left is due to flanks, axes and bodies.

@@ -37,7 +37,7 @@ def recorded(machine, duration, rate, *, method="fast", start=0.0, progress=None
 
 
 def slowest_decay(machine):
-    """Rate at which the least damped vibration of a machine dies out, meshes at their mean stiffness [1/s]; 0 if it does not."""
+    """Decay rate of the least damped vibration of a machine with mean mesh stiffness [1/s], or 0 if it does not decay."""
     n = len(machine.dofs)
     K, C, _, _ = machine.linear(machine.working())
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-K / machine.mass[:, None], -C / machine.mass[:, None]]])

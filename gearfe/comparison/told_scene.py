@@ -1,4 +1,4 @@
-"""A scene in words: what was understood of its file, before anything is computed."""
+"""Description of a scene in words, as read from its file, before any computation."""
 
 import math
 from collections.abc import Iterator

@@ -32,7 +32,7 @@ ENGAGED = 2  # mesh cycles in which a tooth passes its mesh
 
 
 def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> Floats:
-    """Positions of the sun [pitches], evenly spread over `cycles` mesh cycles; some more than `count` if phases would repeat.
+    """Positions of the sun [pitches], evenly spread over `cycles` mesh cycles. More than `count` are used if phases would repeat.
 
     Default: one cycle; of damaged sets two, in which the first damaged tooth passes a mesh; of a ring on pads, a pitch of these.
     """
@@ -74,7 +74,7 @@ def set_headline(curves: SetCurves, healthy: SetCurves | None = None) -> str:
 
 
 def set_table(curves: SetCurves) -> Table:
-    """`Table` of every mesh: its stiffness in the set, the estimated error of that, alone, and its load over the positions."""
+    """`Table` of the meshes of a set: stiffness in the set and as an isolated pair, estimated error, and load."""
     rows, error = [], curves.meta.get("error", {"k": np.full((2, curves.force.shape[2]), np.nan)})["k"]
     for k, kind in enumerate(MESHES):
         for planet in range(curves.force.shape[2]):

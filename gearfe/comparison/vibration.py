@@ -70,7 +70,7 @@ class Analysis:
         return next(iter(self.signals.values())).unit
 
     def standing(self):
-        """Names of the lines above the noise: those of the mesh, and significant ones of a case that is not healthy.
+        """Names of the mesh lines above the noise and, in a damaged case, of the significant fault lines.
 
         A line of a fault or of a carrier is significant above three limits: `FLOOR` times the noise of the bins around it,
         `RANGE` times the rms of the record and, if there is a healthy machine, `RISE` times the healthy machine's line.
@@ -150,7 +150,7 @@ def in_words(line):
 
 
 def _floor(found, frequency):
-    """Noise floor of a spectrum around a frequency, the line itself left out: the median, told from the lower quartile.
+    """Noise floor of a spectrum around a frequency without the line itself. The median is estimated from the lower quartile.
 
     Where lines are dense, their lobes fill more than half of the bins.
     """
@@ -243,7 +243,7 @@ def analysis(found, channel=None):
 
 
 def _check_moving(response, channel):
-    """Raise ValueError if a degree of freedom moves by rounding alone, less than `ROUNDING` of those of its unit."""
+    """Raise ValueError if the motion of a degree of freedom consists of rounding errors only."""
     head, _, tail = channel.partition(" ")
     dofs = response.machine.dofs
     if head not in dofs:

@@ -1,4 +1,4 @@
-"""The elastic bodies behind the contact lines: both gears, or their halves, and the flexibility between the cells on them.
+"""Elastic bodies of both gears (or of their halves) and the flexibility between cells of the contact lines.
 
 Heights count from the end that touches first: the pinion's roll length falls with them, so its beta is negative. The wheel's, in
 its own frame, is the opposite one; also a ring's, whose frame is mirrored.

@@ -1,4 +1,4 @@
-"""Load sharing over the cells of contact lines: cells push, do not pull, and each is a strip of Hertz's pressure.
+"""Load sharing over the cells of contact lines. A cell transmits compression only and has a Hertzian pressure distribution.
 
 Many contact problems, one for each phase, are solved at once: what is done cell by cell is done for all of them in one array.
 """
@@ -99,7 +99,7 @@ class SharedLines:
         raise RuntimeError(f"load sharing along the contact lines did not converge at {load[open_[0]]:g} N")
 
     def _started(self, load):
-        """First forces of each problem, even over its cells, and what pushes at first: all cells, no faces of cracks."""
+        """Return initial forces, equal in all cells of a problem, and the initially active contacts (no crack faces)."""
         lines, forces = self.joined, []
         length = np.bincount(lines.problem, lines.width)
         for p, gap in enumerate(lines.gaps):
@@ -108,7 +108,7 @@ class SharedLines:
         return forces, [weight > 0 for weight in lines.weights]
 
     def _step(self, p, load, active, before, free):
-        """Return forces and approach of a problem, and the active cells and faces; `before`: the forces of the last step."""
+        """Return forces, approach, active cells and active crack faces of a problem. `before` has the forces of the last step."""
         lines = self.joined
         total, gap, weight, n = lines.totals[p], lines.gaps[p], lines.weights[p], lines.systems[p].gap.size
         if not free:

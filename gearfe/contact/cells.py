@@ -1,4 +1,4 @@
-"""Contact lines as cells: short parts of their pieces (`gearfe.contact.pieces`), with the gaps that each has."""
+"""Contact lines divided into short cells, with the gap of each cell (pieces: `gearfe.contact.pieces`)."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Bound of what the corner of a chip of a part of the width carries beyond the end of its flank.
+"""Upper bound of the load carried by the corner of a chip that covers a part of the face width.
 
 Such a chip is a recess, which takes contact away at once. A corner goes on to touch the mate until its gap exceeds the approach
 of the gears. The chip with its corner moved up by that distance carries at least as much.
@@ -14,7 +14,7 @@ from .pieces import beyond
 
 
 def later_chips(case: Case, approach: float) -> Case | None:
-    """Return the case whose chips of a part of the width end later, at an `approach` [mm]; None if it has no such chips."""
+    """Return the case with partial-width chips of less depth, for an `approach` [mm], or None if it has no such chips."""
     gears, found, damage = (case.pair.gear_1, case.pair.gear_2), False, {}
     for k, ((name, _), gear) in enumerate(zip(SIDES, gears, strict=True)):
         own = []

@@ -167,7 +167,7 @@ class JoinedLines:
         return csr_array((over, (i, j)), shape=(reach.size,) * 2)
 
     def cells(self, forces):
-        """Return the forces of all cells, without those of faces."""
+        """Return the forces of all cells, without the forces on crack faces."""
         return np.concatenate([force[: system.gap.size] for force, system in zip(forces, self.systems, strict=True)])
 
     def along(self, mean, forces, load):

@@ -257,7 +257,7 @@ class PairContact:
         return corner, zone, np.where(apart, width, 0.0)
 
     def rows(self, wanted):
-        """`HatRow` of each `gearfe.contact.rows.Wanted`; those that do not depend on the load are kept."""
+        """`HatRow` of each `gearfe.contact.rows.Wanted`. Rows that are independent of the load are stored."""
         new = [request for request in dict.fromkeys(wanted) if request not in self._rows]
         made = dict(zip(new, corner_rows(self, new), strict=True))
         self._rows |= {request: row for request, row in made.items() if not request.width}

@@ -304,7 +304,7 @@ class PhaseContact:
         return Carried(loaded, (shared.approach - slide) / cos, times * tangent * cos**2, closed, *given, unsure, beyond_it)
 
     def _slid(self, cells, bodies, load, closing, closed):
-        """Part of the approach at right angles to the flanks [mm] saved by sliding, and what is unsure of the rest, relative.
+        """Reduction of the approach by sliding [mm], normal to the flanks, and the relative uncertainty of the remainder.
 
         `closing` is the approach beyond the first touch [mm]. What sliding saves at corners is in their law, but for cracks. With
         `closed` faces it is left out.

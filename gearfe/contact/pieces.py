@@ -127,7 +127,7 @@ def _limits(pair, reach):
 
 
 def _by_depth(pits, closing):
-    """Pits of both gears deeper than `closing`; then (gear, depth, pits of both gears) of each depth that is not."""
+    """Pits of both gears deeper than `closing`, then (gear, depth, pits of both gears) for each smaller depth."""
     out = [tuple(tuple(pit for pit in gear_pits if pit.depth > closing) for gear_pits in pits)]
     for gear, gear_pits in enumerate(pits):
         for depth in sorted({pit.depth for pit in gear_pits if pit.depth <= closing}):
@@ -137,7 +137,7 @@ def _by_depth(pits, closing):
 
 
 def _on_floors(piece, above, width):
-    """Parts of a piece under pits `above` (gear, depth, first, last): of one gear the deepest counts, of both their sum."""
+    """Parts of a piece under pits `above` (gear, depth, first, last). The deepest pits of both gears are added."""
     edges = np.unique(np.clip([piece.first, piece.last, *(at for pit in above for at in pit[2:])], piece.first, piece.last))
     edges = edges[np.concatenate([[True], np.diff(edges) > 1e-6 * width])]
     edges[-1] = piece.last

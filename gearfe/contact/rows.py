@@ -100,7 +100,7 @@ def _tops(marks, ends, offsets):
 
 
 def _apart(places, least, last):
-    """Rising places without those closer than `least` [mm] to the one before, or to the one after to keep the `last`."""
+    """Rising places without those closer than `least` [mm] to the previous one (to the next one if `last` is kept)."""
     away = np.diff(places) >= least * (1 - 1e-9)
     return places[np.append(away, True) if last else np.append(True, away)]
 
@@ -128,7 +128,7 @@ def _numbers(one):
 
 
 def _host(one):
-    """Whose side a row stands on: 0 the pinion's, 1 the wheel's."""
+    """Gear on which the hats of a row are defined: 0 for the pinion, 1 for the wheel."""
     return (_numbers(one)[0] - 1) % 2
 
 
@@ -205,7 +205,7 @@ def _between(knots, kernel, on):
 
 
 def _alone(one):
-    """Whether a row has one corner and nothing else: its hats stand as those of every other such row."""
+    """Whether a row has one corner and nothing else. All such rows have the same arrangement of hats."""
     return len(_numbers(one)) == 1 and not one.width
 
 

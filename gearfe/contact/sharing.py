@@ -124,7 +124,7 @@ class LineContacts(NamedTuple):
 
 
 def line_contact(contacts, load, weight=None, start=None):
-    """Share a line load over line contacts: `share` plus the half-plane logarithm of each contact.
+    """Distribute a line load over line contacts, with the logarithmic half-plane deflection of each contact.
 
     Contact k adds ``coefficient * (ln(2 / a_k) + 1/2) P_k`` to the approach, ``a_k`` its Hertz half width (the mean of the
     half-plane logarithm under an elliptic pressure, at its middle). Newton on the logarithm, an exact contact problem in

@@ -1,4 +1,4 @@
-"""Motion of contacts along the flanks under load: towards more compliant places, with shifted gaps."""
+"""Motion of contacts along the flanks under load. Contacts move towards more compliant places, and gaps change."""
 
 import math
 from itertools import zip_longest
@@ -10,7 +10,7 @@ from ..flexibility.plane import cracks_beyond
 from ..geometry.tooth.profile import arc_at, roll_at_arc
 from .thinned import UNSURE
 
-MOST = 0.05  # largest approach by sliding, as a part of the deflection of the pair: beyond it strains are not small
+MOST = 0.05  # limit of the approach by sliding, relative to the deflection; larger strains are not small
 STEP = 0.01  # step along the flank for the derivative of a flexibility [m_n]
 
 
@@ -92,7 +92,7 @@ def bounded(contact, line_load, phases=slice(None), stiffness=None):
 
 
 def left_out(contact, line, closing, beyond, shut):
-    """Part of the approach ``(phases,)`` that is unsure: bent teeth also move along each other, and chamfers take material.
+    """Uncertain part of the approach ``(phases,)``, caused by tangential motion of bent teeth and by chamfers.
 
     A tooth's tip bends across its centre-line, so that a part tan(alpha_wt) of the approach is movement u along the flanks. On
     the path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where
@@ -121,7 +121,7 @@ def _changed(contact, radius, gap, closed, closing):
 
 
 def off_path(contact, cells, load, radius, approach):
-    """Part of the `approach` [mm] of a `PhaseContact` that is unsure by what `left_out` describes.
+    """Uncertain part of the `approach` [mm] of a `PhaseContact`, for the causes that `left_out` describes.
 
     It is zero where contact on the path carries. `load`, `radius` ``(n,)`` are those of the `Cells`.
     """
@@ -157,7 +157,7 @@ def _cracks_beyond(contact, line):
 
 
 def _cracks(contact, line, shut):
-    """Deflection ``(phases, pairs)`` [mm] by cracks that is unsure: in thin teeth, and where displacements are large.
+    """Uncertain deflection ``(phases, pairs)`` [mm] by cracks in thin teeth and at large displacements.
 
     The flexibility of a crack of a given part of the thickness h goes by ``h**-2``; it is that of the whole tooth. A tooth turns
     about the tip of its crack by about the deflection u by the crack over the height of the tooth. By that part the lever arm of

@@ -114,7 +114,7 @@ def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple
 
 
 def unmodelled(case: Any, found: Any) -> Floats:
-    """By what k of a `Contact3D` is too high because its teeth have their full thickness ``(phases,)`` [N/m].
+    """Excess of k ``(phases,)`` [N/m] in a `Contact3D`, because its teeth are modelled with their full thickness.
 
     By virtual work the lines of load q close further by ``sum q**2 dS dz / F``, with dS of the section.
     """

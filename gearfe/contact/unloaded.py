@@ -7,7 +7,7 @@ import numpy as np
 from ..geometry.pair.broken import each_pair, touching_each
 from ..geometry.pair.modified import first_touch
 
-FINE, ROUNDS = 9, 2  # places along the cell with the least gap, and how often they are looked for more closely
+FINE, ROUNDS = 9, 2  # sample points along the cell with the least gap, and number of refinements of the search
 
 
 def least_gap(contact, found):

@@ -1,4 +1,4 @@
-"""Border of gearfe: arguments of public functions and records are compared with annotations, and become plain numbers.
+"""Argument checks of public functions and records. Arguments are compared with annotations and converted to plain numbers.
 
 Numbers of any type become floats, lists become arrays where arrays are expected. Masked values, truth values as numbers, nan,
 and in functions infinity without an infinite default are rejected. What a value means is checked by the function itself.
@@ -60,7 +60,7 @@ class _Named(type):
 
 
 class _Public(dict[str, Any]):
-    """Names of annotations that only a type checker imports: public names of gearfe."""
+    """Public names of gearfe in annotations that only a type checker imports."""
 
     def __missing__(self, name):
         package = sys.modules[__name__.partition(".")[0]]
@@ -79,7 +79,7 @@ def bordered(public: Any, name: str) -> Any:
     """
     if inspect.isfunction(public):
         out = _checked(public, name)
-        out.__module__, out.__qualname__ = "gearfe", name  # other processes find it there
+        out.__module__, out.__qualname__ = "gearfe", name  # other processes import it from there
         return out
     if "__init__" in vars(public) and not issubclass(public, BaseException):
         public.__init__ = _checked(public.__init__, name, record=True)
@@ -98,7 +98,7 @@ def _checked(function, called, record=False):
             given = [_settled(*rule, value, record) for rule, value in zip(places, args, strict=False)]
             stated = {key: _settled(*named[key], value, record) if key in named else value for key, value in options.items()}
         except ValueError as misfit:
-            if record:  # its own message has the unit and the range
+            if record:  # the record's own message states unit and range
                 _own_message(function, args, options, type(misfit))
             raise
         out = function(*given, *args[len(places) :], **stated)
@@ -202,7 +202,7 @@ def _any_of(rules):
         for rule in classes_first:
             try:
                 return rule.settled(name, value)
-            except ValueError as error:  # that of an element, or of a value whose type fits, says more
+            except ValueError as error:  # an error on an element, or on a value of the right type, is more specific
                 general = isinstance(error, WrongTypeError) and str(error).startswith(f"{name} = ")
                 misfit = misfit if general else error
         raise misfit or _wrong(name, value, words)
@@ -238,7 +238,7 @@ def _array(kind, name, value):
 
 
 def _even(name, value):
-    """Return what an array can be made of. The functions read it themselves."""
+    """Return a value that can be converted to an array. The functions convert it themselves."""
     try:
         np.ndim(value)
     except ValueError:
@@ -297,7 +297,7 @@ def _mapping(inner):
         if not isinstance(value, Mapping):
             raise _wrong(name, value, words)
         for key, one in value.items() if rule else ():
-            if one is not None:  # None is as good as missing, one record as good as a list of it
+            if one is not None:  # None means missing; a single record counts as a list of one
                 alone = rule.words.startswith("a list") and dataclasses.is_dataclass(one)
                 rule.settled(f"{name}[{key!r}]", [one] if alone else one)
         return value

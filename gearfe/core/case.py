@@ -143,7 +143,7 @@ class Case:
             object.__setattr__(self, name, value)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return what was given, as arguments of `gearfe.mesh_stiffness` by name.
+        """Return the given values by name, as arguments of `gearfe.mesh_stiffness`.
 
         Pair, force, material, face and groove always are among them, of all else what differs from the default.
         """

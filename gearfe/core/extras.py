@@ -56,7 +56,7 @@ def missing(package: str, error: ImportError) -> RuntimeError:
 
 @contextlib.contextmanager
 def needing(package: str) -> Iterator[None]:
-    """Around imports of an optional package: where they fail, a RuntimeError with the command that installs it."""
+    """Context for imports of an optional package. A failed import raises RuntimeError with the command that installs it."""
     try:
         yield
     except ImportError as error:

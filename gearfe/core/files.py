@@ -45,7 +45,7 @@ class Content:
     title: str  # first line of a text table, "gearfe stiffness curve, version 1"
     columns: dict  # columns of a text table, arrays ``(n,)`` by "name [unit]"
     arrays: dict  # the same for all other formats, by name
-    meta: dict  # all that is needed to repeat it; JSON
+    meta: dict  # all data required to repeat the computation, as JSON
     # units of the arrays: a table in JSON files, JSON text ``units_json`` in the others
     units: dict = field(default_factory=dict)
 
@@ -93,7 +93,7 @@ def new_file(path):
 
 
 def check_path(name, path):
-    """TypeError unless `path` names a file or a folder: a number would be a file that is open already."""
+    """Raise TypeError unless `path` names a file or a folder. A number would be an open file descriptor."""
     if not isinstance(path, (str, os.PathLike)):
         raise TypeError(f"{name} = {path!r}, but give the name of a file or a folder")
 
@@ -138,7 +138,7 @@ def suffix_of(path, kind, *, reading=False):
 
 
 def check_regular(path):
-    """Raise ValueError for what is there and no regular file: a pipe or a device may never end."""
+    """Raise ValueError if `path` exists but is no regular file. Reading a pipe or a device may never end."""
     check_path("path", path)
     if "\0" in os.fsdecode(path) or (os.path.exists(path) and not os.path.isfile(path)):
         raise ValueError(f"cannot read {path}: it is no regular file")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from .checks import is_number
 
 STIFFEST = 1.3e6  # MPa, above diamond
-SOFT = 500.0  # MPa, below nearly all gear materials (polyamide and POM: 1500 to 4000): 207 is more likely GPa
+SOFT = 500.0  # MPa, below nearly all gear materials; a value such as 207 is probably in GPa
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 MATRIX, COMPRESSED = 14, 15
 CELL, STRUCT, CHAR, SPARSE = 1, 2, 4, 5
-OPAQUE = 17  # an object of a newer class: its name comes first, and it has no shape
+OPAQUE = 17  # object of a newer MATLAB class; its name precedes the data, and it has no shape
 CLASSES = dict(zip(range(6, 16), ("f8", "f4", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8"), strict=True))
 STORED = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
 # encodings of characters by storage type
@@ -58,7 +58,7 @@ class _Bytes:
         return struct.unpack(f"{self.order}{count}i", self.take(4 * count))
 
     def element(self) -> "tuple[int, _Bytes]":
-        """Kind and content of the next element. Small ones stand in their own tag."""
+        """Type and content of the next element. The content of a small element is part of its tag."""
         (word,) = struct.unpack(f"{self.order}I", self.take(4))
         if word >> 16:
             held = self.take(4)

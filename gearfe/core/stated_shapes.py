@@ -14,7 +14,7 @@ import numpy as np
 
 ATTRIBUTE = re.compile(r"(\w+(?:, \w+)*) : (.*)")  # line of numpydoc: names and type
 SHAPE = re.compile(r"(?:ndarray|tuple).*shape \((.*?)\)")
-SIZE = re.compile(r"(\d*) ?([A-Za-z_]\w*)|(\d+)")  # of an axis: n, 2n or 3
+SIZE = re.compile(r"(\d*) ?([A-Za-z_]\w*)|(\d+)")  # size of an axis: n, 2n or 3
 SPECIAL = re.compile(r"\b(nan|inf|infinite|infinity)\b")
 
 

@@ -23,7 +23,7 @@ loading = threading.RLock()
 
 
 class Shared:
-    """A change to the process that blocks of several threads share: the first to enter makes it, the last to leave undoes it.
+    """Process-wide setting shared by blocks of several threads. The first block sets it, and the last one restores it.
 
     A thread that leaves while another is still inside takes nothing away from it, and what was before comes back in whatever
     order they leave.

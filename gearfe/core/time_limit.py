@@ -35,7 +35,7 @@ def check_time(what: str, seconds: float, remedy: str) -> None:
 
 
 class Clock:
-    """Estimates work in parts by those that are done.
+    """Estimate of the total time of work in parts, from the parts already done.
 
     The first ones count for nothing, because they load and compile.
     """

@@ -25,7 +25,7 @@ SECTION = 8.0  # edges per Hertz half width
 
 @dataclass(frozen=True, slots=True)
 class ContactDeck:
-    """Data to read the result for both gears: held nodes (numbers), their positions from the centre [mm], r_b [mm]."""
+    """Data required to read the result of both gears: held nodes, their positions from the centre [mm], and r_b [mm]."""
 
     held: tuple[NDArray[np.int64], NDArray[np.int64]]
     place: tuple[Floats, Floats]

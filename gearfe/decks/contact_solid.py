@@ -32,12 +32,12 @@ from .solid_deck import Assembly, DeckBody, holed_part, part_of, placed
 SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "far": 3.0, "crack": 0.3, "crack tip": 0.08}
 TETS = {"far": 1.4, "tooth": 0.7, "flank": 0.6, "fillet": 0.25}  # see `gearfe.geometry.mesh.holes.SIZES`
 STRETCH = 2.0  # length of tets along the width over that in the section
-RIM = 0.6  # edges at pits' rims against those along the contact lines
+RIM = 0.6  # edge length at the rims of pits, relative to that along the contact lines
 SECTIONS = 33  # transverse sections in which contacts are searched
-REACH = 1.5  # gap below which a contact may touch, in approaches
+REACH = 1.5  # largest gap, relative to the approach, that may close under load
 STRIP = 2.5  # Hertz half widths to either side of the contact line that are refined
 SOLID = 1.5  # edges per Hertz half width
-END = 1.0  # height of the layers at the end faces against that in between
+END = 1.0  # height of the layers at the end faces, relative to the other layers
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +140,7 @@ def touching(case: Case, phase: float, approach: float) -> Touching:
         corners = [np.isin(candidates.corner[near, k], ids).any() for ids in ((1, 3), (2, 4))]  # a corner of pinion or wheel
         out.slave.append(int(corners[1] and not corners[0]))
         for number, gear in enumerate((pair.gear_1, pair.gear_2)):
-            edge = candidates.corner_gap[FORM[number] - 1, :, k] < REACH * approach  # it may touch as a second place of contact
+            edge = candidates.corner_gap[FORM[number] - 1, :, k] < REACH * approach  # the corner may be a second place of contact
             out.fillet[number].append(bool(edge.any() or on_fillet(gear, rolls[number]).any()))
     return out
 
@@ -194,7 +194,7 @@ def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float
     assembly, places = Assembly(), []
     for number, part in enumerate(parts):
         surfaces = {f"C{number + 1}P{k}": _faces(pair, part, touch, number, k) for k in range(len(touch.order))}
-        places.append(part.points[:2, part.held] - [[0.0], [(0.0, pair.centre_2)[number]]])  # of held nodes from the centre
+        places.append(part.points[:2, part.held] - [[0.0], [(0.0, pair.centre_2)[number]]])  # relative to the centre
         assembly.add(number + 1, part, case.materials[number], surfaces, turned(places[number], angles[number]) - places[number])
     write_lines(path, _text(assembly, touch, how.penalty * max(m.E for m in case.materials)))
     radii, held = (pair.gear_1.r_b, pair.gear_2.r_b), assembly.held

@@ -36,7 +36,7 @@ class DeckBody:
     points: Floats
     cells: NDArray[np.int64]
     held: NDArray[np.int64]
-    faces: dict[Any, NDArray[np.int64]]  # of a section by the keys of its flanks
+    faces: dict[Any, NDArray[np.int64]]  # faces of a section by the keys of its flanks
 
 
 def plane_part(mesh, points, flank=None, held=None) -> DeckBody:

@@ -1,4 +1,4 @@
-"""Excerpts in the search of a site opened as files: browsers let no script read other files, so their texts come along."""
+"""Excerpts in the site search without a web server. The texts are included because browsers do not let scripts read files."""
 
 import html
 import json

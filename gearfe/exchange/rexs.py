@@ -149,7 +149,7 @@ class _Unit:
         return found[0] if found and found[0].type in GEARS else None
 
     def _driver_first(self, stage, gears):
-        """Pinion first: the driving gear, never the ring."""
+        """Order the gears of a stage with the pinion first: the driving gear, or the gear that is no ring."""
         for data in self.model.related("stage_gear_data", "stage", stage.id, "stage_gear_data"):
             if data.value("is_driving_gear") is True:
                 driving = self.model.related("stage_gear_data", "stage_gear_data", data.id, "gear")
@@ -157,7 +157,7 @@ class _Unit:
         return sorted(gears, key=lambda one: one.type == "ring_gear")
 
     def _planetary(self, planetary):
-        """Pairs of a planetary stage, those of its first planet, because the others are equal; ids of all its stages."""
+        """Pairs of the first planet of a planetary stage (the others are equal), and ids of all its stages."""
         parts = self.model.related("assembly", "assembly", planetary.id, "part")
         stages = [one for one in parts if one.type == "cylindrical_stage"]
         carrier = next((one.id for one in parts if one.type == "planet_carrier"), None)

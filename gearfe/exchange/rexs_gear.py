@@ -11,7 +11,7 @@ NEAR = 0.02  # tolerance of radii for rounding [modules]
 
 
 def outward(gear: Component) -> int:
-    """Return 1, of a ring -1: in which direction its teeth stand."""
+    """Return the radial direction of the teeth: 1 for an external gear, -1 for a ring."""
     return -1 if gear.type == "ring_gear" else 1
 
 
@@ -119,7 +119,7 @@ class GearReader:
         return None
 
     def rack(self, gear: Component, row: dict[str, Any], name: str) -> None:
-        """Set the basic rack of a row with its shift: from tip and root diameters, else from the tool, else of ISO 53."""
+        """Set the basic rack and profile shift of a row from tip and root diameters, from the tool, or from ISO 53."""
         m_n, r, sign = row["m_n_mm"], pitch_radius(row), outward(gear)
         cut = row["x"] + sign * row["E_sn_um"] / (2e3 * m_n * math.tan(math.radians(row["alpha_n_deg"])))
         tool = next(iter(self.tools(gear)[::-1]), None)

@@ -8,11 +8,11 @@ import numpy as np
 from .rexs_file import Component, Model
 
 COUPLED = ("coupling", "switchable_coupling")
-KNOWN = 1e-9  # part of a unit vector that may lie in the null space
+KNOWN = 1e-9  # tolerance of the torque balance, and of undetermined values (null space)
 
 
 class PowerMesh(NamedTuple):
-    """A mesh: both gears, their base radii [mm], and how many equal ones share the force. A ring has a negative radius."""
+    """A mesh: both gears, their base radii [mm] (negative for a ring), and the number of equal meshes that share the force."""
 
     name: str
     gears: tuple[int, int]

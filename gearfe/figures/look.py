@@ -1,4 +1,4 @@
-"""Line styles of all pictures: colours for colour-blind readers, and dashes; an empty picture."""
+"""Line styles of all pictures, with dashes and colours for colour-blind readers, and an empty picture."""
 
 import io
 from functools import partial

@@ -102,13 +102,13 @@ def _turned(angle):
 
 
 def _edge(gear):
-    """Bore or rim as a circle ``(2, n)`` [mm], the other way round than the teeth: a hole in them, or they in it."""
+    """Bore or rim as a circle ``(2, n)`` [mm] in the opposite direction to the teeth, so that the area between is filled."""
     radius = gear.r_rim if gear.internal else gear.r_bore
     return cartesian(np.full(181, radius), np.linspace(2 * math.pi, 0.0, 181))
 
 
 def _fill(axes, shapes, colour):
-    """Fill what lies between closed outlines."""
+    """Fill the area between closed outlines."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 

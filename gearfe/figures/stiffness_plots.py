@@ -52,13 +52,13 @@ def told(curve, *, load=True):
 
 
 def periodic(curve):
-    """Whether a curve repeats after one mesh cycle: without damage, and without teeth that differ."""
+    """Whether a curve repeats after one mesh cycle, that is, without damage and with equal teeth."""
     flanks = curve.meta.get("flanks", {}).values()
     return not curve.meta.get("damage") and not any(flank.get(name) for flank in flanks for name in UNEVEN)
 
 
 def closed(curve):
-    """Phases and stiffness [N/um] as they are drawn: one cycle closed, jumps upright.
+    """Phases and stiffness [N/um] for drawing, with a closed cycle and vertical jumps.
 
     Returns
     -------
@@ -74,10 +74,10 @@ def closed(curve):
     if not rises or smooth or "eps_alpha" not in meta or phase.size < 4:
         return phase, k
     whole = np.arange(math.floor(phase[0]), math.ceil(phase[-1]) + 1)
-    places = np.concatenate([whole, whole + meta["eps_alpha"] % 1])  # a pair enters, a pair leaves
+    places = np.concatenate([whole, whole + meta["eps_alpha"] % 1])  # phases at which a pair enters and a pair leaves
     for place in np.sort(places[(places > phase[0]) & (places <= phase[-1])])[::-1]:
         after = int(np.searchsorted(phase, place - 1e-9))
-        if after < phase.size - 1 and abs(phase[after] - place) < 1e-9:  # entering and leaving pairs both count
+        if after < phase.size - 1 and abs(phase[after] - place) < 1e-9:  # both entering and leaving pairs cause a jump
             after += int(place not in whole)
         before = after - 1
         left = _extended(phase, k, (before - 1, before), place)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 SPAN = 2  # edges of the flank on either side of a hat's top; its kinks fall on ends of edges
-TIP_ZONE = 0.35  # arc below the tip corner [m_n] in which a contact can be resolved hat by hat
+TIP_ZONE = 0.35  # arc below the tip corner [m_n] in which single hat functions can resolve a contact
 
 
 def hat_knots(arc: NDArray, *, corner: bool = False) -> NDArray:

@@ -184,7 +184,7 @@ class Flexibility:
             near[spline] = near.get(spline, False) | on
             for other, there in members.items():
                 spline = self.far.get((tooth % z, other % z), whole.far.get((0, other - tooth)))
-                if tooth < other and spline is not None:  # otherwise the teeth are too far apart and were not solved
+                if tooth < other and spline is not None:  # otherwise the teeth are too far apart to interact
                     far[spline] = far.get(spline, False) | on[:, None] & there
         for spline, on in near.items():
             (here,) = on.nonzero()

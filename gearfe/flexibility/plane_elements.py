@@ -23,7 +23,7 @@ def stiffness(slope, weight, arms, lam, mu):
     """
     (xx, xy), (yx, yy) = arms.transpose(1, 2, 0)
     area = xx * yy - xy * yx
-    back = np.array([[yy, -xy], [-yx, xx]]) / area  # reference coordinate by place
+    back = np.array([[yy, -xy], [-yx, xx]]) / area  # derivatives of the reference coordinates by x and y
     outer = np.einsum("eam,fbm->mabef", back, back)
     factor = lam * outer + mu * outer.transpose(0, 2, 1, 3, 4)
     alike = mu * np.einsum("mccef->mef", outer)

@@ -22,7 +22,7 @@ MOST = 512 * 2**20  # memory of the results kept [bytes]
 
 @dataclass(frozen=True, slots=True)
 class _Solve:
-    """A solve under way: the number of its thread, its result once there is one, and whether it has ended."""
+    """A solution in progress: number of its thread, its result, and whether it has ended."""
 
     thread: int
     found: list = field(default_factory=list)
@@ -104,7 +104,7 @@ class SolvedGears:
             self.size = 0
 
     def begin_anew(self) -> None:
-        """In the child of a process that was forked: the threads whose solves were under way are not in it."""
+        """Remove unfinished solves in a forked child process, which does not contain the threads that computed them."""
         self._lock, self._solving = threading.Lock(), {}
 
 

@@ -75,7 +75,7 @@ class Set:
         self.case, self.bodies, self.stand, self.coupled = case, bodies, stand, coupled
         angles = np.array(case.planet_angles)
         outer, inner = directions(case.gears, angles)
-        self.push = np.array([outer, inner]).transpose(0, 2, 1)  # (2, planets, 2): unit forces on the planets
+        self.push = np.array([outer, inner]).transpose(0, 2, 1)  # unit forces on the planets, shape (2, planets, 2)
         out = np.array([np.sin(angles), np.cos(angles)]).T
         along = np.array([np.cos(angles), -np.sin(angles)]).T
         error = np.array(case.errors)
@@ -128,7 +128,7 @@ class Set:
             ):
                 rows = carry(gear, roll) * turn[:, None]
                 both.append((on[:, :, None] * rows[:, None]).reshape(roll.size, -1))
-            self._spread[key] = orders, tuple(both), contacts  # contacts is kept, so that its number is not reused
+            self._spread[key] = orders, tuple(both), contacts  # keep a reference to `contacts`, so that its id is not reused
         return self._spread[key]
 
     def _between(self, a, b):
@@ -188,7 +188,7 @@ class Set:
         return 1 + 2 * self.case.floating + self.case.planets + 3 * bool(self._lugs)
 
     def _closing(self, block):
-        """How motions of the bodies close a mesh: ``(motions,)``."""
+        """Closure of a mesh by unit motions of the bodies ``(motions,)``."""
         case, out = self.case, np.zeros(self._motions)
         first = 1 + 2 * case.floating
         if block.inner:

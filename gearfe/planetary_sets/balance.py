@@ -18,7 +18,7 @@ from ..flexibility.hertz import half_width
 from ..geometry.aliases import Floats
 
 STEPS, SINGLE = 40, 400  # most steps of Newton and the active set, changed all at once; then one by one
-HOLD = 1e-11  # stiffness of springs on all motions, by the load per mm: a planet out of mesh stays in place
+HOLD = 1e-11  # weak springs on all motions, relative to the load per mm, hold planets out of mesh
 ROUNDING = 1e-12  # overlaps below this part of the largest distance are rounding errors
 SETTLED = 1e-11  # largest last change of a force, as a part of the load
 STIFF = 1e6  # weight of the balance in the initial non-negative least squares

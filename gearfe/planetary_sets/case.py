@@ -131,7 +131,7 @@ class PlanetaryCase:
 
     @property
     def ring_gear(self) -> Any:
-        """The ring as it meshes: its tip may have been trimmed."""
+        """The ring gear in mesh. Its tip may have been trimmed."""
         return self.pairs[1].gear_2
 
     def _errors(self):

@@ -81,14 +81,14 @@ class SetCurves:
         check_keys("SetCurves: meta", self.meta, ("case",))
 
     def __repr__(self):
-        """One line: planets, positions, stiffness of both kinds of mesh, load factor."""
+        """One line with planets, positions, stiffness of both kinds of mesh, and load factor."""
         mean = [one[one > 0].mean() / NEWTON_PER_UM for one in self.k]
         told = ", ".join(f"k {name} {value:.4g} N/um" for name, value in zip(MESHES, mean, strict=True))
         return f"<SetCurves: {self.force.shape[2]} planets, {self.position.size} positions, {told}, K_gamma {self.K_gamma:.4g}>"
 
     @property
     def share(self) -> Floats:
-        """Load of each mesh over the mean load of its kind ``(2, p, planets)``: 1 where all planets carry the same."""
+        """Load of each mesh relative to the mean of its kind ``(2, p, planets)``, 1 for equal load sharing."""
         return self.force / self.force.mean(axis=2, keepdims=True)
 
     @property

@@ -55,7 +55,7 @@ def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray
         out, inx = np.sin(angle), np.cos(angle)
         force = np.array([out, inx, 0 * angle]), np.array([inx, -out, np.full(angle.size, gear.held)])
         for which in held:
-            hat = zip(number.tolist(), weight, strict=True)  # two unknowns for every second node, which is a vertex under the pad
+            hat = zip(number.tolist(), weight, strict=True)  # two unknowns at every second node (the vertices) under the pad
             columns.append(sum(np.roll(hats[which], 4 * n)[:, None] * row for n, row in hat))
             close.append(_nodal((angle + math.pi / z) % (2 * math.pi), which, step / 2, z * nodes) @ shapes)
             turns.append(force[which] @ shapes)

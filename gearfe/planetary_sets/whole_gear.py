@@ -79,7 +79,7 @@ class WholeGear:
         return np.concatenate([edge @ self.push, edge[:, :, : self.edge]], axis=2)
 
     def held_inverse(self) -> NDArray:
-        """Inverses ``(h, n, n)`` of the stiffness with the edge held: 0 there."""
+        """Inverses ``(h, n, n)`` of the stiffness with the edge held (zero for its unknowns)."""
         out, inner = np.zeros_like(self.stiffness), slice(self.edge, None)
         out[:, inner, inner] = np.linalg.inv(self.stiffness[:, inner, inner])
         return out
@@ -141,7 +141,7 @@ def sector_stiffness(sector, material, faces=None):
     pairs of nodes ``(2, m)`` that face each other in its cracks, x and y of these follow: m of one face, m of the other.
     A missing tooth has no loads.
     """
-    body = HeldSection(sector.mesh, material, held="rim")  # its own outline: only its elements are used
+    body = HeldSection(sector.mesh, material, held="rim")  # the outline is not used, only the elements
     local, dofs = body.local()
     left, right, edge = (np.array(_chain(sector.mesh, way)) for way in (sector.left, sector.right, sector.held))
     ends = np.concatenate([left, edge[1:-1], right])  # both sides begin with a corner of the held edge

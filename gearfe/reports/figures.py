@@ -61,7 +61,7 @@ def cases_figure(curves):
 def _with_curves(figure, curves):
     for place, (name, curve) in enumerate(curves.items()):
         phase, k = closed(curve)
-        number = NAMES.index(name) if name in NAMES else place  # a method has one colour in all figures
+        number = NAMES.index(name) if name in NAMES else place  # each method has the same colour in all figures
         figure.add_scatter(x=phase, y=k, name=name, line=style(number), hovertemplate="%{y:.4g} N/µm")
     return figure
 

@@ -30,7 +30,7 @@ class Findings:
 
     @property
     def headline(self):
-        """The answer in one sentence, that of the pair of `hurt_pair`, which is named if there are others."""
+        """Answer in one sentence for the pair `hurt_pair`, with its name if there are several pairs."""
         return self._sentence(self.case if self.case in self.scene.pairs[self.hurt_pair].damage else None)
 
     @property

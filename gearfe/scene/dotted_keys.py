@@ -12,7 +12,7 @@ from .schema import LISTS, Key, scene_schema
 
 OUTSIDE = ("pair", "case")  # keys by themselves: which pair, which case of damage ("healthy": none)
 BEFORE_LOAD = ("gear", "material")  # inputs of the healthy gears; then damage; the rest shares the gears
-PRINTED = ("reference", "assumption", "given", "later")  # statements on the source, which no value depends on
+PRINTED = ("reference", "assumption", "given", "later")  # statements on the source that do not affect computed values
 Tables = dict[str, Any]
 
 

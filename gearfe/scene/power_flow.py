@@ -41,7 +41,7 @@ def speeds_of(file: str, links: Sequence[Link], shaft: str, speed: float) -> tup
 def torques_of(
     file: str, links: Sequence[Link], ends: dict[str, dict[str, Any]], speeds: dict[str, float], torque: float
 ) -> dict[str, float]:
-    """Torques from the balance of every shaft [N m]: of the motor and the loads on their shaft, of links on their second shaft.
+    """Torques [N m] from the balance of every shaft. Torques of links refer to their second shaft.
 
     A load takes its ``torque_Nm``, and one load without it what is left. ValueError if not exactly one load has none, or if
     nothing is left.

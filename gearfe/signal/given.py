@@ -10,7 +10,7 @@ from ..geometry.aliases import Floats
 from ..geometry.checks import shown
 
 SMALLEST, LARGEST = 1e-30, 1e30  # limits of the largest value of a record in any unit, for eighth powers
-ROWS = {"average": ": gf.synchronous_average(signal)[0]"}  # where such a row comes from
+ROWS = {"average": ": gf.synchronous_average(signal)[0]"}  # remedies by name of the argument
 HERTZ = (1e-12, 1e15)  # limits of frequencies
 
 

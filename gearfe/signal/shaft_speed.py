@@ -19,7 +19,7 @@ FINE = 4  # speeds tried for each bin of the highest harmonic
 ROUNDS = 3  # rounds of phase demodulation
 BROAD = 32  # line widths over which the median is the level of resonances and noise
 PARTS = 4  # parts of a record, each of which must show its speed
-# times what chance finds: white noise had 1.09 at most in 160 records, lines that were found 1.4 and more; on records drawn later
+# threshold relative to chance (white noise: at most 1.09 in 160 records; found lines: at least 1.4); on later records
 # it refused 300 of 300 of white noise, 113 of 150 of noise through resonances, and none of 150 with lines
 CLEAR = 1.2
 LOOK = "look at gearfe.plot_spectrogram; give a range that the speed does not leave and no other line crosses, or other harmonics"

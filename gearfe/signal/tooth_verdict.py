@@ -12,7 +12,7 @@ from .series import Signal
 SIGMAS = 6.0  # standard deviations of the kurtosis of noise above 3; white noise exceeds it in less than 0.1 % of averages
 # Deviations of healthy teeth from each other exceed these in less than 1 % of gears, see tests/signal/test_false_alarms.py.
 RISE = 2.5  # times the FM4 of the healthy record, whose difference signal has the same variance
-ALONE = 24.0  # FM4 without a healthy record
+ALONE = 24.0  # limit of FM4 if there is no healthy record
 FEWEST = 4  # revolutions, two for each half of the record
 
 

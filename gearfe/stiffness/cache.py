@@ -62,7 +62,7 @@ def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options)
     kept = solved_gears(cache)
     for one in damage:
         if isinstance(one, Crack):
-            meshed_path(gear, one)  # invalid cracks raise before the healthy gear is solved
+            meshed_path(gear, one)  # raise errors on invalid cracks before solving the healthy gear
 
     def said(plan):
         hurt = f", {told({'': gear}, {'': damage})}" if damage else ""
@@ -125,7 +125,7 @@ def _stored(kind, gear, case, solve):
     if stored is not None:
         return stored
     solved = solve()
-    with contextlib.suppress(OSError, ValueError):  # a full or read-only disk costs only the reuse
+    with contextlib.suppress(OSError, ValueError):  # without a writable disk, results are only not reused
         file.parent.mkdir(parents=True, exist_ok=True)
         write_flexibility(file, key, solved)
     return solved

@@ -11,7 +11,7 @@ from ..core.checks import is_number
 from ..core.memory import free_memory
 
 MOST_PHASES = 100_000  # limit of phases per cycle: k changes by less than 1e-4 between two of them even where teeth enter
-FURTHEST = 1e6  # cycles: beyond, rounding moves contacts by more than 1e-10 of a pitch
+FURTHEST = 1e6  # [mesh cycles] at larger phases, rounding moves contacts by more than 1e-10 pitches
 SECTION = (9_000, 4_200, 3_700)  # unknowns of a whole section of 20 to 30 teeth by powers of refine, measured at 1, 2, 4 and 8
 SECTION_BYTES = (3500.0, 400.0)  # memory of its solve for each unknown by powers of refine, measured at 1, 4 and 8
 

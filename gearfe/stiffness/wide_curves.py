@@ -17,7 +17,7 @@ from .provenance import provenance
 
 # resolutions of the layers for the error estimate of finite elements, against the curve's; the first that carries the patches
 COARSER = (0.7, 0.76, 0.83)
-LESS = 2  # axial degrees less in that estimate
+LESS = 2  # reduction of the axial degree in that estimate
 # least order of convergence of finite elements in the edge length: layers are regular; the quads of a section are not, and from
 # one resolution to the next those at a hat may stay as they are
 ORDER = {"layers": 2, "section": 1}

@@ -230,7 +230,7 @@ class _Tip:
         if self.model.method != "fe" and self.model.held is None and "fe" not in self.methods:
             try:
                 found = ritz_response(self.gear, self.material, crack, self.loads, self.refine)
-            except (ValueError, RuntimeError):  # it leaves its sector, or no coarse triangles follow it
+            except (ValueError, RuntimeError):  # the crack leaves its sector or cannot be meshed coarsely
                 if self.model.method == "ritz":
                     raise
             else:

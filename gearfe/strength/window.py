@@ -43,7 +43,7 @@ def plotting(**options):
         )
     with _turn:
         library = drawing_library()
-        with library.vtk_verbosity("off"):  # its messages steer terminals
+        with library.vtk_verbosity("off"):  # its messages contain control characters of terminals
             plotter = library.Plotter(off_screen=True, **options)
             try:
                 yield plotter

@@ -23,7 +23,7 @@ from ..tooth.profile import (
 )
 from .given import finite, tooth_and_side
 
-TANGENTS = {"30deg": math.pi / 6, "60deg": math.pi / 3}  # with the centre-line of the tooth
+TANGENTS = {"30deg": math.pi / 6, "60deg": math.pi / 3}  # angle between tangent and centre-line of the tooth
 STARTS = (*TANGENTS, "root", "middle")
 SLACK = 1e-9  # tolerance for rounding of the open part of a crack
 SECTOR = 0.9  # part of a pitch within which a sector can be meshed with a polyline

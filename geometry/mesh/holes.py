@@ -25,7 +25,7 @@ from .tetrahedra import UnmeshedError, tetrahedra
 # the smallest half axis
 SIZES = {"far": 1.6, "tooth": 0.5, "flank": 0.5, "fillet": 0.35, "tip": 0.12, "rim": 0.4}
 CUT = 2e-3  # largest relative error of the removed volume: that of the quadrature and of the splines is below 1e-3
-FINER = (1.0, 1.07, 1.15, 1.3, 1.5)  # attempts: flat tets may be turned inside out by the helix, walls between pits be too thin
+FINER = (1.0, 1.07, 1.15, 1.3, 1.5)  # mesh sizes tried in turn, because flat tetrahedra or thin walls may fold
 MESHED = 0.12  # largest relative error of the removed volume in the mesh: its rim is a polygon
 
 

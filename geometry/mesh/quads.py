@@ -174,7 +174,7 @@ class _Draft:
         return list(range(start + 1, len(self.lines) + 1))
 
     def edges(self, lines):
-        """Start and end nodes ``(2, 2 n)`` of the halves of `lines`."""
+        """Start and end nodes ``(2, 2 n)`` of the half edges of `lines`."""
         nodes = np.array(self.lines)[np.array(lines) - 1]
         return np.stack([nodes[:, :2], nodes[:, 1:]], axis=1).reshape(-1, 2).T
 
@@ -258,7 +258,7 @@ def _finish(gear, draft, made, bore, flanks, fillets, cuts):
     for pair, place in draft.middles.items():
         middles[:, lookup[pair]] = place
     tips = {int(tip) for cut in cuts for tip in cut.edges[1, np.flatnonzero(np.diff(cut.crack))]}
-    for tip in tips:  # displacements there go with the root of the distance
+    for tip in tips:  # displacements vary with the square root of the distance from the tip
         at = np.flatnonzero((unique == tip).any(axis=0))
         middles[:, at] = 0.75 * points[:, [tip]] + 0.25 * points[:, unique[:, at].sum(axis=0) - tip]
     count = points.shape[1]

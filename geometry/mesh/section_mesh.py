@@ -100,7 +100,7 @@ def crack_lines(gear, cracks, fillet_size):
         length = lengths(corners)[-1]
         marks[place] = start_arc(gear, crack), min(fillet_size, length / 4)
         tip = min(CRACK_EDGE * fillet_size, math.dist(corners[:, -2], corners[:, -1]) / 5)
-        if crack.turning and crack.level > 0.5:  # it runs towards its mirror image: refine there as the ligament shrinks
+        if crack.turning and crack.level > 0.5:  # the crack approaches the centre line: refine the mesh as the ligament shrinks
             left = math.dist(corners[:, -1], turned(mirrored(gear, crack), 2 * math.pi * crack.tooth / gear.z))
             opposite = "unloaded" if crack.side == "loaded" else "loaded"
             marks.setdefault((crack.tooth % gear.z, opposite), (marks[place][0], min(fillet_size, left / 4)))
@@ -146,7 +146,7 @@ def _check_within(gear, crack, rim, start, line):
 
     a, b, p, q = rim[:, :, None], ends[:, :, None], at[:, None, :], to[:, None, :]
     cut = (turn(a, b, p) * turn(a, b, q) < 0) & (turn(p, q, a) * turn(p, q, b) < 0)
-    cut[[start - 1, start], 0] = False  # they meet the crack in its mouth
+    cut[[start - 1, start], 0] = False  # the edges meet the crack at its mouth
     if cut.any() or (inside(rim, line) == gear.internal).any():
         raise ValueError(
             f"crack from {crack.start!r} at {math.degrees(crack.angle):.3g} degrees on tooth {crack.tooth} of z = {gear.z} "

@@ -135,7 +135,7 @@ def _attempt(gear, cracks, broken, sizes, refine, finer):
         vertices.get("flank", np.zeros(0, dtype=int))[::-1], rolls[::-1], tuple(faces),
     )  # fmt: skip
     bulges = made.edge_bulges
-    bent = bulges.any(axis=(0, 1, 2))  # the others are as good as their corners
+    bent = bulges.any(axis=(0, 1, 2))  # the other triangles are straight, so that their corners suffice
     (xx, xy), (yx, yy) = jacobians(points, triangles[:, bent], bulges[..., bent], CHECKED).transpose(1, 2, 0, 3)
     return made if (xx * yy - xy * yx).min() > 0 else None
 

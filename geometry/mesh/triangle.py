@@ -15,7 +15,7 @@ ENDS = ((0, 1), (1, 2), (2, 0))  # local vertices of the three edges
 @keeping(8)
 def lobatto(order):
     """Gauss-Lobatto points on [-1, 1], `order` + 1 of them."""
-    inner = legendre.legroots(legendre.legder([0] * order + [1])).real  # all are; from numpy 2.5 on the type is complex
+    inner = legendre.legroots(legendre.legder([0] * order + [1])).real  # real roots (complex type from numpy 2.5 on)
     return np.concatenate([[-1.0], inner, [1.0]])
 
 

@@ -42,9 +42,9 @@ from ..tooth.side import form_corner, place, side
 from .gear_pair import GearPair
 
 STEPS = 10  # limit of Newton steps: each doubles the correct digits, or adds three if a modified flank has a slope
-SETTLED = 1e-7  # last step, in base pitches
-EXACT = 1e-13  # the same, where no further step is needed: light loads close by less than any larger
-SQUARED = 1e-9  # the same between unmodified flanks: the next step would be its square
+SETTLED = 1e-7  # tolerance of the last Newton step [base pitches]
+EXACT = 1e-13  # tighter tolerance of the last step, because the approach under light loads is small
+SQUARED = 1e-9  # tolerance between unmodified flanks, where convergence is quadratic
 PITCHES = 8  # base pitches beyond the path that are searched, of rings with hardly more teeth than their pinion
 CLOSE = 0.02  # gap [m_n] that no load closes
 ROUNDING = 1e-7  # overlap [m_n] of corners that are on the path of contact

@@ -26,7 +26,7 @@ from .gear_pair import GearPair
 EDGE = 0.25  # part of its largest removal that the edge of a tip may have removed where it touches
 FAR = 0.1  # gap before modification [m_n] beyond which only corners are looked at: no gear that holds closes it
 SCAN = 25  # places along the flank from which the search starts
-OFF = 1e6  # a distance that no flanks have [mm]
+OFF = 1e6  # distance that marks points off the flanks [mm]
 VERTEX = 1e-4  # half width of the parabola that ends the search [m_n]
 GOLDEN = (math.sqrt(5) - 1) / 2
 FLATTER = 20.0  # largest relative radius, in those of the involutes: beyond it flanks conform and no contact is a line

@@ -15,7 +15,7 @@ from .relief import relief_start
 from .tables import covering, each_tooth
 from .tip_edge import TipEdge
 
-LARGEST = 0.1  # most that may be removed [m_n]: the flexibility is that of the unmodified tooth and a beam's difference
+LARGEST = 0.1  # limit of removed material [m_n], because thinning enters the flexibility only as the change of a beam
 BENT = 0.1  # least jump of the curvature, as a part of that of the flank, that makes the start of a parabolic relief a kink
 STEP = 1e-6  # roll length over which a slope is taken [m_n]
 

@@ -27,9 +27,9 @@ TEETH = {  # by case of this page: table and case of the scene, and the body tha
 }
 BROKEN, CRACKED = ("sun 1 broken", "sun 2 broken"), ("sun 1, 80 %", "crack80")  # readings of a broken tooth in sun 1 and in sun 2
 RATE, SECONDS, SETTLE = 5120.0, 3.3, 0.5  # the rate of S2
-SAMPLED = 24 * 2184.0  # Hz, 2184 is the least common multiple of both mesh frequencies: what folds, folds onto multiples of 14 Hz
+SAMPLED = 24 * 2184.0  # [Hz] 2184 is the least common multiple of both mesh frequencies; aliases fall on multiples of 14 Hz
 NOISE = 0.5  # relative to the standard deviation of the healthy signal; assumed
-SENSOR = "ring.theta acceleration"  # planets in phase cancel in x and y
+SENSOR = "ring.theta acceleration"  # forces of planets in phase cancel in x and y
 SUN, HOUSING = "sun2.theta velocity", "ring's acceleration through a mode"
 CRACK = (f"{SENSOR}, crack of 80 %", SENSOR, CRACKED)  # name, channel, reading
 DRAWN, DRAWN_SETTLE = 10 / 7, 0.5  # s, of a draw of the unprinted inputs: whole periods of all lines, 1.4 Hz apart
@@ -71,7 +71,7 @@ def heard(case, law=HEARD, channel=SENSOR):
     ratio = Fraction(round(RATE), round(SAMPLED))
     values = resample_poly(_whole(case, law, channel).values, ratio.numerator, ratio.denominator)
     length = DRAWN if isinstance(law, Draw) else SECONDS
-    cut = slice(round(0.05 * RATE), round((length - 0.05) * RATE))  # the filter has its whole length there
+    cut = slice(round(0.05 * RATE), round((length - 0.05) * RATE))  # the part in which the filter has its full length
     return gf.Signal(values[cut], RATE, _whole(case, law, channel).unit, case or "healthy")
 
 
@@ -92,7 +92,7 @@ def kurtosis(law=HEARD, channel=SENSOR, broken=BROKEN):
 
 @cache
 def _kurtogram(case, law=HEARD, channel=SENSOR):
-    found = gf.fast_kurtogram(_noisy(case, law, channel), levels=5 if isinstance(law, Draw) else 7)  # as many as its length has
+    found = gf.fast_kurtogram(_noisy(case, law, channel), levels=5 if isinstance(law, Draw) else 7)  # limited by the length
     return float(found.level[found.best]), float(found.centre[found.best]), found.band
 
 

@@ -17,7 +17,7 @@ RATE = 128 * 2500 / 60 * 17  # a multiple of f_m
 FORCE = "force mesh"
 PINION, HOUSING = "pinion.y acceleration", "pinion's acceleration through a mode"
 OWN, LINEAR = "impact law", "linear stiffness"
-HIGH = 1.1  # relative to the largest deviation of the healthy signal: a high impact
+HIGH = 1.1  # threshold of a high impact, relative to the largest deviation of the healthy signal
 SLIGHTLY = 0.1  # relative to the healthy mesh line
 
 

@@ -13,7 +13,7 @@ from .herringbone_numbers import speeds
 from .herringbone_runs import RATE, SECONDS, UNSETTLED, made, record_of, settled
 
 LOADS = (400.0, 100.0, 25.0, 6.0, 0.0, -100.0)  # N m on the sun; S4 has the first, the last crosses the backlash
-GROOVES = {"stiff, 0.2 mm": 100.0, "20 mm": 1.0, "flexible, 2 m": 0.01}  # relative to the assumed stiffness
+GROOVES = {"stiff, 0.2 mm": 100.0, "20 mm": 1.0, "flexible, 2 m": 0.01}  # stiffness of the groove, relative to the assumed value
 MODES = 3.0  # relative to f_m: lower modes are counted
 MESH = "sun_planet1L"
 

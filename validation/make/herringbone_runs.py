@@ -19,8 +19,8 @@ SUN, TURNING, HOUSING = "sunL.x", "sunL.theta acceleration", "ring's acceleratio
 RING = "ring.y acceleration"
 UM = 1e6
 ERRING, PERFECT = "with errors", "without errors"
-ROUNDING = 1e-9  # um: what cancels leaves 1e-13
-CLOSE = 0.1  # relative to the change by the crack alone
+ROUNDING = 1e-9  # [um] limit of rounding; forces that cancel leave 1e-13
+CLOSE = 0.1  # tolerance relative to the change by the crack alone
 CRACK60 = "crack60"  # case 3 without its pits, which the scene does not have
 
 

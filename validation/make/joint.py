@@ -201,7 +201,7 @@ def tell():
     rows = [[f"[{name}.md]({name}.md)", sum(counts(name)), *counts(name)] for name in joint_inputs.RANGES]
     page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges())
     for name in joint_inputs.RANGES:
-        home("machines").write_page(name)  # which looks in here for its section
+        home("machines").write_page(name)  # the page takes its section from this module
 
 
 def cheap():

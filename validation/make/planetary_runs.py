@@ -59,7 +59,7 @@ def record_of(case, impact, law=OWN):
 
 @cache
 def finer(case, law=OWN):
-    """Amplitudes of the force without pulses, sampled so often that nothing folds, over whole periods of its lines."""
+    """Amplitudes of the force without pulses, sampled fast enough to avoid aliasing, over whole periods of its lines."""
     name = None if case == "healthy" else case
     made = linear(name, law) if law in (LINEAR, ALONE) else _built(name, 0.0, law)
     return spectrum(signal(record(made, 0.3, FINE, SETTLE), FORCE))

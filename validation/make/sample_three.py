@@ -29,7 +29,7 @@ KINDS = {
     "narrow": (195_000, (12, 15), (12, 16), (2.0, 6.0), 0.6, 5),
     "crack": (198_000, (12, 14), (12, 15), (2.0, 5.0), 0.6, 5),
     "wide": (196_000, (12, 13), (12, 14), (8.0, 12.0), 0.6, 3),
-}  # none of these seeds was looked at while the methods were made
+}  # none of these seeds was used during development
 PHASES = 5
 FINE = {"order": 4, "refine": 1.25}  # refinement of `ritz3d`, the reference of both errors
 FURTHER = 4  # axial degrees more in it

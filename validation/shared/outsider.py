@@ -23,10 +23,10 @@ from . import kept_rows
 from .decks import calculix, digest, installed, pressed
 from .solid_pair import solid_contact
 
-TABLE, OURS = "outsider_three", "outsider_three_ritz3d"  # tables of rows: runs of CalculiX; of `ritz3d`
+TABLE, OURS = "outsider_three", "outsider_three_ritz3d"  # tables with the results of CalculiX and of `ritz3d`
 STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 300.0  # N/mm
-PITTED = 600.0  # N/mm of pairs with pits: a contact 1.4 times as wide, so that fewer elements follow it around the pits
+PITTED = 600.0  # [N/mm] line load of pairs with pits; the wider contact requires fewer elements around the pits
 PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by their treatment in the deck
 STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # finer along the contact lines only
 # pairs with pits, whose rims follow; with contact springs ten times softer than by default, which cost k less than 0.1 %
@@ -64,7 +64,7 @@ def pair_of(degrees):
 
 def ring_pair():
     """Pinion in a ring of 36 teeth."""
-    with own_warnings():  # its tip is trimmed
+    with own_warnings():  # the warning states that the tip of the ring is trimmed
         ring = gf.Gear(z=36, r_rim=45.0, rack_tip_radius=0.2, addendum=0.8, beta=math.radians(15), **RACK)
         return gf.GearPair(pinion(), ring)
 

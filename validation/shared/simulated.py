@@ -53,7 +53,7 @@ def periodic(name, case=None, method="ritz3d"):
 def record(made, seconds, rate, settle, start=None):
     """Response of `made` from `settle` on, `seconds` long, `rate` samples per second; `start` as in `gearfe.simulate`."""
     options = {}
-    if (made.law["power"] == 1).all():  # not steep: nowhere halved
+    if (made.law["power"] == 1).all():  # linear contact, so that no step is halved
         options["step"] = 1 / rate / math.ceil(1 / rate / default_step(made) * (1 - 1e-9))
     whole = gf.simulate(made, settle + seconds + REACH / rate, rate=rate, initial=start, **options)
     first = math.ceil(settle * rate - 1e-6)

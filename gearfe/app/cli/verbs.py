@@ -290,7 +290,7 @@ def dynamics(arguments):
 
 
 def print_analysis(report, arguments, name=""):
-    """Tables, envelope and plots of a `gearfe.comparison.vibration.Analysis`; `name` of the scene, if it is one."""
+    """Print tables, envelope and plots of a `gearfe.comparison.vibration.Analysis`. `name` is the name of its scene."""
     if report.lines:
         print(f"\n{report.channel}, amplitude of the lines\n\n{report.lines_table()}")
         if hidden := report.hidden_lines():

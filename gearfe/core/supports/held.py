@@ -14,7 +14,7 @@ FITS = 0.01  # relative excess of a shaft over its bore that is accepted (press 
 
 
 def supports_of(pair, supports, forces=(), face=None):
-    """Return the supports of the hubs of pinion and wheel, None where rigid, or None if both are.
+    """Return the supports of the hubs of pinion and wheel. A rigid hub is None, and two rigid hubs give None.
 
     ValueError for other types, if a shaft does not carry its gear, or if the teeth lose contact by the deflection of a hub under
     one of the `forces` [N].

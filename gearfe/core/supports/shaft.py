@@ -128,7 +128,7 @@ class Shaft:
         )
 
     def untilted(self) -> Support:
-        """Return its springs without their coupling: a force moves the gear, but does not tilt it."""
+        """Return the equivalent springs without coupling, so that a force displaces the gear but does not tilt it."""
         return self.support().untilted()
 
     def support(self) -> Support:

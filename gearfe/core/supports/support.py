@@ -73,7 +73,7 @@ class Support:
 
     @property
     def integral(self) -> bool:
-        """False: a gear on springs is not one piece with its support."""
+        """Whether gear and support are one piece. It is False for a gear on springs."""
         return False
 
     @property
@@ -82,7 +82,7 @@ class Support:
         return self.coupling != 0
 
     def untilted(self) -> "Support":
-        """Return the same springs without coupling: a force moves the gear, but does not tilt it."""
+        """Return the springs without coupling, so that a force displaces the gear but does not tilt it."""
         return replace(self, coupling=0.0)
 
     def hub(self) -> Hub:

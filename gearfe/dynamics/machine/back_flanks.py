@@ -1,4 +1,4 @@
-"""Back flanks with a separate stiffness: a second mesh that pushes the other way after the backlash is used up.
+"""Back flanks with a separate stiffness, modelled as a second mesh that acts after the backlash is closed.
 
 The back flanks of symmetrical teeth are the mirror images of the front ones and meet in the mirrored order: from the tip of the
 pinion to its root, while the front flanks go from root to tip. They therefore have the stiffness of the front flanks, in reverse
@@ -121,7 +121,7 @@ def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machin
 
 
 def _behind(mesh: GearMesh, own: BackFlanks, damping: float) -> GearMesh:
-    """Return the back flanks of a mesh as a separate mesh: time, teeth and errors run the other way."""
+    """Return the back flanks of a mesh as a separate mesh with reversed time, tooth order and errors."""
     rest = 1.0 if mesh.push else 1 - mesh.film  # the oil film damping remains when the front flanks are open
     return replace(
         mesh,

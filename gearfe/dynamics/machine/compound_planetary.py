@@ -63,7 +63,7 @@ def scene_pairs(scene):
 
 
 def carrier_speed(pairs, speed):
-    """Speed of the carrier for sun 2 at `speed` and sun 1 standing (any unit): both stages drive one ring.
+    """Speed of the carrier for sun 2 at `speed` and sun 1 at rest, in any unit. Both stages drive one ring.
 
     ``(n_2 - n_c) z_s2 / z_r2 = n_c z_s1 / z_r1`` (both are the ring's speed relative to the carrier).
     """
@@ -144,7 +144,7 @@ def compound_planetary(
     density: float = 7800.0,
     **mesh: Any,
 ) -> Machine:
-    """Two-stage compound planetary: sun 2 driven, sun 1 held, load on the carrier; 39 degrees of freedom (3 per body).
+    """Two-stage compound planetary gearbox with 39 degrees of freedom (3 per body). Sun 2 drives, sun 1 is held.
 
     Stage 2 pushes the ring forward and stage 1 holds it. In stage 1 the loaded flanks are those of a sun that drives forward;
     but it stands and the carrier leaves it behind, so that contacts run from their end to their start: its frequency is negative.

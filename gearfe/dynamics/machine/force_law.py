@@ -80,7 +80,7 @@ class ForceLaw:
         settle(self, secant=_table(self))
 
     def __repr__(self):
-        """One line: phases and loads."""
+        """One line with phases and loads."""
         loads = f"{self.load.size} loads from {self.load[0]:g} to {self.load[-1]:g} N"
         return f"<ForceLaw: {self.phase.size} phases from {self.phase[0]:.3g} to {self.phase[-1]:.3g}, {loads}>"
 

@@ -26,7 +26,7 @@ from .phase_table import PhaseTable, table
 from .secant import Secant
 from .tooth_damage import ToothDamage
 
-NOWHERE = 1e-12  # m: smaller shifts of a tooth are rounding
+NOWHERE = 1e-12  # [m] smaller shifts of a tooth are rounding errors
 
 
 @renamed(beta="damping_per_stiffness")
@@ -154,7 +154,7 @@ class GearMesh:
             raise ValueError(f"mesh {self.name}: power = {power} besides a force law, which defines the force itself")
 
     def _changes(self, healthy: PhaseTable, name: str = "k") -> tuple[Change, ...]:
-        """Return differences of `name` by damage from a `healthy` cycle; for curves with `every` also from damage before them."""
+        """Return the changes of `name` by damage relative to a `healthy` cycle (with `every`, also to earlier damage)."""
         out: list[Change] = []
         for hurt in self.damage:
             z = hurt.every or self.teeth[hurt.body]
@@ -166,7 +166,7 @@ class GearMesh:
         return tuple(out)
 
     def _shifts(self) -> tuple[Change, ...]:
-        """Return the changes of the unloaded transmission error by tooth position errors [m]; none if no curve has any."""
+        """Return the changes of the unloaded transmission error by tooth position errors [m], empty without errors."""
         curves = [hurt.curve for hurt in self.damage]
         if all(getattr(curve, "unloaded", None) is None for curve in curves):
             return ()

@@ -240,7 +240,7 @@ def _sense(scene, name):
 
 
 def _rate(scene, name):
-    """Mesh frequency of a planetary stage [Hz], negative where the sun is driven: contacts then run backwards."""
+    """Mesh frequency of a planetary stage [Hz]. It is negative if the sun is driven, because contacts then move in reverse."""
     (link, sense), speeds = _sense(scene, name), scene.train.speeds
     return sense * (speeds[link.one] - speeds[link.two]) * scene.gears[scene.train.stages[name].gears[0]].z / (2 * math.pi)
 

@@ -144,7 +144,7 @@ def _part(law, phases, loads):
 
 
 def _off(fewer: ForceLaw, law: ForceLaw, phases: NDArray[np.int64], loads: NDArray[np.int64]) -> Floats:
-    """Return the relative force error of a law of fewer loads or phases at some of those of the whole one."""
+    """Return the relative force error of a law with fewer loads or phases, compared with the complete law."""
     exact = law.load[loads]
     return np.asarray(np.abs(fewer(law.depth[np.ix_(phases, loads)], law.phase[phases, None]) / exact - 1))
 

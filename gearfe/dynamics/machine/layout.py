@@ -60,7 +60,7 @@ class Body:
 
 
 class Layout:
-    """Degrees of freedom of bodies, and rows over them: the starting point of a user-defined machine.
+    """Degrees of freedom of bodies, and rows over them, for a user-defined machine.
 
     Examples
     --------
@@ -181,7 +181,7 @@ class Layout:
     def rubbing(
         self, one: str, two: str, *, angle: float, alpha: float, sense: int = 1, internal: bool = False
     ) -> tuple[Floats, Floats, Floats]:
-        """Rows of friction of such a mesh: across the line of action, and the turning of either body per lever arm [m].
+        """Friction rows of a mesh: motion across the line of action, and rotation of either body per lever arm [m].
 
         The first pulls body `one` back where its flank slides forward, towards the line of action turned by +90 degrees.
         """

@@ -53,13 +53,13 @@ def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[PhaseT
 
 
 def tooth_phase_of(running, z, first, start):
-    """Phases from `start` on of what returns after z mesh cycles, first at the running phase `first`."""
+    """Phases from `start` on of an event that returns every z mesh cycles, starting at the running phase `first`."""
     on = running - first - start
     return on - z * np.floor(on / z) + start
 
 
 def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> Floats | None:
-    """Coefficients ``(count, 4)`` of the sum of changes in cells from a running phase on; None if their cells are others."""
+    """Coefficients ``(count, 4)`` of the summed changes in cells from a running phase on, or None if their cells differ."""
     out = np.zeros((count, 4))
     for z, first, change in changes:
         place = (start - first - change.start) / change.width

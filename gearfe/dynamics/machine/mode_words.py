@@ -58,7 +58,7 @@ def mode_words(machine: Machine, energy: ModalEnergy, mode: int) -> str:
 
 
 def _against(machine, energy, mode, first, moving):
-    """Body that moves most against that of the dof `first`, by the senses of the rotation as a whole.
+    """Body with the largest motion in the opposite sense to the body of the degree of freedom `first`.
 
     The result is empty if none does.
     """

@@ -117,7 +117,7 @@ def flat_machine(scene: Scene, case: str | None = None) -> Machine:
 
 
 def damaged_teeth(scene: Scene, case: str | None) -> Sequence[Fault]:
-    """`Fault` of each tooth that differs in a case; none if the scene has no machine, or its machine is invalid."""
+    """`Fault` of each damaged or deviating tooth in a case. The result is empty if the scene has no valid machine."""
     try:
         build = MACHINES[scene.machine["model"]]["linear"]
         return build(scene, case, phases=ROUGH, method=None, loads=None).faults
@@ -186,7 +186,7 @@ def _unloaded(curve):
 
 
 def with_scene_errors(scene, machine):
-    """Return the machine with the errors that its scene states: those of the driven stage, the last one."""
+    """Return the machine with the errors that its scene states for the driven (last) stage."""
     keys = ("profile_error_um", "runout_um", "misplaced_um", "misplaced_y_um")
     profile, runout, *shift = (1e-6 * scene.machine.get(key, 0.0) for key in keys)
     if not (profile or runout or any(shift)):

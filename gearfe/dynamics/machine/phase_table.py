@@ -12,7 +12,7 @@ SMOOTH = 5  # minimum number of samples of a period for slopes of fourth order
 
 @dataclass(frozen=True, slots=True)
 class PhaseTable:
-    """A function of the phase by monotone cubics over equal cells: a ramp stays a ramp, no overshoot, no staircase.
+    """Function of the phase, interpolated by monotone cubics over equal cells without overshoot.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class PhaseTable:
         return self.cells[cell].T, (place - cell).T
 
     def __call__(self, phase: ArrayLike) -> NDArray:
-        """Value at phases from `start` to `end` (beyond them, of the end cells)."""
+        """Value at phases from `start` to `end`. The end cells are extrapolated beyond this range."""
         (a, b, c, d), u = self._cubic(phase)
         return (a + u * (b + u * (c + u * d))).T
 

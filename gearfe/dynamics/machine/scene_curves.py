@@ -45,7 +45,7 @@ def own_forces(machine):
 
 
 def pair_backlash(scene, name):
-    """Backlash of the meshes of a pair of a scene [m]: that of ``[machine]``, or else of teeth with an allowance; 0: none."""
+    """Backlash of the meshes of a pair [m], from ``[machine]`` or from the tooth thickness allowances. 0 means none."""
     stated, pair = scene.machine.get("backlash_um"), scene.pairs[name].pair
     thin = pair.gear_1.E_sn or pair.gear_2.E_sn
     return 1e-6 * stated if stated is not None else 1e-3 * pair.backlash if thin else 0.0
@@ -163,7 +163,7 @@ def _check_owners(scene, case, meshes, homes):
 
 
 def _teeth(case, bodies):
-    """Teeth of a case that differ, in words, with the number of teeth of their gear; of an eccentric gear one for all."""
+    """Damaged or deviating teeth of a case in words, with the tooth number of the gear. An eccentric gear has one entry."""
     out = {}
     for side, (name, body) in enumerate(zip(SIDES, bodies, strict=True)):
         gear = (case.pair.gear_1, case.pair.gear_2)[side]

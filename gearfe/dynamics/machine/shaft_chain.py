@@ -82,7 +82,7 @@ def _row(layout, body, dof, zero):
 
 
 def bearing_springs(layout: Layout, made: Chain, name: str, zeta: float = 0.02) -> list[Spring]:
-    """Springs of the bearings of a shaft in x, y and z; without a stated damping that of the ratio `zeta` with half its mass."""
+    """Bearing springs of a shaft in x, y and z. The default damping has the ratio `zeta` for half of the shaft mass."""
     shaft, out = made.shaft, []
     mass = sum(layout.bodies[body].mass for body in made.names) / 2
     for i, at in enumerate(shaft.bearings):

@@ -1,4 +1,4 @@
-"""One mass on one mesh: the smallest machine."""
+"""Smallest machine: one mass on one gear mesh."""
 
 from typing import Any
 

@@ -68,7 +68,7 @@ class Speed:
 
 
 def turned(knots, t):
-    """Return `Speed.turned` from its knots: the exact integral of linear pieces."""
+    """Return `Speed.turned` from the knots of the speed, as the exact integral of linear pieces."""
     place = np.clip(np.searchsorted(knots[:, 0], t, side="right") - 1, 0, len(knots) - 1)
     start, first, angle = (knots[place, i] for i in range(3))
     return angle + (t - start) * (first + np.interp(t, knots[:, 0], knots[:, 1])) / 2

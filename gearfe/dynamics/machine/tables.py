@@ -24,7 +24,7 @@ TOUCH = 1e-12  # compression at which the tangent of a force law without load is
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """A machine as tables.
+    """Dynamic model of a gearbox as tables of masses, springs, meshes and loads.
 
     Its equations, in SI units and a frame in which its bodies vibrate about their places::
 

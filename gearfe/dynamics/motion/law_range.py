@@ -54,7 +54,7 @@ def compared(response):
 
 
 def _looks(count):
-    """Return the samples that are evaluated: all of few, else a random one in each of `LOOKS` equal parts."""
+    """Return the samples to evaluate: all of a short run, otherwise a random one in each of `LOOKS` equal parts."""
     if count <= LOOKS:
         return slice(None)
     return ((np.arange(LOOKS) + np.random.default_rng(0).random(LOOKS)) * (count / LOOKS)).astype(np.int64)
@@ -82,7 +82,7 @@ def _left_out(mesh):
 
 
 def _other(mesh, own, seconds):
-    """Return a line on a mesh whose forces, at equal times of a run, differ from those of its stiffness curve, or None."""
+    """Return a message on a mesh whose mean force differs from the load of its stiffness curve, or None."""
     stated = mesh.stiffness.meta["force_N"]
     count = min(own.size // LEAST, PARTS, math.floor(seconds * abs(mesh.frequency)))
     means = np.abs([part.mean() for part in np.array_split(own, max(count, 1))])

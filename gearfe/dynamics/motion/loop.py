@@ -1,4 +1,4 @@
-"""The fast path: one step of `gearfe.dynamics.motion.propagator` after the other, in scalar arithmetic that numba compiles.
+"""Time integration by steps of `gearfe.dynamics.motion.propagator`, in scalar arithmetic compiled by numba.
 
 A step in which a mesh opens or closes, or a load bends, is halved up to `motion.propagator.LEVELS` times about it; under a
 law of contact that is not linear so is one whose estimate (`motion.propagator.RunMatrices.told`) is above what is allowed: flanks
@@ -207,8 +207,8 @@ def _run(given, z, clock, states, counts, acting):
     m, p, f, n, last, rubs, table = laws.size, P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub.size, flat.secant
     whole, opens, begin, held = 1 << last, last > 0, 2 * CHUNK + 1, allowed < np.inf  # `begin`: row of `now` for a part of a step
     now = np.zeros((begin + 3, 2 * m + f + (2 * len(flat.shape) if table.size > 0 else 0)))
-    g, apart = np.zeros(5 * f), np.zeros(f)  # forces of the stages 1, 3, 4, 2, and at the end; these less those of stage 4
-    none, doubt, fresh = np.zeros(m), np.zeros(m), False  # `fresh`: the first forces are those of the end before
+    g, apart = np.zeros(5 * f), np.zeros(f)  # forces of the stages 1, 3, 4, 2 and at the end; their difference from stage 4
+    none, doubt, fresh = np.zeros(m), np.zeros(m), False  # `fresh`: the first forces equal those at the end of the previous step
     y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
     side, edge, level = np.zeros(m), 0, 0
     nil, one = np.int64(0), np.int64(1)  # typed constants, because numba compiles a function for every literal
@@ -221,7 +221,7 @@ def _run(given, z, clock, states, counts, acting):
             if not np.isfinite(np.sum(z)):
                 return step
             lookup(flat, now, nil, 2 * min(CHUNK, steps - step) + 1, start, h, float(step), 0.5)
-        at, known, noted = 0, -1, len(acting) == 0  # `known`: the part whose end stands in the last row
+        at, known, noted = 0, -1, len(acting) == 0  # `known`: the part of the step whose end is in the last row
         level = level if held else 0
         while at < whole:
             level = _aligned(at, whole, level)

@@ -74,7 +74,7 @@ def announced(tell=None):
 
 @compiled
 def _place(table, phase):
-    """Place in the cells of a table at a running phase; `size` or more where its tooth is out of mesh."""
+    """Place in the cells of a table at a running phase. Values of `size` or more mean that its tooth is out of mesh."""
     on = phase - table.first - table.start
     return (on - table.period * np.floor(on / table.period)) / table.width
 
@@ -115,7 +115,7 @@ def _load(knots, low, high, t):
 
 @compiled
 def _paced(pace, t):
-    """Return the rotated time at time `t`, and the relative speed; both from the knots of `machine.speed.Speed`."""
+    """Return the rotation (as equivalent time) and the relative speed at time `t`, from the knots of `machine.speed.Speed`."""
     last = pace.shape[0] - 1
     if t <= pace[0, 0] or last == 0:
         return pace[0, 2] + pace[0, 1] * (t - pace[0, 0]), pace[0, 1]
@@ -168,7 +168,7 @@ def secant(table, one, place, u, depth):
 
 @compiled
 def _errors(flat, now, row, turned, fast):
-    """Add the errors of meshes, and what teeth off their places open, with their rates, in a row of `now`."""
+    """Add mesh errors and gaps of misplaced teeth, with their rates, to a row of `now`."""
     m, error, shift = flat.frequency.size, flat.error, flat.shift
     for j in range(error.size):
         one = error[j]

@@ -31,7 +31,7 @@ def phase_portrait(signal: Signal, velocity: Signal | None = None) -> tuple[Floa
 
 
 def poincare_section(signal: Signal, frequency: float, velocity: Signal | None = None, *, start: float = 0.0) -> NDArray:
-    """Points of the phase portrait once a period: one point repeated if the motion has that period.
+    """Points of the phase portrait, one per period. They coincide if the motion has that period.
 
     Parameters
     ----------

@@ -61,7 +61,7 @@ def reference(machine, duration, count, state, method, rtol, start=0.0):
 
 
 class _Run:
-    """One run: the scaled equations of motion, the flanks in touch, and what was counted."""
+    """One run: the scaled equations of motion, the flanks in contact, and counters."""
 
     def __init__(self, machine, duration, count, state, method, rtol, start):
         self.machine, self.n, self.law = machine, len(machine.dofs), machine.law

@@ -71,7 +71,7 @@ class Response:
         return replace(self, time=self.time[kept], states=self.states[kept], filtered=filtered)
 
     def __repr__(self):
-        """One line: machine, time, solver."""
+        """One line with machine, time and solver."""
         time = f"{len(self.time)} samples from {self.time[0]:.4g} to {self.time[-1]:.4g} s"
         machine = f"{len(self.machine.dofs)} degrees of freedom, {len(self.machine.meshes)} meshes"
         return f"<Response: {time}, {machine}, by {self.stats.get('method', '?')}; {len(self.names)} channels in .names>"
@@ -120,7 +120,7 @@ class Response:
         return self.states if self.filtered is None else self.filtered[:, : 2 * len(self.machine.dofs)]
 
     def _turns(self, name):
-        """Whether a spring carries a torque: it couples no translation."""
+        """Whether a spring carries a torque, that is, it couples no translation."""
         moved = {self.machine.dofs[i].partition(".")[2] for i in self.springs[name].row.nonzero()[0]}
         return not moved & set("xyz")
 

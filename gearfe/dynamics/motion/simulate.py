@@ -40,7 +40,7 @@ ALLOWED = 2 * WANTED_OPEN  # allowed difference with contact loss, as a part of 
 WHOLE = 1e-3  # allowed difference of a whole run with requested error, as a part of the range
 COARSE = 0.1  # estimate of a given step above which a warning is issued, as a part of the range
 SLOW = 5.0  # expected computing time of a whole run [s]: above, it is reported
-TRIED = 100_000  # steps of a run that is timed before one of `MANY` is begun
+TRIED = 100_000  # steps of a trial run that estimates the time of a run of `MANY` steps
 MANY = 100 * TRIED
 NUDGE, GROWN = 1e-9, 1e-2  # disturbance of the initial state, and the size that it may reach, as parts of the range
 
@@ -260,7 +260,7 @@ class _Runs:
             try:
                 place, span = beginning(self.machine, self.duration, self.own, self.start)
                 found = estimate(self.machine, out.stats["dt"], span, [place])
-            except RuntimeError:  # the stretch becomes unstable although the run does not
+            except RuntimeError:  # this part of the run becomes unstable with another step, although the run does not
                 found = Estimate(math.inf, False, length, 0.0, math.inf)
         doubt = max(found.error, unseen(self.machine, self.start, self.duration, out.stats["dt"]))
         if not doubt <= COARSE:
@@ -273,7 +273,7 @@ class _Runs:
         return replace(out, stats=out.stats | stats | {"seconds": time.perf_counter() - started})
 
     def controlled(self, error):
-        """Run at the chosen step; where contact is lost, until two whole runs agree, or by the reference."""
+        """Run at the chosen step. With contact loss, refine until two whole runs agree, or use the reference integrator."""
         started = time.perf_counter()
 
         def told(one, **more):

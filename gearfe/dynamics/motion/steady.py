@@ -163,7 +163,7 @@ class _Flow:
             return run(self.plan, self.machine, self.flat, z, self.times.size - 1, 1, self.breaks)
 
     def monodromy(self, states):
-        """Return the derivative of the state after the period by that before: differences of motions, exact if linear."""
+        """Return the monodromy matrix (final state by initial state of a period) by differences of motions, exact if linear."""
         part = 1.0 if self.linear else DISTURBED
         size = part * (np.abs(states).max() or 1.0)
         columns = []

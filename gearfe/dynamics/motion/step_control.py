@@ -1,4 +1,4 @@
-"""Step control of the fast path: differences of runs with two steps, and a step for which they are small.
+"""Step control of the fast integrator, based on the difference between runs with two step lengths.
 
 The error of a step is set by the mesh cycles, by the modes the meshes excite, by how steep the stiffness curves are and by the
 damaged tooth: no frequency alone determines it. So a short stretch of the motion is run at a step and at half of it, and the
@@ -223,7 +223,7 @@ class Estimate(NamedTuple):
 
 
 def is_rough(machine):
-    """Return True if the error of a step depends on step positions: flanks meet under a nonlinear law or a force law."""
+    """Return True if the error depends on step positions, as in contact under a nonlinear law or a force law."""
     return is_bent(machine) or any(mesh.secants for mesh in machine.meshes)
 
 
@@ -281,7 +281,7 @@ def estimate_along(response, found):
         index = np.searchsorted(time, begin + np.linspace(0.0, duration - length, SPREAD) * (1 - 1e-12)) - 1
         index = np.unique(np.maximum(index, 0))
         values = np.linalg.eigvals(plan(machine, h, machine.working()).levels[0][0])
-        # remaining part of a squared error after a stretch
+        # share of a squared error that is left after one stretch of the run
         left = np.abs(values[values.imag > 0]).max(initial=0.0) ** (2 * length / h)
         grown = math.sqrt(sum(left**i for i in range(math.ceil(duration / length))))
     else:

@@ -71,7 +71,7 @@ def _weights(count, reach, passed):
     J. F. Kaiser, Proc. IEEE Int. Symp. Circuits Syst. (1974) 20-23; `scipy.signal.firwin`.
     """
     cut = 2 * (passed + STEEP / 2 / max(reach, 1e-9)) / count
-    if cut >= 1:  # no sample is left out
+    if cut >= 1:  # all samples are kept
         return np.eye(1, 2 * reach * count + 1, reach * count)[0]
     return firwin(2 * reach * count + 1, cut, window=("kaiser", WIDTH))
 
@@ -110,7 +110,7 @@ def _filtered(pieces, count, reach, passed):
 
 
 def _taken(waiting, count, matrix):
-    """Rows that have enough on either side, filtered; those that later ones still need."""
+    """Return filtered rows that have enough neighbours, and the rows that later ones still require."""
     length = matrix.shape[1] - (len(matrix) - 1) * count
     ready, out = (len(waiting) - length) // count + 1, []
     for first in range(0, ready, len(matrix)):

@@ -20,7 +20,7 @@ from .integral import integral_influence, on_stubs
 
 FEWEST = 60_000  # unknowns of a gear at refine 1, at least; they grow with its power 2.5 to 3
 LOST = 2  # number of the highest axial degrees that may be dropped if the layers do not resolve them
-RESOLVED = 0.05  # limit of the error of a mesh that is too stiff, as a part of the half-space's displacement
+RESOLVED = 0.05  # least displacement under a patch, relative to that of a half-space; smaller means a mesh that is too coarse
 PER_HAT = 4  # edges across a hat
 LAYER = 2.0  # height of the element layers [m_n], at most a sixth of the width
 END = 0.25  # height of the layers at the end faces, where loads and modes change most, against that
@@ -79,7 +79,7 @@ class MeshedGear:
         gear, refine = self.gear, self.refine
         if not (math.isfinite(refine) and refine > 0):
             raise ValueError(f"refine = {refine}, but it divides the edge lengths: give a positive number")
-        solver.plan(int(FEWEST * max(refine, 1.0) ** 2.5))  # what no memory holds is not meshed
+        solver.plan(int(FEWEST * max(refine, 1.0) ** 2.5))  # reject gears that exceed the memory before meshing
         degree = (axial_modes(gear.b, gear.m_n) if self.degree is None else self.degree) - self.less
         broken = tuple(one for one in self.damage if isinstance(one, BROKEN))
         own = {one.tooth % gear.z: hats(loaded_side(gear, broken, one.tooth)) for one in broken}
@@ -124,7 +124,7 @@ def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
     teeth, degree = patches.teeth, patches.modes - 1
     solve = influence if whole.shaft is None else partial(integral_influence, shaft=whole.shaft)
     solved = solve(mesh, material, patches, tell=tell, zones=zone_forces(mesh))
-    unit = np.tile(np.sqrt((2 * np.arange(degree + 1) + 1) * gear.b), patches.knots.shape[1])  # from P_a / b to orthonormal
+    unit = np.tile(np.sqrt((2 * np.arange(degree + 1) + 1) * gear.b), patches.knots.shape[1])  # orthonormal polynomials
     size = unit.size
     matrix = solved.matrix.reshape(len(teeth), size, len(teeth), size) * unit[:, None, None] * unit
     kept = _resolved(whole, material, matrix[0, :, 0], degree, cache) if healthy is None else healthy.degree

@@ -7,9 +7,9 @@ from ...geometry.kept import keeping
 from .hexahedron import TWENTY, gauss, shapes
 from .tetrahedron import EDGES, INNER, OUTER
 
-LEFT = 0.05  # least Jacobian of a bent tet over that of the straight one
+LEFT = 0.05  # least Jacobian of a curved tetrahedron, relative to the straight one
 NEAR = 0.975  # position of the point near a hexahedron's corner, since quads with a straight angle there are no fault
-HALVINGS = 5  # halvings of a bend before the edge is left straight
+HALVINGS = 5  # number of halvings of the curvature before an edge becomes straight
 
 
 @keeping(2)

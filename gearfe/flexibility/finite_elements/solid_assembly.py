@@ -35,7 +35,7 @@ def _form(a, b):
     return BilinearForm(lambda u, v, _: v.grad[a] * u.grad[b])
 
 
-FORMS = {(a, b): _form(a, b) for b, a in combinations_with_replacement(range(3), 2)}  # d_a v d_b u with b <= a
+FORMS = {(a, b): _form(a, b) for b, a in combinations_with_replacement(range(3), 2)}  # integrals of d_a v d_b u with b <= a
 
 
 def assemble(points, cells, material, free, *, order=None):

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...core.material import Material
 
-INNER, OUTER = (5 + 3 * math.sqrt(5)) / 20, (5 - math.sqrt(5)) / 20  # Gauss points of a tet, exact for squares
+INNER, OUTER = (5 + 3 * math.sqrt(5)) / 20, (5 - math.sqrt(5)) / 20  # Gauss points, exact for quadratic polynomials
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # edges of a tet with a node in their middle, in VTK's order
 
 

@@ -19,7 +19,7 @@ from .plan import SIDES, Plan, combinations, operations
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """One simulation: its number, its class, its operation as drawn, what scatters by key, and its side of the split.
+    """One simulation: number, class, drawn operating condition, scattered values by key, and side of the split.
 
     `nominal` is the number of its combination of speed and torque, `fault` the number of its fault in the plan (None: healthy),
     `start` a number from 0 to 1 that says when the record begins.
@@ -72,7 +72,7 @@ def conditions(plan: Plan) -> list[Condition]:
 
 
 def _sides(plan, rows):
-    """Side of each condition: dealt by shares within each class, or to whole operations."""
+    """Side of the split of each condition, assigned by shares within each class or to whole operating conditions."""
     shares = np.array([plan.split[side] for side in SIDES])
     rng = np.random.default_rng([plan.seed, 7])
     if plan.split["by"] == "operation":

@@ -152,7 +152,7 @@ def _hdf5(name, signals, labels, about):
 
 
 def _column(values):
-    """Column of labels as an array: numbers, or texts with nothing for none."""
+    """Column of labels as an array of numbers, or of texts that are empty if missing."""
     if values.dtype.kind in "iufb":
         return values.to_numpy()
     return np.array(["" if value is None or value != value else str(value) for value in values], dtype=object)

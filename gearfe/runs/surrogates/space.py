@@ -26,7 +26,7 @@ INPUTS = {  # descriptions by name of the input
     "bore_2": "bore of the wheel, in its root radii",
 }
 WHOLE = ("z_1", "z_2")
-SHAPE = ("z_1", "z_2", "x_1", "x_2")  # they move the contact ratio and the centre distance
+SHAPE = ("z_1", "z_2", "x_1", "x_2")  # inputs that change contact ratio and centre distance
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from .space import Space, space_of
 from .zoned import DEGREE, at, piece_of
 
 TITLE = "gearfe surrogate, version 1"
-ERRORS = ("mean", "worst", "cases")  # that its line shows
+ERRORS = ("mean", "worst", "cases")  # entries printed by `repr`
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +114,7 @@ class Surrogate:
         none, width = np.full((phase.size, 1), np.nan), min(self.space.pair.gear_1.b, self.space.pair.gear_2.b)
         meta = self.meta["curve"] | {
             "method": "surrogate of ritz", "inputs": inputs, "force_N": inputs["force"], "width_mm": width, "error": self.error,
-            "eps_alpha": float(int(self.meta["pairs"]) + 1 + 2 * breaks[0]),  # the first break: half the zone of fewer pairs
+            "eps_alpha": float(int(self.meta["pairs"]) + 1 + 2 * breaks[0]),  # first break: half the zone with fewer pairs
         }  # fmt: skip
         return StiffnessCurve(
             phase=phase, k=k, k_tangent=none[:, 0], deflection=inputs["force"] / k,

@@ -128,7 +128,7 @@ def plan_sweep(study: StrPath | Mapping[str, Any], folder: StrPath = ".", *, wor
     checked = read_study(study)
     every, fields = blocks(checked)
     small, chosen = slim(checked), every[len(every) // 2]
-    rows(small, chosen.single(0))  # loads imports and tables once
+    rows(small, chosen.single(0))  # warm-up that loads modules and tables
 
     def trial():
         made = rows(small, chosen)

@@ -180,7 +180,7 @@ def _drawn(study):
 
 
 def of_case(study: Study, case: Mapping[str, Any]) -> tuple[str, str, dict[str, Any]]:
-    """Pair, case of damage and options of a case with its values by key."""
+    """Pair, damage case and options of one case of a study, from its values by key."""
     options = {key.partition(".")[2]: value for key, value in case.items() if key.startswith("options.")}
     if options:
         given = {name: value for name, value in (study.options | options).items() if value is not None}

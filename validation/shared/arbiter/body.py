@@ -14,9 +14,9 @@ from gearfe.geometry.mesh.mesher import triangulate
 from .cracks import crack_corners, crack_start
 from .elements import gradients, solver, stiffness
 
-GROWTH = 0.3  # of edge lengths by distance along the outline
+GROWTH = 0.3  # growth of edge lengths with the distance along the outline
 FAR, FILLET, FLANK = 0.8, 0.16, 0.3  # edge lengths of far teeth, and of fillets and flanks near loaded ones [m_n]
-NEAR = 1  # teeth beside loaded ones that are meshed like them
+NEAR = 1  # number of teeth next to loaded ones with the same mesh size
 
 
 class MeshedBody:
@@ -192,7 +192,7 @@ class MeshedBody:
                 radius.append(r[:keep])
                 angle.append(centre + a[:keep])
                 at += keep
-            # the root circle to the next tooth: from the loaded side's last point, its middle points and middles
+            # root circle to the next tooth, starting at the last point of the loaded side
             if shut:
                 continue
             here, there = angle[-1][-1], centre + 2 * math.pi / z + float(self._other(np.array([0.0]))[1][0])
@@ -280,7 +280,7 @@ class MeshedBody:
                 self._edges[min(a, b), max(a, b)] = self._edges[key]
                 middles[:, self._edges[key] - points.shape[1]] = loop[:, 2 * i + 1]
             at += count
-        for tip in tips:  # square roots at a crack's tip
+        for tip in tips:  # displacements vary with the square root of the distance from a crack tip
             for (a, b), node in list(self._edges.items()):
                 if tip in (a, b):
                     middles[:, node - points.shape[1]] = 0.75 * points[:, tip] + 0.25 * points[:, a + b - tip]

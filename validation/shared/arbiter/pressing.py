@@ -25,7 +25,7 @@ from .zones import WIDER, Contact, found, hats, placed
 SPRING = 0.065  # stiffness of a tooth pair by width over Young's modulus, to find which pairs may touch
 FIRST = 0.5  # refine of the first pass, which only says where pressures are
 OPEN = 1.3  # pairs count as possible up to so many times the approach
-STEPS = 300  # of the search for the pressed hats
+STEPS = 300  # largest number of steps of the search for loaded hats
 
 
 @dataclass
@@ -188,7 +188,7 @@ class _Phase:
                 x, y = points[0] + (gap * normals[0] if sense < 0 else 0), points[1] + (gap * normals[1] if sense < 0 else 0)
                 y = y - self.contact.press.centres[gear]
                 rate += sense * self.contact.press.rates[gear] * (y * normals[0] - x * normals[1])
-            moved = (zone.shift[1 - zone.own] - zone.shift[zone.own]) @ normals  # is counted by the deformation already
+            moved = (zone.shift[1 - zone.own] - zone.shift[zone.own]) @ normals  # already part of the deformation
             gaps.append(weight.T @ (gap + rate * self.approach - moved))
             rates.append(weight.T @ rate)
             heading = np.arctan2(*normals)

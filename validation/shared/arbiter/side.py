@@ -2,8 +2,8 @@
 
 import numpy as np
 
-SAMPLES = 801  # of a piece, for its arc length
-STEP = 1e-5  # of a piece, for its tangent
+SAMPLES = 801  # samples of a piece, for its arc length
+STEP = 1e-5  # step along a piece, for its tangent
 TRIES, FINER = 400, 17  # points of the other curve in which a crossing is looked for, then around it
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 COARSE, FINE, ZOOMS = 49, 9, 4  # points of a piece, then around the first of them to touch
-STEPS = 6  # of the secant method at most
+STEPS = 6  # largest number of steps of the secant method
 SETTLED = 1e-10  # mm
 FAR = 0.15  # m_n: approaches beyond it are not looked for
 

@@ -43,7 +43,7 @@ class Impact:
 
 @dataclass(frozen=True, slots=True)
 class Hertz:
-    """`Impact` with the exponent 3/2 of Hertz's theory: a square root is ten times faster than a power."""
+    """`Impact` with the exponent 3/2 of Hertz's theory, evaluated by a square root because a power is ten times slower."""
 
     full: float = 0.0
     power: float = field(default=1.5, init=False)

@@ -27,7 +27,7 @@ SAINSOT = np.array(
 
 @dataclass(frozen=True, slots=True)
 class Validity:
-    """A value outside the range a formula was made for: `what` it is, its `value`, and the range from `low` to `high`."""
+    """A value outside the range of validity of a formula: quantity `what`, its `value`, and the range `low` to `high`."""
 
     what: str
     value: float

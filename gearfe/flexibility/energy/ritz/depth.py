@@ -1,4 +1,4 @@
-"""Degree along the width that each place of the section needs: it falls with the depth below the loaded flanks.
+"""Polynomial degree along the width at each place of the section. It decreases with the depth below the loaded flanks.
 
 The variation along the width of a surface load decays like ``exp(-k pi d / b)`` at depth d, with k half waves in the width b.
 Polynomials of low degree suffice in the body. High degrees are needed next to the contact.

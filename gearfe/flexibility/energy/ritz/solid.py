@@ -173,7 +173,7 @@ def _seams(cracks):
 
 
 def _parts(damage):
-    """Cracks of a tooth, and what has broken off: a `MissingTooth`, a `Chip`, or None."""
+    """Cracks of a tooth and its lost part (`MissingTooth`, `Chip` or None)."""
     cracks = tuple(one for one in damage if isinstance(one, Crack))
     return cracks, next((one for one in damage if one not in cracks), None)
 

@@ -47,7 +47,7 @@ def tip_columns(sector, tip, numbers, order, material, state):
     corners = sector.points[:, sector.triangles[:, used]]
     basis = table(order)
     arms = np.einsum("dcm,ce->mde", corners, basis.corner_slope)
-    back = np.linalg.inv(arms)  # reference coordinate by place
+    back = np.linalg.inv(arms)  # derivatives of the reference coordinates by x and y
     grads = np.einsum("ad,med,enq->namq", tip.turn, back, basis.slope)
     slope = np.einsum("ad,med,ce,cm->am", tip.turn, back, basis.corner_slope, q[:, used])[:, :, None]
     place = np.einsum("ad,dcm,cq->amq", tip.turn, corners - tip.place[:, None, None], basis.corner)
