@@ -257,7 +257,7 @@ def _chosen(scene, pair, case, given):
         return _own(pair, given)
     stated = [name for name, value in given.items() if value not in (None, 0.0)]
     if stated:
-        raise ValueError(f"{stated[0]} is stated by the scene: leave it out, or give pair=GearPair(...) instead of a scene")
+        raise ValueError(f"{stated[0]} is stated by the scene: omit it, or give pair=GearPair(...) instead of a scene")
     scene = _loaded(scene)
     if not isinstance(scene, Scene):
         raise ValueError(

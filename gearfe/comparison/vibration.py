@@ -327,7 +327,9 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
     }
     first = next(iter(spectra.values()))
     if mesh is not None and mesh >= first.frequency[-1]:
-        raise ValueError(f"mesh = {mesh:g} Hz, but {channel} shows what lies below {first.frequency[-1]:g} Hz, half of its rate")
+        raise ValueError(
+            f"mesh = {mesh:g} Hz, but {channel} contains frequencies up to {first.frequency[-1]:g} Hz only, half of its rate"
+        )
     lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
     for name, value in (others or {}).items():
         beside = expected_lines(mesh, value, count=1, harmonics=2)

@@ -71,7 +71,7 @@ def indicator_table(
         `tolerance`; if the spectrum is zero around the mesh frequency; if scipy does not know `window`.
     """
     if not isinstance(signals, Mapping):
-        raise ValueError(f"signals = {signals!r}, but give records by case")
+        raise ValueError(f"signals = {signals!r}, but give a dictionary of records by case name")
     if healthy not in signals:
         raise ValueError(f"no case {healthy!r} to compare with; there are {', '.join(signals) or 'none'}: give one as healthy=")
     first = signals[healthy]

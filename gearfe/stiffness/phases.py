@@ -22,7 +22,7 @@ def check_phases(phases: Any) -> int | Floats:
         return check_count(phases)
     out = numbers("phases", phases, "")
     if out.ndim != 1 or out.size == 0 or not np.isfinite(out).all():
-        raise ValueError("phases: give a number of them, or a list of finite phases in mesh cycles, one at least")
+        raise ValueError("phases: give the number of phases, or a list of at least one finite phase in mesh cycles")
     return out
 
 

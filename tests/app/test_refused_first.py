@@ -46,7 +46,7 @@ def test_a_sweep_that_goes_nowhere(options, told, tmp_path, monkeypatch, capsys)
     ("options", "told"),
     [
         (["--mesh", "nan"], "mesh = nan Hz, but a frequency"),
-        (["--mesh", "1e30"], "but a shows what lies below 500 Hz"),
+        (["--mesh", "1e30"], "but a contains frequencies up to 500 Hz"),
         (["--mesh", "100", "--fault", "0"], "fault = 0.0 Hz"),
         (["--mesh", "100", "--carrier", "-1"], "carrier = -1.0 Hz"),
         (["--pulses", "0"], "--pulses 0"),

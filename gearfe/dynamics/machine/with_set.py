@@ -68,7 +68,7 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
     the set would then be removed, which is an error.
     """
     if not isinstance(machine, Machine) or not isinstance(curves, SetCurves):
-        raise ValueError(f"with_set({machine!r}, {curves!r}), but give a Machine and what planetary_stiffness gives")
+        raise ValueError(f"with_set({machine!r}, {curves!r}), but give a Machine and the result of planetary_stiffness")
     if ring == "in k":
         warn_renamed('ring = "in k"', '"lumped"')
         ring = "lumped"
