@@ -170,7 +170,7 @@ def beside_health(case: Case, how: Solve, pair: str = "pair", *, returns: Mappin
 
 
 def _beside(key, case, phases, returns=None):
-    """Case and phases by key, those of the healthy pair too; and the phases that zones are over by damaged tooth in words."""
+    """Cases and phases by key, with those of the healthy pair, and the phases of the zones of each damaged tooth."""
     cycles = {}
     if case.damaged and np.ndim(phases) == 0:
         count = check_count(phases)

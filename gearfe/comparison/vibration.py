@@ -296,7 +296,7 @@ def simulated_gear(scene, case, gear, duration=None):
 
 
 def gears_table(found):
-    """`Table` of indicators of the gears of parallel stages by case of `responses`; None of a machine with one stage.
+    """`Table` of indicators of the gears of parallel stages by case of `responses`, or None for a single stage.
 
     They are those of the synchronous average of the mesh force. Records of fewer than two revolutions have none.
     """

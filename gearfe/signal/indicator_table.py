@@ -96,7 +96,7 @@ def indicator_table(
 
 
 def tabulate_indicators(found: Mapping[str, Mapping[str, tuple[float, float]]]) -> Table:
-    """`Table` of `indicator_table`: a row for each indicator; of each case its value and, if it grew, its increment over healthy.
+    """`Table` of `indicator_table` with a row for each indicator. Each case has its value and its increment over healthy.
 
     A healthy value that is a millionth or less of the faulty one is printed as none.
     """

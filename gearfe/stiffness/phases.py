@@ -27,7 +27,7 @@ def check_phases(phases: Any) -> int | Floats:
 
 
 def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0, teeth: Iterable[int] = (0,)) -> Floats:
-    """Phases ``(n,)`` of a number of them over a `span`, or those given; an engagement lasts ``eps_alpha + overlap`` cycles.
+    """Given phases, or a number of phases ``(n,)`` over a `span`. An engagement lasts ``eps_alpha + overlap`` cycles.
 
     Those of the `span` ``tooth`` are of the engagements of all tooth pairs of these numbers.
     """

@@ -210,7 +210,7 @@ def grow_crack(
 
 @dataclass
 class _Tip:
-    """Solves for the tip of a crack, and notes by which method; from the first crack that `ritz` lacks on by `fe`."""
+    """Solver for the tip of a growing crack. It changes from `ritz` to `fe` at the first crack that `ritz` does not support."""
 
     gear: Gear
     material: Material

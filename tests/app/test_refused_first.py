@@ -56,7 +56,7 @@ def test_frequencies_that_cannot_be(options, told, tmp_path, capsys):
     path = tmp_path / "run.csv"
     path.write_text("time [s],a [g]\n" + "".join(f"{i / 1000},{(7919 * i) % 101}\n" for i in range(400)))
     assert main(["signal", str(path), *options]) == 1
-    assert told.replace("but a shows", "but run a shows") in capsys.readouterr().err
+    assert told.replace("but a contains", "but run a contains") in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("option", ["--case", "--pair", "--method", "--force", "-o", "--pose"])

@@ -197,7 +197,7 @@ def _still(machine):
 
 
 def ring_springs(case: Any) -> Floats:
-    """Stiffness of a rigid ring on the bed or the pads of a `PlanetaryCase` in x, y and its turn [N/m, N m/rad]; inf: rigid.
+    """Stiffness of a rigid ring on the bed or pads of a `PlanetaryCase` in x, y and rotation [N/m, N m/rad] (inf if rigid).
 
     Of n pads, radial k_r and tangential k_t: ``n (k_r + k_t) / 2`` and ``n k_t R**2``; of a bed the same with its length for n.
     """
