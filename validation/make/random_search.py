@@ -23,7 +23,7 @@ STEEL = gf.Material(E=207e3, nu=0.3)
 INDEPENDENT = ("seed", "phase", "k_N_um_mm", "error_percent")
 FIELDS = ("seed", "kind", "pair", "load_N_mm", "phase", "deflection_um", "k_N_um_mm")
 FIELDS += ("off_percent", "estimate_percent", "outlines_percent")
-MESHES = {"refines": (0.7, 1.0)}  # of `pressed`; CalculiX takes the second one, so that it has the same mesh error
+MESHES = {"refines": (0.7, 1.0)}  # CalculiX takes the second mesh and has its mesh error
 
 
 def random_case(seed):
@@ -128,8 +128,8 @@ def beyond(rows):
 
 
 HOW = """
-Each kind stresses one assumption: cracks on the unloaded side (closed), thin rims, deep cracks, bent cracks, several cracks,
-teeth thinned by root relief, extreme profile shifts, cracked rings. A seed draws the gears, the load and two phases. `ritz` has
+Each kind stresses one assumption. The kind "closed" has cracks on the unloaded side, "thin" has teeth thinned by root relief, and
+"extreme" has extreme profile shifts. A seed draws the gears, the load and two phases. `ritz` has
 its defaults. The independent sections share with gearfe the definitions of gears, flanks, cracks and phases, and gmsh's
 triangulation.
 A phase is covered if the difference is at most the estimate of `ritz` plus the mesh error of the independent section. The
@@ -205,8 +205,8 @@ def section(rows):
     return [
         *out,
         "",
-        "The deflection of these pairs is 0.7 to 2 % of the module. The effect of large displacements grows with the load: "
-        "of seed 910186 CalculiX differs from the outlines by -2.6 %, and by -0.7 % at a quarter of the load.",
+        "The deflection of these pairs is 0.7 to 2 % of the module. The effect of large displacements grows with the load. "
+        "Of seed 910186 CalculiX differs from the outlines by -2.6 %, and by -0.7 % at a quarter of the load.",
     ]
 
 
