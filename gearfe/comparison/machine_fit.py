@@ -158,7 +158,7 @@ def fit_machine(
         If a range or key is invalid, the record has another speed, or has fewer lines than there are keys.
     """
     if not isinstance(record, Signal):
-        raise ValueError(f"record = {record!r}, but give a Signal, such as gearfe.read_signal gives")
+        raise ValueError(f"record = {record!r}, but give a Signal, such as the result of gearfe.read_signal")
     low, high = _ranges(vary)
     file, tables = read_tables(scene)
     logs = low > 0

@@ -213,7 +213,7 @@ def _hint(name, model, k, reference):
     ratio = math.exp(np.log(k / reference.k).mean())
     if not 1 / FAR < ratio < FAR:
         warnings.warn(
-            f"model {name!r} is {ratio:.3g} times the reference: is k that of the whole width, in N/m or the unit stated?",
+            f"model {name!r} is {ratio:.3g} times the reference: check that k is for the whole width, in N/m or the stated unit",
             stacklevel=4,
         )
     written = getattr(model, "meta", None)

@@ -50,7 +50,7 @@ class Bodies(NamedTuple):
 
 
 def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility3d):
-    """`Bodies` by `energy.ritz.solid`; coarser: a section order less by 1, axial degrees less by a quarter, at least 2.
+    """`Bodies` by `energy.ritz.solid`. The coarser solution has a lower section order (by 1) and lower axial degrees.
 
     (By 2 at any degree would cover ever less of the error of wide gears.) `solve` is called like `flexibility3d`.
     """

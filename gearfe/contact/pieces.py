@@ -58,7 +58,7 @@ def gaps(pair):
 
 @keeping(64)
 def cut(pair):
-    """Return the length on the path, from its start and its end [mm], on which a tip cuts into its mate's fillet; 0 for none."""
+    """Return the lengths at start and end of the path [mm] on which a tip cuts into its mate's fillet, or 0."""
     start, end = pair.path
     nominal = np.linspace(start, end, max(2, math.ceil(pair.eps_alpha * SAMPLES)))
     met, step = touching(pair, nominal), nominal[1] - nominal[0]

@@ -85,7 +85,7 @@ class GearReader:
         return found[0] if found else None
 
     def allowance(self, gear: Component, row: dict[str, Any], name: str) -> float:
-        """Mean normal tooth thickness allowance E_sn [um] of span, chordal thickness or generating profile shift; 0: none."""
+        """Mean normal tooth thickness allowance E_sn [um] from span, chordal thickness or generating profile shift, or 0."""
         alpha, m_n = math.radians(row["alpha_n_deg"]), row["m_n_mm"]
         limits = ("upper_backlash_allowance_referenced_to_span", "lower_backlash_allowance_referenced_to_span")
         found = [(what := "span measurement", [gear.number(one, "mum") for one in limits], 1 / math.cos(alpha))]

@@ -44,7 +44,7 @@ def plot_spectra(
         What is shown: scene, case, channel.
     """
     if not spectra:
-        raise ValueError("spectra: give one at least")
+        raise ValueError("spectra: give at least one")
     figure, rows = blank((9, 1 + 2 * len(spectra)), len(spectra), 1, sharex=True, sharey=True, squeeze=False)
     rows = rows[:, 0]
     largest = max(curve.values.max() for curve in spectra.values())

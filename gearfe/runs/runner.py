@@ -113,7 +113,7 @@ def _until_broken(work, waiting, suspects, workers, own):
 
 
 def alone(work: Callable[[Any], Any], jobs: Iterable[Any], *, own: bool = False) -> Iterator[tuple[Any, Any]]:
-    """Each job with what `work` gives of it, by a process that does nothing else; None if the process ended with it."""
+    """Each job with its result of `work`, computed by a separate process, or None if the process died."""
     waiting = deque(jobs)
     while waiting:
         with processes(1, own=own) as pool:

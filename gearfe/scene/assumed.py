@@ -49,7 +49,7 @@ def _away(file, where, values, tables):
 
 
 def _present(file, where, key, tables):
-    """Value of a dotted key such as ``gear.sun.b_mm`` in nested tables; of a list of tables the values of all, one if alike.
+    """Value of a dotted key such as ``gear.sun.b_mm`` in nested tables. A list of tables gives all values, or their common one.
 
     ValueError if there is no such value, or it is a table; the message names what there is.
     """

@@ -165,7 +165,7 @@ def supports_of(file: str, rows: Row, name: str, materials: dict[str, Any]) -> d
 
 
 def _placed(file: str, rows: Row, name: str, kinds: tuple[str, ...], out: dict[str, Any]) -> Iterator[tuple[str, Row, str]]:
-    """Place, row and side of all tables of these kinds in the pair `name`; of one side only one, in `out`."""
+    """Place, row and side of all tables of these kinds in the pair `name`. Each side may have one only."""
     for where, row in ((f"{kind}.{key}", row) for kind in kinds for key, row in rows[kind].items()):
         for side in sides(file, where, row, name, rows["pair"]):
             if side in out:

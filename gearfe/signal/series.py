@@ -1,4 +1,4 @@
-"""`Signal`: a quantity sampled in time, measured or computed; at a lower rate, and its integral over time."""
+"""`Signal`: a measured or computed quantity sampled in time, with its decimation and integration."""
 
 import math
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Spectra of signals: amplitude, power density, squared envelope; the analytic signal and the envelope."""
+"""Amplitude spectrum, power spectral density, squared envelope spectrum, analytic signal and envelope."""
 
 from dataclasses import replace
 from typing import Any
@@ -101,7 +101,7 @@ def power_spectral_density(
 
 
 def analytic(signal, band=None):
-    """Analytic signal of the oscillation (without the mean), of `band` = (low, high) [Hz] only if given; shape (n,), complex.
+    """Analytic signal (complex, shape (n,)) without the mean, restricted to `band` = (low, high) [Hz] if given.
 
     The band is cut between bins of the discrete Fourier transform, as `scipy.signal.envelope` does: exact for a record that
     closes; any other rings at its ends, for about ``1 / (high - low)``.
@@ -142,7 +142,7 @@ def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
 def squared_envelope_spectrum(
     signal: Signal, band: tuple[float, float] | None = None, *, window: str | tuple[Any, ...] = "hann"
 ) -> Spectrum:
-    """Amplitude spectrum of the squared envelope, unit ``(unit)^2``; best taken of the band that the kurtogram finds.
+    """Amplitude spectrum of the squared envelope, unit ``(unit)^2``. A suitable band is that of the kurtogram.
 
     ``(1 + m cos(2 pi f t))`` times a carrier of amplitude A gives ``2 m A**2`` at f and ``m**2 A**2 / 2`` at 2 f.
 

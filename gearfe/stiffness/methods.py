@@ -170,7 +170,7 @@ RING_FOUNDATIONS = {  # treatment of a ring's body by variants `foundation`
 
 
 def current(name: Any) -> Any:
-    """Return the present name of a method, with a DeprecationWarning for a former one; anything else unchanged."""
+    """Return the present name of a method. A former name causes a DeprecationWarning. Other values are unchanged."""
     if isinstance(name, str) and name in FORMER:
         from ..geometry.renamed import warn_renamed  # imported here, because it loads numpy, which the help does not need
 

@@ -215,7 +215,7 @@ def _on_flank(gear: Gear, roll: NDArray) -> tuple[Floats, NDArray[np.bool_]]:
 
 
 def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Floats:
-    """Return the checked result of a user's function: real, finite and symmetric with the shape; else a ValueError."""
+    """Return the result of a user's function. Raises ValueError unless it is real, finite, symmetric and of the shape."""
     try:
         returned = work()
     except Exception as error:  # a user's function may raise any error

@@ -59,7 +59,7 @@ def shallower(crack, part):
 
 
 def crack_in_band(crack, b, first, last):
-    """Return the part of a crack of a gear of width `b` [mm] in a band of the width; None if it is closed in the band.
+    """Return the part of a crack in a band of the face width `b` [mm], or None if it is closed there.
 
     Heights in the band are counted from its end at z = `first` to that at z = `last` [mm]; `first` may be the higher one.
     """

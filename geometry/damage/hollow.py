@@ -175,7 +175,7 @@ def union_length(low, high):
 
 
 def in_circle(p, q, dp, dq, flat):
-    """Return the intervals (t0, t1) in which lines ``(p + t dp, q + t dq)`` lie in the unit circle; t0 == t1 if they miss it.
+    """Return the intervals (t0, t1) in which lines ``(p + t dp, q + t dq)`` lie in the unit circle. t0 == t1 outside.
 
     Lines with ``dp**2 + dq**2`` below `flat` are points.
     """

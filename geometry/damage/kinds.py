@@ -95,7 +95,7 @@ def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> s
 
 
 def called(damage: Iterable[Damage]) -> str:
-    """Return the adjective of a tooth with such damage: cracked, pitted or spalled; damaged for more than one of these."""
+    """Return the adjective of a tooth: cracked, pitted, spalled, or damaged for several types."""
     names = {defect._adjective for defect in damage}
     return names.pop() if len(names) == 1 else "damaged"
 

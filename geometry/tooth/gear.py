@@ -21,7 +21,7 @@ def _base_radius(z: int, m_n: float, alpha_n: float, beta: float) -> float:
 @renamed(tip_radius="rack_tip_radius")
 @dataclass(frozen=True, slots=True)
 class Gear:
-    """Involute gear (symbols of ISO 21771; rack of ISO 53): external with `r_bore`, internal (a ring) with `r_rim`.
+    """Involute gear with the symbols of ISO 21771: external with `r_bore`, or internal (a ring) with `r_rim`.
 
     Helical gears are described in the normal section and used in the transverse one.
 

@@ -1,4 +1,4 @@
-"""Forces of a gear mesh: the table of contact laws, backlash, Coulomb friction; and Hertz's coefficient.
+"""Forces of a gear mesh: table of contact laws, backlash, Coulomb friction and Hertz's coefficient.
 
 All functions take arrays. The compression `x` of a mesh is positive when the driving flanks press on each other. The back flanks
 touch at ``x = -backlash``. A law gives the force of flanks in touch, which is the same for back flanks.

@@ -91,7 +91,7 @@ def flatten(machine, times):
 
 
 def _laid_out(laws):
-    """`Flat.secant` and `Flat.shape` of laws; one that several meshes share is laid out once."""
+    """`Flat.secant` and `Flat.shape` of laws. A law shared by several meshes is stored once."""
     places, parts, shape, end = {}, [np.zeros(0)], [], 0
     for law in laws:
         if law is None:

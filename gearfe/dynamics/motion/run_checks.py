@@ -69,4 +69,6 @@ def check_run(machine, duration, method, rate, step, dt, start, every):
     if rate is not None and every != 1:
         raise ValueError(f"rate = {rate} Hz and every = {every}: both thin out the output; give a lower rate alone")
     if abs(start) > LATEST:
-        raise ValueError(f"start = {start:g} s, but give a time within {LATEST:g} s: phases of later ones are rounding")
+        raise ValueError(
+            f"start = {start:g} s, but give a time within {LATEST:g} s, because phases at later times are lost by rounding"
+        )

@@ -182,7 +182,7 @@ def check_shards(folder: StrPath) -> None:
             raise _damaged(file, error) from error
         schema = schema or found
         if found != schema:
-            raise ValueError(f"{file} has other columns than the shards before it: it does not belong here; remove it")
+            raise ValueError(f"{file} has other columns than the previous shards and does not belong to this folder: remove it")
 
 
 def unfinished(folder: StrPath, names: Sequence[str], what: str, failed: Sequence[str] = ()) -> list[str]:

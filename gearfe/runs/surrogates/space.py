@@ -140,7 +140,7 @@ def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
     ranges = {name: ends for name, ends in values.items() if len(ends) == 2}
     if not ranges:
         raise ValueError(
-            "inputs: only single numbers, so that there is nothing to fit: give a range (low, high), or mesh_stiffness"
+            "inputs: all are single numbers, so that nothing varies: give a range (low, high), or use mesh_stiffness"
         )
     return Space(pair, ranges, {name: ends[0] for name, ends in values.items() if name not in ranges})
 

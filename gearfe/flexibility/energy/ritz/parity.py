@@ -25,7 +25,7 @@ def front_by_parity(body, tree):
 
 
 def _functions(count, parity):
-    """Degrees along the width in the section, and axial ones, of the `count` lowest; `count` itself if there is one too few."""
+    """Degrees along the width of section and axial components among the `count` lowest, padded by `count` if one is missing."""
     out = np.full((2, (count + 1) // 2), count)
     for row, first in zip(out, (parity, 1 - parity), strict=True):
         degrees = np.arange(first, count, 2)
