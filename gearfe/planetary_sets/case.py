@@ -172,7 +172,9 @@ class PlanetaryCase:
             for entry in (value,) if single else value:
                 if not isinstance(entry, kind):
                     nouns = [one.__name__ for one in get_args(kind) or (kind,)]
-                    raise ValueError(f"{what} of {name!r}: {entry!r} is no {' nor a '.join(nouns)}; the section has no other")
+                    raise ValueError(
+                        f"{what} of {name!r}: {entry!r} is no {' nor a '.join(nouns)}; a section allows no other type"
+                    )
             out |= dict.fromkeys(planets, value) if name == "planet" else {name: value}
         return Frozen(out)
 

@@ -133,12 +133,12 @@ ROWS = (
         faces=FACES, error=True, extended=True, flanks=True, order=3, kept="process",
     ),
     Method(
-        "fe", "finite elements of the transverse section; mesh, elements and solution are not those of ritz", "section",
+        "fe", "finite elements of the transverse section, with other mesh, elements and solver than ritz", "section",
         "gearfe.stiffness.cache:solved_gear", "seconds", converged=True, cracks="through", broken=True, teeth=True, error=True,
         extended=True, flanks=True, kept="disk",
     ),
     Method(
-        "fe3d", "finite elements of whole gears of finite width; mesh, elements and solution are not those of ritz3d", "solid",
+        "fe3d", "finite elements of whole gears of finite width, with other mesh, elements and solver than ritz3d", "solid",
         "gearfe.stiffness.cache:solved_solid", "minutes", converged=True, cracks="any", pits=True, broken=True, faces=FACES,
         error=True, extended=True, flanks=True, kept="disk",
     ),

@@ -255,7 +255,7 @@ def flexibility_of(own: OwnFlexibility, side: int, gear: Gear, material: Materia
     if callable(getattr(model, "matrix", None)):
         if getattr(model, "gear", gear) != gear:
             raise ValueError(
-                f"a Flexibility of z = {model.gear.z} was given for z = {gear.z}: it holds for the very gear it was made of; "
+                f"a Flexibility of z = {model.gear.z} was given for z = {gear.z}: it is valid for its own gear only; "
                 "give those of pinion and wheel"
             )
         return model if hasattr(model, "seam") else OwnMatrix(model, gear)

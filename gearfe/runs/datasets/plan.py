@@ -141,7 +141,7 @@ def _check(plan):
         raise ValueError("no fault, so that the data set has no damaged class: give at least one [[fault]]")
     names = [sensor["name"] for sensor in plan.sensor]
     if not names or len(set(names)) < len(names):
-        raise ValueError(f"[[sensor]] names {names!r}: give one sensor or more, each with another name")
+        raise ValueError(f"[[sensor]] names {names!r}: give at least one sensor, each with a different name")
     _check_split(plan.split)
     _check_scatter(plan)
     _check_scenes(plan)
