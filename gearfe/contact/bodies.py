@@ -20,7 +20,7 @@ from ..geometry.damage.front import crack_in_band
 
 
 def seen_gears(pair, face, groove):
-    """Pinion and wheel, or a half of each, and where contact begins on them: ``[(Gear, offset [mm]), ...]``."""
+    """Pinion and wheel (or one half of each) with the axial offset at which contact begins: ``[(Gear, offset [mm]), ...]``."""
     out = []
     common = min(pair.gear_1.b, pair.gear_2.b)
     for gear, sense in ((pair.gear_1, -1), (pair.gear_2, 1)):
@@ -176,7 +176,7 @@ def mirrors_of(cells, bodies):
 
 
 def faces_of(cells, bodies):
-    """Faces of the cracks of all bodies, as `joined_lines.System` takes them, or None without cracks.
+    """Crack faces of all bodies in the form required by `joined_lines.System`, or None without cracks.
 
     Returns
     -------

@@ -159,7 +159,7 @@ class GearReader:
                 self.assume(f"gear {name}: cutter without profile shift", "gearfe has no shift of the cutter")
 
     def body(self, gear: Component, row: dict[str, Any], name: str) -> None:
-        """Bore or rim of a gear: its own, of its body, or of the shaft section where it sits."""
+        """Bore or rim of a gear, as stated for the gear, for its body or for its shaft section."""
         inside = gear.type != "ring_gear"
         bodies = self.model.related("assembly", "assembly", gear.id, "part")
         own = [gear, *(one for one in bodies if one.type == "gear_body")]

@@ -43,7 +43,7 @@ def split(file, assumptions, given, tables):
 
 
 def _away(file, where, values, tables):
-    """Values that differ, by key: (the present one, that of `values`)."""
+    """Different values by key: (present value, value in `values`)."""
     present = {key: _present(file, where, key, tables) for key in values}
     return {key: (present[key], value) for key, value in values.items() if present[key] != value}
 

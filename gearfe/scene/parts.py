@@ -25,7 +25,7 @@ HELD = ("support", "shaft")
 
 
 def sides(file: str, where: str, row: Row, name: str, pairs: dict[str, Row]) -> list[str]:
-    """Sides of the pair `name` on which the gear of a row stands: it counts in all its pairs, or only in its `pair`.
+    """Sides of the pair `name` with the gear of a row. A row with a `pair` applies to this pair only.
 
     A planet meets the sun with one flank, the ring with the other.
     """

@@ -58,7 +58,7 @@ def _renamed(file, value):
 
 
 def _plain(value):
-    """Numbers and arrays of numpy, and tuples, as TOML would give them."""
+    """Plain numbers and lists (as in TOML) from numpy numbers, arrays and tuples."""
     if isinstance(value, Mapping):
         return {str(name): _plain(item) for name, item in value.items()}
     if isinstance(value, (list, tuple, np.ndarray)):

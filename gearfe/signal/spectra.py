@@ -14,7 +14,7 @@ from .spectrum import Spectrum, amplitudes, noise_bins
 
 
 def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spectrum:
-    """Compute the one-sided amplitude spectrum: a sine of amplitude A on a bin gives A there.
+    """Compute the one-sided amplitude spectrum. A sine of amplitude A on a bin has the value A there.
 
     The mean is taken out first and stands at 0 Hz. With ``hann`` a line between two bins is up to 15 % too low (scalloping),
     with ``flattop`` 0.1 %, with ``boxcar`` 36 %; ``boxcar`` keeps the energy,
@@ -117,7 +117,7 @@ def analytic(signal, band=None):
 
 
 def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
-    """Envelope by Hilbert's transform: modulus of the analytic signal, of `band` = (low, high) [Hz] only if given.
+    """Envelope by the Hilbert transform (modulus of the analytic signal), restricted to `band` = (low, high) [Hz] if given.
 
     Parameters
     ----------

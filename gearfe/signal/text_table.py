@@ -74,7 +74,7 @@ class Way(NamedTuple):
         return len(cells) if len(rest) < len(cells) and clocks else 0
 
     def value(self, cell: str) -> float | None:
-        r"""Value of a cell: its number, the seconds of the day of a clock time, nan if it is empty or a date, else None.
+        r"""Value of a cell: its number, seconds of the day for a clock time, nan for an empty cell or a date, otherwise None.
 
         >>> Way(";", ",", r"\.").value("1.234,5"), Way(";", ",").value("10:00:01,5")
         (1234.5, 36001.5)

@@ -185,13 +185,13 @@ def described():
 
 
 def having(what, kind=None):
-    """Names of the methods that have `what`, an attribute of `Method`, as text: 'ritz, fe or fe3d'."""
+    """Names of the methods with the attribute `what` of `Method`, as text: 'ritz, fe or fe3d'."""
     names = [row.name for row in ROWS if getattr(row, what) and kind in (None, row.kind)]
     return " or ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
 
 
 def fitted(method, case):
-    """Return a case as far as a method models it, with its variants (or None), and the neglected parts in words.
+    """Return the part of a case that a method models, its variants (or None), and the neglected parts in words.
 
     This is the only rule for face, groove and variants of each method:
 

@@ -36,7 +36,7 @@ def check_crack(crack: object) -> None:
 
 
 def by_side(damage: Mapping[str, Damage | Sequence[Damage] | None] | None) -> tuple[list[Damage], list[Damage]]:
-    """Damage of pinion and wheel, each given as one, as a list or tuple of them, or not at all.
+    """Damage of pinion and wheel. Each is a single damage, a list, a tuple or missing.
 
     ValueError if it is not given by gear, or something is no damage.
     """

@@ -102,7 +102,7 @@ class Gear:
         form_point(self)
 
     def __repr__(self):
-        """All numbers that are not the default ones: enough to make it again."""
+        """All values that differ from the default, so that the gear can be made again."""
         given = ((field.name, getattr(self, field.name)) for field in fields(self) if getattr(self, field.name) != field.default)
         return f"Gear({', '.join(f'{name}={value!r}' for name, value in given)})"
 

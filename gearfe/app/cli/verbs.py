@@ -171,7 +171,7 @@ def compare(arguments):
 
 
 def print_assumptions(scene, every, told=None):
-    """Print a scene's assumptions without the reasons, `told` (default: those of the stiffness), or with `every` note."""
+    """Print the assumptions `told` of a scene (default: those of the stiffness) without reasons, or with `every` note."""
     from ...scene.assumed import of_stiffness
 
     print()

@@ -115,7 +115,7 @@ def _at_speed(machine, speed):
 
 
 def _orders(machine, harmonics):
-    """Orders of a machine: by stage if it names stages, of its meshes if not."""
+    """Excitation orders of a machine, by stage if it has stages, otherwise of its meshes."""
     stages = machine.stages
     meshes = {source.name: source.mesh for source in stages} or {
         source.name: abs(source.frequency) for source in machine.meshes if source.frequency

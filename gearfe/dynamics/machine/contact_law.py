@@ -81,7 +81,7 @@ def parameters(meshes: Sequence[Any]) -> dict[str, NDArray[Any]]:
 
 
 def touch(x, v, backlash):
-    """Depth of the flanks in touch, its rate, and the side: 1 the front ones, -1 the back ones, 0 none (all numbers floats)."""
+    """Penetration of the flanks in contact, its rate, and the side: 1 for front, -1 for back, 0 for none (floats)."""
     front, rear = np.maximum(x, 0.0), np.maximum(-backlash - x, 0.0)
     side = (front > 0) * 1.0 - (rear > 0)
     return front + rear, side * v, side

@@ -106,7 +106,7 @@ def _laid_out(laws):
 
 
 def _twins(one, two):
-    """Whether two meshes have the same stiffness at all times, as those of both halves of a herringbone gear."""
+    """Whether two meshes have the same stiffness at all times, like both halves of a herringbone gear."""
     ahead = one.phase - two.phase
     ahead = ahead if one.changes else ahead - round(ahead)  # whole cycles matter only with damaged teeth
     if (one.frequency, len(one.changes)) != (two.frequency, len(two.changes)) or abs(ahead) > 1e-12:

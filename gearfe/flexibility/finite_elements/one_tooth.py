@@ -47,7 +47,7 @@ def check_line_load(line_load, gear, material):
 
 
 def check_load_along(line_load, gear, material):
-    """ValueError unless it is a finite push, or a function of heights z [mm] that gives finite pushes, not all zero."""
+    """Raise ValueError unless the load is a finite compression, or a function of z [mm] with finite ones, not all zero."""
     if not callable(line_load):
         return check_line_load(line_load, gear, material)
     z, b = np.linspace(0.0, gear.b, SAMPLES), gear.b

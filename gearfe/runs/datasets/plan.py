@@ -86,7 +86,7 @@ class Plan:
         return json.loads(json.dumps({name: getattr(self, name) for name in self.__slots__}))
 
     def scene_at(self, values: Mapping[str, Any], fault: Mapping[str, Any] | None = None, severity: float = 0.0) -> Scene:
-        """Scene of one condition: the speed, the torque and what scatters by key, and its fault.
+        """Scene of one condition with its speed, torque, scattered values by key, and fault.
 
         The forces of all pairs, at which their stiffness is computed, go with the torque; those of a gearbox follow from it.
         """
