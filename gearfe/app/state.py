@@ -1,4 +1,4 @@
-"""State of the page as a scene: written from the fields, read from a scene that the page can show completely."""
+"""Conversion between the fields of the page and a scene that the page can show completely."""
 
 import math
 import tomllib

@@ -155,7 +155,7 @@ def _on_floors(piece, above, width):
 
 
 def _parts(roll, slope, width, limits, slack):
-    """Depths at which a line is after the end of the path, on it, and before its start: corner, low, high.
+    """Ranges of depth in which a line lies after the end of the path, on it, and before its start: corner, low, high.
 
     Between the path and where a corner meets a flank first, nothing touches.
     """

@@ -146,7 +146,7 @@ def touching(case: Case, phase: float, approach: float) -> Touching:
 
 
 def _modified(pair, found, heights, forms):
-    """Contacts of the sections at `heights`, with the flanks as they are there."""
+    """Contacts of the sections at `heights`, with the flanks modified as at these heights."""
     touches = [
         first_touch(pair, forms, found.nominal[:, k], np.full(heights.size, order), found.gap[:, k], heights)
         for k, order in enumerate(found.order.tolist())

@@ -31,7 +31,7 @@ def open_part(crack, b, z):
 
 
 def shallowest(crack):
-    """Least depth between the crack's ends, in the largest, or 0 if it runs out."""
+    """Least depth between the ends of a crack, relative to the largest, or 0 if the crack runs out."""
     low, high = (max(value, 0.0) for value in extremes(crack))
     part = low / high if low > SLACK else 0.0
     return math.sqrt(part) if crack.rounded else part

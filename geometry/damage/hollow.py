@@ -50,7 +50,7 @@ def crossing(gear, hollow, roll, z, limits):
 
 
 def _roots(coefficients):
-    """Real roots of a polynomial, if it may have some between -1 and 1."""
+    """Real roots of a polynomial that may have roots between -1 and 1."""
     size = np.abs(coefficients)
     if size[0] > size[1:].sum() or not size.any():
         return np.zeros(0)

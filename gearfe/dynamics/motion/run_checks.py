@@ -46,7 +46,7 @@ def check_memory(machine, duration, count, filtered):
 
 
 def check_run(machine, duration, method, rate, step, dt, start, every):
-    """ValueError for numbers of `simulate` that are out of range or contradict each other."""
+    """Raise ValueError if arguments of `simulate` are out of range or contradict each other."""
     if not isinstance(machine, Machine):
         raise ValueError(
             f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."

@@ -27,7 +27,7 @@ def check_gear(gear):
 
 
 def check_one(gear, material, refine=1.0):
-    """ValueError unless these are one gear, its one material and a resolution."""
+    """Raise ValueError unless the arguments are one gear, one material and a resolution."""
     check_gear(gear)
     if not isinstance(material, Material):
         raise ValueError(f"material = {material!r}, but give the Material of this gear")

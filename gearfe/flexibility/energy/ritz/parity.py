@@ -54,7 +54,7 @@ def _half(body, parity):
 
 
 def _places(body, found, ids, parity):
-    """Places of the unknowns of a half, number by number as `found`, among all those of `ids`, and which of them are real."""
+    """Return indices of the unknowns of one parity (`found`) among those of `ids`, and a mask of those that exist."""
     start = np.zeros(body.size.size, dtype=int)
     start[ids] = np.cumsum(body.size[ids]) - body.size[ids]
     at, real = [], []
