@@ -69,7 +69,7 @@ def cheap_rows(page):
 
 
 def compared(name, known, compute):
-    """Lines that name a row that differs, with the largest relative difference; none if it agrees. A dear row is told."""
+    """Lines with the largest relative difference of a changed row, empty if the row agrees. Slow rows are printed."""
     started = time.process_time()
     with own_warnings():
         found = compute()

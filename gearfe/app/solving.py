@@ -153,7 +153,7 @@ def stress(state: dict[str, Any]) -> dict[str, Any]:
 
 
 def spectrum(state: dict[str, Any]) -> dict[str, Any]:
-    """Spectra of the mesh force, healthy and damaged, with the lines that are expected."""
+    """Spectra of the mesh force, healthy and damaged, with the expected lines."""
     from ..comparison.vibration import analysis, in_words, responses
 
     if not state["speed"]:

@@ -1,4 +1,4 @@
-"""State of the page as a scene: written from the fields, read from a scene that the page can show completely."""
+"""Conversion between the fields of the page and a scene that the page can show completely."""
 
 import math
 import tomllib
@@ -94,8 +94,8 @@ def read(name: str, text: str, pair: str | None = None, case: str | None = None)
             notes.append(f"the hand of the wheel's helix, given as {given:g}°, is written as {ours:g}°")
         elif not _same(given, ours):
             here = "nothing" if ours is REQUIRED else shown(ours)
-            raise ValueError(f"{name}: {place.replace(f'.{CASE}', '')} = {shown(given)}, but the page has {here} there: no "
-                             "field of it holds this; nothing is dropped, so compute this scene by gearfe compare")  # fmt: skip
+            raise ValueError(f"{name}: {place.replace(f'.{CASE}', '')} = {shown(given)}, but the page has {here} there: it "
+                             "has no field for this value; compute this scene by gearfe compare")  # fmt: skip
     return state, [*(f"not taken from {name}: {one}" for one in rest), *notes]
 
 

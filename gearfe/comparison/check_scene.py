@@ -1,4 +1,4 @@
-"""The checks of `gearfe check`: every case, set and machine of a scene is built as by other verbs, and nothing is solved."""
+"""Checks of `gearfe check`. Every case, set and machine of a scene is built, but nothing is solved."""
 
 from ..dynamics.machine.of_scene import flat_machine
 from ..geometry.damage.hollow import check_hollows

@@ -170,7 +170,7 @@ def beside_health(case: Case, how: Solve, pair: str = "pair", *, returns: Mappin
 
 
 def _beside(key, case, phases, returns=None):
-    """Case and phases by key, those of the healthy pair too; and the phases that zones are over by damaged tooth in words."""
+    """Cases and phases by key, with those of the healthy pair, and the phases of the zones of each damaged tooth."""
     cycles = {}
     if case.damaged and np.ndim(phases) == 0:
         count = check_count(phases)
@@ -257,7 +257,7 @@ def _chosen(scene, pair, case, given):
         return _own(pair, given)
     stated = [name for name, value in given.items() if value not in (None, 0.0)]
     if stated:
-        raise ValueError(f"{stated[0]} is stated by the scene: leave it out, or give pair=GearPair(...) instead of a scene")
+        raise ValueError(f"{stated[0]} is stated by the scene: omit it, or give pair=GearPair(...) instead of a scene")
     scene = _loaded(scene)
     if not isinstance(scene, Scene):
         raise ValueError(

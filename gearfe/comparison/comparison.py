@@ -109,7 +109,7 @@ class Comparison:
         return "damaged" if len(kinds) > 1 else "".join(kinds)
 
     def by_tooth(self) -> list["Comparison"]:
-        """Comparisons by damaged tooth of the `subject`, each over its own mesh cycle; of several cases this one alone."""
+        """Comparisons of the `subject` by damaged tooth, each over the mesh cycle of this tooth."""
         teeth = self.teeth.get(self.subject, {})
         if len(self.asked) > 1 or not teeth:
             return [self]
@@ -195,7 +195,7 @@ class Comparison:
         return {why: ", ".join(name for name, reason in self.left_out.items() if reason == why) for why in whys}
 
     def _pivot(self, zones, shown, kept):
-        """Return columns and rows of a table, a row for each pair, case and zone; pair and case only if there are several.
+        """Return columns and rows of a table with a row for each pair, case and zone. Single pairs and cases have no column.
 
         `shown` are columns by method, each with its number of a `Row`. `kept` selects the rows.
         """

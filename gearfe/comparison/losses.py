@@ -101,7 +101,7 @@ def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
 
 
 def told_cycle(phases: NDArray | None, kind: str = "") -> str:
-    """Return in words the phases of zones and means; `kind_of` describes `kind`; phases None: of several pairs."""
+    """Return the phases of zones and means in words. `kind` is a result of `kind_of`. Phases are None for several pairs."""
     middle = f"that has the {kind} tooth in the middle of its engagement"
     where = "in which the tip of the chipped tooth is in contact" if kind == "chipped" else middle
     over = f"the mesh cycle {where}" if kind else "the mesh cycle"

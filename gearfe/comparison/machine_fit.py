@@ -158,7 +158,7 @@ def fit_machine(
         If a range or key is invalid, the record has another speed, or has fewer lines than there are keys.
     """
     if not isinstance(record, Signal):
-        raise ValueError(f"record = {record!r}, but give a Signal, such as gearfe.read_signal gives")
+        raise ValueError(f"record = {record!r}, but give a Signal, such as the result of gearfe.read_signal")
     low, high = _ranges(vary)
     file, tables = read_tables(scene)
     logs = low > 0
@@ -278,7 +278,7 @@ def _lines(machine, channel, frequency):
 
 
 def _reach(jacobian, scale, free, whole):
-    """Half widths of 95 % intervals, of singular directions the whole range."""
+    """Half widths of 95 % confidence intervals. Undetermined directions have the whole range."""
     _, sizes, ways = np.linalg.svd(jacobian * whole, full_matrices=False)
     spread = 1 / np.maximum(sizes, 1e-12)
     quantile = float(stdtrit(free, 0.975)) if scale > 1 and free else 1.96

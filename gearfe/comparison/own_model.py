@@ -131,7 +131,7 @@ def _name(model, number):
 
 
 def own_curve(name, model, pair, reference, healthy=None):
-    """`StiffnessCurve` of an own model, as `own_models` gives it, at the phases and the load of a reference curve.
+    """`StiffnessCurve` of a user-defined model (from `own_models`) at the phases and the load of a reference curve.
 
     With a `healthy` model of tooth pairs, `model` is that of the damaged pairs alone.
     ``k_tangent = k`` and ``deflection = F / k``; pressures are nan, and so are the forces of the pairs if the model gives only
@@ -213,7 +213,7 @@ def _hint(name, model, k, reference):
     ratio = math.exp(np.log(k / reference.k).mean())
     if not 1 / FAR < ratio < FAR:
         warnings.warn(
-            f"model {name!r} is {ratio:.3g} times the reference: is k that of the whole width, in N/m or the unit stated?",
+            f"model {name!r} is {ratio:.3g} times the reference: check that k is for the whole width, in N/m or the stated unit",
             stacklevel=4,
         )
     written = getattr(model, "meta", None)

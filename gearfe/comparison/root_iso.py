@@ -107,7 +107,7 @@ def _beyond(pair):
 
 
 def told_root(case: Case) -> list[str]:
-    """Return the root stress of both healthy gears of a pair by ISO 6336-3 and, of spur gears, by finite elements, as lines."""
+    """Return lines with the root stress of both healthy gears by ISO 6336-3 and, for spur gears, by finite elements."""
     if _beyond(case.pair):
         return []
     width = min(case.pair.gear_1.b, case.pair.gear_2.b)

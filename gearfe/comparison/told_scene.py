@@ -78,7 +78,7 @@ def told_load(chosen: ScenePair) -> str:
 
 
 def told_details(chosen: ScenePair) -> Iterator[str]:
-    """Flanks, misalignment and supports of a pair, a line for each; none of a plain pair that is held at its bores."""
+    """One line each for flanks, misalignment and supports of a pair. A plain pair held at its bores has no lines."""
     pair, bent = chosen.pair, chosen.flanks
     for side, gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
         if side in bent:

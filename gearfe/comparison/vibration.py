@@ -296,7 +296,7 @@ def simulated_gear(scene, case, gear, duration=None):
 
 
 def gears_table(found):
-    """`Table` of indicators of the gears of parallel stages by case of `responses`; None of a machine with one stage.
+    """`Table` of indicators of the gears of parallel stages by case of `responses`, or None for a single stage.
 
     They are those of the synchronous average of the mesh force. Records of fewer than two revolutions have none.
     """
@@ -327,7 +327,9 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
     }
     first = next(iter(spectra.values()))
     if mesh is not None and mesh >= first.frequency[-1]:
-        raise ValueError(f"mesh = {mesh:g} Hz, but {channel} shows what lies below {first.frequency[-1]:g} Hz, half of its rate")
+        raise ValueError(
+            f"mesh = {mesh:g} Hz, but {channel} contains frequencies up to {first.frequency[-1]:g} Hz only, half of its rate"
+        )
     lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
     for name, value in (others or {}).items():
         beside = expected_lines(mesh, value, count=1, harmonics=2)

@@ -20,7 +20,7 @@ from ..geometry.damage.front import crack_in_band
 
 
 def seen_gears(pair, face, groove):
-    """Pinion and wheel, or a half of each, and where contact begins on them: ``[(Gear, offset [mm]), ...]``."""
+    """Pinion and wheel (or one half of each) with the axial offset at which contact begins: ``[(Gear, offset [mm]), ...]``."""
     out = []
     common = min(pair.gear_1.b, pair.gear_2.b)
     for gear, sense in ((pair.gear_1, -1), (pair.gear_2, 1)):
@@ -50,7 +50,7 @@ class Bodies(NamedTuple):
 
 
 def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility3d):
-    """`Bodies` by `energy.ritz.solid`; coarser: a section order less by 1, axial degrees less by a quarter, at least 2.
+    """`Bodies` by `energy.ritz.solid`. The coarser solution has a lower section order (by 1) and lower axial degrees.
 
     (By 2 at any degree would cover ever less of the error of wide gears.) `solve` is called like `flexibility3d`.
     """
@@ -176,7 +176,7 @@ def mirrors_of(cells, bodies):
 
 
 def faces_of(cells, bodies):
-    """Faces of the cracks of all bodies, as `joined_lines.System` takes them, or None without cracks.
+    """Crack faces of all bodies in the form required by `joined_lines.System`, or None without cracks.
 
     Returns
     -------

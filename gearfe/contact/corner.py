@@ -99,7 +99,7 @@ def in_fillet(pair, roll_1, roll_2):
 
 
 def plain_radius(pair, roll_1, roll_2):
-    """Relative radius of curvature of involutes [mm]; of a tip in a fillet, where no parabola counts, that at the pitch point."""
+    """Relative radius of curvature of involutes [mm]. The value at the pitch point replaces that of a tip in a fillet."""
     radius = pair.relative_radius(roll_1, roll_2)
     return np.where((radius > 0) & ~in_fillet(pair, roll_1, roll_2), radius, pair.pitch_relative_radius)
 

@@ -215,7 +215,7 @@ class PairContact:
         return 2 * np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load
 
     def finest(self, line_load):
-        """Length of the hats next to corners [mm] where the default ones are too long for contacts under this load; else 0."""
+        """Length of the hats next to corners [mm] if the default is too long for contacts under this load, otherwise 0."""
         if not self.extended:
             return 0.0
         gear, ends = self.pair.gear_1, np.array(self.pair.path)

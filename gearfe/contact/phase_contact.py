@@ -252,7 +252,7 @@ class PhaseContact:
         return [self._told(*case, batch.bodies) for case in cases]
 
     def _local(self, cells):
-        """Local law of the cells, as `SharedLines.solve` takes it, or None if it is Hertz's everywhere."""
+        """Local contact law of the cells for `SharedLines.solve`, or None if it is that of Hertz everywhere."""
         laws, kinks = self._laws_at(cells), self.kinks
         at = self._ends(cells)
         for end, form in enumerate((self.flanks or ())[::-1]):

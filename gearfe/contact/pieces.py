@@ -58,7 +58,7 @@ def gaps(pair):
 
 @keeping(64)
 def cut(pair):
-    """Return the length on the path, from its start and its end [mm], on which a tip cuts into its mate's fillet; 0 for none."""
+    """Return the lengths at start and end of the path [mm] on which a tip cuts into its mate's fillet, or 0."""
     start, end = pair.path
     nominal = np.linspace(start, end, max(2, math.ceil(pair.eps_alpha * SAMPLES)))
     met, step = touching(pair, nominal), nominal[1] - nominal[0]
@@ -155,7 +155,7 @@ def _on_floors(piece, above, width):
 
 
 def _parts(roll, slope, width, limits, slack):
-    """Depths at which a line is after the end of the path, on it, and before its start: corner, low, high.
+    """Ranges of depth in which a line lies after the end of the path, on it, and before its start: corner, low, high.
 
     Between the path and where a corner meets a flank first, nothing touches.
     """

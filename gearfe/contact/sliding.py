@@ -147,7 +147,7 @@ def cracks_beyond_lines(cells, bodies, load, closing):
 
 
 def _cracks_beyond(contact, line):
-    """Deflection ``(phases, pairs)`` [mm] that cracks further away than their solved teeth may add to contacts."""
+    """Deflection ``(phases, pairs)`` [mm] that cracks may add to contacts on teeth beyond those solved with damage."""
     out, order = np.zeros(line.shape), contact.found.order
     for flexible, teeth in zip(contact.flexibility, (order, -order), strict=True):
         beyond, most = cracks_beyond(flexible, teeth)

@@ -43,7 +43,7 @@ NUMERIC = {"f": "iuf", "i": "iu"}  # kinds of arrays that arrays of floats and o
 
 
 class _Rule(NamedTuple):
-    """Words for a type, and a function that returns a value of it, or raises ValueError."""
+    """Name of a type in words, and a function that converts a value to this type or raises ValueError."""
 
     words: str
     settled: Callable[[str, Any], Any]
@@ -53,7 +53,7 @@ BY_NAME = {"refine": _Rule("a number", lambda _, value: checked_refine(value))} 
 
 
 class _Named(type):
-    """A class that is known by name: its module is loaded by those who have an instance."""
+    """A class given by its name, because its module is loaded only by users of an instance."""
 
     def __instancecheck__(cls, value):
         return any(base.__name__ == cls.__name__ for base in type(value).__mro__)

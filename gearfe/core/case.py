@@ -214,7 +214,7 @@ class Case:
         return next(iter(self.damaged_pairs), None)
 
     def overlap(self, face: str | None = None) -> float:
-        """Return the overlap ratio of teeth of type `face` (default `runs`), of one half if herringbone; 0 for spur."""
+        """Return the overlap ratio of teeth of type `face` (default `runs`), 0 for spur and of one half for herringbone."""
         return overlap(self.pair, face or self.runs, self.groove)
 
 

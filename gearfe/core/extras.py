@@ -11,7 +11,7 @@ COLLECTIONS = ("all", "docs", "test")  # extras that are not installed for a sin
 
 @functools.cache
 def requirements() -> dict[str, tuple[str, ...]]:
-    """Return packages by extra, "" for every installation; nothing if the project runs from its source without installation."""
+    """Return packages by extra ("" for every installation). The result is empty if gearfe is not installed."""
     out: dict[str, list[str]] = {}
     try:
         lines = importlib.metadata.requires("gearfe") or []

@@ -225,7 +225,7 @@ def write_json(name, content):
 
 
 def read_text(path):
-    """Lines of a text file: in UTF-8, in UTF-16, or, with a warning, in Windows-1252, which holds Latin-1."""
+    """Lines of a text file in UTF-8, UTF-16 or (with a warning) Windows-1252, which includes Latin-1."""
     check_regular(path)
     try:
         content = Path(path).read_bytes()

@@ -1,4 +1,4 @@
-"""Memory available to a process: of the computer, of its limit, of its control group (a container)."""
+"""Memory available to a process by the computer, the limit of the process and its control group (container)."""
 
 import math
 import os

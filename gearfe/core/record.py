@@ -69,7 +69,7 @@ def check_rows(record: Any, names: str) -> None:
     first = next(iter(rows.values()))
     if not first or first == (0,) or set(rows.values()) != {first}:
         stated = ", ".join(f"{name} {shape[0] if shape else 'none'}" for name, shape in rows.items())
-        raise ValueError(f"{type(record).__name__}: give arrays with as many rows, one at least; here: {stated}")
+        raise ValueError(f"{type(record).__name__}: give arrays with the same number of rows, at least one; here: {stated}")
 
 
 def check_named(what: str, name: Any, known: Collection[Any]) -> None:

@@ -42,7 +42,7 @@ END = 1.0  # height of the layers at the end faces, relative to the other layers
 
 @dataclass(frozen=True, slots=True)
 class SolidDeck(ContactDeck):
-    """`ContactDeck` of a pair of finite width: forces in N; both meshes in their place, and the slave flanks by pair.
+    """`ContactDeck` of a pair of finite width, with forces in N, both positioned meshes, and the slave flanks by pair.
 
     `parts` pinion and wheel; `slaves` by number of the tooth pair: gear (0 or 1) and faces ``(corners, k)``.
     """
@@ -146,7 +146,7 @@ def touching(case: Case, phase: float, approach: float) -> Touching:
 
 
 def _modified(pair, found, heights, forms):
-    """Contacts of the sections at `heights`, with the flanks as they are there."""
+    """Contacts of the sections at `heights`, with the flanks modified as at these heights."""
     touches = [
         first_touch(pair, forms, found.nominal[:, k], np.full(heights.size, order), found.gap[:, k], heights)
         for k, order in enumerate(found.order.tolist())

@@ -90,11 +90,9 @@ def _tets(gear, pits, seams, teeth, refine):
 def _hexes(gear, pits, seams, teeth, refine):
     if pits:
         noun = pits[0]._nouns[1]
-        raise ValueError(
-            f"damage has {noun}, but hexahedra have none: {noun} are cut out of tetrahedra only: use cells = 'tetrahedra'"
-        )
+        raise ValueError(f"damage has {noun}, but only meshes of tetrahedra can have {noun}: use cells = 'tetrahedra'")
     if teeth is not None:
-        raise ValueError(f"teeth = {teeth}, but hexahedra are those of the whole gear: use cells = 'tetrahedra'")
+        raise ValueError(f"teeth = {teeth}, but a mesh of hexahedra contains the whole gear: use cells = 'tetrahedra'")
     cracks, broken = seams
     gone = missing_teeth(gear, broken)
     loaded = sorted({one.tooth % gear.z for one in (*cracks, *broken)} - {*gone}) or [1 if 0 in gone else 0]

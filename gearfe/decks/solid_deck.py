@@ -153,7 +153,7 @@ def set_lines(name, nodes):
 
 
 def surface_lines(part, name, faces, element):
-    """Surface `name` of outer faces ``(corners, k)``."""
+    """Lines that define the surface `name` by outer faces ``(corners, k)``."""
     sides = sides_of(part.cells, faces)
     return [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *(f"{element + j + 1}, S{s + 1}" for j, s in sides.T.tolist())]
 

@@ -1,1 +1,1 @@
-"""Exchange with other programs: gear units from REXS, and gears, curves and laws in the forms that other programs read."""
+"""Exchange with other programs: import of REXS gear units, export of gears, curves and force laws."""

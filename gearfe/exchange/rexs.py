@@ -226,7 +226,7 @@ class _Unit:
         return name
 
     def tables(self) -> dict[str, Any]:
-        """Tables of the scene: materials, gears, pairs, flanks, and set and machine where there is one of each."""
+        """Tables of the scene: materials, gears, pairs, flanks, and a set and a machine if the model has one of each."""
         shifts = Shifts(self.reader, self.rows, self.gears, self.pairs)
         shifts.settle()
         for name, row in self.rows.items():

@@ -85,7 +85,7 @@ class GearReader:
         return found[0] if found else None
 
     def allowance(self, gear: Component, row: dict[str, Any], name: str) -> float:
-        """Mean normal tooth thickness allowance E_sn [um] of span, chordal thickness or generating profile shift; 0: none."""
+        """Mean normal tooth thickness allowance E_sn [um] from span, chordal thickness or generating profile shift, or 0."""
         alpha, m_n = math.radians(row["alpha_n_deg"]), row["m_n_mm"]
         limits = ("upper_backlash_allowance_referenced_to_span", "lower_backlash_allowance_referenced_to_span")
         found = [(what := "span measurement", [gear.number(one, "mum") for one in limits], 1 / math.cos(alpha))]
@@ -159,7 +159,7 @@ class GearReader:
                 self.assume(f"gear {name}: cutter without profile shift", "gearfe has no shift of the cutter")
 
     def body(self, gear: Component, row: dict[str, Any], name: str) -> None:
-        """Bore or rim of a gear: its own, of its body, or of the shaft section where it sits."""
+        """Bore or rim of a gear, as stated for the gear, for its body or for its shaft section."""
         inside = gear.type != "ring_gear"
         bodies = self.model.related("assembly", "assembly", gear.id, "part")
         own = [gear, *(one for one in bodies if one.type == "gear_body")]

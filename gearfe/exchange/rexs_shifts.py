@@ -19,7 +19,7 @@ class Shifts:
         return outward(self.gears[name])
 
     def distance(self, stage, name):
-        """Centre distance of a stage [mm]: stated, or of the positions of both gears, or None if neither."""
+        """Centre distance of a stage [mm], as stated or from the positions of both gears, or None if unknown."""
         stated = stage.number("center_distance", "mm")
         if stated is not None:
             return stated

@@ -1,4 +1,4 @@
-"""Small line pictures inside a page (SVG), for notebooks; without matplotlib, so that showing an object costs nothing."""
+"""Small line pictures (SVG) for notebooks, drawn without matplotlib to save time."""
 
 import math
 from html import escape
@@ -10,7 +10,7 @@ FRAME = (44, 8, 8, 30)  # left, right, top, bottom [px]
 
 
 def line_svg(x, y, x_name, y_name, *, largest=800):
-    """Return an ``<svg>`` element of one line, y over x ``(n,)``, with the ends of both axes named; at most `largest` points."""
+    """Return an ``<svg>`` element of one line, y over x ``(n,)``, with labels at the axis ends and at most `largest` points."""
     x, y = (np.asarray(values, dtype=float)[:: max(1, math.ceil(len(values) / largest))] for values in (x, y))
     (wide, tall), (left, right, top, bottom) = SIZE, FRAME
     across, up = (_scale(v, length) for v, length in ((x, wide - left - right), (y, tall - top - bottom)))

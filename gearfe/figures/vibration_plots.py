@@ -44,7 +44,7 @@ def plot_spectra(
         What is shown: scene, case, channel.
     """
     if not spectra:
-        raise ValueError("spectra: give one at least")
+        raise ValueError("spectra: give at least one")
     figure, rows = blank((9, 1 + 2 * len(spectra)), len(spectra), 1, sharex=True, sharey=True, squeeze=False)
     rows = rows[:, 0]
     largest = max(curve.values.max() for curve in spectra.values())
@@ -69,7 +69,7 @@ def plot_spectra(
 
 
 def _apart(places, least):
-    """Return places of labels by name, each at least `least` from the one before it, as near to its place as possible."""
+    """Return places of labels by name, at least `least` apart and as near to the labelled values as possible."""
     names = sorted(places, key=places.get)
     wanted = np.array([places[name] for name in names], dtype=float)
     shifted = wanted.copy()

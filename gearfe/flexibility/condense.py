@@ -87,7 +87,7 @@ def _halved(centre, leaf):
 
 
 def _numbered(dofs, part, n, stays, held, height):
-    """Return the new numbers of the unknowns, n if held; the first set that touches each; and the turns, ascending.
+    """Return the new numbers of the unknowns (n if held), the first set that contains each, and the ascending elimination order.
 
     An unknown goes with the smallest set of sets, 2**level of them, that holds all its elements: its turn is the level, then
     the place of that set on the level.

@@ -104,7 +104,7 @@ def patch_kernel(knots, width, degree, slope=0.0, stretch=1.0):
 
 
 def strip(half_width):
-    """Distance x [mm] at which a line acts as Hertz's strip does on its middle: ``-ln x = ln(2 / a) + 1/2``, as in the plane."""
+    """Distance x [mm] at which a line load has the effect of a Hertzian strip on its middle: ``-ln x = ln(2 / a) + 1/2``."""
     return half_width / 2 * math.exp(-0.5)
 
 

@@ -1,4 +1,4 @@
-"""Hat pressures along a loaded flank: how long they are, and which stand next to the tip corner.
+"""Hat pressures along a loaded flank: their lengths, and those next to the tip corner.
 
 Finite elements load all of a flank by them, the energy model only the part next to the tip corner, where contact is resolved hat
 by hat (`gearfe.contact.pair_contact`).

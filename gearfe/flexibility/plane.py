@@ -148,7 +148,7 @@ class Flexibility:
         return out
 
     def yields_across(self, roll: Floats, tooth: int) -> Floats | None:
-        """S_nt and S_tt of `leaning` ``(2, ...)`` [mm per N/mm] at roll lengths of a tooth; None if they are not known."""
+        """S_nt and S_tt of `leaning` ``(2, ...)`` [mm per N/mm] at roll lengths of a tooth, or None if they were not computed."""
         leans = self.leans.get(tooth % self.gear.z, self._whole().leans.get(0))
         if leans is None:
             return None

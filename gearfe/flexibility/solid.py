@@ -134,7 +134,7 @@ class Faces:
 
 
 def solved_teeth(gear, damage, neighbours):
-    """Teeth to load: tooth 0 and `neighbours` following, or `reached_teeth` of the damage, but missing ones."""
+    """Teeth to load: tooth 0 and the next `neighbours`, or the `reached_teeth` of the damage, without missing teeth."""
     if not damage:
         return list(range(min(neighbours, gear.z - 1) + 1))
     return sorted(set(reached_teeth(gear, damage, max(1, neighbours))) - set(missing_teeth(gear, damage)))

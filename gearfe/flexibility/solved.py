@@ -50,7 +50,7 @@ class SolvedGears:
         self.size = 0  # memory of the kept results [bytes]
 
     def get(self, key: Hashable, solve: Callable[[], object]) -> Any:
-        """Return the result under `key`, or the result of `solve`, which is then kept.
+        """Return the stored result of `key`, or compute it by `solve` and store it.
 
         Raises
         ------
@@ -114,14 +114,14 @@ if hasattr(os, "register_at_fork"):
 
 
 def solved_gears(cache: "bool | SolvedGears") -> SolvedGears:
-    """Return the cache to use: that of this process for True, an empty one for False, a `SolvedGears` unchanged."""
+    """Return the cache to use. True is that of this process, False an empty one, and a `SolvedGears` itself."""
     if isinstance(cache, SolvedGears):
         return cache
     return PROCESS if truth("cache", cache) else SolvedGears()
 
 
 def memory(value) -> int:
-    """Memory of a result [bytes]: the arrays in it, however deep. What is in it twice counts twice."""
+    """Memory of all nested arrays of a result [bytes]. Repeated arrays count repeatedly."""
     if isinstance(value, np.ndarray):
         return value.nbytes
     if isinstance(value, PPoly):

@@ -37,7 +37,7 @@ class AddedCompliance(NamedTuple):
 
 
 def added_compliance(scene: Scene, force: float | None = None) -> AddedCompliance | None:
-    """Compute the `AddedCompliance` of a scene; `force` of a sun mesh [N], default that of the scene.
+    """Compute the `AddedCompliance` of a scene under a `force` of a sun mesh [N] (default: that of the scene).
 
     None if the scene has no set, if its set does not repeat with the mesh cycle, or if a mesh of it carries no load. A set
     repeats later if its ring is on pads or its flanks differ from tooth to tooth.

@@ -132,7 +132,7 @@ class Set:
         return self._spread[key]
 
     def _between(self, a, b):
-        """Flexibility between the contacts of two meshes that share a gear; None if they share none or nothing is added."""
+        """Flexibility between the contacts of two meshes, or None if they share no gear or do not affect each other."""
         gears, bodies = self.case.gears, self.bodies
         if a.inner and b.inner:
             table = bodies.rim.more if a is b else bodies.ring + bodies.rim.more
@@ -152,7 +152,7 @@ class Set:
         return rows @ own.reshape(rows.shape[1], columns.shape[1]) @ columns.T
 
     def _problem(self, blocks):
-        """`Problem` of a position; motions: the sun's turn, its x and y if it floats, planets' turns, a loose ring's motions."""
+        """`Problem` of a position. Unknown motions: sun (rotation, and x, y if floating), planets (rotation), loose ring."""
         case, n = self.case, blocks[-1].at.stop
         total, closing = np.zeros((n, n)), np.zeros((n, self._motions))
         give = case.width / case.pin

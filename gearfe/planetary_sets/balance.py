@@ -68,7 +68,7 @@ def balance(problem: Problem) -> tuple[Floats, Floats]:
 
 
 def _settled(problem, active, unit, most, at_once):
-    """Newton on the logarithms with an active set, changed `at_once` or by the worst contact; None if it does not settle."""
+    """Newton iteration with an active set, changed `at_once` or one contact at a time, or None without convergence."""
     floor = 1e-9 * unit
     force = np.where(active, unit / max(np.count_nonzero(active), 1), 0.0)
     for _ in range(most):

@@ -167,19 +167,23 @@ class PlanetaryCase:
             value = given[name]
             if not single:
                 if not isinstance(value, (list, tuple)):
-                    raise ValueError(f"{what} of {name!r} = {value!r}, but give a list, even of one")
+                    raise ValueError(f"{what} of {name!r} = {value!r}, but give a list, also for a single entry")
                 value = tuple(value)
             for entry in (value,) if single else value:
                 if not isinstance(entry, kind):
                     nouns = [one.__name__ for one in get_args(kind) or (kind,)]
-                    raise ValueError(f"{what} of {name!r}: {entry!r} is no {' nor a '.join(nouns)}; the section has no other")
+                    raise ValueError(
+                        f"{what} of {name!r}: {entry!r} is no {' nor a '.join(nouns)}; a section allows no other type"
+                    )
             out |= dict.fromkeys(planets, value) if name == "planet" else {name: value}
         return Frozen(out)
 
     def _check_faults(self):
         for name, flank in self.flanks.items():
             if flank.wide:
-                raise ValueError(f"flanks of {name!r} change along the width, but a section is two-dimensional: leave that out")
+                raise ValueError(
+                    f"flanks of {name!r} change along the width, but a planetary set is solved in a section: give equal profiles"
+                )
             if flank.eccentricity and name not in ("sun", "ring"):
                 raise ValueError(f"eccentricity of {name!r}: give that of a planet as pitch deviations")
             flank.on(self.gear_of(name))
@@ -189,7 +193,7 @@ class PlanetaryCase:
             check_apart(gear, cracks)
             check_broken(gear, damage)
             if why := why_wide(damage):
-                raise ValueError(f"damage of {name!r}: {why}, but a section is two-dimensional: leave width out")
+                raise ValueError(f"damage of {name!r}: {why}, but a planetary set is solved in a transverse section: omit width")
             flank = self.flanks.get(name)
             if flank and (flank.tip_rounding or flank.tip_chamfer) and any(isinstance(one, Chip) for one in damage):
                 raise ValueError(f"chips of rounded or chamfered tips: leave out the tip edges of {name!r}, or its chips")

@@ -65,7 +65,7 @@ def crack_contacts(
 
 
 def _loads_on(block, name):
-    """Return whether a gear is pinion (0) or wheel (1) of a mesh, and the loads of its flank there; None if it is neither."""
+    """Return the side of a gear in a mesh (0 pinion, 1 wheel) and the loads of its flank, or None outside the mesh."""
     if name == "sun":
         return None if block.inner else (0, slice(PLACES))
     if name == "ring":

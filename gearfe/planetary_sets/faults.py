@@ -40,7 +40,7 @@ def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, b
 
 
 def first_pass(case: Any) -> float:
-    """Position of the sun [pitches] from which the first damaged tooth passes a mesh, the one nearest to 0; 0 without damage.
+    """Position of the sun [pitches], nearest to 0, at which the first damaged tooth enters a mesh, or 0 without damage.
 
     A planet's tooth passes the mesh that its damaged side is loaded in.
     """

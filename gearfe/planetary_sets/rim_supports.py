@@ -110,7 +110,7 @@ class RimSupports:
 
 
 def check_support(support: Any, gear: Gear) -> None:
-    """ValueError unless it is ``"held"``, `RimBed` or `RimSupports` whose pads find room on the rim of `gear`."""
+    """Raise ValueError unless the support is ``"held"``, `RimBed`, or `RimSupports` whose pads fit on the rim of `gear`."""
     if not (isinstance(support, (RimBed, RimSupports)) or (isinstance(support, str) and support == "held")):
         raise ValueError(f"ring = {support!r}, but give 'held', RimBed(...) or RimSupports(...): a ring needs a support")
     rim = 2 * math.pi * gear.held

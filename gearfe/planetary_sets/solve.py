@@ -81,7 +81,7 @@ def planetary_stiffness(
     apart where they touch, and slide without friction. A mesh without load at a missing tooth has k = 0 there.
     """
     if not isinstance(case, PlanetaryCase):
-        raise ValueError(f"case = {case!r}, but give a PlanetaryCase: what holds the set, and its load")
+        raise ValueError(f"case = {case!r}, but give a PlanetaryCase (set, supports and load)")
     at, refine, options = _positions(positions, cycles), checked_refine(refine), {"cache": solved_gears(cache)}
     coupled, error = truth("coupled", coupled), truth("error", error)
     _check_cost(refine)
@@ -140,7 +140,7 @@ def _positions(positions, cycles):
         check_time(f"{count * cycles} positions of a set", EACH * count * cycles, "give fewer positions or cycles")
         return np.arange(count * cycles) / count
     if at.ndim != 1 or not at.size or not np.isfinite(at).all() or np.abs(at).max() > FURTHEST:
-        raise ValueError(f"positions = {positions!r}, but give a row of numbers within {FURTHEST:g} pitches, one at least")
+        raise ValueError(f"positions = {positions!r}, but give at least one number, each within {FURTHEST:g} pitches")
     return at
 
 

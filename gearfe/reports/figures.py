@@ -1,4 +1,4 @@
-"""Figures of a report, made with plotly: they can be read with the pointer, and turned."""
+"""Interactive figures of a report, made with plotly."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Results of a report: comparisons of all pairs, the loaded tooth, the machine's vibration; with computing times."""
+"""Results of a report: comparisons of all pairs, the loaded tooth, the vibration of the machine, and computing times."""
 
 import contextlib
 import time
@@ -94,7 +94,7 @@ def _counted(found, name):
 
 
 def _tooth(found):
-    """Return the damaged tooth with its load in three dimensions; None, with a note, for other damage."""
+    """Return the damaged tooth with its load in three dimensions. Other damage gives None and a note."""
     chosen = found.scene.pair(found.hurt_pair)
     case = found.case if found.case in chosen.damage else None
     try:

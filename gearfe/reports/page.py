@@ -89,7 +89,7 @@ def _numbered():
 
 
 def _pictures(found):
-    """Return pictures of stress, healthy and damaged at one phase and scale; without a renderer the missing package."""
+    """Return pictures of stress, healthy and damaged, at one phase and scale. Without a renderer, return the missing package."""
     name = found.hurt_pair
     chosen, out, same = found.scene.pair(name), [], {}
     for case in dict.fromkeys([found.case if found.case in chosen.damage else None, None]):
@@ -132,7 +132,7 @@ def _gears(pair):
 
 
 def _tooth(found):
-    """Return the loaded tooth in three dimensions, its stress, and the magnification of its displacements; None without one."""
+    """Return the loaded tooth in three dimensions, its stress and the magnification of its displacements, or None."""
     if found.tooth is None:
         return None
     name, pressed, field = found.tooth

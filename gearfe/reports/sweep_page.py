@@ -22,7 +22,7 @@ SHOWN = {  # by type of study: the output for main effects, and the curve for ba
 
 
 def sweep_report(runs: Runs | StrPath, path: StrPath) -> Path:
-    """Write one self-contained page of a sweep: what varied, results, what matters, bands of curves, how all was made.
+    """Write a self-contained page of a sweep: inputs, results, effects of inputs, bands of curves, provenance.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ def page_maker(path: str | os.PathLike[str], name: str) -> Any:
 
 
 def picture_data(draw, title):
-    """Return the picture that ``draw(path)`` makes and its result as data of the page; if it fails, the reason."""
+    """Return the picture made by ``draw(path)`` and its result as data of the page, or the reason of a failure."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "picture.png"
         try:

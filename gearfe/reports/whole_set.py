@@ -16,7 +16,7 @@ POSITIONS = 32
 
 
 def find_set(scene: Scene, case: str | None) -> tuple[dict[str, SetCurves], list[str]]:
-    """Curves of a scene's set, healthy and in a case of damage, at the same positions; and what could not be solved, and why."""
+    """Curves of a scene's set at equal positions, healthy and damaged, and the reasons for missing curves."""
     made: dict[str, PlanetaryCase] = {}
     notes = []
     for which in dict.fromkeys((case, None)):

@@ -51,14 +51,14 @@ def check_workers(workers: int | None) -> None:
 
 
 def count_of(workers: int | None, jobs: Sequence[Any]) -> int:
-    """Return the number of processes for some jobs: `workers`, or one per core, and no more than there are jobs."""
+    """Return the number of processes: `workers` or one per core, but at most the number of jobs."""
     return min(workers or os.cpu_count() or 1, max(1, len(jobs)))
 
 
 def results(
     work: Callable[[Any], Any], jobs: Sequence[Any], workers: int | None, *, scheduler: str | None = None, own: bool = False
 ) -> Iterator[tuple[Any, Any]]:
-    """Each job with what `work` gives of it, in the order in which they end, or None for a job that is lost.
+    """Each job with its result of `work` in the order of completion, or None for a lost job.
 
     Lost is a job that ends its process also when it is computed alone, or with which workers of a scheduler were lost as often as
     its ``allowed-failures`` says (default 3). ValueError if there is no scheduler at the address, or it has no workers;
@@ -113,7 +113,7 @@ def _until_broken(work, waiting, suspects, workers, own):
 
 
 def alone(work: Callable[[Any], Any], jobs: Iterable[Any], *, own: bool = False) -> Iterator[tuple[Any, Any]]:
-    """Each job with what `work` gives of it, by a process that does nothing else; None if the process ended with it."""
+    """Each job with its result of `work`, computed by a separate process, or None if the process died."""
     waiting = deque(jobs)
     while waiting:
         with processes(1, own=own) as pool:

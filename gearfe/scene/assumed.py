@@ -43,13 +43,13 @@ def split(file, assumptions, given, tables):
 
 
 def _away(file, where, values, tables):
-    """Values that differ, by key: (the present one, that of `values`)."""
+    """Different values by key: (present value, value in `values`)."""
     present = {key: _present(file, where, key, tables) for key in values}
     return {key: (present[key], value) for key, value in values.items() if present[key] != value}
 
 
 def _present(file, where, key, tables):
-    """Value of a dotted key such as ``gear.sun.b_mm`` in nested tables; of a list of tables the values of all, one if alike.
+    """Value of a dotted key such as ``gear.sun.b_mm`` in nested tables. A list of tables gives all values, or their common one.
 
     ValueError if there is no such value, or it is a table; the message names what there is.
     """

@@ -148,7 +148,7 @@ class Scene:
         return replace(self, pairs=pairs)
 
     def case(self, pair: str | None = None, case: str | None = None) -> Case:
-        """`Case` of a pair by name (None: the first), in a case of damage (None: healthy), as `gearfe.solve` takes it.
+        """`Case` of a pair by name (None: the first) in a damage case (None: healthy), for `gearfe.solve`.
 
         ValueError if there is no such pair or case.
         """

@@ -25,7 +25,7 @@ HELD = ("support", "shaft")
 
 
 def sides(file: str, where: str, row: Row, name: str, pairs: dict[str, Row]) -> list[str]:
-    """Sides of the pair `name` on which the gear of a row stands: it counts in all its pairs, or only in its `pair`.
+    """Sides of the pair `name` with the gear of a row. A row with a `pair` applies to this pair only.
 
     A planet meets the sun with one flank, the ring with the other.
     """
@@ -165,7 +165,7 @@ def supports_of(file: str, rows: Row, name: str, materials: dict[str, Any]) -> d
 
 
 def _placed(file: str, rows: Row, name: str, kinds: tuple[str, ...], out: dict[str, Any]) -> Iterator[tuple[str, Row, str]]:
-    """Place, row and side of all tables of these kinds in the pair `name`; of one side only one, in `out`."""
+    """Place, row and side of all tables of these kinds in the pair `name`. Each side may have one only."""
     for where, row in ((f"{kind}.{key}", row) for kind in kinds for key, row in rows[kind].items()):
         for side in sides(file, where, row, name, rows["pair"]):
             if side in out:

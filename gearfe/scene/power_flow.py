@@ -49,7 +49,9 @@ def torques_of(
     place, out = {name: i for i, name in enumerate(speeds)}, {"motor": torque}
     free = [name for name, end in ends.items() if name != "motor" and end["torque_Nm"] is None]
     if len(free) != 1:
-        raise ValueError(f"{file}: {len(free)} loads without torque_Nm: leave it out for exactly one load, which takes the rest")
+        raise ValueError(
+            f"{file}: {len(free)} loads without torque_Nm: omit it for exactly one load, which takes the remaining torque"
+        )
     for name, end in ends.items():
         if name not in ("motor", *free):
             out[name] = -math.copysign(end["torque_Nm"], speeds[end["shaft"]])

@@ -75,7 +75,7 @@ class Reading:
             return None
         place, heading = f"{where}.{key.name}" if where else key.name, key.heading(where)
         if value is REQUIRED or (key.default is REQUIRED and value in ({}, [])):
-            raise ValueError(f"{self.file}: no table {heading}; give one at least: {key.text}")
+            raise ValueError(f"{self.file}: no table {heading}; give at least one: {key.text}")
         if key.type == "table":
             return self.row(key.of, place, value)
         if key.type == "listed":

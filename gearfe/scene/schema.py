@@ -80,7 +80,7 @@ class Key:
         return self.argument or UNIT.sub("", self.name)
 
     def heading(self, place: str = "") -> str:
-        """Heading of the tables it holds, in the table at a `place`: ``[gear.NAME]``, ``[[crack]]``, ``[machine.impact]``."""
+        """Heading of the tables of this key at a `place`: ``[gear.NAME]``, ``[[crack]]``, ``[machine.impact]``."""
         name = f"{place}.{self.name}" if place else self.name
         return {"listed": f"[[{name}]]", "named": f"[{name}.NAME]"}.get(self.type, f"[{name}]")
 
@@ -189,7 +189,7 @@ def _frozen(value):
 
 
 def in_words(kind: str, thing: Any, *names: str) -> str:
-    """Finite numbers other than zero of an object of the library, by the keys of a scene's table, of these `names` or all.
+    """Finite nonzero numbers of a library object, by the keys of the scene table (of these `names` or all).
 
     >>> from gearfe import Support
     >>> in_words("support", Support(radial=2e5, torsion=4e8))
@@ -202,7 +202,7 @@ def in_words(kind: str, thing: Any, *names: str) -> str:
 
 
 def arguments(kind: str, row: Mapping[str, Any], *names: str) -> dict[str, Any]:
-    """Arguments in Python, in units of the library, of the keys of a checked `row` of a scene's table that are given.
+    """Arguments in Python and in units of the library, from the given keys of a checked `row` of a scene table.
 
     Those of these `names`, by default of all but the keys that say where it is.
     """

@@ -115,7 +115,7 @@ def _errors(file, pins, count):
         body = row["body"]
         check_known(file, f"pin.{name}", "body", body, out, "planet of the set")
         if body in said:
-            raise ValueError(f"{file} [pin.{name}]: the pin of {body} is [pin.{said[body]}] already; give one of both")
+            raise ValueError(f"{file} [pin.{name}]: the pin of {body} is [pin.{said[body]}] already; give only one of them")
         said[body] = name
         out[body] = tuple(arguments("pin", row, "radial_um", "tangential_um").values())
     return tuple(out.values())

@@ -42,7 +42,7 @@ def given_tables(given: StrPath | Mapping[str, Any], what: str) -> tuple[str, Pa
 
 
 def _renamed(file, value):
-    """Tables with present names of keys, also at the end of dotted keys; a note for each former one."""
+    """Tables with former key names replaced by the present ones (also in dotted keys). Each replacement causes a note."""
     if isinstance(value, list):
         return [_renamed(file, entry) for entry in value]
     if not isinstance(value, dict):
@@ -58,7 +58,7 @@ def _renamed(file, value):
 
 
 def _plain(value):
-    """Numbers and arrays of numpy, and tuples, as TOML would give them."""
+    """Plain numbers and lists (as in TOML) from numpy numbers, arrays and tuples."""
     if isinstance(value, Mapping):
         return {str(name): _plain(item) for name, item in value.items()}
     if isinstance(value, (list, tuple, np.ndarray)):

@@ -1,4 +1,4 @@
-"""A gearbox: its shafts and what connects them, with speeds, torques and mesh forces.
+"""A gearbox: its shafts and their connections, with speeds, torques and mesh forces.
 
 Angles, speeds and torques are counter-clockwise about the common direction z of all shafts, seen against z.
 """
@@ -68,7 +68,7 @@ class TrainShaft:
 
 @dataclass(frozen=True, slots=True)
 class Train:
-    """A gearbox: its shafts and what connects them, with speeds, torques and mesh forces at rest.
+    """A gearbox: its shafts and their connections, with speeds, torques and mesh forces at rest.
 
     Attributes
     ----------

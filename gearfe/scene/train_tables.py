@@ -69,7 +69,9 @@ def _homes(file, shafts):
     for name, shaft in shafts.items():
         for gear in shaft.gears:
             if gear in homes:
-                raise ValueError(f"{file} [shaft.{name}] gears: {gear!r} is on [shaft.{homes[gear]}] already; give one of both")
+                raise ValueError(
+                    f"{file} [shaft.{name}] gears: {gear!r} is on [shaft.{homes[gear]}] already; give only one of them"
+                )
             homes[gear] = name
     return homes
 

@@ -118,7 +118,7 @@ def reasons(reference, row):
 
 
 def counts(rows):
-    """One line: verdicts of a model's numbers, of its statements, and apart from them those of inputs and arithmetic."""
+    """One line with the verdicts on numbers and statements of a model, and separately on inputs and arithmetic."""
     printed = [row for row in rows if row.verdict != FORMULA]
     model, said = ([row for row in printed if row.kind == kind] for kind in ("model", STATEMENT))
     rest = [row for row in printed if row.kind not in ("model", STATEMENT)]

@@ -85,7 +85,7 @@ def _axis(path, found, channel, names, factors, rate=None):
 
 
 def _one(path, name, values, where=""):
-    """Return the one finite positive number among `values` [Hz], the first of which may be None; None if there is none.
+    """Return the single finite positive number among `values` [Hz], or None. The first value may be None.
 
     `where` is the source of the others.
     """

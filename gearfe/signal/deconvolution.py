@@ -93,7 +93,7 @@ def deconvolve(
 
 
 def _impulsive(y, apart):
-    """Kurtosis of y, or correlated kurtosis over shifts `apart` [samples]; its slope by y at constant power, up to a factor."""
+    """Kurtosis of y, or correlated kurtosis over shifts `apart` [samples], and its gradient up to a factor."""
     if len(apart) == 1:
         return float((y**4).sum() / (y**2).sum() ** 2), y**3
     late = np.array([np.concatenate([np.zeros(m), y[: y.size - m]]) for m in apart])

@@ -71,7 +71,7 @@ def indicator_table(
         `tolerance`; if the spectrum is zero around the mesh frequency; if scipy does not know `window`.
     """
     if not isinstance(signals, Mapping):
-        raise ValueError(f"signals = {signals!r}, but give records by case")
+        raise ValueError(f"signals = {signals!r}, but give a dictionary of records by case name")
     if healthy not in signals:
         raise ValueError(f"no case {healthy!r} to compare with; there are {', '.join(signals) or 'none'}: give one as healthy=")
     first = signals[healthy]
@@ -96,7 +96,7 @@ def indicator_table(
 
 
 def tabulate_indicators(found: Mapping[str, Mapping[str, tuple[float, float]]]) -> Table:
-    """`Table` of `indicator_table`: a row for each indicator; of each case its value and, if it grew, its increment over healthy.
+    """`Table` of `indicator_table` with a row for each indicator. Each case has its value and its increment over healthy.
 
     A healthy value that is a millionth or less of the faulty one is printed as none.
     """

@@ -191,7 +191,7 @@ def residual_signal(average: ArrayLike, teeth: int, *, sidebands: int = 0, shaft
         raise ValueError(f"teeth = {teeth}, but an average of {average.size} samples holds the orders 0 to {top}")
     if not (0 <= 2 * sidebands + 1 < teeth and 0 <= shaft_orders < teeth):
         raise ValueError(
-            f"sidebands = {sidebands}, shaft_orders = {shaft_orders}: nothing is left between mesh orders {teeth} apart"
+            f"sidebands = {sidebands}, shaft_orders = {shaft_orders}: they remove all orders between mesh harmonics {teeth} apart"
         )
     transform = rfft(average)
     order = np.arange(top + 1)

@@ -1,4 +1,4 @@
-"""`Signal`: a quantity sampled in time, measured or computed; at a lower rate, and its integral over time."""
+"""`Signal`: a measured or computed quantity sampled in time, with its decimation and integration."""
 
 import math
 from dataclasses import dataclass, replace
@@ -168,7 +168,7 @@ def decimate(signal: Signal, rate: float) -> Signal:
 
 
 def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
-    """Integral over time, of the part above a frequency: displacement from acceleration, as S4 measures it.
+    """Integral over time of the content above a frequency, such as displacement from acceleration (article S4).
 
     Divides the discrete Fourier transform by ``(2 pi i f)**times``; a record that does not close drifts at its ends.
 

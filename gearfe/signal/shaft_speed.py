@@ -151,7 +151,7 @@ def _between(score, tried, path):
 
 
 def _straight_ends(angle, time, speed, t):
-    """Return an angle at times `t`; before the first and after the last window at the speed there."""
+    """Return an angle at times `t`, extrapolated at constant speed before the first and after the last window."""
     inside = np.clip(t, time[0], time[-1])
     return angle(inside) + 2 * np.pi * ((t - inside) * np.where(t < time[0], speed[0], speed[-1]))
 

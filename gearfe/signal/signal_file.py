@@ -175,7 +175,7 @@ def _aligned(path, found, signals):
     if len(set(starts.values())) == 1:
         return signals
     if not starts:
-        raise ValueError("columns: give one at least")
+        raise ValueError("columns: give at least one")
     first = max(starts.values())
     last = min(start + signals[name].duration for name, start in starts.items())
     out = {}
@@ -183,7 +183,9 @@ def _aligned(path, found, signals):
         skip, count = round((first - starts[name]) * signal.rate), round((last - first) * signal.rate)
         if count < 2:
             told = ", ".join(f"{name!r} at {start:g} s" for name, start in starts.items())
-            raise ValueError(f"{path}: the channels share no time, they begin with {told}: name those that do as columns=")
+            raise ValueError(
+                f"{path}: the channels have different time axes and start at {told}: select those of one time axis by columns="
+            )
         out[name] = signal.part(skip, skip + count)
     return out
 
@@ -198,7 +200,7 @@ def channels(path: StrPath, header: str | None = None) -> Found:
         lines = [] if suffix in READERS else read(path, "signal")
         labview = suffix == ".lvm" or "".join(lines[:1]).startswith("LabVIEW Measurement")
         if header is not None and (labview or suffix in READERS):
-            raise ValueError(f"{path}: header = {header!r}, but only text tables can lack names; leave it out")
+            raise ValueError(f"{path}: header = {header!r}, but only text tables can be without column names; omit header")
         if suffix in READERS:
             recording = READERS[suffix](path)
         else:

@@ -1,4 +1,4 @@
-"""Spectra of signals: amplitude, power density, squared envelope; the analytic signal and the envelope."""
+"""Amplitude spectrum, power spectral density, squared envelope spectrum, analytic signal and envelope."""
 
 from dataclasses import replace
 from typing import Any
@@ -14,7 +14,7 @@ from .spectrum import Spectrum, amplitudes, noise_bins
 
 
 def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spectrum:
-    """Compute the one-sided amplitude spectrum: a sine of amplitude A on a bin gives A there.
+    """Compute the one-sided amplitude spectrum. A sine of amplitude A on a bin has the value A there.
 
     The mean is taken out first and stands at 0 Hz. With ``hann`` a line between two bins is up to 15 % too low (scalloping),
     with ``flattop`` 0.1 %, with ``boxcar`` 36 %; ``boxcar`` keeps the energy,
@@ -101,7 +101,7 @@ def power_spectral_density(
 
 
 def analytic(signal, band=None):
-    """Analytic signal of the oscillation (without the mean), of `band` = (low, high) [Hz] only if given; shape (n,), complex.
+    """Analytic signal (complex, shape (n,)) without the mean, restricted to `band` = (low, high) [Hz] if given.
 
     The band is cut between bins of the discrete Fourier transform, as `scipy.signal.envelope` does: exact for a record that
     closes; any other rings at its ends, for about ``1 / (high - low)``.
@@ -117,7 +117,7 @@ def analytic(signal, band=None):
 
 
 def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
-    """Envelope by Hilbert's transform: modulus of the analytic signal, of `band` = (low, high) [Hz] only if given.
+    """Envelope by the Hilbert transform (modulus of the analytic signal), restricted to `band` = (low, high) [Hz] if given.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
 def squared_envelope_spectrum(
     signal: Signal, band: tuple[float, float] | None = None, *, window: str | tuple[Any, ...] = "hann"
 ) -> Spectrum:
-    """Amplitude spectrum of the squared envelope, unit ``(unit)^2``; best taken of the band that the kurtogram finds.
+    """Amplitude spectrum of the squared envelope, unit ``(unit)^2``. A suitable band is that of the kurtogram.
 
     ``(1 + m cos(2 pi f t))`` times a carrier of amplitude A gives ``2 m A**2`` at f and ``m**2 A**2 / 2`` at 2 f.
 

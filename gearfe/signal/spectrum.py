@@ -1,4 +1,4 @@
-"""`Spectrum`: values over frequency or shaft order; the one of amplitudes, from samples."""
+"""`Spectrum`: values over frequency or shaft order, and the amplitude spectrum of samples."""
 
 import math
 from dataclasses import dataclass

@@ -67,14 +67,14 @@ class Way(NamedTuple):
             return None
 
     def numbers(self, line: str) -> int:
-        """Return the count of the cells of a row if they are numbers, also with dates and clock times; else 0."""
+        """Return the number of cells in a row of numbers, dates and clock times, or 0 for other rows."""
         cells = self.cells(line)
         rest = [cell for cell in cells if self.number(cell) is None]
         clocks = all(CLOCK.fullmatch(cell) or DATE.fullmatch(cell) for cell in rest)
         return len(cells) if len(rest) < len(cells) and clocks else 0
 
     def value(self, cell: str) -> float | None:
-        r"""Value of a cell: its number, the seconds of the day of a clock time, nan if it is empty or a date, else None.
+        r"""Value of a cell: its number, seconds of the day for a clock time, nan for an empty cell or a date, otherwise None.
 
         >>> Way(";", ",", r"\.").value("1.234,5"), Way(";", ",").value("10:00:01,5")
         (1234.5, 36001.5)
@@ -121,7 +121,7 @@ def named(cell: str) -> tuple[str, str]:
 
 
 def _way(rows, given):
-    """`Way` in which the most rows are numbers; of several, the first that fits the names of the columns.
+    """`Way` of reading by which most rows are numbers. Among equals, the first that fits the column names.
 
     Thousands are parted only if more rows are numbers then, or none fits otherwise. None if no row is numbers.
     """

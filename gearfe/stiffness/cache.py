@@ -141,7 +141,7 @@ def made_by() -> tuple[str, tuple[tuple[str, str], ...]]:
 
 
 def program() -> dict[str, str]:
-    """Versions of gearfe, of its source and of the libraries, as studies note them."""
+    """Versions of gearfe, its source and its libraries, which studies store."""
     source, libraries = made_by()
     return {"gearfe": version("gearfe"), "source": source[:12], **dict(libraries)}
 

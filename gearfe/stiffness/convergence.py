@@ -118,7 +118,7 @@ def convergence(
         orders = (method.order - 1, method.order, method.order + 1)
     steps = [(float(refine), order) for refine in refines for order in orders or ()]
     if not steps:
-        raise ValueError(f"orders = {orders!r}, but give one polynomial order at least, or None for the usual ones")
+        raise ValueError(f"orders = {orders!r}, but give at least one polynomial order, or None for the default orders")
     curves, seconds = [], []
     for refine, order in steps:
         started = time.process_time()

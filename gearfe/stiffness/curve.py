@@ -118,7 +118,7 @@ class StiffnessCurve:
         return xarray.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
 
     def __call__(self, phase: ArrayLike) -> NDArray:
-        """Return the secant stiffness [N/m] at phases of any shape, linear between those of the curve; for dynamic models.
+        """Return the secant stiffness [N/m] at phases of any shape, interpolated linearly, for dynamic models.
 
         Phases that go round a mesh cycle are continued periodically. Those of a damaged tooth's engagement (``span="tooth"``) are
         not: what comes before and after it is another tooth, and a ValueError says that the curve has no value there.
@@ -230,7 +230,7 @@ class StiffnessCurve:
 
 
 def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
-    """Join curves that follow each other, of the same gears under the same load; columns of pairs by their order."""
+    """Join consecutive curves of the same gears under the same load. Columns of pairs are ordered by pair number."""
     order = np.unique(np.concatenate([curve.order for curve in curves]))
 
     def rows(name: str) -> Floats:

@@ -199,7 +199,7 @@ def _gears(case):
 
 
 def _plain(flank, gear):
-    """Return the flank of most teeth, with explicit pitch, so that all teeth are solved in the same way."""
+    """Return the most frequent flank with explicit pitch, so that all teeth are solved in the same way."""
     if not flank.on(gear).differs:
         return flank
     pitch = (_commonest(flank.pitch or (0.0,)),) * gear.z

@@ -133,12 +133,12 @@ ROWS = (
         faces=FACES, error=True, extended=True, flanks=True, order=3, kept="process",
     ),
     Method(
-        "fe", "finite elements of the transverse section; mesh, elements and solution are not those of ritz", "section",
+        "fe", "finite elements of the transverse section, with other mesh, elements and solver than ritz", "section",
         "gearfe.stiffness.cache:solved_gear", "seconds", converged=True, cracks="through", broken=True, teeth=True, error=True,
         extended=True, flanks=True, kept="disk",
     ),
     Method(
-        "fe3d", "finite elements of whole gears of finite width; mesh, elements and solution are not those of ritz3d", "solid",
+        "fe3d", "finite elements of whole gears of finite width, with other mesh, elements and solver than ritz3d", "solid",
         "gearfe.stiffness.cache:solved_solid", "minutes", converged=True, cracks="any", pits=True, broken=True, faces=FACES,
         error=True, extended=True, flanks=True, kept="disk",
     ),
@@ -170,7 +170,7 @@ RING_FOUNDATIONS = {  # treatment of a ring's body by variants `foundation`
 
 
 def current(name: Any) -> Any:
-    """Return the present name of a method, with a DeprecationWarning for a former one; anything else unchanged."""
+    """Return the present name of a method. A former name causes a DeprecationWarning. Other values are unchanged."""
     if isinstance(name, str) and name in FORMER:
         from ..geometry.renamed import warn_renamed  # imported here, because it loads numpy, which the help does not need
 
@@ -185,13 +185,13 @@ def described():
 
 
 def having(what, kind=None):
-    """Names of the methods that have `what`, an attribute of `Method`, as text: 'ritz, fe or fe3d'."""
+    """Names of the methods with the attribute `what` of `Method`, as text: 'ritz, fe or fe3d'."""
     names = [row.name for row in ROWS if getattr(row, what) and kind in (None, row.kind)]
     return " or ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
 
 
 def fitted(method, case):
-    """Return a case as far as a method models it, with its variants (or None), and the neglected parts in words.
+    """Return the part of a case that a method models, its variants (or None), and the neglected parts in words.
 
     This is the only rule for face, groove and variants of each method:
 

@@ -215,7 +215,7 @@ def _on_flank(gear: Gear, roll: NDArray) -> tuple[Floats, NDArray[np.bool_]]:
 
 
 def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Floats:
-    """Return the checked result of a user's function: real, finite and symmetric with the shape; else a ValueError."""
+    """Return the result of a user's function. Raises ValueError unless it is real, finite, symmetric and of the shape."""
     try:
         returned = work()
     except Exception as error:  # a user's function may raise any error
@@ -255,7 +255,7 @@ def flexibility_of(own: OwnFlexibility, side: int, gear: Gear, material: Materia
     if callable(getattr(model, "matrix", None)):
         if getattr(model, "gear", gear) != gear:
             raise ValueError(
-                f"a Flexibility of z = {model.gear.z} was given for z = {gear.z}: it holds for the very gear it was made of; "
+                f"a Flexibility of z = {model.gear.z} was given for z = {gear.z}: it is valid for its own gear only; "
                 "give those of pinion and wheel"
             )
         return model if hasattr(model, "seam") else OwnMatrix(model, gear)

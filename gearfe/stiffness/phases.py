@@ -22,12 +22,12 @@ def check_phases(phases: Any) -> int | Floats:
         return check_count(phases)
     out = numbers("phases", phases, "")
     if out.ndim != 1 or out.size == 0 or not np.isfinite(out).all():
-        raise ValueError("phases: give a number of them, or a list of finite phases in mesh cycles, one at least")
+        raise ValueError("phases: give the number of phases, or a list of at least one finite phase in mesh cycles")
     return out
 
 
 def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0, teeth: Iterable[int] = (0,)) -> Floats:
-    """Phases ``(n,)`` of a number of them over a `span`, or those given; an engagement lasts ``eps_alpha + overlap`` cycles.
+    """Given phases, or a number of phases ``(n,)`` over a `span`. An engagement lasts ``eps_alpha + overlap`` cycles.
 
     Those of the `span` ``tooth`` are of the engagements of all tooth pairs of these numbers.
     """

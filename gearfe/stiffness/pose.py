@@ -1,4 +1,4 @@
-"""Pose of the gears: the mean pose of all methods, or one gear rotating against the fixed other."""
+"""Pose of the loaded gears: mean pose (default of all methods), or rotation of one gear with the other fixed."""
 
 from dataclasses import replace
 

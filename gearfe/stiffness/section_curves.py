@@ -27,7 +27,7 @@ def sum_curves(row, case, how, phase):
 
 
 def section_curves(row, case, how, phase):
-    """Curves of two sections in contact, one for each load, with their estimated error if it was asked for."""
+    """Curves of two sections in contact, one for each load, with the estimated error on request."""
     with part(row.name, 0.0, 0.4 if how.error else 1.0):
         solve, details = section_solver(row, case, how, phase)
     meta = provenance(case, row.name, details)

@@ -1,4 +1,4 @@
-"""`solve`: stiffness curve of a `Case` with the options of a `Solve`; `mesh_stiffness` combines both."""
+"""`solve`: stiffness curve of a `Case` with the options of a `Solve`, as combined in `mesh_stiffness`."""
 
 import contextlib
 import warnings

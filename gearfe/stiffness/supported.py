@@ -19,7 +19,7 @@ def check_integral(case, method):
             )
         if gear.internal or case.face == "herringbone":
             raise ValueError(
-                f"the {name} is one piece with its shaft (integral), but rings and herringbone gears cannot be: leave it out"
+                f"the {name} is one piece with its shaft (integral), but rings and herringbone gears cannot be integral: omit it"
             )
 
 

@@ -135,7 +135,7 @@ def _check_room(gear, crack):
     if depth < LEAST[0] * gear.m_n or high - low < LEAST[1] * gear.m_n * (1 - 1e-9):
         raise ValueError(
             f"crack {depth:.3g} mm deep and open over {high - low:.3g} mm: the integral around its front needs a depth of "
-            f"{LEAST[0]:g} and a width of {LEAST[1]:g} m_n at least ({LEAST[0] * gear.m_n:.3g} and {LEAST[1] * gear.m_n:.3g} mm)"
+            f"{LEAST[0]:g} and a width of {LEAST[1]:g} m_n or more ({LEAST[0] * gear.m_n:.3g} and {LEAST[1] * gear.m_n:.3g} mm)"
         )
 
 

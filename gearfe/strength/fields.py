@@ -67,7 +67,7 @@ def write_vtu(path, fields):
 
 
 def loaded_phase(case):
-    """Return the phase of the largest load on the damaged tooth, or on the one ahead of a missing tooth; 0 without damage."""
+    """Return the phase of the largest load on the damaged tooth (or next to a missing tooth), or 0 without damage."""
     order = case.first_tooth
     if order is None:
         return 0.0

@@ -66,7 +66,7 @@ class CrackModel:
         if not arcs or any(not 0 < stop - start <= 2 * math.pi for start, stop in arcs):
             raise ValueError(f"held = {self.held} rad, but each arc ends after its start and is at most a full circle")
         if self.method == "ritz":
-            raise ValueError("held: ritz has equal sectors with the whole bore held; use method = 'fe'")
+            raise ValueError("held: method 'ritz' holds the whole bore; use method = 'fe' for a part of it")
         object.__setattr__(self, "held", arcs)
 
 
@@ -210,7 +210,7 @@ def grow_crack(
 
 @dataclass
 class _Tip:
-    """Solves for the tip of a crack, and notes by which method; from the first crack that `ritz` lacks on by `fe`."""
+    """Solver for the tip of a growing crack. It changes from `ritz` to `fe` at the first crack that `ritz` does not support."""
 
     gear: Gear
     material: Material

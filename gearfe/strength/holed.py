@@ -146,8 +146,8 @@ def _own(pair, side, face, groove, pits):
     parts = [tuple(pit for pit in pits if (pit.z > gear.b / 2) is upper) for upper in (False, True)]
     if all(parts) and not _mirrored(gear, *parts):
         raise ValueError(
-            "holes in both halves of a herringbone gear that are no mirror images: its halves are drawn one at a time, give "
-            "those of one"
+            "the holes in both halves of a herringbone gear are no mirror images, but only one half is drawn: give the "
+            "holes of one half"
         )
     half = int(not parts[0] and bool(parts[1]))
     pits = parts[half]

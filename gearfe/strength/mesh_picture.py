@@ -73,7 +73,7 @@ def render_mesh(
 def _camera(parts, close_up):
     """Focus, direction of view and half height [mm] of the picture."""
     if not len(parts):
-        raise ValueError("parts: give one at least")
+        raise ValueError("parts: give at least one")
     if close_up is None:
         points = np.hstack([part.points for part in parts])
         low, high = points.min(axis=1), points.max(axis=1)
@@ -89,7 +89,9 @@ def _camera(parts, close_up):
                 if close_up == "crack":
                     return _at_crack(points)
                 return (low + high) / 2, _into_pits(part, faces), NEAR * np.linalg.norm(high - low) / 2
-    raise ValueError(f"close_up = {close_up!r}, but these meshes have none: give their damage when they are made")
+    raise ValueError(
+        f"close_up = {close_up!r}, but these meshes have no damage to show: give the damage when the meshes are made"
+    )
 
 
 def _into_pits(part, faces):

@@ -117,7 +117,7 @@ def render_contact(case, path, *, phase=None, title=""):
 
 
 def _check_size(wide, refine):
-    """Reject a picture whose solve does not fit into memory, before it is meshed; for a tooth in 3-D by a low estimate."""
+    """Reject a picture whose solution does not fit into memory, before meshing."""
     if not wide:
         check_section(refine)
     elif refine > 1:
@@ -145,7 +145,7 @@ def _tooth(case, phase, refine):
 
 
 def enlarged(opening, module):
-    """Factor of displacements in a picture that opens a crack by about `OPENING` modules; 0 without a crack: not drawn."""
+    """Magnification of displacements that opens a crack by about `OPENING` modules, or 0 (not drawn) without a crack."""
     if opening <= 0:
         return 0
     power = math.floor(math.log10(OPENING * module / opening))
@@ -235,7 +235,7 @@ def _length_scale(plotter, size, up, view):
 
 
 def _draw_gears(pair, fields, told, path, size):
-    """Both gears; if displacements are enlarged the cracked one alone, and in grey where both were without load."""
+    """Draw both gears. With magnified displacements, draw the cracked gear, and both unloaded gears in grey."""
     import pyvista
 
     scale, shown, focus = told["enlarged"], fields, (0.9 * pair.gear_1.m_n, pair.pitch_radius_1)

@@ -108,7 +108,7 @@ def _check_own(gear, z, rolls):
 
 
 def _along(z, width, load, b):
-    """Load per width at heights as a function, from cells: straight from middle to middle, 0 beyond, with the cells' sum."""
+    """Load per width as a function of z, linear between the middles of cells and zero beyond, with the total of the cells."""
     ends = np.concatenate([[z[0] - width[0] / 2], z, [z[-1] + width[-1] / 2]])
     per_width = load / width
     per_width = np.concatenate([per_width[:1], per_width, per_width[-1:]])

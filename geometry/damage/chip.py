@@ -118,7 +118,7 @@ class Chip:
         )
 
     def cut(self, gear: Gear) -> tuple[float, str, float]:
-        """Roll length of the corner [mm]; where the cut ends: on the tip at an angle [rad], or on the flank at a roll length.
+        """Roll length of the corner [mm] and end of the cut: an angle [rad] on the tip, or a roll length on a flank.
 
         Angles are positive towards the flank of the corner. ValueError if there is no such cut.
         """

@@ -31,7 +31,7 @@ def open_part(crack, b, z):
 
 
 def shallowest(crack):
-    """Least depth between the crack's ends, in the largest, or 0 if it runs out."""
+    """Least depth between the ends of a crack, relative to the largest, or 0 if the crack runs out."""
     low, high = (max(value, 0.0) for value in extremes(crack))
     part = low / high if low > SLACK else 0.0
     return math.sqrt(part) if crack.rounded else part
@@ -59,7 +59,7 @@ def shallower(crack, part):
 
 
 def crack_in_band(crack, b, first, last):
-    """Return the part of a crack of a gear of width `b` [mm] in a band of the width; None if it is closed in the band.
+    """Return the part of a crack in a band of the face width `b` [mm], or None if it is closed there.
 
     Heights in the band are counted from its end at z = `first` to that at z = `last` [mm]; `first` may be the higher one.
     """

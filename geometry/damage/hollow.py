@@ -50,7 +50,7 @@ def crossing(gear, hollow, roll, z, limits):
 
 
 def _roots(coefficients):
-    """Real roots of a polynomial, if it may have some between -1 and 1."""
+    """Real roots of a polynomial that may have roots between -1 and 1."""
     size = np.abs(coefficients)
     if size[0] > size[1:].sum() or not size.any():
         return np.zeros(0)
@@ -175,7 +175,7 @@ def union_length(low, high):
 
 
 def in_circle(p, q, dp, dq, flat):
-    """Return the intervals (t0, t1) in which lines ``(p + t dp, q + t dq)`` lie in the unit circle; t0 == t1 if they miss it.
+    """Return the intervals (t0, t1) in which lines ``(p + t dp, q + t dq)`` lie in the unit circle. t0 == t1 outside.
 
     Lines with ``dp**2 + dq**2`` below `flat` are points.
     """

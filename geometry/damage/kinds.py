@@ -36,7 +36,7 @@ def check_crack(crack: object) -> None:
 
 
 def by_side(damage: Mapping[str, Damage | Sequence[Damage] | None] | None) -> tuple[list[Damage], list[Damage]]:
-    """Damage of pinion and wheel, each given as one, as a list or tuple of them, or not at all.
+    """Damage of pinion and wheel. Each is a single damage, a list, a tuple or missing.
 
     ValueError if it is not given by gear, or something is no damage.
     """
@@ -95,7 +95,7 @@ def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> s
 
 
 def called(damage: Iterable[Damage]) -> str:
-    """Return the adjective of a tooth with such damage: cracked, pitted or spalled; damaged for more than one of these."""
+    """Return the adjective of a tooth: cracked, pitted, spalled, or damaged for several types."""
     names = {defect._adjective for defect in damage}
     return names.pop() if len(names) == 1 else "damaged"
 

@@ -148,7 +148,7 @@ class Pit:
         return [("ellipse", np.column_stack([centre, turned * size]))]
 
     def _chord(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[Floats, Floats]:
-        """Return the interval (t0, t1) of lines ``(p + t dp, q + t dq)``, scaled by the axes, in the pit; t0 == t1 outside."""
+        """Return the interval (t0, t1) of lines ``(p + t dp, q + t dq)``, scaled by the axes, in a pit. t0 == t1 outside."""
         return in_circle(p, q, dp, dq, 1e-12 / min(self.axes) ** 2)
 
     def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:

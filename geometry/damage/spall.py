@@ -155,7 +155,7 @@ class Spall:
         return [(kind, centre[:, None] + axes @ places.T) for kind, places in out]
 
     def _chord(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[Floats, Floats]:
-        """Return the interval (t0, t1) of lines ``(p + t dp, q + t dq)``, scaled by half sides, inside; t0 == t1 outside."""
+        """Return the interval (t0, t1) of lines ``(p + t dp, q + t dq)``, scaled by half sides, inside. t0 == t1 outside."""
         rounded = self.corner / np.array(self.axes)
         p, q, dp, dq = np.broadcast_arrays(p, q, dp, dq)
         parts = [_in_box(p, q, dp, dq, 1 - rounded[0], 1.0), _in_box(p, q, dp, dq, 1.0, 1 - rounded[1])]

@@ -1,4 +1,4 @@
-"""Gmsh session, and triangles and quads between lines; tets are in `geometry.mesh.tetrahedra`; no other module uses gmsh.
+"""Gmsh session, and meshes of triangles and quads between lines. Only this module and `geometry.mesh.tetrahedra` use gmsh.
 
 gmsh has one model and one set of options for the whole process: threads that mesh at the same time take turns.
 """

@@ -1,4 +1,4 @@
-"""Tooth pairs with missing teeth and chipped tips: what has broken off, the tips that are left, and where these touch."""
+"""Tooth pairs with missing teeth and chipped tips: lost material, remaining tips and their contact."""
 
 from collections.abc import Callable, Sequence
 from typing import Any

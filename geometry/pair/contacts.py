@@ -189,7 +189,7 @@ def end_corners(pair: GearPair) -> tuple[int, int]:
 
 
 def _corners(pair, nominal):
-    """Roll lengths of both gears and gaps ``(4, ...)`` where each of the four corners touches; inf where it does not."""
+    """Roll lengths of both gears and gaps ``(4, ...)`` of the four corners, or inf where a corner does not touch."""
     rolls_1, rolls_2 = (np.tile(values, (4, *(1,) * nominal.ndim)) for values in (nominal, pair.mate_roll(nominal)))
     gaps, middle = np.full(rolls_1.shape, np.inf), sum(pair.path) / 2
     for number, roll, driver in corners_of(pair):

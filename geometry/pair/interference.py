@@ -60,7 +60,7 @@ def _teeth(radius, half, angle):
 
 
 def _cut(mate, solid, x, y, turn=0.0, mirror=1):
-    """How deep [mm] points about the centre of a gear that is turned lie in its teeth, whose half outline is `solid`; or 0."""
+    """Depth [mm] of points inside the teeth of a rotated gear with the half outline `solid`, or 0 outside."""
     away, pitch, rising = np.hypot(x, y), 2 * math.pi / mate.z, np.argsort(solid[0])
     low, high = sorted((mate.r_a, mate.r_f))
     near = (away > low) & (away < high)

@@ -1,4 +1,4 @@
-"""Rows of pits on a flank: along the axis, along a contact line, or along the profile; in one half or in both."""
+"""Rows of pits on a flank along the axis, a contact line or the profile, in one half or both."""
 
 import math
 from dataclasses import replace

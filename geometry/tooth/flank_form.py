@@ -143,7 +143,7 @@ class FlankForm:
         return out
 
     def thinned(self, roll: ArrayLike, tooth: int) -> Floats:
-        """Return the removed material that makes a tooth thinner, at roll lengths [mm]; without its edge, position and pitch."""
+        """Return the removed material that thins a tooth, at roll lengths [mm], without tip edge, position and pitch errors."""
         at = self.before_edge(self._on_flank(roll))
         return self.of(np.array([tooth]))._formed(at[None, :], 0)[0]
 

@@ -21,7 +21,7 @@ def _base_radius(z: int, m_n: float, alpha_n: float, beta: float) -> float:
 @renamed(tip_radius="rack_tip_radius")
 @dataclass(frozen=True, slots=True)
 class Gear:
-    """Involute gear (symbols of ISO 21771; rack of ISO 53): external with `r_bore`, internal (a ring) with `r_rim`.
+    """Involute gear with the symbols of ISO 21771: external with `r_bore`, or internal (a ring) with `r_rim`.
 
     Helical gears are described in the normal section and used in the transverse one.
 
@@ -102,7 +102,7 @@ class Gear:
         form_point(self)
 
     def __repr__(self):
-        """All numbers that are not the default ones: enough to make it again."""
+        """All values that differ from the default, so that the gear can be made again."""
         given = ((field.name, getattr(self, field.name)) for field in fields(self) if getattr(self, field.name) != field.default)
         return f"Gear({', '.join(f'{name}={value!r}' for name, value in given)})"
 

@@ -21,7 +21,7 @@ SHARPEST = 1e-3  # a form point where the outline turns by less [rad] is no corn
 
 
 class Place(NamedTuple):
-    """Places of a side: roll length [mm], angle from the tooth's centre-line [rad], and how the outward normal lies there.
+    """Places of a tooth side: roll length [mm], angle from the centre-line [rad], and direction of the outward normal.
 
     The normal passes the gear's centre at `arm` [mm] (r_b on the flank) and its foot is `lean` [mm] away from the place (the roll
     length on the flank).
@@ -84,7 +84,7 @@ def place(gear: Gear, radius: ArrayLike) -> Place:
 
 @lru_cache(maxsize=256)
 def form_corner(gear: Gear) -> bool:
-    """Whether flank and fillet meet in an edge, as undercut leaves it, and not in a common tangent."""
+    """Whether flank and fillet meet in an edge (caused by undercut) without a common tangent."""
     x, y = cartesian(*fillet(gear, form_point(gear)[0] + np.array([0.0, 1e-6])))
     step = x[0] - x[1], y[0] - y[1]  # up the fillet; its normal passes the centre at `arm`, the flank's at r_b
     arm = gear.outward * (x[0] * step[0] + y[0] * step[1]) / np.hypot(*step)

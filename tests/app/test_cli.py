@@ -130,7 +130,7 @@ def test_check_draws_the_pair_with_its_damage(tmp_path, capsys):
     assert main(["check", "compound_planetary", "--picture", str(path)]) == 0
     assert f"written: {path}" in capsys.readouterr().out
     assert main(["check", "compound_planetary", "--case", "crack30"]) == 1
-    assert "give --picture FILE, too" in capsys.readouterr().err
+    assert "add --picture FILE" in capsys.readouterr().err
 
 
 def test_info_cites_the_installed_version(capsys):

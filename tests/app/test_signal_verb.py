@@ -69,7 +69,7 @@ def test_the_speed_of_a_shaft_is_told_and_drawn_by_turns(runs, capsys):
         (["--unit", "g"], "2 channels, 'run.acc', 'run.tacho': choose one by --column"),
         (["--unit", "g", "--column", "acc", "--teeth", "20"], "--teeth needs the shaft frequency of that gear"),
         (["--unit", "g", "--column", "acc", "--tacho", "speed"], "no column 'speed'; it has 'run.acc', 'run.tacho'"),
-        (["--unit", "g", "--column", "acc", "--header", "a"], "only text tables can lack names"),
+        (["--unit", "g", "--column", "acc", "--header", "a"], "only text tables can be without column names"),
         (["--unit", "g", "--column", "acc", "--mesh", "200", "--fault", "1"], "--fault 1 Hz, but new run.acc has bins of 0.33"),
         (["--column", "acc", "--scale", "0"], "scale = 0.0, but give a finite factor"),
     ],

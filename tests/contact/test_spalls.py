@@ -179,7 +179,7 @@ def test_pair_plot_and_mesh_show_it(tmp_path):
     assert "spall" in [text.get_text() for text in figure.axes[1].get_legend().get_texts()]
     made = gf.export_mesh(tmp_path / "tooth.msh", pair().gear_1, [SPALL, gf.Crack(level=0.2)], teeth=1, refine=0.5)
     assert made.faces["pits"].size
-    with pytest.raises(ValueError, match="damage has spalls, but hexahedra have none"):
+    with pytest.raises(ValueError, match="damage has spalls, but only meshes of tetrahedra can have spalls"):
         gf.export_mesh(tmp_path / "tooth.msh", pair().gear_1, [SPALL], cells="hexahedra")
 
 

@@ -114,7 +114,7 @@ def test_a_pit_is_missing_from_the_tooth(tmp_path):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"damage": [PIT], "cells": "hexahedra"}, "damage has pits, but hexahedra have none"),
+        ({"damage": [PIT], "cells": "hexahedra"}, "damage has pits, but only meshes of tetrahedra can have pits"),
         ({"damage": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}, "at most one crack"),
         ({"cells": "hexahedra", "teeth": 3}, "teeth = 3"),
         ({"cells": "wedges"}, "one of tetrahedra, hexahedra"),

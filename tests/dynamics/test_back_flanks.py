@@ -111,7 +111,7 @@ def test_what_has_no_back_flanks_is_refused():
     with pytest.raises(ValueError, match="no mesh 'ring'; there are mesh"):
         gf.with_back_flanks(shaken(), {"ring": one})
     for play in (0.0, math.inf):
-        with pytest.raises(ValueError, match="need one above 0 and finite"):
+        with pytest.raises(ValueError, match="require a finite backlash > 0"):
             gf.with_back_flanks(shaken(backlash=play), {"mesh": one})
     pitch = gf.Case(pair(), 2000.0, STEEL, flanks={"pinion": gf.Flank(pitch=[20e-3] + 20 * [0.0])})
     off = gf.ToothDamage(0, 0, gf.solve(pitch, gf.Solve(phases=16, span="tooth")))

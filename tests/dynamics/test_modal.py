@@ -66,7 +66,7 @@ def test_what_has_no_answer_is_refused():
     free = gf.Machine(("a.x",), [1.0], (), ())
     for work, said in (
         (lambda: gf.frequency_response(PAIR, [1.0], name, name, kind="compliance"), "kind = 'compliance'"),
-        (lambda: gf.frequency_response(PAIR, [-1.0], name, name), "0 or more"),
+        (lambda: gf.frequency_response(PAIR, [-1.0], name, name), "each from 0 to"),
         (lambda: gf.frequency_response(PAIR, [1.0], "nobody.x", name), "no degree of freedom 'nobody.x'"),
         (lambda: gf.frequency_response(PAIR, [1.0], [1.0, 0.0], name), "one per degree of freedom"),
         (lambda: gf.frequency_response(free, [0.0], "a.x", "a.x"), "is infinite"),

@@ -146,7 +146,7 @@ def test_what_a_turning_frame_cannot_hold_is_refused(herringbone_stage):
     with pytest.raises(ValueError, match="different supports in x and y"):
         body(x=2 * STIFF)
     layout = gf.Layout([gf.Body("one", 1.0, 1.0, "x y z tilt_x tilt_y theta", 1.0)])
-    with pytest.raises(ValueError, match="one tilts, so that its own speed counts; give it by rotors"):
+    with pytest.raises(ValueError, match="one tilts, so that its rotation speed matters: give the speed by rotors"):
         gf.Machine(layout.dofs, layout.mass, (), (), (), spin=1.0)
     with pytest.raises(ValueError, match="rotors: two is no body that moves in two directions; there are one"):
         gf.Machine(layout.dofs, layout.mass, (), (), (), rotors={"two": 1.0})

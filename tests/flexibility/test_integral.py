@@ -85,7 +85,7 @@ def test_a_shaft_seen_from_its_other_end(mesh):
     ("held", "message"),
     [
         (shaft(left=2.0), "the gear from"),
-        (shaft(d_left=4.0), "radius 2 mm beside the gear is inside of the centre hole, r_bore = 3 mm"),
+        (shaft(d_left=4.0), "radius 2 mm next to the gear is less than that of its bore, r_bore = 3 mm"),
         (replace(shaft(), torque=24.0), "torque = 24 mm is inside of the gear"),
     ],
 )

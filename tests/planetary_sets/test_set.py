@@ -271,8 +271,8 @@ def test_loads_and_materials_that_are_none_are_refused(name, value):
         ({"pin": math.nan}, "pin = nan"),
         ({"errors": "x"}, "errors = 'x'"),
         ({"errors": [(0, 0), (0,), (0, 0)]}, "errors = "),
-        ({"damage": {"sun": gf.Crack(level=0.3)}}, "give a list, even of one"),
-        ({"damage": {"sun": None}}, "give a list, even of one"),
+        ({"damage": {"sun": gf.Crack(level=0.3)}}, "give a list, also for a single entry"),
+        ({"damage": {"sun": None}}, "give a list, also for a single entry"),
         ({"pin": 0.0}, "pin = 0"),
         ({"errors": [(0, 0)]}, r"for each of 3 planets"),
         ({"errors": [(0, 20.0)] * 3}, "20 um are 0.02"),
@@ -280,7 +280,7 @@ def test_loads_and_materials_that_are_none_are_refused(name, value):
         ({"flanks": {"sun": 0.02}}, "is no Flank"),
         ({"flanks": {"sun": gf.Flank(helix_crowning=0.01)}}, "change along the width"),
         ({"flanks": {"planet": gf.Flank(eccentricity=0.01)}}, "eccentricity"),
-        ({"damage": {"sun": [gf.Pit(radius=21.0, z=10.0, axes=(0.5, 0.5), depth=0.1)]}}, "the section has no other"),
+        ({"damage": {"sun": [gf.Pit(radius=21.0, z=10.0, axes=(0.5, 0.5), depth=0.1)]}}, "a section allows no other type"),
     ],
 )
 def test_what_cannot_be_is_refused(options, message):

@@ -208,7 +208,7 @@ def test_check_refuses_what_other_verbs_refuse(tmp_path, capsys):
     for model, more, told in (
         ("planetary", "", "has no pair 'sun_planet'; it has stage"),
         ("compound_planetary", 'contact = "impact"', "the model 'compound_planetary' has linear contact only"),
-        ("helical_pair", 'contact = "impact"\nimpact.friction = [0.1, 0.1]', "only the model 'planetary' has it"),
+        ("helical_pair", 'contact = "impact"\nimpact.friction = [0.1, 0.1]', "only the model 'planetary' has this key"),
     ):
         text = new + machine.format(model, more)
         assert told in refused(tmp_path, capsys, text, "check")

@@ -85,7 +85,7 @@ def test_channels_that_start_apart_are_aligned(tmp_path, name):
 
 def test_channels_without_a_common_time_are_rejected(tmp_path):
     tdms(tmp_path / "a.tdms", {"wf_start_offset": 0.0}, {"wf_start_offset": 2 * SECONDS})
-    with pytest.raises(ValueError, match=r"share no time, they begin with 'tacho' at 0 s, 'acc' at 16 s"):
+    with pytest.raises(ValueError, match=r"have different time axes and start at 'tacho' at 0 s, 'acc' at 16 s"):
         gf.read_signals(tmp_path / "a.tdms")
 
 

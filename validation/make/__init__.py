@@ -1,1 +1,1 @@
-"""The pages, one module each: what is computed and how it is told."""
+"""The validation pages, one module each: computation and text."""

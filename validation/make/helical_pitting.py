@@ -78,7 +78,7 @@ def _side(case, n, m, law=OWN, channel=FORCE):
 
 
 def _impacts(case, law=OWN, channel=FORCE):
-    """Largest force within a turn over the median of the others' largest, folded by tooth: one tooth must stand out."""
+    """Largest deviation of one tooth in the averaged revolution, relative to the median over all teeth."""
     force = _heard(case, law, channel).values
     turn = round(RATE / frequencies()["f_r"])
     own = np.abs(force - force.mean())[: force.size // turn * turn].reshape(-1, turn).mean(axis=0)

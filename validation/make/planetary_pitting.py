@@ -133,7 +133,7 @@ def statements(law=OWN):
 
 
 def finer_sidebands(law=OWN):
-    """Mean amplitude [N] at f_m +- f_fault, sampled `FINE`; zero where it is rounding."""
+    """Mean amplitude [N] at f_m +- f_fault, sampled at `FINE`, or zero for rounding errors."""
     mesh, fault = speeds()[2:]
     found = {case: finer(case, law) for case in ("healthy", *CASES)}
     side = {case: (amplitude(one, mesh - fault) + amplitude(one, mesh + fault)) / 2 for case, one in found.items()}

@@ -45,7 +45,7 @@ def linear(case, law=LINEAR):
 
 @cache
 def record_of(case, impact, law=OWN):
-    """Response of a case, its pulses on the carrier so many times those of the scene; of a `Draw` its changed machine's."""
+    """Response of a case, with the pulses on the carrier scaled by a factor. A `Draw` changes the machine."""
     name = None if case == "healthy" else case
     if isinstance(law, Draw):
         return record(changed(_built(name, float(impact), OWN), law), DRAWN, RATE, DRAWN_SETTLE)

@@ -27,7 +27,7 @@ def calculix(folder, name):
 
 
 def installed():
-    """Whether CalculiX is there; if not, say that the runs on file are kept."""
+    """Whether CalculiX is installed. If not, print that stored runs are kept."""
     if not shutil.which("ccx"):
         print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
     return shutil.which("ccx") is not None

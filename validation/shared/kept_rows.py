@@ -35,7 +35,7 @@ def begin(table):
 
 
 def kept(name, key, make, again=False):
-    """Row `key` of table `name`: the one on file, or the dict ``make()``, which is then put on file.
+    """Row `key` of table `name`, read from its file or made by ``make()`` and stored.
 
     Parameters
     ----------

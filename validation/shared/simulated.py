@@ -83,7 +83,7 @@ def amplitude(found, frequency, tolerance=None):
 
 
 def knocked(made, load, options, seconds):
-    """Return the machine with the pulses of a scene's ``[machine.impact]`` table on the load named `load`, away from zero."""
+    """Return the machine with the pulses of a scene's ``[machine.impact]`` table, which increase the magnitude of `load`."""
     count, loads = math.ceil(seconds / options["pulse_period_s"]), []
     for one in made.loads:
         if one.name == load:

@@ -1,4 +1,4 @@
-"""A script that completes verbs, options, choices and scene names in a shell; made from the parser, without heavy imports."""
+"""Shell completion script for verbs, options, choices and scene names, made from the argument parser."""
 
 from importlib import resources
 

@@ -1,4 +1,4 @@
-"""Verbs that exchange gears with other programs, and that of crack growth."""
+"""Verbs for exchange with other programs and for crack growth."""
 
 from pathlib import Path
 

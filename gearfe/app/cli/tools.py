@@ -44,7 +44,7 @@ def check(arguments):
 
     drawn = arguments.picture is not None
     if not drawn and (arguments.pair or arguments.case):
-        raise ValueError("--pair and --case choose what is drawn: give --picture FILE, too")
+        raise ValueError("--pair and --case select the drawn pair, but no picture is requested: add --picture FILE")
     scene = load_scene(arguments.scene)
     neglected = check_scene(scene)
     for line in (*told(scene), *neglected):

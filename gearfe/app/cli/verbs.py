@@ -149,7 +149,7 @@ def compare(arguments):
         print(soft)
     for one in result.by_tooth() if result.healthy else ():
         print(f"\nloss of stiffness by the damage; {one.definition}\n\n{one.loss_table()}")
-    print(f"\nerrors against {reference}; the estimate is its own discretisation error\n")
+    print(f"\nerrors against {reference}; the estimate is the discretisation error of the reference itself\n")
     table = result.table(digits=5 if several else 4)
     print(table)
     if several and (text := printed_text(scene, result)):
@@ -171,7 +171,7 @@ def compare(arguments):
 
 
 def print_assumptions(scene, every, told=None):
-    """Print a scene's assumptions without the reasons, `told` (default: those of the stiffness), or with `every` note."""
+    """Print the assumptions `told` of a scene (default: those of the stiffness) without reasons, or with `every` note."""
     from ...scene.assumed import of_stiffness
 
     print()

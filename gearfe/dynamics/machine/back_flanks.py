@@ -103,7 +103,7 @@ def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machin
         if name not in known:
             raise ValueError(f"no mesh {name!r}; there are {', '.join(known)}")
         if not 0 < known[name].backlash < math.inf:
-            raise ValueError(f"mesh {name}: backlash = {known[name].backlash} m, but back flanks need one above 0 and finite")
+            raise ValueError(f"mesh {name}: backlash = {known[name].backlash} m, but back flanks require a finite backlash > 0")
         if known[name].friction:
             raise ValueError(f"mesh {name}: separate back flanks are frictionless, but this mesh has friction")
         if known[name].shifts:

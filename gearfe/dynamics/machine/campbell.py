@@ -94,7 +94,7 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
         raise ValueError("speeds: give two or more over that of the machine, 0 or more and rising")
     if speed[-1] > FASTEST:
         raise ValueError(
-            f"speeds up to {speed[-1]:g} times that of the machine: give them over its own speed (1: as it runs), not in rpm"
+            f"speeds up to {speed[-1]:g} times that of the machine: give speeds relative to the nominal one, not in rpm"
         )
     if whole("harmonics", harmonics, 1) > MOST_HARMONICS:
         raise ValueError(f"harmonics = {harmonics}, but give at most {MOST_HARMONICS}")
@@ -115,7 +115,7 @@ def _at_speed(machine, speed):
 
 
 def _orders(machine, harmonics):
-    """Orders of a machine: by stage if it names stages, of its meshes if not."""
+    """Excitation orders of a machine, by stage if it has stages, otherwise of its meshes."""
     stages = machine.stages
     meshes = {source.name: source.mesh for source in stages} or {
         source.name: abs(source.frequency) for source in machine.meshes if source.frequency

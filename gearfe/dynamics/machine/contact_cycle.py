@@ -39,7 +39,7 @@ def impact_cycle(pair, materials, *, lost=None):
 
 
 def _steps(length, lost):
-    """Phases of a cycle, or with what is `lost` of the whole engagement, `length` cycles, with an eighth before and after it."""
+    """Phases of a cycle. With `lost`, phases of the engagement of `length` cycles and an eighth of a cycle on either side."""
     return (np.arange(COUNT) if lost is None else np.arange(-COUNT // 8, math.ceil((length + 0.125) * COUNT))) / COUNT
 
 

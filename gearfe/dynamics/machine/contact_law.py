@@ -1,4 +1,4 @@
-"""Forces of a gear mesh: the table of contact laws, backlash, Coulomb friction; and Hertz's coefficient.
+"""Forces of a gear mesh: table of contact laws, backlash, Coulomb friction and Hertz's coefficient.
 
 All functions take arrays. The compression `x` of a mesh is positive when the driving flanks press on each other. The back flanks
 touch at ``x = -backlash``. A law gives the force of flanks in touch, which is the same for back flanks.
@@ -81,7 +81,7 @@ def parameters(meshes: Sequence[Any]) -> dict[str, NDArray[Any]]:
 
 
 def touch(x, v, backlash):
-    """Depth of the flanks in touch, its rate, and the side: 1 the front ones, -1 the back ones, 0 none (all numbers floats)."""
+    """Penetration of the flanks in contact, its rate, and the side: 1 for front, -1 for back, 0 for none (floats)."""
     front, rear = np.maximum(x, 0.0), np.maximum(-backlash - x, 0.0)
     side = (front > 0) * 1.0 - (rear > 0)
     return front + rear, side * v, side

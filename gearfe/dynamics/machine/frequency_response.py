@@ -66,7 +66,7 @@ def frequency_response(
     one_of("kind", kind, KINDS)
     f = np.atleast_1d(numbers("frequencies", frequencies, " [Hz]"))
     if f.ndim != 1 or not f.size or not ((f <= HIGHEST).all() and (f >= 0).all()):
-        raise ValueError(f"frequencies: give a row of numbers, one at least, 0 or more and at most {HIGHEST:g} Hz")
+        raise ValueError(f"frequencies: give at least one number, each from 0 to {HIGHEST:g} Hz")
     out, at = _row(machine, output), _row(machine, input)
     K, C, _, _ = machine.linear(machine.working())
     scale = 1 / np.sqrt(machine.mass)  # scaled, so that displacements and angles have one magnitude

@@ -72,7 +72,7 @@ def impact_helical(scene, case):
     options = _options(machine)
     for key in ("friction", "pulse_Nm"):
         if options[key]:
-            raise ValueError(f"[machine.impact] {key} = {options[key]}: only the model 'planetary' has it; leave it out")
+            raise ValueError(f"[machine.impact] {key} = {options[key]}: only the model 'planetary' has this key; omit it")
     radii = (float(r) for r in pair.curvature_radii(pair.pitch_phase))
     law = _law(options, scene, next(iter(scene.pairs)), hertz_coefficient(*radii, materials))
     pits = [(-tooth_pits[0].tooth % pair.gear_1.z, pits_loss(pair, tooth_pits))] if tooth_pits else []  # in the order they enter

@@ -204,7 +204,7 @@ def _line_of_action(angle, alpha, sense):
 
 
 def around(phase, z, sense, angle):
-    """Phase of a mesh of a gear at another `angle` [rad] round it than the mesh of `phase`; tooth n forms pair n in both.
+    """Phase of a second mesh of a gear, at an `angle` [rad] from the mesh of `phase`. Tooth n forms pair n in both meshes.
 
     `sense` is as in `Layout.mesh` for the gear itself, the one it turns in if contacts run forward.
 
@@ -214,7 +214,7 @@ def around(phase, z, sense, angle):
 
 
 def through(phase, pair_1, pair_2, sense, turn):
-    """Phase of the mesh in which an idler drives, from that in which it is driven; its tooth n forms pair n in both.
+    """Phase of the mesh in which an idler drives, from the mesh in which it is driven. Its tooth n forms pair n in both meshes.
 
     One flank of the idler's tooth is loaded in one mesh and the other flank in the other, so that its thicknesses on both
     working pitch circles count (R. G. Parker, J. Lin, J. Mech. Des. 126 (2004) 525-534, eqs. 14-20, for a planet; here for any

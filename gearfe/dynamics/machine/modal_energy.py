@@ -45,7 +45,7 @@ class ModalEnergy:
 
 
 def modal_energy(machine: Machine) -> ModalEnergy:
-    """Elastic energy of every mode by spring and mesh, kinetic energy by degree of freedom, parts of one.
+    """Fractions of the elastic energy of every mode by spring and mesh, and of the kinetic energy by degree of freedom.
 
     ::
 

@@ -252,7 +252,7 @@ def teeth_damaged(damage, meshes):
         check_named("damage of", gear, (*bodies, *meshes))
         for tooth, curves in [given] if isinstance(given, tuple) and len(given) == 2 else given:
             if not isinstance(tooth, Integral) or isinstance(tooth, bool):
-                raise ValueError(f"damage of {gear!r}: tooth {tooth!r}, but give the number of a tooth, a whole one")
+                raise ValueError(f"damage of {gear!r}: tooth {tooth!r}, but a tooth number is a whole number")
             for kind, curve in curves.items():
                 check_named(f"damage of {gear!r}: mesh", kind, kinds)
                 for name, mesh in meshes.items():

@@ -197,7 +197,7 @@ class Machine:
         return bool((self.law["power"] != 1).any()) or any(mesh.secants for mesh in self.meshes)
 
     def working(self) -> Floats | None:
-        """Compressions of the meshes at rest ``(m,)`` [m], about which their forces are taken as straight; None if they are."""
+        """Compressions of the meshes at rest ``(m,)`` [m] for the linearisation of their forces, or None for linear forces."""
         gaps = np.array([mesh.gap for mesh in self.meshes])
         if not self.curved and not gaps.any():
             return None

@@ -74,10 +74,10 @@ def frame_terms(dofs, mass, springs, spin, rotors=None):
 
 
 def _momentum(dofs, mass, body, rotors, spin):
-    """Angular momentum of a body that tilts about its axis [kg m2/s]; 0 where no frame turns and its speed is not given."""
+    """Angular momentum of a tilting body about its axis [kg m2/s], or 0 without a rotating frame and a given speed."""
     if body not in rotors and spin:
         raise ValueError(
-            f"spin = {spin} rad/s: {body} tilts, so that its own speed counts; give it by rotors, or leave the spin 0"
+            f"spin = {spin} rad/s: {body} tilts, so that its rotation speed matters: give the speed by rotors, or set spin = 0"
         )
     if body not in rotors:
         return 0.0

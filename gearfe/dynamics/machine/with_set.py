@@ -68,7 +68,7 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
     the set would then be removed, which is an error.
     """
     if not isinstance(machine, Machine) or not isinstance(curves, SetCurves):
-        raise ValueError(f"with_set({machine!r}, {curves!r}), but give a Machine and what planetary_stiffness gives")
+        raise ValueError(f"with_set({machine!r}, {curves!r}), but give a Machine and the result of planetary_stiffness")
     if ring == "in k":
         warn_renamed('ring = "in k"', '"lumped"')
         ring = "lumped"
@@ -197,7 +197,7 @@ def _still(machine):
 
 
 def ring_springs(case: Any) -> Floats:
-    """Stiffness of a rigid ring on the bed or the pads of a `PlanetaryCase` in x, y and its turn [N/m, N m/rad]; inf: rigid.
+    """Stiffness of a rigid ring on the bed or pads of a `PlanetaryCase` in x, y and rotation [N/m, N m/rad] (inf if rigid).
 
     Of n pads, radial k_r and tangential k_t: ``n (k_r + k_t) / 2`` and ``n k_t R**2``; of a bed the same with its length for n.
     """

@@ -91,7 +91,7 @@ def flatten(machine, times):
 
 
 def _laid_out(laws):
-    """`Flat.secant` and `Flat.shape` of laws; one that several meshes share is laid out once."""
+    """`Flat.secant` and `Flat.shape` of laws. A law shared by several meshes is stored once."""
     places, parts, shape, end = {}, [np.zeros(0)], [], 0
     for law in laws:
         if law is None:
@@ -106,7 +106,7 @@ def _laid_out(laws):
 
 
 def _twins(one, two):
-    """Whether two meshes have the same stiffness at all times, as those of both halves of a herringbone gear."""
+    """Whether two meshes have the same stiffness at all times, like both halves of a herringbone gear."""
     ahead = one.phase - two.phase
     ahead = ahead if one.changes else ahead - round(ahead)  # whole cycles matter only with damaged teeth
     if (one.frequency, len(one.changes)) != (two.frequency, len(two.changes)) or abs(ahead) > 1e-12:

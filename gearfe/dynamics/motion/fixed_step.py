@@ -65,7 +65,7 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
 
 
 def _filtered(run, machine, flat, plan, z, steps, start, counts):
-    """Kept states, statistics and filtered channels, made piece by piece: only what is kept stays in memory."""
+    """Kept states, statistics and filtered channels. They are computed piece by piece to save memory."""
     total, every, n, m = {"steps": 0, "rejected": 0, "losses": 0}, math.prod(counts), len(machine.dofs), len(machine.meshes)
     kept, channels = np.empty((1 + steps // every, 2 * n)), np.empty((1 + steps // every, 3 * n + 3 * m))
     width = excitation.changing(machine, flat)[0].size + (2 * m if flat.error.size or flat.shift.size else m)

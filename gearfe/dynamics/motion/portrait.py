@@ -77,6 +77,6 @@ def _splines(signal, velocity):
     if velocity.rate != signal.rate or velocity.values.size != signal.values.size:
         raise ValueError(
             f"{velocity.name} has {velocity.values.size} samples at {velocity.rate:g} Hz, {signal.name} {signal.values.size} "
-            f"at {signal.rate:g} Hz: they must be those of one record"
+            f"at {signal.rate:g} Hz: both must come from one record"
         )
     return x, make_interp_spline(signal.time, velocity.values, k=5)

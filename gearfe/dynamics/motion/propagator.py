@@ -88,7 +88,7 @@ def is_affine(machine):
 
 
 def plan(machine, h, x=None, adapt=False):
-    """`RunMatrices` of a machine for steps of `h` seconds, its laws at compressions `x` [m].
+    """`RunMatrices` of a machine for steps of `h` seconds, with its contact laws linearised at compressions `x` [m].
 
     `adapt`: with what is `allowed`.
     """

@@ -191,7 +191,7 @@ class Response:
 
 
 def mesh_channels(machine, t, q, v, side=None):
-    """Compressions, stiffnesses and forces of the meshes ``(..., m)``, running phases; of meshes held on a `side` if given."""
+    """Compressions, stiffnesses, forces ``(..., m)`` and running phases of the meshes, kept in contact on a `side` if given."""
     e, rate = excitation.errors(machine, t)
     x, speed = q @ machine.G.T - e, v @ machine.G.T - rate
     k, _, phase = excitation.stiffness(machine, t, x)
@@ -200,7 +200,7 @@ def mesh_channels(machine, t, q, v, side=None):
 
 
 def acceleration(machine, t, q, v, side=None, meshes=None):
-    """Accelerations at times `t` from displacements and velocities ``(..., n)``; `meshes`: their `mesh_channels`, if known."""
+    """Accelerations at times `t` from displacements and velocities ``(..., n)``. `meshes` are known `mesh_channels`."""
     _, _, total, phase = mesh_channels(machine, t, q, v, side) if meshes is None else meshes
     out = -q @ machine.K.T - v @ machine.C.T - total @ machine.G
     if any(mesh.friction for mesh in machine.meshes):

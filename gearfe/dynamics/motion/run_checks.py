@@ -46,7 +46,7 @@ def check_memory(machine, duration, count, filtered):
 
 
 def check_run(machine, duration, method, rate, step, dt, start, every):
-    """ValueError for numbers of `simulate` that are out of range or contradict each other."""
+    """Raise ValueError if arguments of `simulate` are out of range or contradict each other."""
     if not isinstance(machine, Machine):
         raise ValueError(
             f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
@@ -69,4 +69,6 @@ def check_run(machine, duration, method, rate, step, dt, start, every):
     if rate is not None and every != 1:
         raise ValueError(f"rate = {rate} Hz and every = {every}: both thin out the output; give a lower rate alone")
     if abs(start) > LATEST:
-        raise ValueError(f"start = {start:g} s, but give a time within {LATEST:g} s: phases of later ones are rounding")
+        raise ValueError(
+            f"start = {start:g} s, but give a time within {LATEST:g} s, because phases at later times are lost by rounding"
+        )

@@ -228,7 +228,7 @@ def is_rough(machine):
 
 
 def estimate(machine, h, length, places, *, adapt=False, tried=False):
-    """`Estimate` of the step `h` on stretches of `length` seconds, each from a time and a state that `places` has; the worst.
+    """Largest `Estimate` of the step `h` over stretches of `length` seconds, which start at the times and states in `places`.
 
     Where local halving rules, the error is small or large by where the steps happen to lie, and a shorter one can be the worse:
     the run is then compared with a third of the step, and so is that of half the step; of a step that is `tried` not if half of

@@ -77,7 +77,7 @@ class Patches:
                 f"hats from {knots.min():.4g} to {knots.max():.4g} mm leave the flank, which runs from {low:.4g} to {high:.4g} mm"
             )
         if self.modes < 1:
-            raise ValueError(f"modes = {self.modes}, but there is at least one function along the width")
+            raise ValueError(f"modes = {self.modes}, but at least one function along the width is required")
 
 
 @dataclass(frozen=True, slots=True)

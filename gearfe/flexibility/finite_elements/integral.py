@@ -64,7 +64,7 @@ def on_stubs(mesh, shaft):
         disc = np.flatnonzero((np.abs(points[2] - z) < 1e-9 * gear.b) & (radius <= reach * (1 + 1e-9)))
         if reach and not disc.size:
             raise ValueError(
-                f"shaft: its radius {stub:g} mm beside the gear is inside of the centre hole, r_bore = {gear.r_bore:g} mm"
+                f"shaft: its radius {stub:g} mm next to the gear is less than that of its bore, r_bore = {gear.r_bore:g} mm"
             )
         x, y = points[0, disc], points[1, disc]
         rigid = motions[disc, :, MOTIONS * k : MOTIONS * (k + 1)]

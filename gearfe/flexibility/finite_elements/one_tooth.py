@@ -27,7 +27,7 @@ def check_gear(gear):
 
 
 def check_one(gear, material, refine=1.0):
-    """ValueError unless these are one gear, its one material and a resolution."""
+    """Raise ValueError unless the arguments are one gear, one material and a resolution."""
     check_gear(gear)
     if not isinstance(material, Material):
         raise ValueError(f"material = {material!r}, but give the Material of this gear")
@@ -47,7 +47,7 @@ def check_line_load(line_load, gear, material):
 
 
 def check_load_along(line_load, gear, material):
-    """ValueError unless it is a finite push, or a function of heights z [mm] that gives finite pushes, not all zero."""
+    """Raise ValueError unless the load is a finite compression, or a function of z [mm] with finite ones, not all zero."""
     if not callable(line_load):
         return check_line_load(line_load, gear, material)
     z, b = np.linspace(0.0, gear.b, SAMPLES), gear.b

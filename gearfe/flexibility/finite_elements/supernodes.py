@@ -1,4 +1,4 @@
-"""Half solutions of many right-hand sides with a factor of CHOLMOD, by its dense blocks.
+"""Forward solutions for many right-hand sides by the dense blocks of a CHOLMOD factor.
 
 cvxopt gives CHOLMOD four columns at once, so that the whole factor is read for every four right-hand sides. Here each supernode,
 a dense block of columns of the factor, is read once. Supernodes that no right-hand side reaches are skipped.

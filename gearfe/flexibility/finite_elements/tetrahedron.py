@@ -50,7 +50,7 @@ def tet_slopes(nodes, corner):
 
 
 def nodal_stress(nodes, cells, moved, material: Material):
-    """Stress ``(6, n)`` [MPa] at the nodes (xx, yy, zz, xy, yz, xz) of displacements ``(3, n)``; nan where there is no cell."""
+    """Nodal stress ``(6, n)`` [MPa] (xx, yy, zz, xy, yz, xz) from displacements ``(3, n)``, or nan at nodes without a cell."""
     lam, mu = material.lame("plane strain")
     corner = np.vstack([np.eye(4), [[0.5 * (k in edge) for k in range(4)] for edge in EDGES]]).T
     total, weight = np.zeros((nodes.shape[1], 6)), np.zeros(nodes.shape[1])

@@ -102,8 +102,8 @@ def _fill(place, plan, every, workers, progress):
     for _, result in results(partial(simulate_condition, plan), todo, workers):
         if result is None:
             raise RuntimeError(
-                "a process ended before its condition was done, alone too: killed, or out of memory; what is finished stays, so "
-                "call it again, with fewer workers if memory was short"
+                "a process was killed or ran out of memory, also with its condition alone. Finished conditions are kept: "
+                "call the function again, with fewer workers if memory was short"
             )
         name, content, error = result
         if error:

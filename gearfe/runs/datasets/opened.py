@@ -38,7 +38,7 @@ class Dataset:
         check_keys("Dataset: about", self.about, ("title",))
 
     def __repr__(self):
-        """One line: title, how many windows, where."""
+        """One line with title, number of windows and folder."""
         return f"<Dataset {self.about['title']!r}: {len(self)} windows in {self.folder}>"
 
     def __len__(self) -> int:

@@ -86,7 +86,7 @@ class Plan:
         return json.loads(json.dumps({name: getattr(self, name) for name in self.__slots__}))
 
     def scene_at(self, values: Mapping[str, Any], fault: Mapping[str, Any] | None = None, severity: float = 0.0) -> Scene:
-        """Scene of one condition: the speed, the torque and what scatters by key, and its fault.
+        """Scene of one condition with its speed, torque, scattered values by key, and fault.
 
         The forces of all pairs, at which their stiffness is computed, go with the torque; those of a gearbox follow from it.
         """
@@ -141,7 +141,7 @@ def _check(plan):
         raise ValueError("no fault, so that the data set has no damaged class: give at least one [[fault]]")
     names = [sensor["name"] for sensor in plan.sensor]
     if not names or len(set(names)) < len(names):
-        raise ValueError(f"[[sensor]] names {names!r}: give one sensor or more, each with another name")
+        raise ValueError(f"[[sensor]] names {names!r}: give at least one sensor, each with a different name")
     _check_split(plan.split)
     _check_scatter(plan)
     _check_scenes(plan)

@@ -1,4 +1,4 @@
-"""A folder with a note of what is in it: files that are whole or not there, one writer at a time.
+"""A folder with a note on its contents. Files are complete or absent, and one process writes at a time.
 
 A folder holds ``_about.json`` (what made its files), the files, and ``.lock``. The underscore hides it from readers of Parquet.
 A file is written under another name, flushed to the disk and then renamed, so that a process that is killed, or a disk that runs

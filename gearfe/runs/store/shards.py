@@ -66,7 +66,7 @@ def arrow() -> Any:
 
 
 def where_of(where: Any, names: Sequence[str]) -> Any:
-    """Which rows, as an expression of pyarrow: all if None, an expression as it is, or by column, of those called `names`.
+    """Return a pyarrow expression that selects rows: all if None, an expression as it is, or by values of columns `names`.
 
     ``{"status": "done", "level": (0.1, 0.3), "case": ["a", "b"]}``: a value, a range as a tuple of two, or a list of values.
     ValueError if there is no such column, or it holds no such values.
@@ -161,7 +161,7 @@ def _files(folder):
 
 
 def check_shards(folder: StrPath) -> None:
-    """Raise ValueError if a shard is damaged, a copy, or has other columns than the rest: only their ends are read.
+    """Raise ValueError if a shard is damaged, a copy, or has other columns. Only the metadata at the file ends are read.
 
     The rows of a copy would count twice.
     """
@@ -182,7 +182,7 @@ def check_shards(folder: StrPath) -> None:
             raise _damaged(file, error) from error
         schema = schema or found
         if found != schema:
-            raise ValueError(f"{file} has other columns than the shards before it: it does not belong here; remove it")
+            raise ValueError(f"{file} has other columns than the previous shards and does not belong to this folder: remove it")
 
 
 def unfinished(folder: StrPath, names: Sequence[str], what: str, failed: Sequence[str] = ()) -> list[str]:

@@ -184,7 +184,7 @@ def _regression(points, values, breaks):
 
 
 def _products(inputs, degree, power, most):
-    """Degrees ``(terms, inputs)`` whose sum of powers is at most ``degree**power``; None if there are more than `most`."""
+    """Degrees ``(terms, inputs)`` whose sum of powers is at most ``degree**power``, or None for more than `most` terms."""
     out = [[n] for n in range(degree + 1)]
     for _ in range(inputs - 1):
         out = [[*row, n] for row in out for n in range(degree + 1) if sum(m**power for m in (*row, n)) <= degree**power + 1e-9]

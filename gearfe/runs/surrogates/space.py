@@ -129,7 +129,7 @@ def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
         raise ValueError("inputs: an 'angle' of a crack, but no 'level': give both")
     ring = [name for name in inputs if pair.gear_2.internal and name in (*SHAPE, "bore_2")]
     if ring:
-        raise ValueError(f"inputs: {ring[0]!r}, but gear 2 is a ring, whose trimmed tip makes k jump: leave it out")
+        raise ValueError(f"inputs: {ring[0]!r}, but gear 2 is a ring, whose trimmed tip makes k discontinuous: omit this input")
     shape = [name for name in inputs if name in SHAPE]
     if shape and not math.isclose(pair.a, free_centre_distance(pair.gear_1, pair.gear_2), rel_tol=1e-9):
         raise ValueError(
@@ -140,7 +140,7 @@ def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
     ranges = {name: ends for name, ends in values.items() if len(ends) == 2}
     if not ranges:
         raise ValueError(
-            "inputs: only single numbers, so that there is nothing to fit: give a range (low, high), or mesh_stiffness"
+            "inputs: all are single numbers, so that nothing varies: give a range (low, high), or use mesh_stiffness"
         )
     return Space(pair, ranges, {name: ends[0] for name, ends in values.items() if name not in ranges})
 

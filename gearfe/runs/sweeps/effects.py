@@ -18,7 +18,7 @@ RESAMPLES = 200  # number of bootstrap resamples
 
 
 def main_effects(runs: Runs, output: str, where: Any = None) -> "pandas.DataFrame":
-    """Mean of an output for each value of each input, all others averaged; of drawn numbers for each eighth of them.
+    """Mean of an output for each value of each input (for each eighth of the values of drawn inputs).
 
     Parameters
     ----------

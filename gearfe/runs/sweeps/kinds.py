@@ -95,7 +95,7 @@ def vibration(scene: Scene, case: str | None, options: dict[str, Any]) -> list[d
 
 
 def planetary_set(scene: Scene, case: str | None, options: dict[str, Any]) -> list[dict[str, Any]]:
-    """Row of a whole planetary set: mean stiffness of both kinds of mesh in it and alone, K_gamma, transmission error."""
+    """Row of a planetary set: mean stiffness of both kinds of mesh in the set and isolated, K_gamma, transmission error."""
     made = build_set(scene, case)
     at = spread(made, options["positions"], options["cycles"])
     return [set_numbers(planetary_stiffness(made, at, refine=options["refine"], error=False, cache=KEPT))]

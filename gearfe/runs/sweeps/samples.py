@@ -115,7 +115,7 @@ def _finite(value):
 
 
 def quantiles(spec, u):
-    """Values of a distribution at the probabilities `u`, as a list. With ``within``, of what lies between the two."""
+    """Values of a distribution at the probabilities `u`, as a list. ``within`` truncates the distribution."""
     if "choice" in spec:
         values = spec["choice"]
         return [values[min(int(p * len(values)), len(values) - 1)] for p in u]

@@ -174,7 +174,7 @@ def test_text_in_a_number_column_of_a_shard_is_refused_even_where_it_reads_as_a_
     fields = FIELDS | {"mean": ShardColumn("text")}
     shards.write_shard(folder, "t", shards.encoded(shards.table([{"case": 7, "mean": "1.5"}], fields)))
     for look in (shards.opened, shards.read, shards.check_shards):
-        with pytest.raises(ValueError, match=r"t\.parquet has other columns than the shards before it"):
+        with pytest.raises(ValueError, match=r"t\.parquet has other columns than the previous shards"):
             look(folder)
 
 

@@ -32,7 +32,7 @@ class ToothSpace:
         self._tool = Cutter(self) if gear.internal else Rack(self)
 
     def flank(self, radius):
-        """Half angle cut by the rack's straight part; of a ring, the tooth that an endless straight rack cuts of its z and x.
+        """Half angle of the tooth cut by the straight part of the rack. A ring takes that of an external gear with its z and x.
 
         The two are one where the cutter's involute reaches. Near a ring's tip it may not: what the end of the cutter's involute
         would take away there, a fraction of a micrometre, is left out, because a ring's flank is by definition an involute.

@@ -97,7 +97,7 @@ class Posed:
         return np.array([np.sin(turned), np.cos(turned)])
 
     def opposite(self, points, normals, near, reach):
-        """Where lines through `points` along `normals` cross this curve near the place `near`: gaps, places s; nan: nowhere."""
+        """Gaps and places s where lines through `points` along `normals` cross this curve near `near` (nan if nowhere)."""
         low, high = max(near - reach, 0.0), min(near + reach, self.side.joints[-1])
         # nodes crowd at `near`, and joints of pieces are nodes
         part = np.linspace(-1, 1, TRIES)

@@ -97,7 +97,7 @@ def load_angle(gear, roll):
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """Gauss points along a piece of the right half of a tooth, for integrals over its height; arrays ``(..., m)``.
+    """Gauss points along a piece of the right half of a tooth, for integrals over its height. Arrays ``(..., m)``.
 
     Half thickness `x` [mm], height `y` over the gear's centre [mm], `slope` dx / dy, and `step`, the weights of dy [mm].
     """

@@ -83,7 +83,7 @@ def shear_parts(half, slope, shear, normal, moment):
 
 
 def shear_square(half, slope, shear, normal, moment):
-    """Integral of ``tau**2`` of `shear_parts` over the section, unit width; arguments as there."""
+    """Integral of ``tau**2`` over the section of unit width. The arguments are those of `shear_parts`."""
     a, b, c = shear_parts(half, slope, shear, normal, moment)
     return 16 / 15 * a**2 * half**5 + 8 / 3 * a * b * half**3 + 2 * b**2 * half + 2 / 3 * c**2 * half**3
 
@@ -126,7 +126,7 @@ def body_loads(gear, roll):
 
 
 def components(gear, material, roll, *, state="plane strain", cache=True):
-    """`Components` of one tooth: `beam`, and as foundation the `body` under this tooth alone; local part excluded."""
+    """`Components` of one tooth: `beam`, and the `body` under this tooth as foundation. The local part is excluded."""
     loads = body_loads(gear, roll)
     bending, shear, axial = beam(gear, material, roll, state=state)
     foundation = np.einsum("an,ab,bn->n", loads, body(gear, material, state, cache=cache)[0], loads)

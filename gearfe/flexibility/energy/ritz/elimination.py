@@ -144,7 +144,7 @@ def front(body, tree):
 
 
 def planned(body, tree):
-    """Return which numbers are eliminated with which set of triangles, and when; independent of their meaning."""
+    """Return the numbers eliminated with each set of triangles, in order of elimination."""
     turn = np.full(body.size.size, body.size.size)
     return _planned(body, tree, turn, [0]), turn
 

@@ -38,7 +38,7 @@ def join(gear, panels, healthy):
 
 
 def _loaded(panel):
-    """Return the row of one sector, with its loads and the forces on the faces of its cracks; the lower triangle."""
+    """Return the row of one sector (lower triangle), with its loads and the forces on its crack faces."""
     loads = np.hstack([panel.push, panel.open_push])
     m, n = loads.shape
     out = np.zeros((m + n,) * 2, order="F")

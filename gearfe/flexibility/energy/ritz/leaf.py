@@ -8,7 +8,7 @@ from .bent import moved_factors, moved_products
 
 
 def leaf(body, own, gone, rest, blocks):
-    """Write the matrix of a few triangles: between `gone`, between `rest` and `gone`, and between `rest`; lower triangles.
+    """Write the matrix of a few triangles as lower triangles: `gone` by `gone`, `rest` by `gone`, `rest` by `rest`.
 
     The section's is assembled first, then multiplied by those of the functions along the width.
     """
@@ -39,7 +39,7 @@ def leaf(body, own, gone, rest, blocks):
 
 
 def _by_component(plane):
-    """Return the matrices between section components and axial ones, separately ``(8, n, n)``; without the part of a twist."""
+    """Return the separate matrices of section and axial components ``(8, n, n)``, without the terms of a twist."""
     axial = np.arange(plane.shape[1]) % 3 == 2
     rows = np.array([~axial, axial])[:, :, None]
     alike, apart = rows & (axial[:, None] == axial), rows & (axial[:, None] != axial)

@@ -25,7 +25,7 @@ def front_by_parity(body, tree):
 
 
 def _functions(count, parity):
-    """Degrees along the width in the section, and axial ones, of the `count` lowest; `count` itself if there is one too few."""
+    """Degrees along the width of section and axial components among the `count` lowest, padded by `count` if one is missing."""
     out = np.full((2, (count + 1) // 2), count)
     for row, first in zip(out, (parity, 1 - parity), strict=True):
         degrees = np.arange(first, count, 2)
@@ -54,7 +54,7 @@ def _half(body, parity):
 
 
 def _places(body, found, ids, parity):
-    """Places of the unknowns of a half, number by number as `found`, among all those of `ids`, and which of them are real."""
+    """Return indices of the unknowns of one parity (`found`) among those of `ids`, and a mask of those that exist."""
     start = np.zeros(body.size.size, dtype=int)
     start[ids] = np.cumsum(body.size[ids]) - body.size[ids]
     at, real = [], []

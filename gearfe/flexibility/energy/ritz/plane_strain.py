@@ -39,7 +39,7 @@ def missing(model, section, healthy, *, chip=None, cubic=False, cache=True):
 
 
 def end_of(gear, chip):
-    """Return the gear whose loaded flanks end where that of a tooth with a `chip`, which may be None, ends."""
+    """Return the gear with its tip at the end of the loaded flank of a tooth with a `chip` (or None)."""
     return gear if chip is None else loaded_side(gear, [chip], chip.tooth)
 
 

@@ -90,7 +90,7 @@ def axial_degree(width, m_n):
 
 
 def _mirrored(model, damage, neighbours, cache):
-    """Return the gear of the other hand, seen from its other end: odd polynomials along the width change their sign."""
+    """Return the gear of opposite hand. Seen from the other end, odd polynomials along the width change their sign."""
     gear = model.gear
     damage = tuple(crack_in_band(one, gear.b, gear.b, 0.0) for one in damage)
     other = _flexibility(replace(model, gear=replace(gear, beta=-gear.beta)), damage, neighbours, cache)
