@@ -107,9 +107,9 @@ def test_faces_of_a_crack_and_a_missing_tooth_of_one_gear():
 def test_default_positions_are_those_in_which_the_damaged_tooth_passes(name, side):
     """Any tooth loses what tooth 0 loses, as the verb and the sweep see it; they saw two cycles of tooth 0."""
     lost = {}
-    for tooth in (0, 7, 19):
+    for tooth in (0, 19):
         given = case(damage={name: [gf.Crack(level=0.6, tooth=tooth, side=side)]})
-        at = spread(given, 9)
+        at = spread(given, 5)
         hurt, plain = (planetary_stiffness(one, at, error=False).k for one in (given, case()))
         lost[tooth] = (1 - hurt / plain).max()
     assert min(lost.values()) > 0.05
