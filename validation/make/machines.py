@@ -114,14 +114,15 @@ def text(page):
 
 def variants(page):
     """Return the page of further simulations as Markdown: other contact laws, paths, errors and loads."""
-    title = gf.load_scene(PAGES[page]).title
+    title, more = gf.load_scene(PAGES[page]).title, module(page).more()
+    stated = any(line.endswith(("| yes |", "| no |")) for line in more)
     lines = [
         f"# {title}: variants of the simulations of {ARTICLES[page]}",
         "",
         f"- The verdicts on {ARTICLES[page]} are on [{page}.md]({page}.md). This page shows what other assumptions change.",
-        "- Statements with the same answer in all columns are omitted.",
+        *(["- Statements with the same answer in all columns are omitted."] if stated else []),
         "",
-        *module(page).more(),
+        *more,
         *runs_of(page, table_rows.read(page)),
         f"`python -m validation {page}` computes this page.",
     ]

@@ -2,7 +2,7 @@
 
 from gearfe import load_scene
 from gearfe.core.units import NEWTON_PER_UM
-from gearfe.scene.verdicts import REPRODUCED, TREND
+from gearfe.scene.verdicts import REPRODUCED
 
 from .places import TABLES
 from .table_rows import rows_of
@@ -43,12 +43,12 @@ def _list(values):
 
 
 def _sizes(found, name, called):
-    """Our values of a reference, whether they have the printed order, and how far they are off."""
+    """Our values of a reference, whether they have the printed order, their growth, and how far they are off."""
     ours, printed = found.all(name), found.printed(name)
     off = " to ".join(f"{100 * (f(x / y for x, y in zip(ours, printed, strict=True)) - 1):+.0f}" for f in (min, max))
-    order = (
-        "in the printed order" if {row.verdict for row in found.rows.values() if row.id == name} == {TREND} else "not in order"
-    )
+    grown = " instead of ".join(f"{100 * (values[-1] / values[0] - 1):.0f}" for values in (ours, printed))
+    ordered = [y for _, y in sorted(zip(printed, ours, strict=True))] == sorted(ours)
+    order = f"in the printed order, but growing by {grown} %" if ordered else "not in order"
     return f"{called} {_list(ours)} m/s^2, {order}, {off} % off the printed sizes"
 
 
