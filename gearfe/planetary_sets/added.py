@@ -39,12 +39,15 @@ class AddedCompliance(NamedTuple):
 def added_compliance(scene: Scene, force: float | None = None) -> AddedCompliance | None:
     """Compute the `AddedCompliance` of a scene under a `force` of a sun mesh [N] (default: that of the scene).
 
-    None if the scene has no set, if its set does not repeat with the mesh cycle, or if a mesh of it carries no load. A set
-    repeats later if its ring is on pads or its flanks differ from tooth to tooth.
+    None if the scene has no set, if a set cannot have its flanks or supports, if its set does not repeat with the mesh cycle, or
+    if a mesh of it carries no load. A set repeats later if its ring is on pads or its flanks differ from tooth to tooth.
     """
     if scene.set is None:
         return None
-    case = build_set(scene)
+    try:
+        case = build_set(scene)
+    except ValueError:  # such as a planet with another flank on each side, which isolated pairs have
+        return None
     if cycles_of(case) > 1:
         return None
     found = planetary_stiffness(case if force is None else case.with_(force=force), POSITIONS, error=False)

@@ -135,7 +135,7 @@ def test_command_line(tmp_path, capsys):
     assert out.stat().st_size > 1000
     assert plot.stat().st_size > 10000
     assert main(["dynamics", "compound_planetary", "--case", "none"]) == 1
-    assert "it has crack10" in capsys.readouterr().err
+    assert "it has broken, crack10" in capsys.readouterr().err
 
 
 def test_a_short_record_says_how_long_it_should_be():

@@ -15,7 +15,9 @@ STEEL = gf.Material(E=206e3, nu=0.3)
 def discretisation_alone(monkeypatch):
     """What the model of contact may be off is in every estimate, too; here it is left out of it."""
     monkeypatch.setattr("gearfe.stiffness.section_curves.MODEL", 0.0)
-    monkeypatch.setattr("gearfe.contact.pair_contact.left_out", lambda contact, line, closing, beyond: np.zeros(closing.size))
+    monkeypatch.setattr(
+        "gearfe.contact.pair_contact.left_out", lambda contact, line, closing, beyond, shut: np.zeros(closing.size)
+    )
 
 
 def ring_pair(seed):
