@@ -49,7 +49,7 @@ class _Rule(NamedTuple):
     settled: Callable[[str, Any], Any]
 
 
-BY_NAME = {"refine": _Rule("a number", lambda _, value: checked_refine(value))}  # parameters of one meaning everywhere
+BY_NAME = {"refine": _Rule("a number", lambda _, value: checked_refine(value))}  # numbers of one meaning everywhere
 
 
 class _Named(type):
@@ -141,7 +141,7 @@ def _rules(function, called):
     places, named = [], {}
     for parameter in inspect.signature(function).parameters.values():
         hint = _hint(function, parameter.annotation)
-        row = (f"{called}: {parameter.name}", BY_NAME.get(parameter.name) or (hint and _rule(hint)), parameter.default)
+        row = (f"{called}: {parameter.name}", _named(parameter.name, hint), parameter.default)
         if parameter.kind in (parameter.POSITIONAL_ONLY, parameter.POSITIONAL_OR_KEYWORD):
             places.append(row)
         if parameter.kind in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD):
@@ -149,9 +149,7 @@ def _rules(function, called):
         if parameter.kind is parameter.VAR_KEYWORD and hint is not None:
             table = next(iter(typing.get_args(hint)), hint)
             hints = typing.get_type_hints(table) if hasattr(table, "__total__") else {}
-            named |= {
-                key: (f"{called}: {key}", BY_NAME.get(key) or _rule(value), parameter.empty) for key, value in hints.items()
-            }
+            named |= {key: (f"{called}: {key}", _named(key, value), parameter.empty) for key, value in hints.items()}
     return places, named
 
 
@@ -164,6 +162,13 @@ def _hint(function, annotation):
         return typing.get_type_hints(holder, function.__globals__, _Public())["it"]
     except NameError:
         return None
+
+
+def _named(name, hint):
+    """Rule of a parameter: by its name if it is one number, else by its type."""
+    if name in BY_NAME and hint in (None, float):
+        return BY_NAME[name]
+    return None if hint is None else _rule(hint)
 
 
 def _rule(hint):

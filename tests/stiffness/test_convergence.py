@@ -33,3 +33,11 @@ def test_closed_forms_and_several_loads_are_refused():
         gf.convergence(gf.Case(PAIR, force=2000.0, material=gf.Material()), gf.Solve(method="coupled"))
     with pytest.raises(ValueError, match="one load"):
         gf.convergence(gf.Case(PAIR, force=[1000.0, 2000.0], material=gf.Material()), gf.Solve(method="ritz"))
+
+
+def test_a_record_has_a_resolution_for_each_solve():
+    """The border took `refine` of every public record for one number once the record's name had been read."""
+    made = gf.Convergence("ritz", (0.7, 1.0), (3, 3), np.ones((2, 4)), np.zeros((2, 4)), (0.1, 0.2))
+    assert made.refine == (0.7, 1.0)
+    with pytest.raises(ValueError, match="refine"):
+        gf.mesh_stiffness(PAIR, 2000.0, gf.Material(), refine=math.nan)
