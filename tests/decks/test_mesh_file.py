@@ -136,7 +136,7 @@ def test_the_verb_writes_the_cracked_gear(tmp_path, capsys):
 
 def test_a_close_up_needs_its_damage(tmp_path):
     part = gf.export_mesh(tmp_path / "t.vtu", GEAR, teeth=1)
-    with pytest.raises(ValueError, match="have none"):
+    with pytest.raises(ValueError, match="have no damage to show"):
         gf.render_mesh(part, tmp_path / "t.png", close_up="pits")
     with pytest.raises(ValueError, match="'crack' or 'pits'"):
         gf.render_mesh(part, tmp_path / "t.png", close_up="tip")
