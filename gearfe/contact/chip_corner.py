@@ -1,7 +1,8 @@
 """Upper bound of the load carried by the corner of a chip that covers a part of the face width.
 
 Such a chip is a recess, which takes contact away at once. A corner goes on to touch the mate until its gap exceeds the approach
-of the gears. The chip with its corner moved up by that distance carries at least as much.
+of the gears. The chip with its corner moved up by that distance carries at least as much. A chip of the other side is left out
+instead, because its cut may end on the loaded flank too.
 """
 
 import math
@@ -21,6 +22,8 @@ def later_chips(case: Case, approach: float) -> Case | None:
         for one in (case.damage or {}).get(name, ()):
             if isinstance(one, Chip) and not one.through:
                 found = True
+                if one.side != "loaded":
+                    continue
                 roll = one.cut(gear)[0]
                 short = with_tips(case.pair, [roll if k == side else None for side in (0, 1)])
                 last = roll + gear.outward * beyond(short, approach)[1 - k]

@@ -161,9 +161,10 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
             if bodies.coarser:
                 others.append(solve(contacts, bodies_by(bodies.coarser)))
         away = [sum(np.abs(less.k - one.k) for less in rest) for one, *rest in zip(solved, *others, strict=True)]
-        later = [later_chips(case, float(one.approach.max())) for one in solved]
-        ends = [np.abs(solve(contacts_of(1, end), finest)[i].k - solved[i].k) if end else 0.0 for i, end in enumerate(later)]
-        left_out = [unmodelled(case, one) + missing_material(case, one) + end for one, end in zip(solved, ends, strict=True)]
+        left_out = [unmodelled(case, one) + missing_material(case, one) for one in solved]
+        if (later := later_chips(case, max(float(one.approach.max()) for one in solved))) is not None:
+            ends = solve(contacts_of(1, later), finest)
+            left_out = [less + np.abs(end.k - one.k) for less, end, one in zip(left_out, ends, solved, strict=True)]
         parts = zip(solved, away, left_out, strict=True)
         solved = [replace(one, error=one.error + doubt + less) for one, doubt, less in parts]
     else:

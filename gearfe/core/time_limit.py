@@ -9,7 +9,7 @@ import os
 import time
 
 VARIABLE, HOURS = "GEARFE_MAX_HOURS", 2.0
-SURE = 10.0  # elapsed time [s] from which the first parts show what the rest costs
+SURE = 10.0  # elapsed time [s] after which the finished parts predict the cost of the rest
 
 
 def hours_allowed() -> float:

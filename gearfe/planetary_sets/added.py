@@ -7,7 +7,7 @@ import numpy as np
 
 from ..geometry.aliases import Floats
 from ..scene.load import Scene
-from .of_scene import build_set
+from .of_scene import build_set, unlike_set
 from .rim_supports import RimSupports
 from .solve import planetary_stiffness
 
@@ -39,15 +39,12 @@ class AddedCompliance(NamedTuple):
 def added_compliance(scene: Scene, force: float | None = None) -> AddedCompliance | None:
     """Compute the `AddedCompliance` of a scene under a `force` of a sun mesh [N] (default: that of the scene).
 
-    None if the scene has no set, if a set cannot have its flanks or supports, if its set does not repeat with the mesh cycle, or
-    if a mesh of it carries no load. A set repeats later if its ring is on pads or its flanks differ from tooth to tooth.
+    None if the scene has no set, if a set does not model its pairs (`unlike_set`), if its set does not repeat with the mesh
+    cycle, or if a mesh carries no load. A set repeats later if its ring is on pads or its flanks differ from tooth to tooth.
     """
-    if scene.set is None:
+    if scene.set is None or unlike_set(scene, scene.set):
         return None
-    try:
-        case = build_set(scene)
-    except ValueError:  # such as a planet with another flank on each side, which isolated pairs have
-        return None
+    case = build_set(scene)
     if cycles_of(case) > 1:
         return None
     found = planetary_stiffness(case if force is None else case.with_(force=force), POSITIONS, error=False)

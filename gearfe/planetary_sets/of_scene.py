@@ -37,13 +37,9 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
     given = scene.set
     if given is None:
         raise ValueError(f"scene {scene.name} has no [set] table: add one with n_planets or planet_angles_deg")
+    if why := unlike_set(scene, given):
+        raise ValueError(f"{scene.name} [set]: {why}")
     outer, inner = (scene.pairs[name] for name in given.pairs)
-    for name, pair in zip(given.pairs, (outer, inner), strict=True):
-        if pair.supports or pair.misalignment:
-            raise ValueError(
-                f"{scene.name} [set]: pair {name!r} has shafts, springs or misalignment, which a set does not support: its gears "
-                "are held by pin_N_per_um, floating and [ring.support]; leave those out"
-            )
     file = f"{scene.name}.toml"
     with located(file, "ring.support"):
         ring = _support(given.support)
@@ -55,6 +51,28 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
             floating=given.floating, pin=given.pin,
             errors=given.errors, flanks=flanks, damage=damage,
         )  # fmt: skip
+
+
+def unlike_set(scene: Scene, given: SceneSet) -> str:
+    """Reason why a set does not model the pairs of a scene, which isolated pairs may be, or an empty text."""
+    pairs = {name: scene.pairs[name] for name in given.pairs}
+    for name, pair in pairs.items():
+        if pair.supports or pair.misalignment:
+            return (
+                f"pair {name!r} has shafts, springs or misalignment, which a set does not support: its gears are held by "
+                "pin_N_per_um, floating and [ring.support]; leave those out"
+            )
+        if pair.pair.gear_1.beta:
+            return f"the gears of pair {name!r} are helical, but the section of a set models spur gears only: give beta_deg = 0"
+        if any(flank.wide for flank in pair.flanks.values()):
+            return f"flanks of pair {name!r} change along the width, but a set is a section: leave those keys out"
+    outer, inner = pairs.values()
+    if outer.flanks.get("wheel") != inner.flanks.get("pinion"):
+        return (
+            "the planet has another flank with the sun than with the ring, but a set gives it the same: give it one "
+            "[flank.NAME] table without pair"
+        )
+    return ""
 
 
 def _support(row: dict[str, Any]) -> "str | RimBed | RimSupports":
@@ -70,13 +88,7 @@ def _support(row: dict[str, Any]) -> "str | RimBed | RimSupports":
 
 def _flanks(scene: Scene, outer: ScenePair, inner: ScenePair) -> dict[str, Any]:
     """Flanks by gear. A planet has the same on both sides of its teeth."""
-    planet = outer.flanks.get("wheel"), inner.flanks.get("pinion")
-    if planet[0] != planet[1]:
-        raise ValueError(
-            f"{scene.name} [set]: the planet has another flank with the sun than with the ring, but a set gives it the same: "
-            "give it one [flank.NAME] table without pair"
-        )
-    found = {"sun": outer.flanks.get("pinion"), "planet": planet[0], "ring": inner.flanks.get("wheel")}
+    found = {"sun": outer.flanks.get("pinion"), "planet": outer.flanks.get("wheel"), "ring": inner.flanks.get("wheel")}
     return {name: flank for name, flank in found.items() if flank is not None}
 
 

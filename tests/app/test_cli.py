@@ -61,6 +61,20 @@ def test_stiffness_of_a_case_is_told_as_compare_tells_it(capsys):
 
 
 @pytest.mark.slow
+def test_a_closed_form_solves_no_set(monkeypatch, capsys):
+    """It runs without gmsh; solved pairs state the stiffness in their set."""
+
+    def solved(*_, **__):
+        raise AssertionError("the set is solved")
+
+    monkeypatch.setattr("gearfe.planetary_sets.added.planetary_stiffness", solved)
+    assert main(["stiffness", "planetary_pitting", "--method", "textbook", "--phases", "4"]) == 0
+    assert "in the whole set" not in capsys.readouterr().out
+    monkeypatch.undo()
+    assert main(["stiffness", "planetary_pitting", "--phases", "4"]) == 0
+    assert "in the whole set" in capsys.readouterr().out
+
+
 def test_compare_prints_errors_by_zone(tmp_path, capsys):
     file = tmp_path / "errors.tex"
     assert main(["compare", "planetary_pitting", "--phases", "8", "--refine", "0.6", "-o", str(file)]) == 0

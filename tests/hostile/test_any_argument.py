@@ -61,7 +61,7 @@ def stated_by_gearfe(error):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("_place")
-@pytest.mark.parametrize(("names", "count"), [(NAMES, 400), (SLOW, 150)], ids=["quick", "slow"])
+@pytest.mark.parametrize(("names", "count"), [(NAMES, 400), (SLOW, 400)], ids=["quick", "slow"])
 def test_any_argument_of_any_public_name(names, count):
     told = {"answered": 0, "refused": 0}
 
@@ -83,4 +83,4 @@ def test_any_argument_of_any_public_name(names, count):
 
     drawn = given(name=st.sampled_from(names), place=st.integers(0, 40), value=VALUES)
     settings(max_examples=count, **QUIET)(drawn(check))()
-    assert min(told.values()) > count // 40, told
+    assert min(told.values()) > 10, told

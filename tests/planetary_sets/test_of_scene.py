@@ -15,6 +15,7 @@ from sets import STEEL, case, gears
 import gearfe as gf
 from gearfe.figures.set_motion import draw_motion
 from gearfe.planetary_sets import animation
+from gearfe.planetary_sets.added import added_compliance
 from gearfe.planetary_sets.shape import loaded_shapes
 
 PAGE = (ROOT / "gearfe" / "docs" / "howto" / "planetary_set.md").read_text(encoding="utf-8")
@@ -89,6 +90,24 @@ def test_flanks_and_cracks_are_those_of_the_gears(tmp_path):
 def test_what_a_set_does_not_know_is_refused(tmp_path, more, which, message):
     with pytest.raises(ValueError, match=message):
         gf.build_set(loaded(tmp_path, SCENE + more), which)
+
+
+@pytest.mark.parametrize(
+    ("more", "why"),
+    [
+        ('[support.a]\ngear = "sun"\nradial_N_per_um = 100\n', "has shafts, springs or misalignment"),
+        ('[flank.a]\ngear = "planet"\npair = "sun_planet"\nprofile_crowning_um = 3\n', "another flank with the sun"),
+        ('[flank.a]\ngear = "sun"\nhelix_crowning_um = 3\n', "change along the width"),
+    ],
+)
+def test_pairs_that_a_set_does_not_model_stay_isolated(tmp_path, more, why):
+    """The machine then has isolated pairs; the set itself is rejected, and an impossible set stays an error."""
+    made = loaded(tmp_path, SCENE.replace(PADS, "") + more)
+    assert added_compliance(made) is None
+    with pytest.raises(ValueError, match=why):
+        gf.build_set(made)
+    with pytest.raises(ValueError, match="width_mm = -1"):
+        added_compliance(loaded(tmp_path, SCENE.replace("width_mm = 5 ", "width_mm = -1 ")))
 
 
 def test_places_that_cannot_be_name_the_table(tmp_path):

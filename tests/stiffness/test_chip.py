@@ -211,6 +211,25 @@ def test_a_chip_of_a_part_of_the_width():
     assert_allclose(mirrored.k, half.k, rtol=1e-6)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "chip", [{"side": "wheel", "tooth": 3}, {"side": "pinion", "tooth": 5, "depth": 0.6}, {"side": "pinion", "cut": "unloaded"}]
+)
+def test_the_bound_covers_chips_of_any_gear_tooth_and_side(chip):
+    """At every phase of the engagement, in steps that hit the corner; the whole chip is the truth."""
+    side, tooth, depth = chip["side"], chip.get("tooth", 0), chip.get("depth", 2.0 if "cut" in chip else 1.0)
+    more = {"side": chip.get("cut", "loaded"), "angle": math.radians(75 if "cut" in chip else 45), "depth": depth, "tooth": tooth}
+    phases = np.linspace(0.0, 1.6, 33) - tooth
+    whole, part = (
+        gf.solve(
+            gf.Case(PAIR, FORCE, STEEL, damage={side: [gf.Chip(width=width, **more)]}), gf.Solve("ritz3d", phases, error=True)
+        )
+        for width in (None, (0, 15))
+    )
+    print(np.max(abs(part.k / whole.k - 1)), np.max(part.error / part.k))
+    assert (abs(part.k - whole.k) <= part.error + whole.error).all()
+
+
 @pytest.mark.parametrize(
     ("width", "method", "message"),
     [

@@ -28,7 +28,7 @@ def stiffness(arguments):
     from ...comparison.returns import returns_of
     from ...comparison.told_scene import told_supports
     from ...scene.load import load_scene
-    from ...stiffness.methods import fitted
+    from ...stiffness.methods import METHODS, fitted
     from ...stiffness.solve import Solve
 
     if arguments.forces or arguments.torques:
@@ -55,7 +55,7 @@ def stiffness(arguments):
         with part("", 0.0, 0.8 if scene.set else 1.0):
             found = beside_health(case, how, returns=returns_of(scene, name, arguments.case))
         in_set = ""
-        if scene.set is not None and "dofs" in found.reference.meta:  # closed forms need no mesh
+        if scene.set is not None and METHODS[found.reference.meta["method"]].converged:  # closed forms need no mesh
             from ...comparison.told_set import told_in_set  # only sets need it: 0.1 s
 
             with part("stiffness in the whole set", 0.8, 1.0):
