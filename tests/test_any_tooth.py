@@ -9,7 +9,8 @@ import pytest
 import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.comparison.losses import LARGEST
-from gearfe.comparison.vibration import analysis, responses
+from gearfe.comparison.simulated import responses
+from gearfe.comparison.vibration import analysis
 from gearfe.planetary_sets.of_scene import build_set
 from gearfe.runs.sweeps.kinds import KINDS
 from gearfe.scene.load import read_tables, scene_of

@@ -5,7 +5,8 @@ import time
 from dataclasses import dataclass, field
 
 from ..comparison.compare import compare
-from ..comparison.vibration import Analysis, analysis, check_run, responses
+from ..comparison.simulated import check_run, responses
+from ..comparison.vibration import Analysis, analysis
 from ..core.steps import part, steps
 from ..core.threads import own_warnings
 from ..scene.load import Scene, load_scene

@@ -4,7 +4,7 @@ import pytest
 
 import gearfe as gf
 from gearfe.app.cli import main
-from gearfe.comparison import vibration
+from gearfe.comparison import simulated
 from gearfe.reports import findings
 
 
@@ -15,7 +15,7 @@ def never(*_, **__):
 @pytest.mark.parametrize("value", ["-1", "nan", "inf", "-0.0001"])
 def test_a_duration_that_cannot_be(value, monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(findings, "compare", never)
-    monkeypatch.setattr(vibration, "build_machine", never)
+    monkeypatch.setattr(simulated, "build_machine", never)
     page = str(tmp_path / "x.html")
     assert main(["report", "planetary_pitting", "-o", page, "--duration", value]) == 1
     assert "duration = " in capsys.readouterr().err

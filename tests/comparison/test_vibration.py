@@ -10,7 +10,8 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.comparison.settled import recorded, slowest_decay
-from gearfe.comparison.vibration import analyse, analysis, in_words, responses
+from gearfe.comparison.simulated import responses
+from gearfe.comparison.vibration import analyse, analysis, in_words
 
 SCENE = gf.load_scene("compound_planetary")
 

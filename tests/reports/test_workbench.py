@@ -4,7 +4,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.app.cli import main
-from gearfe.comparison.vibration import simulated_gear
+from gearfe.comparison.simulated import simulated_gear
 
 
 @pytest.fixture

@@ -71,7 +71,7 @@ def _of_gear(signals, arguments, tables):
 
     Returns the verdict and simulated records.
     """
-    from ...comparison.vibration import simulated_gear
+    from ...comparison.simulated import simulated_gear
     from ...scene.load import load_scene
     from ...signal.gear_indicators import gear_indicator_table, tabulate_gear_indicators
     from ...signal.tooth_verdict import tooth_verdict

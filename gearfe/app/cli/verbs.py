@@ -247,7 +247,8 @@ def mesh(arguments):
 
 def dynamics(arguments):
     """``gearfe dynamics``."""
-    from ...comparison.vibration import analysis, gears_table, responses
+    from ...comparison.simulated import responses
+    from ...comparison.vibration import analysis, gears_table
     from ...dynamics.machine.modes import natural_frequencies
     from ...scene.load import load_scene
 

@@ -122,7 +122,7 @@ def test_card_counts_what_is_there(made):
     labels = made.labels()
     count = ((labels["fault"] == "crack") & (labels["side"] == "train")).sum()
     assert f"| crack | 0.4 | {count} | 0 |" in text
-    assert "hears nothing" not in text
+    assert "no signal of the healthy machine" not in text
     assert "half of the amplitude at 4000 Hz" in text
 
 
