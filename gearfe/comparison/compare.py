@@ -186,18 +186,19 @@ def _compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None
     estimates of errors come after it; `known` are curves and their seconds.
     """
     solved, seconds, left_out, known, reference = {}, {}, left_out or {}, known or {}, methods[0]
-    work = [(key, method, False) for key in plan for method in methods] + [(key, reference, True) for key in asked if fresh]
-    cost = [0.0 if (*key, name) in known else COST.get(name, 0.3) * (1 + again) for key, name, again in work]
+    work, cost = _work(plan, asked if fresh else (), methods, known)
     for key, method, again in steps(work, lambda item: f"{item[0][0]}, {item[0][1] or 'healthy'}: {item[1]}", cost):
-        place, timed, first = (*key, method), fresh and key in asked and not again, method == reference
+        place = (*key, method)
         if place in known:
             solved[place], seconds[place] = known[place]
             continue
         case, phases = plan[key]
-        own = replace(
-            how, method=method, phases=phases, cache=not timed and how.cache, refine=how.refine if first or not fresh else 1.0
-        )
-        own = replace(own, error=first and how.error and not timed and (again or not fresh or method == "fe3d"))
+        first, timed = method == reference, fresh and key in asked and not again
+        own = replace(how, method=method, phases=phases, cache=not timed and how.cache)
+        if first:
+            own = replace(own, error=how.error and not timed and (again or not fresh or method == "fe3d"))
+        else:
+            own = replace(own, error=False, refine=1.0 if fresh else how.refine)
         started = time.perf_counter()
         try:
             solved[place] = solve_fitted(case, own)
@@ -209,6 +210,12 @@ def _compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None
             seconds.setdefault(place, time.perf_counter() - started)
     teeth = {key: _losses(plan, key, solved, replace(how, method=reference), cycles) for key in asked if key[1]}
     return Comparison({key: case for key, (case, _) in plan.items()}, asked, solved, seconds, teeth, left_out)
+
+
+def _work(plan, timed, methods, known):
+    """Return key, method and whether it is computed once more of all curves of a comparison, and their relative cost."""
+    work = [(key, method, False) for key in plan for method in methods] + [(key, methods[0], True) for key in timed]
+    return work, [0.0 if (*key, name) in known else COST.get(name, 0.3) * (1 + again) for key, name, again in work]
 
 
 def _losses(plan, key, solved, how, cycles):

@@ -5,6 +5,7 @@ of one gear on the other's side, with a gap that is exact kinematics of the sect
 """
 
 import math
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -93,25 +94,24 @@ def pieces_of(pair, phase, pits, bands, beta_b, reach=0.0, closing=0.0, pair_of=
     first = math.ceil((start - further[0] - end) / pair.p_bt - phase - 1e-9)
     last = math.floor((end + further[1] - start + slope * width) / pair.p_bt - phase + 1e-9)
     pair_of = pair_of or (lambda _: pair)
-    found = {own: _limits(own, reach) for order in range(first, last + 1) if (own := pair_of(order)) is not None}
+    owns = {order: own for order in range(first, last + 1) if (own := pair_of(order)) is not None}
+    found = {own: _limits(own, reach) for own in owns.values()}
     pieces = []
-    for half in range(len(bands)):
-        for order in range(first, last + 1):
-            roll, own = start + (phase + order) * pair.p_bt, pair_of(order)
-            if own is None:
-                continue
-            limits, rising = found[own]
-            for corner, low, high in _parts(roll, slope, width, limits, 1e-9 * pair.p_bt):
-                ends = (low == 0 or corner in rising[0], high == width or corner in rising[1]) if any(further) else (True, True)
-                pieces.append(Piece(half, order, roll, corner, low, high, ends))
+    for half, (order, own) in product(range(len(bands)), owns.items()):
+        roll, (limits, rising) = start + (phase + order) * pair.p_bt, found[own]
+        for corner, low, high in _parts(roll, slope, width, limits, 1e-9 * pair.p_bt):
+            ends = low == 0 or corner in rising[0], high == width or corner in rising[1]
+            pieces.append(Piece(half, order, roll, corner, low, high, ends if any(further) else (True, True)))
     deep, *shallow = _by_depth(pits, closing)
     taken = _taken(pair_of, deep, bands, pieces, slope)
     pieces = [part for piece, pitted in zip(pieces, taken, strict=True) for part in _left(piece, pitted, width)]
     if not shallow:
         return pieces
-    floors = [(gear, depth, _taken(pair_of, pitted, bands, pieces, slope)) for gear, depth, pitted in shallow]
-    pitted = [[(gear, depth, *part) for gear, depth, intervals in floors for part in intervals[k]] for k in range(len(pieces))]
-    return [part for piece, above in zip(pieces, pitted, strict=True) for part in _on_floors(piece, above, width)]
+    above = [[] for _ in pieces]
+    for gear, depth, pitted in shallow:
+        for parts, intervals in zip(above, _taken(pair_of, pitted, bands, pieces, slope), strict=True):
+            parts += [(gear, depth, *part) for part in intervals]
+    return [part for piece, parts in zip(pieces, above, strict=True) for part in _on_floors(piece, parts, width)]
 
 
 def _limits(pair, reach):
@@ -189,12 +189,16 @@ def _taken(pair_of, pits, bands, pieces, slope):
 
     Beyond the path a line is bent, so it is looked at in `PARTS`.
     """
+    out = [[] for _ in pieces]
     if not (any(pits) and pieces):
-        return [[] for _ in pieces]
+        return out
     pair = pair_of(pieces[0].order)
-    out, (z_1, z_2) = [[] for _ in pieces], (pair.gear_1.z, pair.gear_2.z)
-    teeth_1, teeth_2 = {pit.tooth % z_1 for pit in pits[0]}, {pit.tooth % z_2 for pit in pits[1]}
-    pitted = [k for k, piece in enumerate(pieces) if piece.order % z_1 in teeth_1 or -piece.order % z_2 in teeth_2]
+    order = np.array([piece.order for piece in pieces])
+    near = [
+        np.isin(sign * order % gear.z, [pit.tooth % gear.z for pit in own])
+        for gear, own, sign in zip((pair.gear_1, pair.gear_2), pits, (1, -1), strict=True)
+    ]
+    pitted = np.flatnonzero(near[0] | near[1]).tolist()
     if not pitted:
         return out
     depths = [np.linspace(pieces[k].first, pieces[k].last, PARTS + 1 if pieces[k].corner else 2) for k in pitted]
@@ -203,8 +207,7 @@ def _taken(pair_of, pits, bands, pieces, slope):
     half, order, roll, corner = (np.array(values)[which] for values in list(zip(*pieces, strict=True))[:4])
     nominal = roll[:, None] - slope * depth
     rolls = nominal.copy(), pair.mate_roll(nominal)
-    beyond_it = np.flatnonzero(corner)
-    if beyond_it.size:
+    if (beyond_it := np.flatnonzero(corner)).size:
         met_each = touching_each(pair_of, np.repeat(order[beyond_it], 2), nominal[beyond_it].ravel())
         for gear_rolls, met in zip(rolls, met_each, strict=False):
             gear_rolls[beyond_it] = met.reshape(-1, 2)

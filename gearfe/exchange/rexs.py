@@ -163,19 +163,19 @@ class _Unit:
         carrier = next((one.id for one in parts if one.type == "planet_carrier"), None)
         shafts = {one.id for one in self.model.related("planet_shaft", "planetary_stage", planetary.id, "shaft")}
         tail = f"_{len(self.sets) + 1}" if len(self.model.of_type("planetary_stage")) > 1 else ""
-        found = list(self._planet_meshes(stages, shafts))
-        kinds = [kind for _, _, _, kind in found]
-        for stage, planet, other, kind in (found[kinds.index(kind)] for kind in ("sun", "ring") if kind in kinds):
-            names = ("planet", "ring") if kind == "ring" else ("sun", "planet")
-            ends = (planet, other) if kind == "ring" else (other, planet)
-            whole = [f"{one}{tail}" for one in names]
-            self._add_pair("_".join(names) + tail, ends, stage, whole, (len(shafts), carrier))
-        suns = [(stage, planet) for stage, planet, _, kind in found if kind == "sun"]
-        for _, planet in suns[1:]:
+        found: dict[str, list[tuple[Component, ...]]] = {"sun": [], "ring": []}
+        for *gears, kind in self._planet_meshes(stages, shafts):
+            found[kind].append(tuple(gears))
+        suns, rings = found.values()
+        for stage, planet, sun in suns[:1]:
+            self._add_pair(f"sun_planet{tail}", (sun, planet), stage, (f"sun{tail}", f"planet{tail}"), (len(shafts), carrier))
+        for stage, planet, ring in rings[:1]:
+            self._add_pair(f"planet_ring{tail}", (planet, ring), stage, (f"planet{tail}", f"ring{tail}"), (len(shafts), carrier))
+        for _, planet, _ in suns[1:]:
             self._copy(planet, suns[0][1])
         self.copies |= {one.id for one in stages} - {stage.id for *_, stage in self.pairs.values()}
-        if {"sun", "ring"} <= set(kinds):
-            angles = [(stage.number("rotating_angle_around_neg_u_axis", "deg") or 0.0) % 360 for stage, _ in suns]
+        if suns and rings:
+            angles = [(stage.number("rotating_angle_around_neg_u_axis", "deg") or 0.0) % 360 for stage, *_ in suns]
             self.sets.append(PlanetSet(*(f"{one}{tail}" for one in ("sun", "planet", "ring")), suns[0][1], tuple(sorted(angles))))
         return {one.id for one in stages}
 

@@ -28,6 +28,16 @@ class Batch:
     workers: int
 
 
+def _checked(cases):
+    try:
+        cases = list(cases)
+    except TypeError:
+        cases = []
+    if not cases or not all(isinstance(case, (Case, Mapping)) for case in cases):
+        raise ValueError("cases: give a list of one Case or dict at least")
+    return cases
+
+
 def batch(
     cases: Iterable[Case | Mapping[str, Any]],
     *,
@@ -65,12 +75,7 @@ def batch(
     """
     check_workers(workers)
     work = work or mesh_stiffness
-    try:
-        cases = list(cases)
-    except TypeError:
-        cases = []
-    if not cases or not all(isinstance(case, (Case, Mapping)) for case in cases):
-        raise ValueError("cases: give a list of one Case or dict at least")
+    cases = _checked(cases)
     if getattr(multiprocessing.current_process(), "_inheriting", False):
         sys.exit(1)  # a worker has imported an unguarded script; the parent process prints the remedy
     workers = count_of(workers, cases)

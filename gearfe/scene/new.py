@@ -86,6 +86,8 @@ def new_scene(
     _check_inputs(path, pairs)
     module, helix_deg, width = number("module", module), number("helix_deg", helix_deg), number("width", width)
     torque_Nm = None if torque_Nm is None else number("torque", torque_Nm)
+    if (tip_relief_um is None) != (tip_length_mm is None) or (tip_relief_um or 1.0) < 0:
+        raise ValueError(f"tip relief of {tip_relief_um} um over {tip_length_mm} mm: give both, the amount positive")
     rack = {"m_n_mm": float(module), "alpha_n_deg": number("alpha_deg", alpha_deg), "b_mm": float(width)}
     pinion, wheel = _gears(rack, teeth, x, helix_deg, ring, bore_mm)
     stated: dict[str, Any] = {
@@ -97,16 +99,10 @@ def new_scene(
     force, told_force = _force(pair.gear_1, width, torque_Nm)
     stated["pair"]["stage"]["force_N"] = force
     if not bore_mm:
-        held = "rim" if ring else "bore"
-        bore, wide = pinion["r_bore_mm"], wheel[f"r_{held}_mm"]
-        what = f"bore radius {bore} mm (pinion) and {held} radius {wide} mm (wheel), held"
-        values = {"gear.pinion.r_bore_mm": bore, f"gear.wheel.r_{held}_mm": wide}
-        stated["assumption"] = [{"what": what, "why": "a start: give the true ones", "holds": values}]
+        stated["assumption"] = [_assumed(pinion, wheel, "rim" if ring else "bore")]
     size = {"length_mm": crack[0], "angle_deg": crack[1]} if crack else {"level": 0.3, "angle_deg": 45.0}
     stated["crack"] = [{"case": "cracked", "gear": "pinion", **size}]
     numbers = _numbers(pair, force)
-    if (tip_relief_um is None) != (tip_length_mm is None) or (tip_relief_um or 1.0) < 0:
-        raise ValueError(f"tip relief of {tip_relief_um} um over {tip_length_mm} mm: give both, the amount positive")
     amount, length = tip_relief_um or round(numbers["amount"], 1), tip_length_mm or round(numbers["length"], 3)
     flanks = {side: {"gear": side, "tip_relief_um": amount, "tip_start_length_mm": length} for side in ("pinion", "wheel")}
     stated |= {} if tip_relief_um is None else {"flank": flanks}
@@ -146,6 +142,13 @@ def _gears(rack, teeth, x, helix_deg, ring, bore_mm):
         {"z": z, **rack, "x": float(shift), "beta_deg": beta, **form, name: radius, "material": "steel"}
         for z, shift, beta, form, (name, radius) in zip(teeth, x, helix, (RACK, RING if ring else RACK), held, strict=True)
     )
+
+
+def _assumed(pinion, wheel, held):
+    bore, wide = pinion["r_bore_mm"], wheel[f"r_{held}_mm"]
+    what = f"bore radius {bore} mm (pinion) and {held} radius {wide} mm (wheel), held"
+    values = {"gear.pinion.r_bore_mm": bore, f"gear.wheel.r_{held}_mm": wide}
+    return {"what": what, "why": "a start: give the true ones", "holds": values}
 
 
 def _numbers(pair, force):

@@ -32,11 +32,11 @@ def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
         return row.get("gear") in gears and row.get("pair") in (None, pair) and row.get("case", case) == case
 
     schema = scene_schema()
-    for kind, key in schema["scene"].keys.items():
-        if key.of and "gear" in schema[key.of].keys:
-            rows = tables.get(kind, {})
-            listed = key.type == "listed"
-            out[kind] = list(filter(wanted, rows)) if listed else {name: row for name, row in rows.items() if wanted(row)}
+    of_gears = [kind for kind, key in schema["scene"].keys.items() if key.of and "gear" in schema[key.of].keys]
+    for kind in of_gears:
+        rows = tables.get(kind, {})
+        named = isinstance(rows, dict)
+        out[kind] = {name: row for name, row in rows.items() if wanted(row)} if named else list(filter(wanted, rows))
     used = {row.get("material") for kind in ("gear", "shaft") for row in out[kind].values()}
     return out | {"material": {name: table for name, table in tables["material"].items() if name in used}}
 

@@ -160,12 +160,8 @@ def gear_indicator_table(
     if len({record.size for record in averages.values()}) > 1:
         most = max(record.size for record in averages.values())
         averages = {name: synchronous_average(record, most)[0] for name, record in signals.items()}
-    done: list[Floats] = []
-    out = {}
-    for name, average in averages.items():
-        out[name] = gear_indicators(average, teeth, before=done)
-        done.append(average)
-    return out
+    records = list(averages.values())
+    return {name: gear_indicators(one, teeth, before=records[:k]) for k, (name, one) in enumerate(averages.items())}
 
 
 def tabulate_gear_indicators(found: Mapping[str, Mapping[str, float]]) -> Table:

@@ -150,18 +150,23 @@ def read_signals(
     out = {name: signal_of(path, recording, name, unit=units.get(name), **stated) for name in names}
     if pulse is None:
         return _aligned(path, recording, out)
-    times = recording.vectors[pulse]
+    return _with_angle(path, recording, out, pulse, stated.get("rate"), {"pulses": pulses, "ratio": ratio, "level": level})
+
+
+def _with_angle(path, recording, out, pulse, rate, options):
+    """Signals with the angle of the shaft from the channel of pulses, which may hold their times or the speed."""
+    times, ratio = recording.vectors[pulse], options["ratio"]
     if times.size < min(channel.values.size for channel in out.values()) and (np.diff(times) > 0).all():
         starts = {name: times - recording.starts.get(name, 0.0) for name in out}
-        return {name: with_tachometer(channel, starts[name], pulses, ratio=ratio) for name, channel in out.items()}
-    clock = signal_of(path, recording, pulse, unit=None if recording.units.get(pulse) else "1", rate=stated.get("rate"))
+        return {name: with_tachometer(channel, starts[name], options["pulses"], ratio=ratio) for name, channel in out.items()}
+    clock = signal_of(path, recording, pulse, unit=None if recording.units.get(pulse) else "1", rate=rate)
     out = _aligned(path, recording, {**out, pulse: clock})
     clock = out.pop(pulse)
     if clock.unit in SPEEDS:
         meaning = "taken for the shaft's speed, its integral for the angle"
-        warnings.warn(f"{path}: {pulse!r} is in {clock.unit}: {meaning}", stacklevel=3)
+        warnings.warn(f"{path}: {pulse!r} is in {clock.unit}: {meaning}", stacklevel=4)
         return {name: with_speed_record(channel, clock, ratio=ratio) for name, channel in out.items()}
-    return {name: with_tachometer(channel, clock, pulses, ratio=ratio, level=level) for name, channel in out.items()}
+    return {name: with_tachometer(channel, clock, **options) for name, channel in out.items()}
 
 
 def _aligned(path, found, signals):

@@ -58,11 +58,11 @@ def _damage(row, case, method):
         yield f"damage with {method}, which has none: use {having('cracks')}"
     if any(case.cracks) and not row.cracks:
         yield f"cracks with {method}, which has none: use {having('cracks')}"
-    for one in sum(case.broken, ()) if not row.broken else ():
-        yield f"a {one._nouns[0]} with {method}, which has none: use {having('broken')}"
-    for form, broken in zip(case.forms or (), case.broken, strict=False):
-        if form.edge is not None and any(isinstance(one, Chip) for one in broken):
-            yield "chips of rounded or chamfered tips: leave out tip_rounding and tip_chamfer, or the chips"
+    if not row.broken:
+        yield from (f"a {one._nouns[0]} with {method}, which has none: use {having('broken')}" for one in sum(case.broken, ()))
+    edged = [broken for form, broken in zip(case.forms or (), case.broken, strict=False) if form.edge is not None]
+    if any(isinstance(one, Chip) for one in sum(edged, ())):
+        yield "chips of rounded or chamfered tips: leave out tip_rounding and tip_chamfer, or the chips"
     if any(case.pits) and not row.pits:
         nouns = next(pit for pits in case.pits for pit in pits)._nouns[1]
         yield f"{nouns} with {method}, a transverse section: use {having('pits')}"

@@ -195,13 +195,14 @@ def _rim(gear, draft, size, teeth, damage, patches):
     for owner, side in halves:
         away = min(abs((owner - k + gear.z // 2) % gear.z - gear.z // 2) for k in [*teeth, *mouths])
         loaded = side == "loaded" and owner in teeth
-        chip = chip_of(gear, broken, owner)
         if owner in gone:
             pieces = no_tooth(gear, size)
         else:
+            chip = chip_of(gear, broken, owner)
             cut = chip and (chip.end_roll(gear, side), chip.top(gear, side))
             pieces = half_tooth(gear, size, away, loaded, mouths.get(owner, {}).get(side), patches.get(owner, ()), cut)
-        below = 1 + next((k for k, piece in enumerate(pieces) if piece[0] == "flank"), 0)
+        names = [piece[0] for piece in pieces]
+        below = 1 + names.index("flank") if "flank" in names else 1
         sign = 1 if side == "loaded" else -1
         for k, (name, radius, angle, params) in list(enumerate(pieces))[::sign]:
             final = (owner, side, k) == (0, "unloaded", 0)

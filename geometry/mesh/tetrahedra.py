@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .mesher import gmsh_session
+from .mesher import gmsh_session, mesh_options
 
 GROWTH = 0.5  # growth of the edge length of tets per length, away from fine places
 
@@ -88,16 +88,21 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
             raise UnmeshedError(
                 f"gmsh cannot mesh this solid: {error}; increase refine, or increase the distance of surfaces that nearly touch"
             ) from error
-        node_tags, coords, _ = mesh.getNodes()
-        place = np.full(int(node_tags.max()) + 1, -1, dtype=np.int64)
-        place[node_tags] = np.arange(node_tags.size)
-        cells = {piece: [] for piece in volume}
-        for tag, piece in owner.items():
-            cells[piece].append(place[mesh.getElementsByType(4, tag)[1]].reshape(-1, 4))
-    tets = np.concatenate([part for parts in cells.values() for part in parts])
-    label = np.repeat([*cells], [sum(map(len, parts)) for parts in cells.values()], axis=0)
+        points, cells = _cells(mesh, owner)
+    tets, label = np.hstack(list(cells.values())), np.repeat([*cells], [part.shape[1] for part in cells.values()], axis=0)
     used, tets = np.unique(tets, return_inverse=True)
-    return Pieces(coords.reshape(-1, 3)[used].T, tets.reshape(-1, 4).T, *label.T, volume)
+    return Pieces(points[:, used], tets.reshape(4, -1), *label.T, volume)
+
+
+def _cells(mesh, owner):
+    """Points ``(3, n)`` and the tets ``(4, m)`` by face and plug."""
+    node_tags, coords, _ = mesh.getNodes()
+    place = np.full(int(node_tags.max()) + 1, -1, dtype=np.int64)
+    place[node_tags] = np.arange(node_tags.size)
+    cells = {}
+    for tag, piece in owner.items():
+        cells.setdefault(piece, []).append(place[mesh.getElementsByType(4, tag)[1]].reshape(-1, 4).T)
+    return coords.reshape(-1, 3).T, {piece: np.hstack(parts) for piece, parts in cells.items()}
 
 
 def _pieces(occ, prisms, plugs):
@@ -162,9 +167,7 @@ def _sizes(gmsh, inner, fine, rim, far, strips):
     least = field.add("Min")
     field.setNumbers(least, "FieldsList", numbers)
     field.setAsBackgroundMesh(least)
-    for name, value in (("MeshSizeMax", far), ("MeshSizeFromPoints", 0), ("MeshSizeExtendFromBoundary", 0)):
-        gmsh.option.setNumber(f"Mesh.{name}", value)
-    gmsh.option.setNumber("Mesh.Algorithm3D", 1)
+    mesh_options(gmsh, MeshSizeMax=far, MeshSizeFromPoints=0, MeshSizeExtendFromBoundary=0, Algorithm3D=1)
 
 
 def _away(field, near, reach, size, far):

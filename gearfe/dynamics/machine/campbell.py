@@ -128,9 +128,8 @@ def _orders(machine, harmonics):
     for source in stages:
         lines = {"driving gear": source.turning, "damaged tooth": source.fault, "carrier": source.carrier}
         out |= {name if single else f"{name} {source.name}": value for name, value in lines.items() if value}
-    unique: dict[float, str] = {}
-    for name, value in out.items():  # meshes with the same frequency share one line
-        unique.setdefault(round(value, 9), name)
+    # meshes with the same frequency share one line
+    unique = {round(value, 9): name for name, value in reversed(out.items())}
     return {name: value for name, value in out.items() if name in unique.values()}
 
 

@@ -66,12 +66,12 @@ def common_period(machine: Machine) -> float:
         raise ValueError("the loads change with time: give the period")
     if machine.speed is not None:
         raise ValueError("the speed changes with time: there is no periodic motion; use simulate")
-    rates = [abs(m.frequency) / m.cycles() for m in machine.meshes if m.frequency]
-    rates += [abs(f) for m in machine.meshes for _, f, _ in m.error if f]
+    rates = [abs(m.frequency) / m.cycles() for m in machine.meshes]
+    rates = [rate for rate in (*rates, *(abs(f) for m in machine.meshes for _, f, _ in m.error)) if rate]
     if not rates:
         raise ValueError("no load or mesh of this machine is periodic: give the period")
     parts = [Fraction(rate / rates[0]).limit_denominator(10000) for rate in rates]
-    if any(abs(float(part) * rates[0] / rate - 1) > 1e-9 for part, rate in zip(parts, rates, strict=True)):
+    if not np.allclose(np.array(parts, dtype=float) * rates[0], rates, rtol=1e-9, atol=0.0):
         raise ValueError(f"frequencies {', '.join(f'{r:.6g}' for r in sorted(set(rates)))} Hz have no common period")
     turns = math.lcm(*(part.denominator for part in parts))
     return turns / math.gcd(*(int(part * turns) for part in parts)) / rates[0]

@@ -66,8 +66,8 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
     degrees = {band: max(OPEN[0], math.ceil(OPEN[1] * (band[1] - band[0]) / m_n) + 2) for band in bands}
     fine = _fine(bands, width, m_n, parts, fronts)
     kinks = [z for front in fronts if front for z in front.kinks()]
-    ends = [0.0, width, *kinks, *(end for band in bands for end in band), *(at for where in fine.values() for at in where)]
-    z, weight = _gauss(np.unique(ends), width, max([degree, *degrees.values()]) + 1 + (FRONT if kinks else 0))
+    ends = np.unique([0.0, width, *kinks, *np.ravel(bands), *np.concatenate([*fine.values(), []])])
+    z, weight = _gauss(ends, width, max([degree, *degrees.values()]) + 1 + (FRONT if kinks else 0))
     columns = _Columns()
     every = columns.add(*_whole(z, width, degree))
     # of each band, and of None, a crack that is open over the whole width
@@ -79,23 +79,21 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
         made, inside = _short(z, places, band[k], 1 - 2 * k)
         short[band].append(columns.add(*made))
         opening[band].append(short[band][-1][inside])
-    sets, points, at = [every], [], []
+    sets, touch = [every], []
     for front, where in zip(fronts, parts, strict=True):
-        bands = where or (None,)
+        there = where or (None,)
         sharp = front and front.sharp
         moved = columns.add(*_depth(z, weight, front, columns.value[0], columns.rise[0])) if sharp else every[:0]
-        sets.append(np.concatenate([part for band in bands for part in opening[band]]))
-        sets.append(np.concatenate([pushing[band] for band in bands]))
-        sets += [np.concatenate([every, *(part for band in bands for part in short[band]), moved]), np.append(every, moved)]
-        place, matrix = _points(where or ((0.0, width),), [degrees.get(band, min(degree, PUSHING)) for band in bands])
-        points.append(place)
-        at.append(matrix)
+        sets.append(np.concatenate([part for band in there for part in opening[band]]))
+        sets.append(np.concatenate([pushing[band] for band in there]))
+        sets += [np.concatenate([every, *(part for band in there for part in short[band]), moved]), np.append(every, moved)]
+        touch.append(_points(where or ((0.0, width),), [degrees.get(band, min(degree, PUSHING)) for band in there]))
     sets += [every[: k + 1] for k in range(degree + 1)]
     value, rise = np.hstack(columns.value), np.hstack(columns.rise)
     mass = value.T @ (weight * value)
     mass[: degree + 1, : degree + 1] = np.eye(degree + 1)
     mixed, slope = value.T @ (weight * rise), rise.T @ (weight * rise)
-    return Axial(mass, mixed, slope, tuple(sets), tuple(points), tuple(at), z, weight[:, 0], value, rise)
+    return Axial(mass, mixed, slope, tuple(sets), *([*zip(*touch, strict=True)] or [(), ()]), z, weight[:, 0], value, rise)
 
 
 class _Columns:
