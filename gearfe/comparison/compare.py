@@ -140,18 +140,18 @@ def compare_cases(
     ValueError
         If the scene has no damage.
     """
-    every = [(name, case) for name, pair in scene.pairs.items() for case in (None, *pair.damage)]
-    if all(case is None for _, case in every):
+    if not scene.cases:
         names = " or ".join(f"[[{name}]]" for name in DAMAGE)
         raise ValueError(f"scene {scene.name} has no cases of damage: add {names} tables")
+    every = [(name, case) for name, pair in scene.pairs.items() for case in (None, *pair.damage)]
     wide = any(scene.case(*key).why_wide for key in every)
     stored = read_curves(scene) if wide else {}
     asked = tuple(every if cases is None else cases)
-    solid = wide and (reference == "fe3d" or all(key in stored for key in asked))
+    solid = wide and (reference == "fe3d" or stored.keys() >= {*asked})
     first = "fe3d" if solid else REFERENCE_SOLID if wide else REFERENCE
     methods = (*dict.fromkeys([first, "ritz3d" if wide else "ritz"]), *SUMS)
     plan = {key: (case := scene.case(*key), damage_cycle(case) if stored else damage_phases(case, phases)) for key in asked}
-    known = {(*key, "fe3d"): _on_file(plan[key][0], *row) for key, row in stored.items() if key in plan and solid}
+    known = {(*key, "fe3d"): _on_file(plan[key][0], *stored[key]) for key in plan.keys() & stored.keys()} if solid else None
     return _compared(plan, asked, methods, Solve(), known=known)
 
 
@@ -187,29 +187,33 @@ def _compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None
     """
     solved, seconds, left_out, known, reference = {}, {}, left_out or {}, known or {}, methods[0]
     work, cost = _work(plan, asked if fresh else (), methods, known)
-    for key, method, again in steps(work, lambda item: f"{item[0][0]}, {item[0][1] or 'healthy'}: {item[1]}", cost):
+    for key, method, again in steps(work, lambda item: f"{_told(item[0], ', ')}: {item[1]}", cost):
         place = (*key, method)
         if place in known:
             solved[place], seconds[place] = known[place]
             continue
         case, phases = plan[key]
         first, timed = method == reference, fresh and key in asked and not again
-        own = replace(how, method=method, phases=phases, cache=not timed and how.cache)
-        if first:
-            own = replace(own, error=how.error and not timed and (again or not fresh or method == "fe3d"))
-        else:
-            own = replace(own, error=False, refine=1.0 if fresh else how.refine)
+        own = replace(how, method=method, phases=phases, cache=not timed and how.cache, error=False)
+        if first and not timed and (again or not fresh or method == "fe3d"):
+            own = replace(own, error=how.error)
+        elif fresh and not first:
+            own = replace(own, refine=1.0)
         started = time.perf_counter()
         try:
             solved[place] = solve_fitted(case, own)
         except ValueError as error:
             if first:
                 raise
-            left_out[method if len(asked) == 1 else f"{method} of {key[0]} {key[1] or 'healthy'}"] = str(error)
+            left_out[method if len(asked) == 1 else f"{method} of {_told(key)}"] = str(error)
         else:
             seconds.setdefault(place, time.perf_counter() - started)
     teeth = {key: _losses(plan, key, solved, replace(how, method=reference), cycles) for key in asked if key[1]}
     return Comparison({key: case for key, (case, _) in plan.items()}, asked, solved, seconds, teeth, left_out)
+
+
+def _told(key, between=" "):
+    return f"{key[0]}{between}{key[1] or 'healthy'}"
 
 
 def _work(plan, timed, methods, known):
@@ -299,10 +303,9 @@ def _methods(case, reference):
         raise ValueError(f"reference = {reference!r}, a transverse section, but {solid}: use 'ritz3d' or 'fe3d'")
     first = reference or (REFERENCE_SOLID if solid else REFERENCE)
     rows = [row for row in ROWS if row.rings == "yes" or not ring]
-    if solid:
-        others = [row.name for row in rows if row.kind == "sum" or (row.name == REFERENCE_SOLID)]
-    else:
-        others = [row.name for row in rows if row.name in (REFERENCE, *FORMULATIONS) and (row.cracks or not case.damaged)]
+    own = (REFERENCE_SOLID,) if solid else (REFERENCE, *FORMULATIONS)
+    rows = [row for row in rows if row.name in own or (solid and row.kind == "sum")]
+    others = [row.name for row in rows if solid or row.cracks or not case.damaged]
     methods = tuple(dict.fromkeys([first, *others]))
     return methods, {row.name: why_not(row, case, solid) for row in ROWS if row.name not in methods}
 

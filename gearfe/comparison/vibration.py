@@ -246,9 +246,7 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
             f"mesh = {mesh:g} Hz, but {channel} contains frequencies up to {first.frequency[-1]:g} Hz only, half of its rate"
         )
     lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
-    for name, value in (others or {}).items():
-        beside = expected_lines(mesh, value, count=1, harmonics=2)
-        lines |= {line.replace("f_fault", f"f_{name}"): at for line, at in beside.items() if "f_fault" in line}
+    lines |= {line: at for name, value in (others or {}).items() for line, at in _fault_lines(mesh, name, value).items()}
     lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
     faulty = fault or turning
     placed = {case: find_lines(of_case, lines, between=True) for case, of_case in spectra.items()}
@@ -256,6 +254,12 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
     table = indicator_table(signals, *((mesh, faulty) if mesh and faulty else (None, None)), healthy=next(iter(signals)))
     resolving = resolving_seconds(fault, turning, carrier)
     return Analysis(channel, signals, faulty, lines, spectra, amplitudes, table, resolving)
+
+
+def _fault_lines(mesh, name, value):
+    """Frequencies of the lines of a further faulty tooth, by names with its gear's."""
+    beside = expected_lines(mesh, value, count=1, harmonics=2)
+    return {line.replace("f_fault", f"f_{name}"): at for line, at in beside.items() if "f_fault" in line}
 
 
 def _check_frequencies(**frequencies):

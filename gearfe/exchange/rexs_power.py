@@ -84,10 +84,10 @@ class Power:
         """Force of each mesh along its transverse line of action [N], of those that follow from the loads of the file."""
         stages = [mesh for mesh in meshes if mesh.carrier is not None]
         carriers = {self._root(mesh.carrier) for mesh in stages}
-        busy = Counter(self._root(one) for mesh in meshes for one in mesh.gears)
+        busy = Counter(self._bodies(meshes))
         rows = {body: i for i, body in enumerate(sorted(carriers | busy.keys()))}
         right, free, loaded = self._loads(rows)
-        ends = {body for body, count in busy.items() if count == 1} - {self._root(one) for mesh in stages for one in mesh.gears}
+        ends = {body for body, count in busy.items() if count == 1}.difference(self._bodies(stages))
         free |= (ends | carriers) - loaded
         columns = [self._column(mesh, rows) for mesh in meshes]
         matrix = np.array([*columns, *(np.eye(len(rows))[rows[body]] for body in sorted(free))]).T
@@ -96,9 +96,12 @@ class Power:
         solution, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=1e-12)
         if np.abs(matrix @ solution - right).max() > KNOWN * np.abs(right).max():
             return {}  # the stated torques do not balance
-        open_ = np.abs(np.linalg.svd(matrix)[2][rank:]).max(axis=0, initial=0.0) > KNOWN
-        forces = zip(meshes, np.abs(solution).tolist(), open_, strict=False)
-        return {mesh.name: force for mesh, force, unknown in forces if force and not unknown}
+        unknown = (np.abs(np.linalg.svd(matrix)[2][rank:]) > KNOWN).any(axis=0)
+        forces = dict(zip((mesh.name for mesh in meshes), np.where(unknown, 0.0, np.abs(solution)).tolist(), strict=False))
+        return {name: force for name, force in forces.items() if force}
+
+    def _bodies(self, meshes):
+        return [self._root(gear) for mesh in meshes for gear in mesh.gears]
 
     def _column(self, mesh, rows):
         """Torques on the bodies of a force of 1 N in a mesh [N mm]."""

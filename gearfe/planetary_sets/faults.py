@@ -36,7 +36,7 @@ def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, b
     if inner:  # mirrored: flanks loaded by the sun are unloaded here
         damage_1 = tuple(turned(one, -one.tooth) for one in damage_1)
     damage_2 = tuple(replace(one, tooth=one.tooth - first) for one in damage_2)
-    differs = bool(damage_1 or damage_2) or any(form.differs for form in forms or ())
+    differs = bool(damage_1 or damage_2 or [form for form in forms or () if form.differs])
     return forms, (damage_1, damage_2), differs
 
 

@@ -143,14 +143,20 @@ def read_signals(
     names = every if columns is None else [_choose(path, recording, column) for column in columns]
     if not names:
         _choose(path, recording, None)
-    if not isinstance(units, Mapping):  # used for the channels without a unit; for a single one it must agree with the file
-        units = {name: units for name in names if units and (len(names) == 1 or not recording.units.get(name))}
-    if unknown := [name for name, unit in units.items() if name not in recording.vectors and unit is not None]:
-        raise ValueError(f"{path}: units for {', '.join(map(repr, unknown))}, but it has {recording.told()}")
-    out = {name: signal_of(path, recording, name, unit=units.get(name), **stated) for name in names}
+    by_name = _units(path, recording, units, names)
+    out = {name: signal_of(path, recording, name, unit=by_name.get(name), **stated) for name in names}
     if pulse is None:
         return _aligned(path, recording, out)
     return _with_angle(path, recording, out, pulse, stated.get("rate"), {"pulses": pulses, "ratio": ratio, "level": level})
+
+
+def _units(path, recording, units, names):
+    """Units by channel. A single one is used for the channels without a unit; of one channel it must agree with the file."""
+    if not isinstance(units, Mapping):
+        return {name: units for name in names if units and (len(names) == 1 or not recording.units.get(name))}
+    if unknown := [name for name, unit in units.items() if name not in recording.vectors and unit is not None]:
+        raise ValueError(f"{path}: units for {', '.join(map(repr, unknown))}, but it has {recording.told()}")
+    return units
 
 
 def _with_angle(path, recording, out, pulse, rate, options):

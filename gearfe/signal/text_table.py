@@ -101,16 +101,21 @@ def text_table(path: StrPath, lines: list[str], header: str | None = None) -> Fo
         raise ValueError(f"{path}: no rows of numbers{first}")
     titles = [line for _, line in rows[: way.above]]
     recording = Found({})
-    pairs = [named(cell) for cell in columns or _names(titles, comments, way, recording)]
-    recording.units = dict(pairs)
-    if len(recording.units) < len(pairs):
-        raise ValueError(f"{path}: two columns have the same name ({', '.join(name for name, _ in pairs)})")
-    table = _table(path, rows[way.above :], way, len(pairs))
+    recording.units = _named(path, columns or _names(titles, comments, way, recording))
+    table = _table(path, rows[way.above :], way, len(recording.units))
     recording.vectors = dict(zip(recording.units, table.T, strict=True))
-    _clocks(path, recording, way.cells(rows[way.above][1], len(pairs)))
+    _clocks(path, recording, way.cells(rows[way.above][1], len(recording.units)))
     for line in (*titles, *comments):
         _state(path, recording, line, way.mark)
     return recording
+
+
+def _named(path, cells):
+    """Units by the names of the columns."""
+    pairs = [named(cell) for cell in cells]
+    if len(dict(pairs)) < len(pairs):
+        raise ValueError(f"{path}: two columns have the same name ({', '.join(name for name, _ in pairs)})")
+    return dict(pairs)
 
 
 def named(cell: str) -> tuple[str, str]:

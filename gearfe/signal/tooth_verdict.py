@@ -66,6 +66,15 @@ def _largest(average, teeth):
     return 2 * math.pi * int(np.argmax(np.abs(residual_signal(average, teeth, sidebands=1)))) / average.size
 
 
+def _of_healthy(healthy, average, teeth):
+    """FM4 of the healthy record, and the variance of its residual signal over that of an `average`, at most 1."""
+    if healthy is None:
+        return math.nan, 1.0
+    sound = synchronous_average(healthy)[0]
+    before, now = (float(np.var(residual_signal(one, teeth, sidebands=1))) for one in (sound, average))
+    return gear_indicators(sound, teeth)["FM4"], min(1.0, before / now) if now else 1.0
+
+
 def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> ToothVerdict:
     """Judge whether a gear has a local tooth fault, from the synchronous average of a record with the angle of its shaft.
 
@@ -100,12 +109,7 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
             f"{record.name}: its average is smeared, or is not of a gear of {teeth} teeth: give the angle of its shaft, the "
             "ratio of its speed to the tachometer's, or estimate the speed from the mesh lines"
         )
-    known, part = math.nan, 1.0
-    if healthy is not None:
-        sound = synchronous_average(healthy)[0]
-        known = gear_indicators(sound, teeth)["FM4"]
-        before, now = (float(np.var(residual_signal(one, teeth, sidebands=1))) for one in (sound, average))
-        part = min(1.0, before / now) if now else 1.0
+    known, part = _of_healthy(healthy, average, teeth)
     halves = _halves(record, average.size, revolutions)
     noise = 3 + SIGMAS * math.sqrt(24 / average.size)
     limit = max(noise, ALONE) if math.isnan(known) else noise + (RISE * known - 3) * part**2

@@ -54,10 +54,9 @@ def _teeth(row, case, method):
 
 
 def _damage(row, case, method):
-    if case.damaged and not row.cracks and not row.pits:
-        yield f"damage with {method}, which has none: use {having('cracks')}"
-    if any(case.cracks) and not row.cracks:
-        yield f"cracks with {method}, which has none: use {having('cracks')}"
+    kinds = {"damage": case.damaged and not row.pits, "cracks": any(case.cracks)}
+    if not row.cracks:
+        yield from (f"{kind} with {method}, which has none: use {having('cracks')}" for kind, hurt in kinds.items() if hurt)
     if not row.broken:
         yield from (f"a {one._nouns[0]} with {method}, which has none: use {having('broken')}" for one in sum(case.broken, ()))
     edged = [broken for form, broken in zip(case.forms or (), case.broken, strict=False) if form.edge is not None]

@@ -132,6 +132,17 @@ def triangulate(loops, chains, ring, free=()):
     return points, place[triangles].T
 
 
+def _places(mesh, tags, middles):
+    """Tags and coordinates of all nodes, and by tag the given node, -1 if gmsh added it."""
+    node_tags, coords, _ = mesh.getNodes()
+    place = np.full(int(node_tags.max()) + 1, -1)
+    for node, tag in tags.items():
+        place[int(mesh.getNodes(0, tag)[0][0])] = node
+    for curve, middle in middles:
+        place[mesh.getNodes(1, curve)[0].astype(int)] = middle
+    return node_tags.astype(int), coords, place
+
+
 def quadrangulate(points, lines, surfaces, algorithm):
     """Mesh quads between given nodes: every line keeps its three nodes, and gmsh adds inner nodes.
 
@@ -169,15 +180,9 @@ def quadrangulate(points, lines, surfaces, algorithm):
             mesh.setRecombine(2, face)
         mesh_options(gmsh, Algorithm=algorithm, RecombinationAlgorithm=3, MeshSizeFromPoints=0)
         mesh.generate(2)
-        node_tags, coords, _ = mesh.getNodes()
-        place = np.full(int(node_tags.max()) + 1, -1)
-        for node, tag in tags.items():
-            place[int(mesh.getNodes(0, tag)[0][0])] = node
-        for curve, middle in zip(curves, lines[:, 1], strict=True):
-            place[mesh.getNodes(1, curve)[0].astype(int)] = middle
+        node_tags, coords, place = _places(mesh, tags, zip(curves, lines[:, 1], strict=True))
         kinds = {int(kind) for face in faces for kind in mesh.getElements(2, face)[0]}
         cells = [mesh.getElementsByType(3, face)[1].astype(int).reshape(-1, 4) for face in faces]
-    node_tags = node_tags.astype(int)
     known = place[node_tags] >= 0
     if kinds != {3} or not np.array_equal(np.sort(place[node_tags[known]]), used):
         raise RuntimeError("gmsh did not fill the section with quads between the given nodes; change the resolution")

@@ -77,9 +77,9 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
         owner = _pieces(occ, prisms, [_cylinder(occ, *cylinder) for cylinder in cylinders])
         occ.remove([(0, centre)])
         occ.synchronize()
-        volume = {}
+        volume = dict.fromkeys(owner.values(), 0.0)
         for tag, piece in owner.items():
-            volume[piece] = volume.get(piece, 0.0) + occ.getMass(3, tag)
+            volume[piece] += occ.getMass(3, tag)
         inner = [(3, tag) for tag, (_, plug) in owner.items() if plug >= 0]
         _sizes(gmsh, inner, fine, rim, far, strips)
         try:
@@ -89,7 +89,8 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
                 f"gmsh cannot mesh this solid: {error}; increase refine, or increase the distance of surfaces that nearly touch"
             ) from error
         points, cells = _cells(mesh, owner)
-    tets, label = np.hstack(list(cells.values())), np.repeat([*cells], [part.shape[1] for part in cells.values()], axis=0)
+    tets = np.hstack(list(cells.values()))
+    label = np.repeat([*cells], [part.shape[1] for part in cells.values()], axis=0)
     used, tets = np.unique(tets, return_inverse=True)
     return Pieces(points[:, used], tets.reshape(4, -1), *label.T, volume)
 

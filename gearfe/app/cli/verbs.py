@@ -126,26 +126,12 @@ def transmission_error(arguments):
 
 def compare(arguments):
     """``gearfe compare``."""
-    from ...comparison.compare import compare as run
-    from ...comparison.compare import compare_cases
     from ...comparison.printed_stiffness import printed_cases, printed_text
     from ...scene.load import load_scene
     from ...scene.references import printed_stiffness
 
     scene = load_scene(arguments.scene)
-    printed, one = printed_cases(scene), arguments.pair or arguments.case or arguments.model or arguments.plot
-    several = arguments.all_cases or (printed and not one)
-    if several and one:
-        raise ValueError("--all-cases is every pair in every case: leave out --pair, --case, --model and --plot")
-    if several and arguments.reference not in (None, "fe3d"):
-        raise ValueError(f"--reference {arguments.reference} with --all-cases: only fe3d can be asked for")
-    options = {"phases": arguments.phases, "reference": arguments.reference}
-    with working("finite elements and energy methods"):
-        if several:
-            result = compare_cases(scene, None if arguments.all_cases else printed, **options)
-        else:
-            more = {"models": arguments.model, "refine": arguments.refine}
-            result = run(scene, arguments.pair, case=arguments.case, **more, **options)
+    result, several = _results(scene, printed_cases(scene), arguments)
     reference = result.methods[0]
     _print_losses(scene, result)
     print(f"\nerrors against {reference}; the estimate is the discretisation error of the reference itself\n")
@@ -167,6 +153,25 @@ def compare(arguments):
     if arguments.output:
         (result.record() if arguments.output.lower().endswith(".csv") else table).save(arguments.output)
         print(f"\nwritten: {arguments.output}")
+
+
+def _results(scene, printed, arguments):
+    """`Comparison` of a pair, or of several cases, which the arguments ask for."""
+    from ...comparison.compare import compare, compare_cases
+
+    one = arguments.pair or arguments.case or arguments.model or arguments.plot
+    several = arguments.all_cases or (printed and not one)
+    if several and one:
+        raise ValueError("--all-cases is every pair in every case: leave out --pair, --case, --model and --plot")
+    if several and arguments.reference not in (None, "fe3d"):
+        raise ValueError(f"--reference {arguments.reference} with --all-cases: only fe3d can be asked for")
+    options = {"phases": arguments.phases, "reference": arguments.reference}
+    with working("finite elements and energy methods"):
+        if several:
+            return compare_cases(scene, None if arguments.all_cases else printed, **options), True
+        return compare(
+            scene, arguments.pair, case=arguments.case, models=arguments.model, refine=arguments.refine, **options
+        ), False
 
 
 def _print_losses(scene, result):

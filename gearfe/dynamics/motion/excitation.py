@@ -57,24 +57,23 @@ def flatten(machine, times):
     """`Flat` of a machine. Loads that are functions are sampled at `times` and linear between."""
     whole, number, meshes = np.int64, float, machine.meshes
     knots = [_knots(load, times) for load in machine.loads]
-    laws = [m.secants[0] if m.secants else None for m in meshes]
-    laws += [m.secants[1 + j] if m.secants else None for m in meshes for j in range(len(m.changes))]
     errors = [(i, size, 2 * math.pi * f, angle) for i, m in enumerate(meshes) for size, f, angle in m.openings]
     groups = _tables(meshes)
     cells = [np.zeros((1, 4)), *(table.cells for group in groups for *_, table in group)]
     places = iter(np.cumsum([*map(len, cells)]).tolist())
     tables = [_placed(group, places) for group in groups]
+    twins = [next(j for j, other in enumerate(meshes) if _twins(m, other)) for m in meshes]
     return Flat(
         np.concatenate(cells),
         np.array([m.frequency for m in meshes], dtype=float),
         np.array([m.phase for m in meshes], dtype=float),
         *tables,
         _columns(errors, mesh=whole, amplitude=number, omega=number, angle=number),
-        np.concatenate(knots) if knots else np.zeros((1, 2)),
+        np.concatenate([*knots, np.zeros((0 if knots else 1, 2))]),
         np.cumsum([0, *map(len, knots)]).astype(whole),
-        np.array([next(j for j, other in enumerate(meshes) if _twins(m, other)) for m in meshes], dtype=whole),
+        np.array(twins, dtype=whole),
         np.zeros((0, 3)) if machine.speed is None else machine.speed.knots,
-        *_laid_out(laws),
+        *_laid_out(meshes),
     )
 
 
@@ -100,8 +99,10 @@ def _placed(group, places):
     return _columns([(*at, one.start, one.width, next(places), len(one.cells)) for *at, one in group], **kinds)
 
 
-def _laid_out(laws):
-    """`Flat.secant` and `Flat.shape` of laws. A law shared by several meshes is stored once."""
+def _laid_out(meshes):
+    """`Flat.secant` and `Flat.shape` of the laws of meshes. A law shared by several meshes is stored once."""
+    laws = [m.secants[0] if m.secants else None for m in meshes]
+    laws += [m.secants[1 + j] if m.secants else None for m in meshes for j in range(len(m.changes))]
     places, parts, shape, end = {}, [np.zeros(0)], [], 0
     for law in laws:
         if law is None:

@@ -62,7 +62,7 @@ def common_period(machine: Machine) -> float:
     ValueError
         If there is none (frequencies without a common multiple, loads that change).
     """
-    if any(load.breaks.size > 1 or callable(load.value) for load in machine.loads):
+    if any(load.changes for load in machine.loads):
         raise ValueError("the loads change with time: give the period")
     if machine.speed is not None:
         raise ValueError("the speed changes with time: there is no periodic motion; use simulate")
