@@ -141,17 +141,17 @@ def compare_cases(
         If the scene has no damage.
     """
     if not scene.cases:
-        names = " or ".join(f"[[{name}]]" for name in DAMAGE)
-        raise ValueError(f"scene {scene.name} has no cases of damage: add {names} tables")
+        raise ValueError(f"scene {scene.name} has no cases of damage: add {' or '.join(map('[[{}]]'.format, DAMAGE))} tables")
     every = [(name, case) for name, pair in scene.pairs.items() for case in (None, *pair.damage)]
     wide = any(scene.case(*key).why_wide for key in every)
     stored = read_curves(scene) if wide else {}
     asked = tuple(every if cases is None else cases)
     solid = wide and (reference == "fe3d" or stored.keys() >= {*asked})
     first = "fe3d" if solid else REFERENCE_SOLID if wide else REFERENCE
-    methods = (*dict.fromkeys([first, "ritz3d" if wide else "ritz"]), *SUMS)
+    methods = (*dict.fromkeys([first, REFERENCE_SOLID if wide else "ritz"]), *SUMS)
     plan = {key: (case := scene.case(*key), damage_cycle(case) if stored else damage_phases(case, phases)) for key in asked}
-    known = {(*key, "fe3d"): _on_file(plan[key][0], *stored[key]) for key in plan.keys() & stored.keys()} if solid else None
+    filed = plan.keys() & stored.keys() if solid else ()
+    known = {(*key, "fe3d"): _on_file(plan[key][0], *stored[key]) for key in filed}
     return _compared(plan, asked, methods, Solve(), known=known)
 
 
@@ -193,27 +193,33 @@ def _compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None
             solved[place], seconds[place] = known[place]
             continue
         case, phases = plan[key]
-        first, timed = method == reference, fresh and key in asked and not again
-        own = replace(how, method=method, phases=phases, cache=not timed and how.cache, error=False)
-        if first and not timed and (again or not fresh or method == "fe3d"):
-            own = replace(own, error=how.error)
-        elif fresh and not first:
-            own = replace(own, refine=1.0)
+        timed = fresh and key in asked and not again
+        own = replace(_one_method(how, method, reference, fresh, again), phases=phases, cache=not timed and how.cache)
+        own = replace(own, error=own.error and not timed)
         started = time.perf_counter()
         try:
             solved[place] = solve_fitted(case, own)
         except ValueError as error:
-            if first:
+            if method == reference:
                 raise
             left_out[method if len(asked) == 1 else f"{method} of {_told(key)}"] = str(error)
         else:
             seconds.setdefault(place, time.perf_counter() - started)
-    teeth = {key: _losses(plan, key, solved, replace(how, method=reference), cycles) for key in asked if key[1]}
-    return Comparison({key: case for key, (case, _) in plan.items()}, asked, solved, seconds, teeth, left_out)
+    cases, phases = ({key: one[k] for key, one in plan.items()} for k in (0, 1))
+    known = {key: replace(how, method=reference, phases=phases[key]) for key in asked if key[1]}
+    teeth = {key: _losses(cases[key], key, solved, own, cycles) for key, own in known.items()}
+    return Comparison(cases, asked, solved, seconds, teeth, left_out)
 
 
 def _told(key, between=" "):
     return f"{key[0]}{between}{key[1] or 'healthy'}"
+
+
+def _one_method(how, method, reference, fresh, again):
+    """`Solve` of a method. Estimates of errors come after the timed curves, except those of `fe3d`."""
+    if method != reference:
+        return replace(how, method=method, error=False, refine=1.0 if fresh else how.refine)
+    return replace(how, method=method, error=how.error and (again or not fresh or method == "fe3d"))
 
 
 def _work(plan, timed, methods, known):
@@ -222,12 +228,12 @@ def _work(plan, timed, methods, known):
     return work, [0.0 if (*key, name) in known else COST.get(name, 0.3) * (1 + again) for key, name, again in work]
 
 
-def _losses(plan, key, solved, how, cycles):
+def _losses(case, key, solved, how, cycles):
     """Phases of the zones and errors of the losses, by the words for each damaged tooth."""
-    (case, phases), out = plan[key], {}
+    out = {}
     for words, cycle in (cycles or {told_damage(case.pair, case.damage): None}).items():
         curves = (within(solved[key[0], which, how.method], cycle) for which in (None, key[1]))
-        rough = replace(how, phases=phases if cycle is None else cycle, error=False)
+        rough = replace(how, phases=how.phases if cycle is None else cycle, error=False)
         out[words] = cycle, loss_errors(*curves, case, rough) if how.error else {}
     return out
 
@@ -296,17 +302,14 @@ def _own(pair, given):
 
 def _methods(case, reference):
     """Return the reference and the formulations that model a case completely, and reasons for the others."""
-    if reference is not None:
-        one_of("reference", reference, REFERENCES)
+    one_of("reference", reference or REFERENCE, REFERENCES)
     solid, ring = case.why_wide, case.pair.gear_2.internal
     if reference == REFERENCE and solid:
         raise ValueError(f"reference = {reference!r}, a transverse section, but {solid}: use 'ritz3d' or 'fe3d'")
-    first = reference or (REFERENCE_SOLID if solid else REFERENCE)
-    rows = [row for row in ROWS if row.rings == "yes" or not ring]
-    own = (REFERENCE_SOLID,) if solid else (REFERENCE, *FORMULATIONS)
-    rows = [row for row in rows if row.name in own or (solid and row.kind == "sum")]
+    first, own = (REFERENCE_SOLID, (REFERENCE_SOLID, *SUMS)) if solid else (REFERENCE, (REFERENCE, *FORMULATIONS))
+    rows = [row for row in ROWS if row.name in own and (row.rings == "yes" or not ring)]
     others = [row.name for row in rows if solid or row.cracks or not case.damaged]
-    methods = tuple(dict.fromkeys([first, *others]))
+    methods = tuple(dict.fromkeys([reference or first, *others]))
     return methods, {row.name: why_not(row, case, solid) for row in ROWS if row.name not in methods}
 
 

@@ -246,12 +246,14 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
             f"mesh = {mesh:g} Hz, but {channel} contains frequencies up to {first.frequency[-1]:g} Hz only, half of its rate"
         )
     lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
-    lines |= {line: at for name, value in (others or {}).items() for line, at in _fault_lines(mesh, name, value).items()}
+    for name, value in (others or {}).items():
+        lines |= _fault_lines(mesh, name, value)
     lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
     faulty = fault or turning
     placed = {case: find_lines(of_case, lines, between=True) for case, of_case in spectra.items()}
     amplitudes = {case: {name: line[1] for name, line in of_case.items()} for case, of_case in placed.items()}
-    table = indicator_table(signals, *((mesh, faulty) if mesh and faulty else (None, None)), healthy=next(iter(signals)))
+    known = (mesh, faulty) if mesh and faulty else (None, None)
+    table = indicator_table(signals, *known, healthy=next(iter(signals)))
     resolving = resolving_seconds(fault, turning, carrier)
     return Analysis(channel, signals, faulty, lines, spectra, amplitudes, table, resolving)
 

@@ -107,11 +107,7 @@ def pieces_of(pair, phase, pits, bands, beta_b, reach=0.0, closing=0.0, pair_of=
     pieces = [part for piece, pitted in zip(pieces, taken, strict=True) for part in _left(piece, pitted, width)]
     if not shallow:
         return pieces
-    above = [[] for _ in pieces]
-    for gear, depth, pitted in shallow:
-        for parts, intervals in zip(above, _taken(pair_of, pitted, bands, pieces, slope), strict=True):
-            parts += [(gear, depth, *part) for part in intervals]
-    return [part for piece, parts in zip(pieces, above, strict=True) for part in _on_floors(piece, parts, width)]
+    return _with_floors(pieces, [(*at, _taken(pair_of, pitted, bands, pieces, slope)) for *at, pitted in shallow], width)
 
 
 def _limits(pair, reach):
@@ -124,6 +120,15 @@ def _limits(pair, reach):
         [number for number, edge in ((2, at_start), (0, at_end)) if edge],
         [number for number, edge in ((1, at_end), (0, at_start)) if edge],
     )
+
+
+def _with_floors(pieces, floors, width):
+    """Cut pieces where shallow pits (gear, depth, intervals of each piece) begin and end."""
+    out = []
+    for k, piece in enumerate(pieces):
+        above = [(gear, depth, *part) for gear, depth, intervals in floors for part in intervals[k]]
+        out += _on_floors(piece, above, width)
+    return out
 
 
 def _by_depth(pits, closing):
@@ -184,6 +189,10 @@ def _left(piece, taken, width):
     return [piece._replace(first=a, last=b, ends=ends) for a, b, ends in out if b - a > 1e-6 * width]
 
 
+def _near(teeth, pits, z):
+    return np.isin(teeth % z, [pit.tooth % z for pit in pits])
+
+
 def _taken(pair_of, pits, bands, pieces, slope):
     """Intervals of depth that pits take from each piece.
 
@@ -194,10 +203,7 @@ def _taken(pair_of, pits, bands, pieces, slope):
         return out
     pair = pair_of(pieces[0].order)
     order = np.array([piece.order for piece in pieces])
-    near = [
-        np.isin(sign * order % gear.z, [pit.tooth % gear.z for pit in own])
-        for gear, own, sign in zip((pair.gear_1, pair.gear_2), pits, (1, -1), strict=True)
-    ]
+    near = [_near(order, pits[0], pair.gear_1.z), _near(-order, pits[1], pair.gear_2.z)]
     pitted = np.flatnonzero(near[0] | near[1]).tolist()
     if not pitted:
         return out

@@ -160,8 +160,9 @@ class _Unit:
         """Pairs of the first planet of a planetary stage (the others are equal), and ids of all its stages."""
         parts = self.model.related("assembly", "assembly", planetary.id, "part")
         stages = {one.id: one for one in parts if one.type == "cylindrical_stage"}
-        carrier = next((one.id for one in parts if one.type == "planet_carrier"), None)
+        carriers = [one.id for one in parts if one.type == "planet_carrier"]
         shafts = {one.id for one in self.model.related("planet_shaft", "planetary_stage", planetary.id, "shaft")}
+        planets = len(shafts), carriers[0] if carriers else None
         tail = f"_{len(self.sets) + 1}" if len(self.model.of_type("planetary_stage")) > 1 else ""
         found: dict[str, list[tuple[Component, ...]]] = {"sun": [], "ring": []}
         for *gears, kind in self._planet_meshes(stages.values(), shafts):
@@ -169,9 +170,9 @@ class _Unit:
         suns, rings = found.values()
         names = {one: f"{one}{tail}" for one in ("sun", "planet", "ring")}
         for stage, planet, sun in suns[:1]:
-            self._add_pair(f"sun_planet{tail}", (sun, planet), stage, (names["sun"], names["planet"]), (len(shafts), carrier))
+            self._add_pair(f"sun_planet{tail}", (sun, planet), stage, (names["sun"], names["planet"]), planets)
         for stage, planet, ring in rings[:1]:
-            self._add_pair(f"planet_ring{tail}", (planet, ring), stage, (names["planet"], names["ring"]), (len(shafts), carrier))
+            self._add_pair(f"planet_ring{tail}", (planet, ring), stage, (names["planet"], names["ring"]), planets)
         for _, planet, _ in suns[1:]:
             self._copy(planet, suns[0][1])
         self.copies |= stages.keys() - {stage.id for *_, stage in self.pairs.values()}

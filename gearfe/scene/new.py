@@ -86,8 +86,6 @@ def new_scene(
     _check_inputs(path, pairs)
     module, helix_deg, width = number("module", module), number("helix_deg", helix_deg), number("width", width)
     torque_Nm = None if torque_Nm is None else number("torque", torque_Nm)
-    if (tip_relief_um is None) != (tip_length_mm is None) or (tip_relief_um or 1.0) < 0:
-        raise ValueError(f"tip relief of {tip_relief_um} um over {tip_length_mm} mm: give both, the amount positive")
     rack = {"m_n_mm": float(module), "alpha_n_deg": number("alpha_deg", alpha_deg), "b_mm": float(width)}
     pinion, wheel = _gears(rack, teeth, x, helix_deg, ring, bore_mm)
     stated: dict[str, Any] = {
@@ -100,10 +98,10 @@ def new_scene(
     stated["pair"]["stage"]["force_N"] = force
     if not bore_mm:
         stated["assumption"] = [_assumed(pinion, wheel, "rim" if ring else "bore")]
-    size = {"length_mm": crack[0], "angle_deg": crack[1]} if crack else {"level": 0.3, "angle_deg": 45.0}
+    size = dict(zip(("length_mm", "angle_deg"), crack, strict=True)) if crack else {"level": 0.3, "angle_deg": 45.0}
     stated["crack"] = [{"case": "cracked", "gear": "pinion", **size}]
     numbers = _numbers(pair, force)
-    amount, length = tip_relief_um or round(numbers["amount"], 1), tip_length_mm or round(numbers["length"], 3)
+    amount, length = _relief(tip_relief_um, tip_length_mm, numbers)
     flanks = {side: {"gear": side, "tip_relief_um": amount, "tip_start_length_mm": length} for side in ("pinion", "wheel")}
     stated |= {} if tip_relief_um is None else {"flank": flanks}
     with _of_torque(torque_Nm):
@@ -142,6 +140,13 @@ def _gears(rack, teeth, x, helix_deg, ring, bore_mm):
         {"z": z, **rack, "x": float(shift), "beta_deg": beta, **form, name: radius, "material": "steel"}
         for z, shift, beta, form, (name, radius) in zip(teeth, x, helix, (RACK, RING if ring else RACK), held, strict=True)
     )
+
+
+def _relief(amount, length, usual):
+    """Amount [um] and length [mm] of the tip relief."""
+    if (amount is None) != (length is None) or (amount or 1.0) < 0:
+        raise ValueError(f"tip relief of {amount} um over {length} mm: give both, the amount positive")
+    return amount or round(usual["amount"], 1), length or round(usual["length"], 3)
 
 
 def _assumed(pinion, wheel, held):

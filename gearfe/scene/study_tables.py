@@ -24,14 +24,14 @@ def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
     if is_gearbox(tables):
         whole = {kind: table for kind, table in tables.items() if kind not in (*DAMAGE, *PRINTED)}
         chosen = chosen | {"force_N": scene_of("scene", whole).pair(pair).force}
-    gears = {chosen.get(name) for name in ("gear_1", "gear_2")}
+    gears = {chosen.get("gear_1"), chosen.get("gear_2")}
     out: Tables = {name: tables[name] for name in ("title", "source") if name in tables}
     out |= {"pair": {pair: chosen}, "gear": {name: table for name, table in tables["gear"].items() if name in gears}}
     schema = scene_schema()
     for kind, key in schema["scene"].keys.items():
         if key.of and "gear" in schema[key.of].keys:
             out[kind] = _of_pair(tables.get(kind, [] if key.type == "listed" else {}), gears, pair, case)
-    used = {row.get("material") for kind in ("gear", "shaft") for row in out[kind].values()}
+    used = {row.get("material") for row in (*out["gear"].values(), *out["shaft"].values())}
     return out | {"material": {name: table for name, table in tables["material"].items() if name in used}}
 
 

@@ -163,10 +163,10 @@ def _fits(rows, way):
 def _names(titles, comments, way, found):
     """Names of the columns with their units, from the rows above the numbers, or the comments."""
     rows, said = ([cells for line in lines if len(cells := way.cells(line)) == way.columns] for lines in (titles, comments))
-    if len(rows) > 1 and all(UNITS.fullmatch(cell) for cell in rows[-1]):
+    if len(rows) > 1 and all(map(UNITS.fullmatch, rows[-1])):
         return [f"{name} [{unit.strip('[]()')}]" for name, unit in zip(*rows[-2:], strict=True)]
     last = way.cells(titles[-1]) if titles else []
-    if last and (len(last) == way.columns or (not rows and len(last) > 1)):
+    if last and (len(last) == way.columns or (not rows and last[1:])):
         return last  # a header whose count does not fit is reported with the first row
     if said := list(filter(_are_names, said)):
         return said[-1]

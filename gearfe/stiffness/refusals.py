@@ -62,8 +62,8 @@ def _damage(row, case, method):
     edged = [broken for form, broken in zip(case.forms or (), case.broken, strict=False) if form.edge is not None]
     if any(isinstance(one, Chip) for one in sum(edged, ())):
         yield "chips of rounded or chamfered tips: leave out tip_rounding and tip_chamfer, or the chips"
-    if any(case.pits) and not row.pits:
-        nouns = next(pit for pits in case.pits for pit in pits)._nouns[1]
+    if (pits := sum(case.pits, ())) and not row.pits:
+        nouns = pits[0]._nouns[1]
         yield f"{nouns} with {method}, a transverse section: use {having('pits')}"
 
 

@@ -187,13 +187,12 @@ def grow_crack(
     loads = _loads(case, index) if model.loading == "engagement" else _single(case, index)
     tip = _Tip(gear, case.materials[index], model, loads, refine)
     crack = replace(crack, tooth=0)
-    sense = 1 if crack.side == "loaded" else -1
+    sense = {"loaded": 1, "unloaded": -1}[crack.side]
     corners = crack_path(gear, crack).T * [sense, 1]
-    cracks, found, turn, outcome = [crack], [], 0.0, ("unfinished", f"{steps} steps of {step:g} mm")
+    cracks, found, turn = [crack], [], 0.0
     for i in range(steps + 1):
         found.append(tip.intensity(cracks[-1]))
-        if ended := stopped(found[-1], law):
-            outcome = ended
+        ended = stopped(found[-1], law)
         if ended or i == steps:
             break
         angle = sense * turn_angle(found[-1][0], found[-1][1], model.criterion)
@@ -201,11 +200,11 @@ def grow_crack(
         turn = angle if i else 0.0
         ahead = corners[-1] + step * np.array([math.cos(heading), math.sin(heading)])
         if ended := reached(gear, corners[-1], ahead, step):
-            outcome = ended
             break
         corners = np.vstack([corners, ahead])
         path = tuple(map(tuple, corners[1:].tolist()))
         cracks.append(replace(crack, level=None, length=None, turning=False, path=path))
+    outcome = ended or ("unfinished", f"{steps} steps of {step:g} mm")
     k_1, k_2, k_min = np.array(found).T
     length = np.array([lengths(crack_path(gear, one))[-1] for one in cracks])
     cycles = None if law is None else cycles_along(law, length, k_1, k_min)

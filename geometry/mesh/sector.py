@@ -167,14 +167,13 @@ def _pieces(gear, size, cracks, broken=None):
     marks = {crack.side: start_arc(gear, crack) for crack in cracks}
     tips = [meshed_path(gear, crack)[:, -1] for crack in cracks]
     thick = abs(gear.r_f - gear.held)
-    near_bore = [(thick, thick, 0.5 * gear.held)] if not gear.internal else []
+    near_bore = [] if gear.internal else [(thick, thick, 0.5 * gear.held)]
     side = gear.r_f - gear.outward * spaced(
         0.0, thick, max(thick / 2, size["side"]), [(0.0, 0.0, size["side"]), *near_bore], 1, 0.7
     )
     side[-1] = gear.held
     inner = 2 * pitch * gear.held
-    close = [(gear.held * (pitch - math.atan2(*tip)), abs(math.hypot(*tip) - gear.held)) for tip in tips]
-    close = [(place, place, 0.7 * away) for place, away in close]
+    close = [(at := gear.held * (pitch - math.atan2(*tip)), at, 0.7 * abs(math.hypot(*tip) - gear.held)) for tip in tips]
     bottom = pitch - spaced(0.0, inner, min(inner, max(1.5 * thick, 0.1 * inner)), close, 1, GROWTH) / gear.held
     bottom[-1] = -pitch
     out = [("left", side[::-1], lambda r: cartesian(r, -pitch))]
@@ -188,7 +187,7 @@ def _pieces(gear, size, cracks, broken=None):
     back = _flank(ends_at["unloaded"], size["back"], size["kink"], max(2 * width, size["corner"]))
     front = _flank(ends_at["loaded"], size["flank"], size["kink"], size["corner"])
     tip = spaced(-width, width, size["root"], [(width, width, min(size["corner"], width))], 1, GROWTH) / gear.r_a
-    top = [("tip", tip, lambda a: cartesian(gear.r_a, a))] if broken is None else _broken_top(gear, size, broken)
+    top = _broken_top(gear, size, broken) if broken else [("tip", tip, lambda a: cartesian(gear.r_a, a))]
     for name, sign in (("unloaded", -1), ("loaded", 1)):
         arc, phi = roots[name]
         part = [

@@ -73,7 +73,7 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
         }
         lines = [make[kind]([tags[i] for i in at]) for kind, at in curves]
         flat = [occ.addPlaneSurface([occ.addCurveLoop([lines[i] for i in loop]) for loop in loops]) for loops in faces]
-        prisms = [next(entity for entity in occ.extrude([(2, face)], 0, 0, height) if entity[0] == 3) for face in flat]
+        prisms = [_prism(occ, face, (0, 0, height)) for face in flat]
         owner = _pieces(occ, prisms, [_cylinder(occ, *cylinder) for cylinder in cylinders])
         occ.remove([(0, centre)])
         occ.synchronize()
@@ -119,6 +119,11 @@ def _pieces(occ, prisms, plugs):
     return owner
 
 
+def _prism(occ, face, push):
+    """Volume that a face sweeps."""
+    return next(entity for entity in occ.extrude([(2, face)], *push) if entity[0] == 3)
+
+
 def _cylinder(occ, outline, push):
     """Volume swept by what an outline bounds."""
     kind, (first, *_) = outline[0][0], outline[0][1].T
@@ -140,7 +145,7 @@ def _cylinder(occ, outline, push):
             curves.append(occ.addEllipseArc(tags[-2], middle, longer, tags[-1]))
             occ.remove([(0, middle)])
         face = occ.addPlaneSurface([occ.addCurveLoop(curves)])
-    return next(entity for entity in occ.extrude([(2, face)], *push) if entity[0] == 3)
+    return _prism(occ, face, push)
 
 
 def _sizes(gmsh, inner, fine, rim, far, strips):

@@ -203,8 +203,7 @@ def damaged_flexibility(
     faces = face_columns(mesh)
     tilted = [part for tooth in solved for part in _tilted(mesh, tooth)]
     influence, at = _between(body, [*(on[tooth].load for tooth in solved), faces, *(part.load for part in tilted)])
-    pairs = zip(solved, at[len(solved) + 1 :: 2], at[len(solved) + 2 :: 2], strict=True)
-    leaned = {tooth: blocks for tooth, *blocks in pairs}
+    leaned = dict(zip(solved, zip(at[len(solved) + 1 :: 2], at[len(solved) + 2 :: 2], strict=True), strict=True))
     at, opened = dict(zip(solved, at, strict=False)), at[len(solved)]
     opening = {tooth: influence[opened, at[tooth]] for tooth in solved}
     apart = influence[opened, opened]
@@ -220,15 +219,16 @@ def damaged_flexibility(
     near, blocks = ({tooth: part[k] for tooth, part in parts.items()} for k in (0, 1))
     far = {(i, j): RectBivariateSpline(on[i].arc, on[j].arc, one) for (i, j), one in ahead.items()}
     seam = SeamFaces({t: CubicSpline(on[t].arc, opening[t].T) for t in solved}, apart, stiffness) if cracks else None
-    tips = {
-        tooth: (float(mesh.roll[tooth][-1]), (on[tooth].arc[0], on[tooth].arc[-1]), basis(on[tooth]))
-        for tooth in solved
-        if loaded_side(gear, broken, tooth) is not gear
-    }
+    tips = {tooth: _shortened(mesh, tooth, on[tooth]) for tooth in solved if loaded_side(gear, broken, tooth) is not gear}
     whole = next(tooth for tooth in solved if tooth not in tips)
     limits = on[whole].arc[0], on[whole].arc[-1]
     options = {"basis": basis(on[whole]), "leans": leans, "missing": gone, "tips": tips}
     return Flexibility(gear, near, far, blocks, limits, refine, faces.shape[0], healthy, seam, **options)
+
+
+def _shortened(mesh, tooth, on):
+    """Last roll, ends and `basis` of the flank of a chipped tooth with hats `on`."""
+    return float(mesh.roll[tooth][-1]), (on.arc[0], on.arc[-1]), basis(on)
 
 
 def face_columns(mesh):

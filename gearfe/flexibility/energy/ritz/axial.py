@@ -62,7 +62,7 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
         Of each crack, if its depth changes along the width: nodes near it have its depth as a function too.
     """
     fronts = tuple(fronts) or (None,) * len(parts)
-    bands = sorted({band for where in parts for band in where or ()})
+    bands = sorted({band for where in filter(None, parts) for band in where})
     degrees = {band: max(OPEN[0], math.ceil(OPEN[1] * (band[1] - band[0]) / m_n) + 2) for band in bands}
     fine = _fine(bands, width, m_n, parts, fronts)
     kinks = [z for front in filter(None, fronts) for z in front.kinks()]
@@ -74,8 +74,9 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
     sets, touch = [every], []
     for front, where in zip(fronts, parts, strict=True):
         there = where or (None,)
-        sharp = front and front.sharp
-        moved = columns.add(*_depth(z, weight, front, columns.value[0], columns.rise[0])) if sharp else every[:0]
+        moved = every[:0]
+        if front and front.sharp:
+            moved = columns.add(*_depth(z, weight, front, columns.value[0], columns.rise[0]))
         open_, push, near = (np.concatenate([kind[band] for band in there]) for kind in by_band)
         sets += [open_, push, np.concatenate([every, near, moved]), np.append(every, moved)]
         touch.append(_points(where or ((0.0, width),), [degrees.get(band, min(degree, PUSHING)) for band in there]))
