@@ -204,11 +204,11 @@ def grow_crack(
         corners = np.vstack([corners, ahead])
         path = tuple(map(tuple, corners[1:].tolist()))
         cracks.append(replace(crack, level=None, length=None, turning=False, path=path))
-    outcome = ended or ("unfinished", f"{steps} steps of {step:g} mm")
+    outcome, why = ended or ("unfinished", f"{steps} steps of {step:g} mm")
     k_1, k_2, k_min = np.array(found).T
     length = np.array([lengths(crack_path(gear, one))[-1] for one in cracks])
     cycles = None if law is None else cycles_along(law, length, k_1, k_min)
-    return Growth(tuple(cracks), length, k_1, k_2, k_min, cycles, *outcome, tuple(tip.methods))
+    return Growth(tuple(cracks), length, k_1, k_2, k_min, cycles, outcome, why, tuple(tip.methods))
 
 
 @dataclass

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..damage.crack import check_apart, check_single, deepest
+from ..damage.crack import check_apart, check_single
+from ..damage.crack_form import deepest
 from ..damage.front import open_part, whole
 from ..tooth.gear import Gear
 from ..tooth.profile import turned

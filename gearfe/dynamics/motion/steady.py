@@ -152,7 +152,6 @@ class _Flow:
         self.machine, self.times = machine, np.linspace(0.0, period, 2 * steps + 1)
         self.plan = propagator.plan(machine, period / steps / 2, machine.working())
         self.flat = excitation.flatten(machine, np.linspace(0.0, period, 16 * steps + 1))
-        self.breaks = np.unique(np.concatenate([np.empty(0), *(load.breaks for load in machine.loads)]))
         self.linear = closed(machine.law) and not machine.curved  # even with friction
 
     def __call__(self, z):
@@ -160,7 +159,7 @@ class _Flow:
         from .loop_parts import announced
 
         with announced():
-            return run(self.plan, self.machine, self.flat, z, self.times.size - 1, 1, self.breaks)
+            return run(self.plan, self.machine, self.flat, z, self.times.size - 1, 1)
 
     def monodromy(self, states):
         """Return the monodromy matrix (final state by initial state of a period) by differences of motions, exact if linear."""
