@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from ..core.case import Case
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.mesh_stiffness import mesh_stiffness
 from .runner import Tally, check_workers, count_of, results
 
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from ...core.checks import numbers
 from ...core.memory import free_memory
+from ...core.time_limit import check_time
 from ..machine.tables import Machine
 from .reference import SOLVERS
 
@@ -76,3 +77,13 @@ def check_run(machine, duration, method, rate, step, dt, start, every):
         raise ValueError(
             f"start = {start:g} s, but give a time within {LATEST:g} s, because phases at later times are lost by rounding"
         )
+
+
+def check_duration(duration, cost):
+    """Return the seconds of a run at a `cost` for each second of motion.
+
+    Raises ValueError if they are above the limit.
+    """
+    what = f"duration = {duration:g} s, {cost:.2g} s for each second of motion"
+    check_time(what, cost * duration, "give a shorter duration, or a longer step=")
+    return cost * duration

@@ -12,13 +12,12 @@ from numpy.typing import ArrayLike
 from ...core.checks import truth, whole
 from ...core.record import ranged
 from ...core.threads import single
-from ...core.time_limit import check_time
 from ..machine.tables import Machine
 from .fixed_step import fixed_steps
 from .law_range import compared
 from .reference import reference
 from .response import Response, all_channels
-from .run_checks import check_initial, check_memory, check_run, initial_state
+from .run_checks import check_duration, check_initial, check_memory, check_run, initial_state
 from .step_control import (
     WANTED_OPEN,
     Estimate,
@@ -183,19 +182,6 @@ def simulate(
             out = run.given(math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1, error)
     seconds = {"seconds": out.stats["seconds"] - compiled.seconds, "compiled": compiled.seconds}
     return compared(replace(out, stats=out.stats | seconds))
-
-
-def check_duration(duration, cost):
-    """Return the seconds of a run at a `cost` for each second of motion.
-
-    Raises ValueError if they are above the limit.
-    """
-    what, remedy = (
-        f"duration = {duration:g} s, {cost:.2g} s for each second of motion",
-        "give a shorter duration, or a longer step=",
-    )
-    check_time(what, cost * duration, remedy)
-    return cost * duration
 
 
 def _reference(machine, duration, count, state, method, rtol, start, filtered):
