@@ -28,16 +28,6 @@ class Batch:
     workers: int
 
 
-def _checked(cases):
-    try:
-        cases = list(cases)
-    except TypeError:
-        cases = []
-    if not cases or not all(isinstance(case, (Case, Mapping)) for case in cases):
-        raise ValueError("cases: give a list of one Case or dict at least")
-    return cases
-
-
 def batch(
     cases: Iterable[Case | Mapping[str, Any]],
     *,
@@ -75,7 +65,9 @@ def batch(
     """
     check_workers(workers)
     work = work or mesh_stiffness
-    every = _checked(cases)
+    every = list(cases)
+    if not every:
+        raise ValueError("cases: give a list of one Case or dict at least")
     if getattr(multiprocessing.current_process(), "_inheriting", False):
         sys.exit(1)  # a worker has imported an unguarded script; the parent process prints the remedy
     workers = count_of(workers, every)

@@ -97,8 +97,6 @@ def gear_indicators(
             "not describe that gear: check the teeth, and the ratio of its shaft to the tachometer's",
             stacklevel=2,
         )
-    if not isinstance(before, (list, tuple)):
-        raise ValueError(f"before is {type(before).__name__}, but give a list of earlier averages")
     history = [x, *map(_turn, before)]
     residuals = [residual_signal(turn, teeth, shaft_orders=shaft_orders) for turn in history]
     envelopes = [_band_envelope(turn, teeth) for turn in history]
@@ -127,8 +125,8 @@ def has_mesh_line(amplitude, teeth):
 def _by_name(signals):
     """Return records by name. Those of a list have their own names."""
     records = list(signals.values()) if isinstance(signals, Mapping) else signals
-    if not isinstance(records, (list, tuple)) or not records or not all(isinstance(record, Signal) for record in records):
-        raise ValueError(f"signals = {signals!r}, but give one record or more, by name or in a list")
+    if not records:
+        raise ValueError("signals: give one record or more, by name or in a list")
     named = signals if isinstance(signals, Mapping) else {record.name: record for record in records}
     if len(named) < len(records):
         raise ValueError("two records have the same name: give them by name, in a dict")

@@ -5,7 +5,6 @@ import numpy as np
 from ...core.checks import numbers
 from ...core.memory import free_memory
 from ...core.time_limit import check_time
-from ..machine.tables import Machine
 from .reference import SOLVERS
 
 DEEPEST, FASTEST = 1.0, 1e3  # limits of compressions [m] and their rates [m/s]: beyond the size and speed of any gear
@@ -57,10 +56,6 @@ def _check_output(duration, rate, step, dt, every):
 
 def check_run(machine, duration, method, rate, step, dt, start, every):
     """Raise ValueError if arguments of `simulate` are out of range or contradict each other."""
-    if not isinstance(machine, Machine):
-        raise ValueError(
-            f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
-        )
     if method != "fast" and method not in SOLVERS:
         raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
     for name, value in {"dt": dt, "step": step}.items():

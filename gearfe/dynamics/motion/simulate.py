@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import truth, whole
+from ...core.checks import whole
 from ...core.record import ranged
 from ...core.threads import single
 from ..machine.tables import Machine
@@ -153,9 +153,6 @@ def simulate(
         for name, value, unit in (("rate", rate, " Hz"), ("step", step, " s"), ("dt", dt, " s"))
     )
     every = whole("every", every, 1)
-    error, filtered = (
-        None if value is None else truth(name, value) for name, value in (("error", error), ("filtered", filtered))
-    )
     check_run(machine, duration, method, rate, step, dt, start, every)
     if initial is None:
         state = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
