@@ -185,40 +185,40 @@ def _compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None
     `how` is a `Solve` without method and phases; `fresh`: what is `asked` is timed without gears that are solved already, and
     estimates of errors come after it; `known` are curves and their seconds.
     """
-    solved, seconds, left_out, reference = {}, {}, left_out or {}, methods[0]
-    known = known or {}
+    solved, seconds, left_out, known, reference = {}, {}, left_out or {}, known or {}, methods[0]
     work = [(key, method, False) for key in plan for method in methods] + [(key, reference, True) for key in asked if fresh]
     cost = [0.0 if (*key, name) in known else COST.get(name, 0.3) * (1 + again) for key, name, again in work]
     for key, method, again in steps(work, lambda item: f"{item[0][0]}, {item[0][1] or 'healthy'}: {item[1]}", cost):
-        place, timed = (*key, method), fresh and key in asked and not again
+        place, timed, first = (*key, method), fresh and key in asked and not again, method == reference
         if place in known:
             solved[place], seconds[place] = known[place]
             continue
         case, phases = plan[key]
-        own = replace(how, method=method, phases=phases, error=False, cache=False if timed else how.cache)
-        if method == reference:
-            own = replace(own, error=how.error and not timed and (again or not fresh or method == "fe3d"))
-        elif fresh:
-            own = replace(own, refine=1.0)
+        own = replace(
+            how, method=method, phases=phases, cache=not timed and how.cache, refine=how.refine if first or not fresh else 1.0
+        )
+        own = replace(own, error=first and how.error and not timed and (again or not fresh or method == "fe3d"))
         started = time.perf_counter()
         try:
             solved[place] = solve_fitted(case, own)
         except ValueError as error:
-            if method == reference:
+            if first:
                 raise
             left_out[method if len(asked) == 1 else f"{method} of {key[0]} {key[1] or 'healthy'}"] = str(error)
-            continue
-        if not again:
-            seconds[place] = time.perf_counter() - started
-    teeth = {}
-    for pair, case in asked:
-        hurt, phases = plan[pair, case]
-        for words, cycle in (cycles or dict.fromkeys([told_damage(hurt.pair, hurt.damage)])).items() if case else ():
-            curves = (within(solved[pair, which, reference], cycle) for which in (None, case))
-            rough = replace(how, method=reference, phases=phases if cycle is None else cycle, error=False)
-            doubt = loss_errors(*curves, hurt, rough) if how.error else {}
-            teeth.setdefault((pair, case), {})[words] = cycle, doubt
+        else:
+            seconds.setdefault(place, time.perf_counter() - started)
+    teeth = {key: _losses(plan, key, solved, replace(how, method=reference), cycles) for key in asked if key[1]}
     return Comparison({key: case for key, (case, _) in plan.items()}, asked, solved, seconds, teeth, left_out)
+
+
+def _losses(plan, key, solved, how, cycles):
+    """Phases of the zones and errors of the losses, by the words for each damaged tooth."""
+    (case, phases), out = plan[key], {}
+    for words, cycle in (cycles or {told_damage(case.pair, case.damage): None}).items():
+        curves = (within(solved[key[0], which, how.method], cycle) for which in (None, key[1]))
+        rough = replace(how, phases=phases if cycle is None else cycle, error=False)
+        out[words] = cycle, loss_errors(*curves, case, rough) if how.error else {}
+    return out
 
 
 def solve_fitted(case: Case, how: Solve) -> StiffnessCurve:

@@ -1,6 +1,7 @@
 """Torques and speeds of a REXS model: stated loads, distributed over shafts, meshes and planetary stages."""
 
 import math
+from collections import Counter
 from typing import NamedTuple
 
 import numpy as np
@@ -81,7 +82,7 @@ class Power:
 
     def forces(self, meshes: list[PowerMesh]) -> dict[str, float]:
         """Force of each mesh along its transverse line of action [N], of those that follow from the loads of the file."""
-        bodies = sorted({self._root(one) for mesh in meshes for one in (*mesh.gears, *([mesh.carrier] if mesh.carrier else []))})
+        bodies = sorted({self._root(one) for mesh in meshes for one in (*mesh.gears, mesh.carrier) if one is not None})
         rows = {body: i for i, body in enumerate(bodies)}
         columns = [np.zeros(len(rows)) for _ in meshes]
         for mesh, column in zip(meshes, columns, strict=True):
@@ -89,35 +90,28 @@ class Power:
                 column[rows[self._root(gear)]] += mesh.planets * radius
             if mesh.carrier is not None:
                 column[rows[self._root(mesh.carrier)]] -= mesh.planets * sum(mesh.radii)
-        right = np.zeros(len(rows))
-        free = {body for body in bodies if self._held(body)}
-        for load in self.model.of_type("external_load"):
-            body = self._root(load.id)
-            if body in rows:
-                torque = self._torque(load.id, body)
-                if torque is None:
-                    free.add(body)
-                else:
-                    right[rows[body]] -= 1e3 * torque
-        loaded = {self._root(load.id) for load in self.model.of_type("external_load")}
-        busy = [self._root(one) for mesh in meshes for one in mesh.gears]
-        free |= {body for body in bodies if body not in loaded and busy.count(body) == 1 and not self._planets(body, meshes)}
-        free |= {body for mesh in meshes if mesh.carrier is not None and (body := self._root(mesh.carrier)) not in loaded}
+        right, free = np.zeros(len(rows)), {body for body in bodies if self._held(body)}
+        loads = [(load.id, body) for load in self.model.of_type("external_load") if (body := self._root(load.id)) in rows]
+        for load, body in loads:
+            torque = self._torque(load, body)
+            if torque is None:
+                free.add(body)
+            else:
+                right[rows[body]] -= 1e3 * torque
+        busy = Counter(self._root(one) for mesh in meshes for one in mesh.gears)
+        planets = {self._root(one) for mesh in meshes if mesh.carrier is not None for one in mesh.gears}
+        ends = {body for body, count in busy.items() if count == 1} - planets
+        carriers = {self._root(mesh.carrier) for mesh in meshes if mesh.carrier is not None}
+        free |= (ends | carriers) - {body for _, body in loads}
         matrix = np.array([*columns, *(np.eye(len(rows))[rows[body]] for body in sorted(free))]).T
         if not right.any():
             return {}
         solution, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=1e-12)
         if np.abs(matrix @ solution - right).max() > KNOWN * np.abs(right).max():
             return {}  # the stated torques do not balance
-        null = np.linalg.svd(matrix)[2][rank:]
-        return {
-            mesh.name: abs(float(solution[i]))
-            for i, mesh in enumerate(meshes)
-            if not np.any(np.abs(null[:, i]) > KNOWN) and solution[i]
-        }
-
-    def _planets(self, body, meshes):
-        return any(mesh.carrier is not None and body == self._root(gear) for mesh in meshes for gear in mesh.gears)
+        open_ = np.abs(np.linalg.svd(matrix)[2][rank:]).max(axis=0, initial=0.0) > KNOWN
+        forces = zip(meshes, np.abs(solution).tolist(), open_, strict=False)
+        return {mesh.name: force for mesh, force, unknown in forces if force and not unknown}
 
     def _held(self, body):
         return any(self._root(casing.id) == body for casing in self.model.of_type("gear_casing"))

@@ -154,9 +154,8 @@ class PlanetaryCase:
         if not isinstance(given, Mapping):
             raise ValueError(f"{what} = {given!r}, but give them by gear: {{'sun': ..., 'planet': ..., 'ring': ...}}")
         planets = [planet_name(i) for i in range(self.planets)]
-        former = {
-            one: planets[one[1]] for one in given if one in [("planet", i) for i in range(len(planets))] and is_whole(one[1])
-        }
+        numbered = [("planet", i) for i in range(len(planets))]
+        former = {one: planets[one[1]] for one in given if one in numbered and is_whole(one[1])}
         for old, new in former.items():
             warn_renamed(f"{what} of {old}", repr(new))
         given = {former.get(name, name): value for name, value in given.items()}
@@ -165,16 +164,13 @@ class PlanetaryCase:
             if not isinstance(name, str) or name not in ("sun", "planet", "ring", *planets):
                 raise ValueError(f"{what} of {name!r}, but give 'sun', 'planet', 'ring', or one planet: {', '.join(planets)}")
             value = given[name]
-            if not single:
-                if not isinstance(value, (list, tuple)):
-                    raise ValueError(f"{what} of {name!r} = {value!r}, but give a list, also for a single entry")
-                value = tuple(value)
+            if not single and not isinstance(value, (list, tuple)):
+                raise ValueError(f"{what} of {name!r} = {value!r}, but give a list, also for a single entry")
+            value = value if single else tuple(value)
             for entry in (value,) if single else value:
                 if not isinstance(entry, kind):
-                    nouns = [one.__name__ for one in get_args(kind) or (kind,)]
-                    raise ValueError(
-                        f"{what} of {name!r}: {entry!r} is no {' nor a '.join(nouns)}; a section allows no other type"
-                    )
+                    nouns = " nor a ".join(one.__name__ for one in get_args(kind) or (kind,))
+                    raise ValueError(f"{what} of {name!r}: {entry!r} is no {nouns}; a section allows no other type")
             out |= dict.fromkeys(planets, value) if name == "planet" else {name: value}
         return Frozen(out)
 

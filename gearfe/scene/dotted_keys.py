@@ -40,15 +40,14 @@ def find_key(dotted: str, tables: Tables) -> Key:
             raise ValueError(f"{dotted!r}: there is no {part!r}; there is {', '.join(names) or 'nothing'}")
         if inner is not None:
             home, inner = inner[part], None
-            continue
-        key = table.keys[part]
-        if not key.of:
-            if parts[i + 1 :] and not (key.type in LISTS and len(parts) == i + 2 and parts[-1].isdigit()):
+        elif not (key := table.keys[part]).of:
+            rest = parts[i + 1 :]
+            if rest and not (key.type in LISTS and len(rest) == 1 and rest[0].isdigit()):
                 raise ValueError(f"{dotted!r} names no single value; write for instance {'.'.join(parts[: i + 1])}")
             return key
-        home, table = (home or {}).get(part) or {}, schema[key.of]
-        if key.type != "table":
-            inner = {row["case"]: row for row in home} if key.type == "listed" else home
+        else:
+            home, table = (home or {}).get(part) or {}, schema[key.of]
+            inner = None if key.type == "table" else {row["case"]: row for row in home} if key.type == "listed" else home
     end = "KEY" if inner is None else f"{next(iter(inner), 'NAME')}.KEY"
     raise ValueError(f"{dotted!r} names no single value; write for instance {dotted}.{end}")
 

@@ -146,13 +146,18 @@ class KeyTable:
             stated = (f"{name} ({self.keys[name].label})" for name in self.one_of)
             yield f"give {' or '.join(stated)}, one of them"
         yield from (f"{one} and {two} exclude each other: give one" for one, two in self.exclude if {one, two} <= given)
-        kind, of_kinds = row.get("kind"), [key for key in self.keys.values() if key.kinds]
-        has = ", ".join(key.name for key in of_kinds if kind in key.kinds) or "no other key"
-        missing = (key.name for key in of_kinds if key.needed and kind in key.kinds and key.name not in given)
-        yield from (f"kind = {kind!r} needs {name}" for name in missing)
-        wrong = (key.name for key in of_kinds if kind not in key.kinds and key.name in given)
-        yield from (f"kind = {kind!r} has no {name}; expected {has}" for name in wrong)
+        yield from self._of_kind(row.get("kind"), given)
         yield from (f"give {one} and {two} together" for one, two in self.together if (one in given) != (two in given))
+
+    def _of_kind(self, kind, given):
+        """Yield what a row of a kind lacks or must not have."""
+        of_kinds = [key for key in self.keys.values() if key.kinds]
+        own = [key for key in of_kinds if kind in key.kinds]
+        has = ", ".join(key.name for key in own) or "no other key"
+        yield from (f"kind = {kind!r} needs {key.name}" for key in own if key.needed and key.name not in given)
+        yield from (
+            f"kind = {kind!r} has no {key.name}; expected {has}" for key in of_kinds if key not in own and key.name in given
+        )
 
 
 @cache

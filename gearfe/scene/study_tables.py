@@ -27,14 +27,16 @@ def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
     gears = {chosen.get(name) for name in ("gear_1", "gear_2")}
     out: Tables = {name: tables[name] for name in ("title", "source") if name in tables}
     out |= {"pair": {pair: chosen}, "gear": {name: table for name, table in tables["gear"].items() if name in gears}}
-    for kind, key in scene_schema()["scene"].keys.items():
-        if not key.of or "gear" not in scene_schema()[key.of].keys:
-            continue
-        wanted = lambda row: row.get("gear") in gears and row.get("pair") in (None, pair) and row.get("case", case) == case  # noqa: E731
-        if key.type == "listed":
-            out[kind] = [row for row in tables.get(kind, []) if wanted(row)]
-        else:
-            out[kind] = {name: row for name, row in tables.get(kind, {}).items() if wanted(row)}
+
+    def wanted(row):
+        return row.get("gear") in gears and row.get("pair") in (None, pair) and row.get("case", case) == case
+
+    schema = scene_schema()
+    for kind, key in schema["scene"].keys.items():
+        if key.of and "gear" in schema[key.of].keys:
+            rows = tables.get(kind, {})
+            listed = key.type == "listed"
+            out[kind] = list(filter(wanted, rows)) if listed else {name: row for name, row in rows.items() if wanted(row)}
     used = {row.get("material") for kind in ("gear", "shaft") for row in out[kind].values()}
     return out | {"material": {name: table for name, table in tables["material"].items() if name in used}}
 

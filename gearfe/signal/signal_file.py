@@ -139,26 +139,21 @@ def read_signals(
     units = stated.pop("unit", units)
     recording = channels(path, stated.pop("header", None))
     pulse = None if tachometer is None else _choose(path, recording, tachometer)
-    if columns is None:
-        names = [channel for channel in recording.channels() if channel != pulse]
-    else:
-        names = [_choose(path, recording, column) for column in columns]
+    every = [channel for channel in recording.channels() if channel != pulse]
+    names = every if columns is None else [_choose(path, recording, column) for column in columns]
     if not names:
         _choose(path, recording, None)
     if not isinstance(units, Mapping):  # used for the channels without a unit; for a single one it must agree with the file
         units = {name: units for name in names if units and (len(names) == 1 or not recording.units.get(name))}
-    unknown = [name for name, unit in units.items() if name not in recording.vectors and unit is not None]
-    if unknown:
+    if unknown := [name for name, unit in units.items() if name not in recording.vectors and unit is not None]:
         raise ValueError(f"{path}: units for {', '.join(map(repr, unknown))}, but it has {recording.told()}")
     out = {name: signal_of(path, recording, name, unit=units.get(name), **stated) for name in names}
     if pulse is None:
         return _aligned(path, recording, out)
     times = recording.vectors[pulse]
     if times.size < min(channel.values.size for channel in out.values()) and (np.diff(times) > 0).all():
-        return {
-            name: with_tachometer(channel, times - recording.starts.get(name, 0.0), pulses, ratio=ratio)
-            for name, channel in out.items()
-        }
+        starts = {name: times - recording.starts.get(name, 0.0) for name in out}
+        return {name: with_tachometer(channel, starts[name], pulses, ratio=ratio) for name, channel in out.items()}
     clock = signal_of(path, recording, pulse, unit=None if recording.units.get(pulse) else "1", rate=stated.get("rate"))
     out = _aligned(path, recording, {**out, pulse: clock})
     clock = out.pop(pulse)

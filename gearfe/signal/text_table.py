@@ -127,9 +127,11 @@ def _way(rows, given):
     """
     best, most, looked = None, (0, False), rows[-LOOKED:]
     marks = [(mark, "") for mark in GROUPS] + [(mark, group) for mark, groups in GROUPS.items() for group in groups]
-    for (mark, group), separator in product(marks, SEPARATORS):
-        if group and separator in (None, mark):  # a mark between thousands that is the separator ends a cell
-            continue
+    # a mark between thousands that is the separator ends a cell
+    ways = [
+        (*mark, separator) for mark, separator in product(marks, SEPARATORS) if not mark[1] or separator not in (None, mark[0])
+    ]
+    for mark, group, separator in ways:
         way = Way(separator, mark, group)
         counts = Counter(n for _, line in looked if (n := way.numbers(line)))
         count = max(counts, key=counts.__getitem__, default=0)
@@ -159,9 +161,9 @@ def _names(titles, comments, way, found):
     last = way.cells(titles[-1]) if titles else []
     if last and (len(last) == way.columns or (not rows and len(last) > 1)):
         return last  # a header whose count does not fit is reported with the first row
-    said = [cells for cells in said if len(cells) > 1 or (cells[0].endswith("]") and not {":", "="} & {*cells[0]})]
-    if said:
-        return said[-1]
+    for cells in reversed(said):
+        if len(cells) > 1 or (cells[0].endswith("]") and not {":", "="} & {*cells[0]}):
+            return cells
     if way.columns == 1:
         return ["signal"]
     found.hint = f"{way.columns} columns without names; give header=, 'time [s], acceleration [m/s^2]'"

@@ -73,7 +73,7 @@ def check_broken(gear, defects):
     gone = sorted({one.tooth % gear.z for one in broken if isinstance(one, MissingTooth)})
     for one in broken:
         if isinstance(one, Chip):
-            one.cut(gear)
+            one.outline(gear)
         for defect in defects:
             if defect != one and (defect.tooth - one.tooth) % gear.z == 0:
                 said = "is missing" if isinstance(one, MissingTooth) else "has a chip"

@@ -85,10 +85,11 @@ def _tip(gear, side, chip):
         return [("arc", [gear.r_a] * 2, np.array([0.0, gear.half_thickness(gear.r_a)]), False)]
     out = []
     for _, place in chip.top(gear, side):
-        x, y = place(np.array([0.0, 0.5, 1.0]))
+        x, y = place(np.linspace(0, 1, 17))
         radius = np.hypot(x, y)
-        kind = "arc" if np.ptp(radius) < 1e-9 * gear.r_a else "line"
-        out.append((kind, radius[::2], np.arctan2(x, y)[::2], False))
+        kind = "arc" if np.ptp(radius) < 1e-9 * gear.r_a else "line" if chip.radius is None else "spline"
+        points = slice(None, None, 1 if kind == "spline" else 16)
+        out.append((kind, radius[points], np.arctan2(x, y)[points], False))
     return out
 
 

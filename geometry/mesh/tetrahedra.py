@@ -74,18 +74,7 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
         lines = [make[kind]([tags[i] for i in at]) for kind, at in curves]
         flat = [occ.addPlaneSurface([occ.addCurveLoop([lines[i] for i in loop]) for loop in loops]) for loops in faces]
         prisms = [next(entity for entity in occ.extrude([(2, face)], 0, 0, height) if entity[0] == 3) for face in flat]
-        plugs = [_cylinder(occ, *cylinder) for cylinder in cylinders]
-        if len(prisms) + len(plugs) > 1:
-            _, made = occ.fragment(prisms[:1], prisms[1:] + plugs)
-        else:
-            made = [prisms]
-        owner, outside = {}, set()
-        for face, solids in enumerate(made[: len(prisms)]):
-            owner |= {tag: (face, -1) for _, tag in solids}
-        for plug, solids in reversed([*enumerate(made[len(prisms) :])]):
-            outside |= {tag for _, tag in solids if tag not in owner}
-            owner |= {tag: (owner[tag][0], plug) for _, tag in solids if tag in owner}
-        occ.remove([(3, tag) for tag in outside], recursive=True)
+        owner = _pieces(occ, prisms, [_cylinder(occ, *cylinder) for cylinder in cylinders])
         occ.remove([(0, centre)])
         occ.synchronize()
         volume = {}
@@ -109,6 +98,19 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
     label = np.repeat([*cells], [sum(map(len, parts)) for parts in cells.values()], axis=0)
     used, tets = np.unique(tets, return_inverse=True)
     return Pieces(coords.reshape(-1, 3)[used].T, tets.reshape(-1, 4).T, *label.T, volume)
+
+
+def _pieces(occ, prisms, plugs):
+    """Cut prisms and plugs into pieces: face and plug by number of the piece.
+
+    Parts of plugs outside of all prisms are removed.
+    """
+    made = occ.fragment(prisms[:1], prisms[1:] + plugs)[1] if len(prisms) + len(plugs) > 1 else [prisms]
+    owner = {tag: (face, -1) for face, solids in enumerate(made[: len(prisms)]) for _, tag in solids}
+    cut = [(tag, plug) for plug, solids in reversed([*enumerate(made[len(prisms) :])]) for _, tag in solids]
+    owner |= {tag: (owner[tag][0], plug) for tag, plug in cut if tag in owner}
+    occ.remove([(3, tag) for tag in {tag for tag, _ in cut if tag not in owner}], recursive=True)
+    return owner
 
 
 def _cylinder(occ, outline, push):

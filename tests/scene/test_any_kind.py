@@ -75,7 +75,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
         },
     ],
     "missing_tooth": [{"case": "missing", "gear": "sun", "tooth": 3}],
-    "chip": [{"case": "chipped", "gear": "sun", "tooth": 3, "pair": "stage", "depth_mm": 0.5, "angle_deg": 60.0}],
+    "chip": [{"case": "chipped", "gear": "sun", "tooth": 3, "pair": "stage", "depth_mm": 0.5, "radius_mm": 2.0}],
     "spall": [
         {
             "case": "spalled", "gear": "sun", "radius_mm": 20.8, "z_mm": 10.0, "sides_mm": [1.0, 4.0], "depth_mm": 0.2,

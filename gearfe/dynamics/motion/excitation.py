@@ -55,27 +55,23 @@ def _columns(rows, **types):
 
 def flatten(machine, times):
     """`Flat` of a machine. Loads that are functions are sampled at `times` and linear between."""
-    cells, end = [np.zeros((1, 4))], 1
-    whole, number = np.int64, float
-
-    def laid_out(entries):
-        nonlocal end
-        rows = []
-        for mesh, period, first, table in entries:
-            rows.append((mesh, period, first, table.start, table.width, end, len(table.cells)))
-            cells.append(table.cells)
-            end += len(table.cells)
-        kinds = {"period": number, "first": number, "start": number, "width": number, "place": whole, "size": whole}
-        return _columns(rows, mesh=whole, **kinds)
-
-    meshes = machine.meshes
+    whole, number, meshes = np.int64, float, machine.meshes
     knots = [_knots(load, times) for load in machine.loads]
-    laws = [m.secants[0] if m.secants else None for m in meshes]
-    laws += [m.secants[1 + j] if m.secants else None for m in meshes for j in range(len(m.changes))]
+    secants = [m.secants or (None,) * (1 + len(m.changes)) for m in meshes]
+    laws = [one[0] for one in secants] + [
+        law for one, m in zip(secants, meshes, strict=True) for law in one[1 : 1 + len(m.changes)]
+    ]
     errors = [(i, size, 2 * math.pi * f, angle) for i, m in enumerate(meshes) for size, f, angle in m.openings]
-    tables = [laid_out((i, 1.0, 0.0, m.cycle) for i, m in enumerate(meshes))]
-    tables += [laid_out((i, *one) for i, m in enumerate(meshes) for one in getattr(m, kind)) for kind in ("changes", "shifts")]
-    tables.append(laid_out((i, 1.0, 0.0, weight) for i, m in enumerate(meshes) for _, weight in m.friction))
+    groups = [[(i, 1.0, 0.0, m.cycle) for i, m in enumerate(meshes)]]
+    groups += [[(i, *one) for i, m in enumerate(meshes) for one in getattr(m, kind)] for kind in ("changes", "shifts")]
+    groups.append([(i, 1.0, 0.0, weight) for i, m in enumerate(meshes) for _, weight in m.friction])
+    cells = [np.zeros((1, 4)), *(table.cells for group in groups for *_, table in group)]
+    places = iter(np.cumsum([*map(len, cells)]).tolist())
+    kinds = {"period": number, "first": number, "start": number, "width": number, "place": whole, "size": whole}
+    tables = [
+        _columns([(*at, one.start, one.width, next(places), len(one.cells)) for *at, one in group], mesh=whole, **kinds)
+        for group in groups
+    ]
     return Flat(
         np.concatenate(cells),
         np.array([m.frequency for m in meshes], dtype=float),

@@ -1,7 +1,7 @@
 """Slices of the tooth pairs along their contact lines: places and weights of an exact integral over the width."""
 
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import product
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -74,18 +74,12 @@ def stations(case, phase, *, lost="hertz", edges=None):
     edges = edges(order) if edges and lag > 0 else {}
     pitted = any(p.side == "loaded" for found in pits for p in found)
     if lag == 0 and not pitted:  # one station for each pair on the path of contact
-        found = flank_contacts(pair, phase, extended=False, flanks=flanks)
-        i, j = np.nonzero(np.isfinite(found.gap))
-        whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
-        gap = None if flanks is None else found.gap[i, j]
-        return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size), gap)
+        return _on_path(pair, phase, flanks, bands)
     rows, taken = [], {} if lost == "summed" else _taken(pair, phase, order, pits, bands)
     summed = _summed(pair, order, pits, bands) if lost == "summed" else np.zeros((order.size, len(bands)))
-    for i, p in enumerate(phase):
-        for j, number in enumerate(order):
-            for k, band in enumerate(bands):
-                found = _line(pair, p + number, taken.get((i, j, k), ()), band, lost, edges.get(number, ()), 1 - summed[j, k])
-                rows += [np.column_stack([np.full(len(f), i), np.full(len(f), j), f]) for f in found]
+    for (i, p), (j, number), (k, band) in product(enumerate(phase), enumerate(order), enumerate(bands)):
+        found = _line(pair, p + number, taken.get((i, j, k), ()), band, lost, edges.get(number, ()), 1 - summed[j, k])
+        rows += [np.column_stack([np.full(len(f), i), np.full(len(f), j), f]) for f in found]
     table = np.concatenate(rows) if rows else np.zeros((0, 6))
     (i, j), (roll, weight, touching) = table[:, :2].astype(int).T, table[:, 2:5].T
     roll_2, gap = pair.mate_roll(roll), None
@@ -95,6 +89,15 @@ def stations(case, phase, *, lost="hertz", edges=None):
         met = first_touch(pair, flanks, roll, order[j], np.zeros(roll.size), z)
         roll, roll_2, gap = met.roll_1, met.roll_2, met.gap
     return Stations(order, i, j, roll, roll_2, weight, touching, gap)
+
+
+def _on_path(pair, phase, flanks, bands):
+    """`Stations` of a spur pair without pits."""
+    found = flank_contacts(pair, phase, extended=False, flanks=flanks)
+    i, j = np.nonzero(np.isfinite(found.gap))
+    whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
+    gap = None if flanks is None else found.gap[i, j]
+    return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size), gap)
 
 
 def _taken(pair, phase, order, pits, bands):
@@ -132,32 +135,23 @@ def _summed(pair, order, pits, bands):
 def _line(pair, place, taken, band, lost, edges, kept_part=1.0):
     """Stations (pinion roll, weight, touching, height) of one pair whose slice at the first end is at phase `place`."""
     first, last, lag = band
-    slack = 1e-9
-    low, high = 0.0, 1.0
-    if lag > 0:
-        low, high = max((place - pair.eps_alpha) / lag, 0.0), min(place / lag, 1.0)
-    elif not -slack <= place < pair.eps_alpha + slack:
+    low, high = (max((place - pair.eps_alpha) / lag, 0.0), min(place / lag, 1.0)) if lag > 0 else (0.0, 1.0)
+    if high <= low or (lag == 0 and not -1e-9 <= place < pair.eps_alpha + 1e-9):
         return []
-    if high <= low:
-        return []
-    start = pair.path[0]
-    roll = np.array([start + place * pair.p_bt, start + (place - lag) * pair.p_bt])
-    width = min(pair.gear_1.b, pair.gear_2.b)
-    taken = [(max(a, low), min(b, high)) for a, b in taken if min(b, high) > max(a, low)]
-    kinks = [(roll[0] - r) / (roll[0] - roll[1]) for r in edges] if lag > 0 else []
-    places = np.unique([low, high, *(t for t in kinks if low < t < high), *(t for part in taken for t in part)])
-    parts = list(pairwise(places))
-    under = [any(a <= (s + e) / 2 <= b for a, b in taken) for s, e in parts]
-    left = sum(e - s for (s, e), gone in zip(parts, under, strict=True) if not gone) / (high - low)
+    roll = pair.path[0] + np.array([place, place - lag]) * pair.p_bt
+    taken = np.clip(np.reshape(taken, (-1, 2)), low, high)
+    kinks = (roll[0] - np.array(edges if lag > 0 else ())) / (roll[0] - roll[1])
+    places = np.unique([low, high, *kinks[(kinks > low) & (kinks < high)], *taken.ravel()])
+    s, e = places[:-1], places[1:]
+    middle = (s + e)[:, None] / 2
+    gone = ((taken[:, 0] <= middle) & (middle <= taken[:, 1])).any(axis=1)
+    left = (e - s)[~gone].sum() / (high - low)
     if left < 1e-12:
         return []
-    out, share = [], abs(last - first) / width
-    for (s, e), gone in zip(parts, under, strict=True):
-        if gone and lost == "slices":
-            continue
-        points, weights = SHORT if 0 < lag * (e - s) < 0.25 else RULES[lag > 0]
-        t = s + (e - s) * (1 + points) / 2
-        at = roll[0] + (roll[1] - roll[0]) * t
+    out, share = [], abs(last - first) / min(pair.gear_1.b, pair.gear_2.b)
+    for start, length in np.column_stack([s, e - s])[~gone if lost == "slices" else slice(None)].tolist():
+        points, weights = SHORT if 0 < lag * length < 0.25 else RULES[lag > 0]
+        t = start + length * (1 + points) / 2
         kept, z = np.full(t.size, left if lost == "hertz" else kept_part), first + (last - first) * t
-        out.append(np.column_stack([at, share * (e - s) / 2 * weights, kept, z]))
+        out.append(np.column_stack([roll[0] + (roll[1] - roll[0]) * t, share * length / 2 * weights, kept, z]))
     return out

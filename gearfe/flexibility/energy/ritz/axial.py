@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import legendre
+from scipy.linalg import block_diag
 
 from ...halfspace import modes
 
@@ -61,73 +62,71 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
         Of each crack, if its depth changes along the width: nodes near it have its depth as a function too.
     """
     fronts = tuple(fronts) or (None,) * len(parts)
+    bands = sorted({band for where in parts for band in where or ()})
+    degrees = {band: max(OPEN[0], math.ceil(OPEN[1] * (band[1] - band[0]) / m_n) + 2) for band in bands}
+    fine = _fine(bands, width, m_n, parts, fronts)
     kinks = [z for front in fronts if front for z in front.kinks()]
-    bands = sorted({band for where in parts if where for band in where})
-    degrees = [max(OPEN[0], math.ceil(OPEN[1] * (high - low) / m_n) + 2) for low, high in bands]
-    shallow = {
-        end for front, where in zip(fronts, parts, strict=True) if front for end in np.ravel(where or ()) if front.runs_out(end)
-    }
-    fine = {
-        (band, k): _steps(band, k, width, m_n, band[k] in shallow)
-        for band in bands
-        for k in (0, 1)
-        if 1e-9 * width < band[k] < width * (1 - 1e-9)
-    }
-    ends = np.unique(
-        [0.0, width, *kinks, *(end for band in bands for end in band), *(at for where in fine.values() for at in where)]
-    )
-    ends = ends[np.append(True, np.diff(ends) > 1e-12 * width)]
-    gauss, weight = legendre.leggauss(max([degree, *degrees]) + 1 + (FRONT if kinks else 0))
-    half = np.diff(ends)[:, None] / 2
-    z = (ends[:-1, None] + half * (1 + gauss)).ravel()
-    weight = (half * weight).ravel()[:, None]
-    value, rise = _whole(z, width, degree)
-    columns, slopes, first = [value], [rise], degree + 1
-    opening, pushing = {}, {}
-    for band, order in zip(bands, degrees, strict=True):
-        for made, kind in ((_open(z, band, order, width), opening), (_pushing(z, band, order), pushing)):
-            columns.append(made[0])
-            slopes.append(made[1])
-            kind[band] = np.arange(first, first + made[0].shape[1])
-            first += made[0].shape[1]
-    short, inside = {}, {}
+    ends = [0.0, width, *kinks, *(end for band in bands for end in band), *(at for where in fine.values() for at in where)]
+    z, weight = _gauss(np.unique(ends), width, max([degree, *degrees.values()]) + 1 + (FRONT if kinks else 0))
+    columns = _Columns()
+    every = columns.add(*_whole(z, width, degree))
+    # of each band, and of None, a crack that is open over the whole width
+    opening, pushing, short = {None: [every]}, {None: every[: PUSHING + 1]}, {None: []}
+    for band, order in degrees.items():
+        opening[band], short[band] = [columns.add(*_open(z, band, order, width))], []
+        pushing[band] = columns.add(*_pushing(z, band, order))
     for (band, k), places in fine.items():
-        made, where = _short(z, places, band[k], 1 - 2 * k)
-        columns.append(made[0])
-        slopes.append(made[1])
-        number = np.arange(first, first + where.size)
-        short.setdefault(band, []).append(number)
-        inside.setdefault(band, []).append(number[where])
-        first += where.size
-    depths = {}
-    for i, front in enumerate(fronts):
-        if front and front.sharp:
-            made = _depth(z, weight, front, columns[0], slopes[0])
-            columns.append(made[0])
-            slopes.append(made[1])
-            depths[i] = np.arange(first, first + made[0].shape[1])
-            first += made[0].shape[1]
-    value, rise = np.hstack(columns), np.hstack(slopes)
-    every = np.arange(degree + 1)
+        made, inside = _short(z, places, band[k], 1 - 2 * k)
+        short[band].append(columns.add(*made))
+        opening[band].append(short[band][-1][inside])
     sets, points, at = [every], [], []
-    for i, where in enumerate(parts):
-        where = where or ()
-        sets.append(
-            np.concatenate([part for band in where for part in (opening[band], *inside.get(band, ()))]) if where else every
-        )
-        sets.append(np.concatenate([pushing[band] for band in where]) if where else every[: PUSHING + 1])
-        sets.append(np.concatenate([every, *(part for band in where for part in short.get(band, ())), depths.get(i, every[:0])]))
-        sets.append(np.append(every, depths.get(i, every[:0])))
-        place, matrix = _points(
-            where or ((0.0, width),), [degrees[bands.index(band)] for band in where] or [min(degree, PUSHING)]
-        )
+    for front, where in zip(fronts, parts, strict=True):
+        bands = where or (None,)
+        sharp = front and front.sharp
+        moved = columns.add(*_depth(z, weight, front, columns.value[0], columns.rise[0])) if sharp else every[:0]
+        sets.append(np.concatenate([part for band in bands for part in opening[band]]))
+        sets.append(np.concatenate([pushing[band] for band in bands]))
+        sets += [np.concatenate([every, *(part for band in bands for part in short[band]), moved]), np.append(every, moved)]
+        place, matrix = _points(where or ((0.0, width),), [degrees.get(band, min(degree, PUSHING)) for band in bands])
         points.append(place)
         at.append(matrix)
     sets += [every[: k + 1] for k in range(degree + 1)]
+    value, rise = np.hstack(columns.value), np.hstack(columns.rise)
     mass = value.T @ (weight * value)
     mass[: degree + 1, : degree + 1] = np.eye(degree + 1)
     mixed, slope = value.T @ (weight * rise), rise.T @ (weight * rise)
     return Axial(mass, mixed, slope, tuple(sets), tuple(points), tuple(at), z, weight[:, 0], value, rise)
+
+
+class _Columns:
+    """Functions and their slopes at the Gauss points, block by block."""
+
+    def __init__(self):
+        self.value, self.rise, self.count = [], [], 0
+
+    def add(self, value, rise):
+        """Add functions ``(points, n)`` and return their numbers ``(n,)``."""
+        self.value.append(value)
+        self.rise.append(rise)
+        self.count += value.shape[1]
+        return np.arange(self.count - value.shape[1], self.count)
+
+
+def _fine(bands, width, m_n, parts, fronts):
+    """Places of the short cubics by band and its end inside the gear (0 or 1)."""
+    shallow = {
+        end for front, where in zip(fronts, parts, strict=True) if front for end in np.ravel(where or ()) if front.runs_out(end)
+    }
+    ends = [(band, k) for band in bands for k in (0, 1) if 1e-9 * width < band[k] < width * (1 - 1e-9)]
+    return {(band, k): _steps(band, k, width, m_n, band[k] in shallow) for band, k in ends}
+
+
+def _gauss(ends, width, count):
+    """Gauss points ``(q,)`` [mm] and weights ``(q, 1)``, `count` of them between every two of the sorted `ends`."""
+    ends = ends[np.append(True, np.diff(ends) > 1e-12 * width)]
+    gauss, weight = legendre.leggauss(count)
+    half = np.diff(ends)[:, None] / 2
+    return (ends[:-1, None] + half * (1 + gauss)).ravel(), (half * weight).ravel()[:, None]
 
 
 def _whole(z, width, degree):
@@ -223,9 +222,4 @@ def _points(bands, degrees):
         z = (high - low) * (1 + legendre.leggauss(degree + 1)[0]) / 2
         places.append(low + z)
         blocks.append(modes(z, high - low, degree))
-    out = np.zeros((sum(b.shape[0] for b in blocks), sum(b.shape[1] for b in blocks)))
-    row = column = 0
-    for block in blocks:
-        out[row : row + block.shape[0], column : column + block.shape[1]] = block
-        row, column = row + block.shape[0], column + block.shape[1]
-    return np.concatenate(places), out
+    return np.concatenate(places), block_diag(*blocks)
