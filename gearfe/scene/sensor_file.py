@@ -9,7 +9,7 @@ from ..geometry.checks import shown
 
 
 def with_frf(file: Any, tables: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of a scene's `file`, with the columns of the files that ``[sensor.NAME] frf`` names, beside it."""
+    """Return the tables of a scene's `file`, with the columns of the files that ``[sensor.NAME] frf`` names."""
     sensors = tables.get("sensor")
     rows = sensors.items() if isinstance(sensors, dict) else ()
     named = {name: row for name, row in rows if isinstance(row, dict) and isinstance(row.get("frf"), str)}

@@ -95,13 +95,12 @@ def test_a_measured_path_beside_the_scene_file(run, tmp_path):
 
 
 def test_gain_is_the_amplitude_of_lines():
-    """A harmonic force through the modes, by the sensor of a measured path and by its own modes."""
-    sensor = gf.Sensor(("force left",), modes=tuple(zip(*MODE.values(), strict=True)))
-    time, f = np.arange(40_000) / 40_000.0, np.array([500.0, 905.0, 2300.0])
+    """A harmonic force through the modes, sampled so often that lines between samples are the sine."""
+    sensor, rate = gf.Sensor(("force left",), modes=tuple(zip(*MODE.values(), strict=True))), 400_000.0
+    time, f = np.arange(200_000) / rate, np.array([500.0, 905.0, 2300.0])
     for at, gain in zip(f, sensor.gain(f), strict=True):
-        heard = gf.through_modes(gf.Signal(np.sin(2 * math.pi * at * time), 40_000.0, "N"), sensor.modes).values[20_000:]
-        straight = np.sinc(at / 40_000.0) ** 2  # of lines between samples
-        assert_allclose(np.sqrt(2) * heard.std(), straight * abs(gain), rtol=1e-6)
+        heard = gf.through_modes(gf.Signal(np.sin(2 * math.pi * at * time), rate, "N"), sensor.modes).values[80_000:]
+        assert_allclose(np.sqrt(2) * heard.std(), abs(gain), rtol=1e-4)
 
 
 def test_a_scene_with_sensors_reaches_the_machine_and_its_damaged_case():

@@ -1,4 +1,4 @@
-"""What a `Sensor` of a machine receives of a response."""
+"""Signals of the sensors of a machine, computed from a response."""
 
 import re
 
