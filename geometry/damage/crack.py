@@ -23,11 +23,11 @@ from ..tooth.profile import (
 )
 from .given import finite, tooth_and_side
 
-TANGENTS = {"30deg": math.pi / 6, "60deg": math.pi / 3}  # angle between tangent and centre-line of the tooth
+TANGENTS = {"30deg": math.pi / 6, "60deg": math.pi / 3}  # angle between the fillet tangent and the centre-line of the tooth [rad]
 STARTS = (*TANGENTS, "root", "middle")
-SLACK = 1e-9  # tolerance for rounding of the open part of a crack
-SECTOR = 0.9  # part of a pitch within which a sector can be meshed with a polyline
-SHORTEST = 1e-4  # length of the shortest crack [m_n]: k falls by 1e-5, and meshes are not finer
+SLACK = 1e-9  # rounding tolerance of the open part of a crack
+SECTOR = 0.9  # part of a pitch in which a polyline crack can be meshed
+SHORTEST = 1e-4  # shortest crack [m_n]; it changes k by 1e-5, and no mesh resolves less
 
 
 @dataclass(frozen=True, slots=True)
