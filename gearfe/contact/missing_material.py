@@ -21,7 +21,7 @@ from ..flexibility.end_faces import edge_factor
 from ..flexibility.halfspace import half_space
 from ..geometry.aliases import Floats
 
-APART = 1e-9  # gap over the width of a cell beyond which a recess lies between two cells
+APART = 1e-9  # gap relative to the cell width beyond which a recess lies between two cells
 
 
 def missing_material(case: Any, found: Any) -> Floats:

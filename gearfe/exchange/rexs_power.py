@@ -9,7 +9,7 @@ import numpy as np
 from .rexs_file import Component, Model
 
 COUPLED = ("coupling", "switchable_coupling")
-KNOWN = 1e-9  # tolerance of the torque balance, and of undetermined values (null space)
+KNOWN = 1e-9  # tolerance of the torque balance and of undetermined values
 
 
 class PowerMesh(NamedTuple):
@@ -108,7 +108,7 @@ class Power:
             return {}
         solution, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=1e-12)
         if np.abs(matrix @ solution - right).max() > KNOWN * np.abs(right).max():
-            return {}  # the stated torques do not balance
+            return {}  # The stated torques are not in balance.
         open_ = np.abs(np.linalg.svd(matrix)[2][rank:]).max(axis=0, initial=0.0) > KNOWN
         forces = zip(meshes, np.abs(solution).tolist(), open_, strict=False)
         return {mesh.name: force for mesh, force, unknown in forces if force and not unknown}

@@ -72,7 +72,7 @@ def batch(
     if not cases or not all(isinstance(case, (Case, Mapping)) for case in cases):
         raise ValueError("cases: give a list of one Case or dict at least")
     if getattr(multiprocessing.current_process(), "_inheriting", False):
-        sys.exit(1)  # a worker has imported an unguarded script; the parent process prints the remedy
+        sys.exit(1)  # A worker imported an unguarded script, and the parent process prints the remedy.
     workers = count_of(workers, cases)
     of_script = workers > 1 and _of_script(work, cases)
     started, tally = time.perf_counter(), Tally("cases", len(cases), progress)

@@ -16,7 +16,7 @@ from .series import Signal
 from .tachometer import SPEEDS, with_speed_record, with_tachometer
 from .text_table import text_table
 
-LONGEST = 60  # characters of a unit
+LONGEST = 60  # longest unit [characters]
 READERS = {
     ".npz": array_file, ".mat": array_file, ".h5": hdf_file, ".hdf5": hdf_file, ".wav": wav_file, ".uff": uff_file,
     ".unv": uff_file, ".uf": uff_file, ".tdms": tdms_file, ".parquet": parquet_file,
@@ -143,7 +143,8 @@ def read_signals(
     names = every if columns is None else [_choose(path, recording, column) for column in columns]
     if not names:
         _choose(path, recording, None)
-    if not isinstance(units, Mapping):  # used for the channels without a unit; for a single one it must agree with the file
+    # A single unit applies to the channels without a unit and must agree with the file for a single channel.
+    if not isinstance(units, Mapping):
         units = {name: units for name in names if units and (len(names) == 1 or not recording.units.get(name))}
     if unknown := [name for name, unit in units.items() if name not in recording.vectors and unit is not None]:
         raise ValueError(f"{path}: units for {', '.join(map(repr, unknown))}, but it has {recording.told()}")

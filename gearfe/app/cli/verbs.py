@@ -55,8 +55,9 @@ def stiffness(arguments):
         with part("", 0.0, 0.8 if scene.set else 1.0):
             found = beside_health(case, how, returns=returns_of(scene, name, arguments.case))
         in_set = ""
-        if scene.set is not None and METHODS[found.reference.meta["method"]].converged:  # closed forms need no mesh
-            from ...comparison.told_set import told_in_set  # only sets need it: 0.1 s
+        # Closed forms need no solution of the whole set.
+        if scene.set is not None and METHODS[found.reference.meta["method"]].converged:
+            from ...comparison.told_set import told_in_set  # imported here, because only sets need it and it takes 0.1 s
 
             with part("stiffness in the whole set", 0.8, 1.0):
                 in_set = told_in_set(scene, name, found.reference)

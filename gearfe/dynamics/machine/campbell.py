@@ -15,7 +15,7 @@ from .modes import natural_frequencies
 from .tables import Machine
 
 MOST_HARMONICS = 1000  # limit of the harmonics of a mesh
-FASTEST = 50.0  # limit of the relative speed: a larger number is probably in rpm
+FASTEST = 50.0  # limit of the relative speed, because a larger number is probably in rpm
 
 
 class Crossing(NamedTuple):
@@ -129,7 +129,7 @@ def _orders(machine, harmonics):
         lines = {"driving gear": source.turning, "damaged tooth": source.fault, "carrier": source.carrier}
         out |= {name if single else f"{name} {source.name}": value for name, value in lines.items() if value}
     unique: dict[float, str] = {}
-    for name, value in out.items():  # meshes with the same frequency share one line
+    for name, value in out.items():  # Meshes with the same frequency share one line.
         unique.setdefault(round(value, 9), name)
     return {name: value for name, value in out.items() if name in unique.values()}
 
