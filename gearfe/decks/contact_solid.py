@@ -15,7 +15,7 @@ from ..geometry.mesh.holes import SIZES as HOLES
 from ..geometry.mesh.holes import filled, holed_sector
 from ..geometry.mesh.relieved_solid import relieved_points
 from ..geometry.mesh.solid import solid
-from ..geometry.pair.broken import pair_at
+from ..geometry.pair.broken import ToothPairs
 from ..geometry.pair.contacts import FORM, Contacts, contacts
 from ..geometry.pair.contacts import touching as touching_sections
 from ..geometry.pair.gear_pair import GearPair
@@ -122,7 +122,7 @@ def touching(case: Case, phase: float, approach: float) -> Touching:
         candidates = _modified(pair, candidates, heights, forms)
     out = Touching([], [], ([], []), [], [], ([], []))
     for k, order in enumerate(candidates.order.tolist()):
-        own = pair_at(pair, case.broken, order)
+        own = ToothPairs(pair, case.broken)(order)
         if own is None:
             continue
         if own != pair:
