@@ -169,18 +169,14 @@ def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float
         gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
         low = -(gear.b - common) / 2
         teeth = [(1, -1)[number] * order % gear.z for order in touch.order]
-        # Near damage the load varies quickly along the width on both gears.
-        if any(hurt._removes_contact for hurt in (damages or damage[1 - number])):
+        # loads change quickly along the width on both gears
+        holed = any(hurt._removes_contact for hurt in (damages or damage[1 - number]))
+        if holed:
             cut = [_strip(gear, touch, number, k, tooth, low, fineness) for k, tooth in enumerate(teeth)]
             body = _holed(gear, damages, cut, how)
         else:
             patches = {tooth: [_patch(gear, touch, number, k, fineness)] for k, tooth in enumerate(teeth)}
-            fine = [(z, z, END * gear.b / how.layers) for z in (0.0, gear.b)]
-            options = {"layer": gear.b / how.layers, "loaded": teeth, "patches": patches, "fine": fine}
-            broken = case.broken[number]
-            mesh = solid(gear, cracks=case.cracks[number], broken=broken, refine=how.refine, sizes=SIZES, **options)
-            body = part_of(mesh)
-            body = replace(body, faces=body.faces | {f"fillet {tooth}": faces[:4] for tooth, faces in mesh.fillets.items()})
+            body = _layered(gear, case, number, patches, how)
         if forms is not None:
             body = replace(body, points=relieved_points(body.points, gear, forms[number], teeth))
         turn = float(pair.turn(nominal_at(pair, phase, low))[number])
@@ -224,6 +220,15 @@ def _strip(gear, found, number, k, tooth, low, per_width):
     radius, angle = flank(gear, found.rolls[number][k])
     line = np.array([*cartesian(radius, angle + 2 * math.pi * tooth / gear.z), found.heights[k] - low])
     return line, 1.5 * found.width[k], found.width[k] / per_width
+
+
+def _layered(gear, case, number, patches, how):
+    """Mesh a whole gear in layers of hexahedra, fine on the patches of the loaded teeth."""
+    fine = [(z, z, END * gear.b / how.layers) for z in (0.0, gear.b)]
+    options = {"layer": gear.b / how.layers, "loaded": list(patches), "patches": patches, "fine": fine}
+    mesh = solid(gear, cracks=case.cracks[number], broken=case.broken[number], refine=how.refine, sizes=SIZES, **options)
+    body = part_of(mesh)
+    return replace(body, faces=body.faces | {f"fillet {tooth}": faces[:4] for tooth, faces in mesh.fillets.items()})
 
 
 def _holed(gear: Gear, damage, strips, how) -> DeckBody:
