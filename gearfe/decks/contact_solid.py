@@ -169,7 +169,7 @@ def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float
         gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
         low = -(gear.b - common) / 2
         teeth = [(1, -1)[number] * order % gear.z for order in touch.order]
-        # loads change quickly along the width on both gears
+        # Near damage the load varies quickly along the width on both gears.
         holed = any(hurt._removes_contact for hurt in (damages or damage[1 - number]))
         if holed:
             cut = [_strip(gear, touch, number, k, tooth, low, fineness) for k, tooth in enumerate(teeth)]

@@ -168,7 +168,7 @@ def _names(titles, comments, way, found):
         return [f"{name} [{unit.strip('[]()')}]" for name, unit in zip(*rows[-2:], strict=True)]
     last = way.cells(titles[-1]) if titles else []
     if last and (len(last) == way.columns or (not rows and last[1:])):
-        return last  # a header whose count does not fit is reported with the first row
+        return last  # A header with the wrong number of columns is reported with the first row.
     if said := list(filter(_are_names, said)):
         return said[-1]
     if way.columns == 1:

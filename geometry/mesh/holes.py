@@ -114,7 +114,7 @@ def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, s
         finer_sizes = {name: value / finer for name, value in size.items()}
         try:
             made = _attempt(gear, pits, crack, section(gear, crack, teeth, broken), teeth, finer_sizes, strips, stretch)
-        except UnmeshedError:  # pits that touch leave thin walls
+        except UnmeshedError:  # Pits that touch leave thin walls, which a finer mesh may resolve.
             if finer == FINER[-1]:
                 raise
         else:

@@ -152,7 +152,7 @@ def _opened(points, triangles, chains, at):
     """Open the cracks: points, triangles, both faces of each crack, and the second node of each mouth by its first."""
     faces, doubles = [], {}
     for i, (start, line) in enumerate(chains):
-        if i % 2 == 0:  # every second chain only leads the mesh ahead of the tip
+        if i % 2 == 0:  # Odd chains only guide the mesh ahead of the crack tip.
             chain = np.append(start, at + np.arange(line.shape[1]))
             points, triangles, double = open_seam(points, triangles, chain)
             faces.append(np.array([chain, double]))

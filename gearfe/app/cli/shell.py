@@ -82,7 +82,7 @@ def _end_tidily(number, _):
 
 def _prepare():
     """Let the process end tidily on SIGTERM, and print characters that a stream cannot encode as text."""
-    with contextlib.suppress(ValueError):  # only the main thread can set signal handlers
+    with contextlib.suppress(ValueError):  # Python sets signal handlers only in the main thread.
         signal.signal(signal.SIGTERM, _end_tidily)
     codecs.register_error("spelled", spelled)
     for stream in (sys.stdout, sys.stderr):

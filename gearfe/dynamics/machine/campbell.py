@@ -126,7 +126,7 @@ def _orders(machine, harmonics):
     for source in stages:
         lines = {"driving gear": source.turning, "damaged tooth": source.fault, "carrier": source.carrier}
         out |= {name if single else f"{name} {source.name}": value for name, value in lines.items() if value}
-    # meshes with the same frequency share one line
+    # Meshes with the same frequency share one line.
     unique = {round(value, 9): name for name, value in reversed(out.items())}
     return {name: value for name, value in out.items() if name in unique.values()}
 
