@@ -32,7 +32,7 @@ from .toml_file import read_toml
 from .train import Train
 from .train_tables import train_of
 
-HEALTHY = "healthy"  # the case without damage
+HEALTHY = "healthy"  # name of the case without damage
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,8 +85,8 @@ class Scene:
     machine: dict[str, Any] = field(default_factory=dict)
     references: tuple[Reference, ...] = ()
     changed: tuple[str, ...] = ()
-    set: SceneSet | None = None  # a whole planetary set, `gearfe.planetary_sets.of_scene.build_set` gives its case
-    train: Train | None = None  # shafts of a gearbox, their speeds and torques
+    set: SceneSet | None = None  # a whole planetary set, converted by `gearfe.planetary_sets.of_scene.build_set`
+    train: Train | None = None  # gearbox shafts with their speeds and torques
 
     def __post_init__(self) -> None:
         """Raise ValueError if speeds, torques, forces or gears that follow from the file are those of other values."""

@@ -12,8 +12,8 @@ from .power_flow import Link, speeds_of, torques_of
 from .reading import check_known
 from .train import Row, Train, TrainShaft, TrainStage
 
-ALONE = ("bearing", "motor", "load", "coupling", "stage")  # tables that scenes without a gearbox do not have
-PART = 1e-9  # part of a length that counts as none
+ALONE = ("bearing", "motor", "load", "coupling", "stage")  # tables that only gearbox scenes have
+PART = 1e-9  # Smaller lengths, relative to the whole, count as zero.
 
 
 def train_of(file: str, rows: Row, gears: dict[str, Gear], materials: dict[str, Material]) -> Train | None:

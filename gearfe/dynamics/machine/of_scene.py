@@ -26,7 +26,7 @@ from .scene_curves import own_forces, pair_backlash
 from .stages import Fault
 from .tables import Machine
 
-MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it is built with either contact
+MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model: builder for each contact type
     "planetary": {"linear": scene_planetary, "impact": impact_planetary},
     "compound_planetary": {"linear": scene_compound},
     "helical_pair": {"linear": scene_pair, "impact": impact_helical},
@@ -35,7 +35,7 @@ MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it i
 }
 EVEN = 1e-9  # tolerance for equally spaced phases
 ROUGH = 8  # phases per cycle of the curves from which the forces at rest are computed
-STATED = ("herringbone_planetary",)  # models that take masses and inertias from the scene
+STATED = ("herringbone_planetary",)  # models whose scene states masses and inertias
 
 
 def build_machine(
@@ -100,7 +100,7 @@ def _in_set(scene, machine, forces):
     """Return the machine with the compliance that the set of its scene adds to isolated pairs, if the scene has a set."""
     if scene.set is None or scene.machine["model"] != "planetary":
         return machine
-    from ...planetary_sets.added import added_compliance  # only sets need it: 0.1 s
+    from ...planetary_sets.added import added_compliance  # imported here, because only sets need it and it takes 0.1 s
     from .with_set import with_added
 
     added = added_compliance(scene, forces[scene.set.pairs[0]])
@@ -121,7 +121,7 @@ def damaged_teeth(scene: Scene, case: str | None) -> Sequence[Fault]:
     try:
         build = MACHINES[scene.machine["model"]]["linear"]
         return build(scene, case, phases=ROUGH, method=None, loads=None).faults
-    except (KeyError, ValueError):  # `build_machine` gives the reason
+    except (KeyError, ValueError):  # `build_machine` raises the error with its reason.
         return ()
 
 

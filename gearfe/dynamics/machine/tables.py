@@ -18,8 +18,8 @@ from .springs import Spring
 from .stages import Fault, Stage
 from .turning_frame import frame_terms
 
-FASTEST = 1e6  # spin of a carrier [rad/s]: beyond any machine
-TOUCH = 1e-12  # compression at which the tangent of a force law without load is taken [m]
+FASTEST = 1e6  # largest carrier speed [rad/s], beyond any machine
+TOUCH = 1e-12  # compression at which an unloaded force law has its tangent [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +207,7 @@ class Machine:
             return None
         x = self.compressions(self.rest())
         free = gaps > 0
-        for i in np.flatnonzero((gaps > 0) & (x > 0)):  # these flanks carry load, and the flanks before them do not
+        for i in np.flatnonzero((gaps > 0) & (x > 0)):  # These back flanks carry load, and the drive flanks of the mesh do not.
             free |= (self.G + self.G[i] == 0).all(axis=1)
         touching = np.array([bool(mesh.secants) or not self.curved for mesh in self.meshes])
         return np.where(touching & ~free & (depth(x, self.law) == 0), TOUCH, x)
@@ -240,7 +240,7 @@ class Machine:
             mean, bend = self._mean_at(x)
             away = load - self.K @ q - self.G.T @ force(x, zero, mean, self.law)
             tangent = slopes(x, zero, mean, self.law, bend)[0]
-            tangent = np.maximum(tangent, 1e-6 * least)  # an open mesh keeps the matrix regular
+            tangent = np.maximum(tangent, 1e-6 * least)  # A small stiffness of open meshes keeps the matrix regular.
             change = _weighted_solve(self.K + self.G.T @ (tangent[:, None] * self.G), away, self.mass)
             q = q + change
             if np.abs(change * np.sqrt(self.mass)).max() <= 1e-11 * np.abs(q * np.sqrt(self.mass)).max() + 1e-30:
