@@ -9,8 +9,8 @@ from ..core.steps import part
 from ..dynamics.motion.simulate import simulate
 from ..dynamics.motion.thinned import REACH
 
-FREE = 1e-3  # remaining part of the initial free vibration at the beginning of a record
-UNDAMPED = 0.5  # part of the duration that is discarded before it if a free vibration does not decay
+FREE = 1e-3  # part of the initial free vibration that may remain at the start of a record
+UNDAMPED = 0.5  # discarded start relative to the duration, if free vibrations are undamped
 LONGEST = 20.0  # longest discarded start [s]
 
 
@@ -44,6 +44,6 @@ def slowest_decay(machine):
     K, C, _, _ = machine.linear(machine.working())
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-K / machine.mass[:, None], -C / machine.mass[:, None]]])
     values = np.linalg.eigvals(A)
-    slow = 1e-6 * np.abs(values).max()  # zero-frequency content is rotation of the body, not vibration
+    slow = 1e-6 * np.abs(values).max()  # The zero-frequency part is rigid rotation, not vibration.
     decays = -values.real[values.imag > slow]
     return float(max(decays.min(), 0.0)) if decays.size and decays.min() > 1e-9 * np.abs(values).max() else 0.0

@@ -33,7 +33,7 @@ from .toml_file import read_toml
 from .train import Train
 from .train_tables import train_of
 
-HEALTHY = "healthy"  # the case without damage
+HEALTHY = "healthy"  # name of the case without damage
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +86,8 @@ class Scene:
     machine: dict[str, Any] = field(default_factory=dict)
     references: tuple[Reference, ...] = ()
     changed: tuple[str, ...] = ()
-    set: SceneSet | None = None  # a whole planetary set, `gearfe.planetary_sets.of_scene.build_set` gives its case
-    train: Train | None = None  # shafts of a gearbox, their speeds and torques
+    set: SceneSet | None = None  # a whole planetary set, converted by `gearfe.planetary_sets.of_scene.build_set`
+    train: Train | None = None  # gearbox shafts with their speeds and torques
     sensors: dict[str, dict[str, Any]] = field(default_factory=dict)  # checked rows by name
 
     def __post_init__(self) -> None:
@@ -112,8 +112,9 @@ class Scene:
 
     def __repr__(self) -> str:
         """Name, title, pairs and cases in one line."""
-        cases = sorted({case for pair in self.pairs.values() for case in pair.damage})
-        return f"<Scene {self.name}: {self.title}; pairs {', '.join(self.pairs)}; cases {', '.join(cases) or 'none'}>"
+        return (
+            f"<Scene {self.name}: {self.title}; pairs {', '.join(self.pairs)}; cases {', '.join(sorted(self.cases)) or 'none'}>"
+        )
 
     def _repr_html_(self) -> str:
         """Title and a table of the pairs, which notebooks display."""
@@ -155,6 +156,16 @@ class Scene:
         ValueError if there is no such pair or case.
         """
         return self.pair(pair).case(case)
+
+    @property
+    def cases(self) -> tuple[str, ...]:
+        """Names of the cases of damage of all pairs."""
+        return tuple(dict.fromkeys(name for pair in self.pairs.values() for name in pair.damage))
+
+    def check_case(self, case: str | None) -> None:
+        """Raise ValueError unless a pair has this case of damage, or it is None."""
+        if case is not None and case not in self.cases:
+            raise ValueError(f"scene {self.name} has no case {case!r}; it has {', '.join(sorted(self.cases)) or 'none'}")
 
 
 def scene_names() -> list[str]:

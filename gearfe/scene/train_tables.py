@@ -12,9 +12,9 @@ from .power_flow import Link, speeds_of, torques_of
 from .reading import check_known
 from .train import Row, Train, TrainShaft, TrainStage
 
-ALONE = ("bearing", "motor", "load", "coupling", "stage")  # tables that scenes without a gearbox do not have
+ALONE = ("bearing", "motor", "load", "coupling", "stage")  # tables that only gearbox scenes have
 HOLDING = ("bearings_N_per_um", "bearings_axial_N_per_um", "bearings_Ns_per_mm", "bearings")  # entries of each bearing
-PART = 1e-9  # part of a length that counts as none
+PART = 1e-9  # Smaller lengths, relative to the whole, count as zero.
 
 
 def train_of(file: str, rows: Row, gears: dict[str, Gear], materials: dict[str, Material]) -> Train | None:

@@ -100,7 +100,7 @@ def test_gain_is_the_amplitude_of_lines():
     time, f = np.arange(200_000) / rate, np.array([500.0, 905.0, 2300.0])
     for at, gain in zip(f, sensor.gain(f), strict=True):
         heard = gf.through_modes(gf.Signal(np.sin(2 * math.pi * at * time), rate, "N"), sensor.modes).values[80_000:]
-        assert_allclose(np.sqrt(2) * heard.std(), abs(gain), rtol=1e-4)
+        assert_allclose(np.sqrt(2) * heard.std(), abs(gain), rtol=2e-4)  # (pi f / rate)**2 / 3 of the straight lines
 
 
 def test_a_scene_with_sensors_reaches_the_machine_and_its_damaged_case():

@@ -27,7 +27,7 @@ from .sensor import with_sensors
 from .stages import Fault
 from .tables import Machine
 
-MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it is built with either contact
+MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model: builder for each contact type
     "planetary": {"linear": scene_planetary, "impact": impact_planetary},
     "compound_planetary": {"linear": scene_compound},
     "helical_pair": {"linear": scene_pair, "impact": impact_helical},
@@ -36,7 +36,7 @@ MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it i
 }
 EVEN = 1e-9  # tolerance for equally spaced phases
 ROUGH = 8  # phases per cycle of the curves from which the forces at rest are computed
-STATED = ("herringbone_planetary",)  # models that take masses and inertias from the scene
+STATED = ("herringbone_planetary",)  # models whose scene states masses and inertias
 
 
 def build_machine(
@@ -101,7 +101,7 @@ def _in_set(scene, machine, forces):
     """Return the machine with the compliance that the set of its scene adds to isolated pairs, if the scene has a set."""
     if scene.set is None or scene.machine["model"] != "planetary":
         return machine
-    from ...planetary_sets.added import added_compliance  # only sets need it: 0.1 s
+    from ...planetary_sets.added import added_compliance  # imported here, because only sets need it and it takes 0.1 s
     from .with_set import with_added
 
     added = added_compliance(scene, forces[scene.set.pairs[0]])
@@ -123,7 +123,7 @@ def damaged_teeth(scene: Scene, case: str | None) -> Sequence[Fault]:
     try:
         build = MACHINES[scene.machine["model"]]["linear"]
         return build(scene, case, phases=ROUGH, method=None, loads=None).faults
-    except (KeyError, ValueError):  # `build_machine` gives the reason
+    except (KeyError, ValueError):  # `build_machine` raises the error with its reason.
         return ()
 
 
@@ -131,9 +131,7 @@ def _builder(scene, case):
     """Return the function that builds the machine of a scene, and its contact."""
     if not scene.machine:
         raise ValueError(f"scene {scene.name} has no [machine] table: add one with model, speed_rpm and torque_Nm")
-    if case is not None and not any(case in pair.damage for pair in scene.pairs.values()):
-        known = sorted({name for pair in scene.pairs.values() for name in pair.damage})
-        raise ValueError(f"scene {scene.name} has no case {case!r}; it has {', '.join(known) or 'none'}")
+    scene.check_case(case)
     model, contact = scene.machine["model"], scene.machine.get("contact", "linear")
     one_of("[machine] model", model, MACHINES)
     one_of("[machine] contact", contact, ("linear", "impact"))

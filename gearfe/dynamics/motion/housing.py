@@ -13,7 +13,7 @@ from .heard import ring_force
 from .response import Response
 from .transfer_path import through_modes
 
-LEAST = 1e-15  # lower limit of the parameters of a ring; powers of numbers beyond 1e15 overflow
+LEAST = 1e-15  # lower limit of the ring parameters, because powers of their reciprocals overflow
 
 
 @renamed(places="planet_angles")
