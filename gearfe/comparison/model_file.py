@@ -16,11 +16,11 @@ from ..stiffness.curve import StiffnessCurve
 from ..stiffness.curve_file import FIRST_LINE
 from .model_units import ABSCISSAE, ANGLES, RADII, abscissa_of, name_and_unit, stiffness_of, stiffness_unit
 
-COARSEST = 1 / 20  # longest step between rows: of a mesh cycle, or of the active flank
+COARSEST = 1 / 20  # longest step between rows, relative to the mesh cycle or the active flank
 SNAP = 1e-4  # tolerance for rounded angles and phases [mesh cycles]
-EXACT = 1e-9  # the same for requested phases
+EXACT = 1e-9  # tolerance for requested phases [mesh cycles]
 DECIMAL_COMMA = re.compile(r"^([-+]?\d*),(\d+(?:e[-+]?\d+)?)$", re.IGNORECASE)
-STEEP = 0.1  # rise of k between rows, as a part of its mean, that means an entering pair
+STEEP = 0.1  # increase of k between rows, relative to its mean, that indicates an entering tooth pair
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,7 +11,7 @@ from ..stiffness.solve import Solve, solve
 from .comparison import Comparison
 from .losses import loss_errors, told_damage, within
 
-COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU seconds per curve, for the time left
+COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU time per curve [s], for the estimate of the remaining time
 
 
 def compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None, left_out=None):

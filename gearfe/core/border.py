@@ -19,7 +19,8 @@ from .checks import checked_refine
 from .stated_shapes import check_stated
 from .type_rules import MADE, NamedClass, Rule, rule_of
 
-BY_NAME = {"refine": Rule("a number", lambda _, value: checked_refine(value))}  # numbers of one meaning everywhere
+# arguments with the same meaning in all functions
+BY_NAME = {"refine": Rule("a number", lambda _, value: checked_refine(value))}
 
 
 class _Public(dict[str, Any]):
@@ -42,7 +43,7 @@ def bordered(public: Any, name: str) -> Any:
     """
     if inspect.isfunction(public):
         out = _checked(public, name)
-        out.__module__, out.__qualname__ = "gearfe", name  # other processes import it from there
+        out.__module__, out.__qualname__ = "gearfe", name  # Other processes import the class from that module.
         return out
     if "__init__" in vars(public) and not issubclass(public, BaseException):
         public.__init__ = _checked(public.__init__, name, record=True)
@@ -61,7 +62,7 @@ def _checked(function, called, record=False):
             given = [_settled(*rule, value, record) for rule, value in zip(places, args, strict=False)]
             stated = {key: _settled(*named[key], value, record) if key in named else value for key, value in options.items()}
         except ValueError as misfit:
-            if record:  # the record's own message states unit and range
+            if record:  # The message of the record states unit and range.
                 _own_message(function, args, options, type(misfit))
             raise
         out = function(*given, *args[len(places) :], **stated)

@@ -15,8 +15,8 @@ from .checks import numbers
 from .material import Material
 from .supports.held import REFUSE
 
-SIDES = (("pinion", 1), ("wheel", -1))  # the wheel's tooth of pair k is -k in its own frame
-LIGHTEST = 1e-12  # force or torque: below, terms of contact overflow
+SIDES = (("pinion", 1), ("wheel", -1))  # In the wheel's own frame, its tooth of pair k is -k.
+LIGHTEST = 1e-12  # smallest force or torque; below, contact terms overflow
 
 
 def two_materials(material: Any) -> tuple[Material, Material]:

@@ -17,7 +17,7 @@ from numpy.lib import format as npy
 
 from .matlab_file import MOST_PACKED, variables
 
-# errors of files that are no archive of arrays, or one of an unknown type
+# Errors of files that are not an archive of arrays, or have an unknown type.
 NO_ARCHIVE: tuple[type[Exception], ...] = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, RuntimeError)
 NO_ARCHIVE += (MemoryError, KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError)
 CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # control characters that no text table contains
@@ -55,7 +55,8 @@ def _decoded(content):
     """Return text of bytes and its encoding, or None if it has none of the usual encodings of tables."""
     marks = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16", codecs.BOM_UTF8: "utf-8-sig"}
     marked = next((name for mark, name in marks.items() if content.startswith(mark)), None)
-    wide = {"utf-16-le": content[1:400:2], "utf-16-be": content[:400:2]}  # in text of Latin letters every second byte is zero
+    # In UTF-16 text of Latin letters every second byte is zero.
+    wide = {"utf-16-le": content[1:400:2], "utf-16-be": content[:400:2]}
     guessed = [name for name, high in wide.items() if len(high) > 1 and high.count(0) > 0.9 * len(high)]
     for name in [marked] if marked else [*guessed, "utf-8", "cp1252"]:
         with contextlib.suppress(UnicodeDecodeError):

@@ -20,8 +20,8 @@ from .checks import whole
 from .file_readers import check_regular, read_mat, read_npz, read_text
 
 _drawing = threading.Lock()
-LEAST_DPI, MOST_DPI = 10, 2400  # dots per inch of a picture: fonts need one pixel
-PART = ".part-"  # beginning of the names of temporary files
+LEAST_DPI, MOST_DPI = 10, 2400  # limits of the picture resolution [dpi]; fonts need at least one pixel
+PART = ".part-"  # prefix of temporary files
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ def check_output(path, kind):
     if isinstance(path, (str, os.PathLike)) and not str(path):
         raise ValueError(f"an empty file name for a {kind}: give one that ends in {', '.join(suffixes(kind))}")
     suffix_of(path, kind)
-    if os.path.isdir(path):  # unlike pathlib, this returns False for invalid names
+    if os.path.isdir(path):  # Unlike pathlib, `os.path.isdir` returns False for invalid names.
         raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
     os.unlink(_placed(path)[1])
 
@@ -139,16 +139,16 @@ def save_figure(figure, path, dpi):
         suffix_of(path, "picture")
         checked_dpi(dpi)
         for text in figure.findobj(lambda artist: hasattr(artist, "set_parse_math")):
-            words = text.get_text().encode(errors="replace").decode()  # the name of a file may not be UTF-8
+            words = text.get_text().encode(errors="replace").decode()  # The name of a file may not be valid UTF-8.
             if words != text.get_text():
                 text.set_text(words)
             if "$" in words:
-                # do not interpret names of files as formulas; axis numbers may be formulas
+                # File names are not interpreted as formulas. Axis numbers may be formulas.
                 text.set_parse_math("\\mathdefault" in words)
         import matplotlib
 
-        embedded = {"pdf.fonttype": 42, "ps.fonttype": 42}  # publishers reject fonts of type 3
-        with _drawing, matplotlib.rc_context(embedded), written(path) as name:  # fonts are shared by all threads
+        embedded = {"pdf.fonttype": 42, "ps.fonttype": 42}  # Publishers reject fonts of type 3.
+        with _drawing, matplotlib.rc_context(embedded), written(path) as name:  # All threads share the fonts.
             figure.savefig(name, dpi=dpi)
     return figure
 

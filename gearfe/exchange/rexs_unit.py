@@ -10,7 +10,7 @@ from .rexs_gear import GEARS, GearReader, outward, pitch_radius
 from .rexs_power import Power, PowerMesh
 from .rexs_shifts import Shifts
 
-PER_WIDTH = 100.0  # N along the line of action for each mm of width, if the file states no load
+PER_WIDTH = 100.0  # default force along the line of action per mm of face width [N]
 POSITION = {
     "reference_component_for_position",
     "support_vector",

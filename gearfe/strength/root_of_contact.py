@@ -11,7 +11,7 @@ from ..flexibility.finite_elements.line_load import check_spread
 from ..geometry.pair.gear_pair import GearPair
 from .root_stress import RootStress, stress_under_line
 
-SAMPLES = 2001  # heights at which the load is added up
+SAMPLES = 2001  # number of heights at which the load is summed
 
 
 @single

@@ -24,9 +24,9 @@ from ..geometry.mesh.sector import sector
 from ..geometry.tooth.profile import arc_at
 from .fracture import ring, tip_reads
 
-FE_PLACES = 9  # places of a load on a flank; `fe` interpolates between them by a cubic spline
-MIDDLE = 0.8  # part of the sector in which a tip of `ritz` may lie; at 0.82, K was 2 % off
-WIDE = 0.12  # half width of a load of `fe` [m_n]
+FE_PLACES = 9  # number of load positions on a flank; `fe` interpolates between them by a cubic spline
+MIDDLE = 0.8  # part of the sector in which a crack tip of `ritz` may lie; at 0.82, K had an error of 2 %
+WIDE = 0.12  # half-width of a load of `fe` [m_n]
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,8 @@ def fe_response(gear, material, crack, teeth, refine, carried, held=None):
     )
     body = HeldSection(mesh.mesh if held is None else _on_arcs(mesh.mesh, held), material)
     low, high = sorted((gear.roll_f, gear.roll_a))
-    carried = max(carried[0] - 0.02 * gear.m_n, low), min(carried[1] + 0.02 * gear.m_n, high)  # one place is a short range
+    # A single position becomes a short range.
+    carried = max(carried[0] - 0.02 * gear.m_n, low), min(carried[1] + 0.02 * gear.m_n, high)
     places = np.linspace(*carried, FE_PLACES)
     units = [narrow_load(mesh, tooth, float(arc_at(gear, place)), WIDE * gear.m_n) for tooth in teeth for place in places]
     faces, seam = face_columns(mesh), mesh.seams[0].faces

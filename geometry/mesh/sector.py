@@ -16,7 +16,7 @@ from .outline import inside, spaced
 from .sector_outline import GROWTH, outline_pieces
 from .triangle import BULGE, ENDS, GAUSS, jacobians
 
-# Edge lengths in modules: loaded flank, the other one, tip corner of the loaded flank, a form point with a kink, fillet,
+# Edge lengths [m_n]: loaded flank, other flank, tip corner of the loaded flank, form point with a kink, fillet,
 # root arc, sides and tip, crack, crack tip
 SIZES = {
     "flank": 0.8,
@@ -29,9 +29,9 @@ SIZES = {
     "crack": 0.5,
     "crack tip": 0.004,
 }
-FLAT = 1e-6  # least area of a triangle, in squares of its longest edge: three points of a straight crack make one without area
-ON_LINE = 0.05  # points of a ring closer to the line of a crack than this part of the ring's radius lie on it
-CHECKED = 6  # order at whose quadrature points the maps are checked
+FLAT = 1e-6  # least area relative to the squared longest edge; three points of a straight crack would enclose no area
+ON_LINE = 0.05  # Points of a ring lie on the line of a crack within this distance, relative to the ring's radius.
+CHECKED = 6  # polynomial order whose quadrature points are used to check the maps
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +107,7 @@ def _attempt(gear, cracks, broken, sizes, refine, finer):
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
     chains, around = _chains(gear, size, cracks, loop)
     if chains and not inside(loop, np.hstack([line for _, line in chains] + [around])).all():
-        return None  # a chord of the outline cuts the crack off: gmsh would not end
+        return None  # A chord of the outline cuts the crack off, and gmsh would not terminate.
     points, triangles = triangulate([loop], chains, False, around.T)
     twice = _twice_areas(points, triangles)
     if twice.sum() < 0:
@@ -124,7 +124,7 @@ def _attempt(gear, cracks, broken, sizes, refine, finer):
         vertices.get("flank", np.zeros(0, dtype=int))[::-1], rolls[::-1], tuple(faces),
     )  # fmt: skip
     bulges = made.edge_bulges
-    bent = bulges.any(axis=(0, 1, 2))  # the other triangles are straight, so that their corners suffice
+    bent = bulges.any(axis=(0, 1, 2))  # The other triangles are straight, so checking their corners is sufficient.
     (xx, xy), (yx, yy) = jacobians(points, triangles[:, bent], bulges[..., bent], CHECKED).transpose(1, 2, 0, 3)
     return made if (xx * yy - xy * yx).min() > 0 else None
 
@@ -148,7 +148,7 @@ def _opened(points, triangles, chains, at):
     """Open the cracks: points, triangles, both faces of each crack, and the second node of each mouth by its first."""
     faces, doubles = [], {}
     for i, (start, line) in enumerate(chains):
-        if i % 2 == 0:  # every second chain only leads the mesh ahead of the tip
+        if i % 2 == 0:  # Odd chains only guide the mesh ahead of the crack tip.
             chain = np.append(start, at + np.arange(line.shape[1]))
             points, triangles, double = open_seam(points, triangles, chain)
             faces.append(np.array([chain, double]))

@@ -23,8 +23,8 @@ from ...stiffness.mesh_stiffness import PairOptions, split_arguments
 from ...stiffness.solve import Solve, solve
 from .secant import Secant
 
-ROWS, COLUMNS = 1024, 64  # size of a law's table: rows in a mesh cycle, depths
-BETWEEN = 7  # further phases solved between two if the number of pairs in contact changes there at any load
+ROWS, COLUMNS = 1024, 64  # table size of a force law: phases per mesh cycle, deflections
+BETWEEN = 7  # additional phases solved between two phases if the number of pairs in contact changes between them at any load
 
 
 @dataclass(frozen=True, slots=True)
