@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.contact.sliding import sliding
-from gearfe.contact.unknowns import OVERLAP
+from gearfe.contact.unknowns import OVERLAP, overlaps
 from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.tooth.profile import arc_at
 
