@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import checked_refine, numbers, whole
+from ..core.checks import checked_refine, numbers, truth, whole
 from ..core.memory import free_memory
 from ..core.steps import steps
 from ..core.supports.held import REFUSE
@@ -80,7 +80,10 @@ def planetary_stiffness(
     both gears (`gearfe.geometry.pair.contacts`). The faces of all cracks belong to the same contact problem. They push each other
     apart where they touch, and slide without friction. A mesh without load at a missing tooth has k = 0 there.
     """
+    if not isinstance(case, PlanetaryCase):
+        raise ValueError(f"case = {case!r}, but give a PlanetaryCase (set, supports and load)")
     at, refine, options = _positions(positions, cycles), checked_refine(refine), {"cache": solved_gears(cache)}
+    coupled, error = truth("coupled", coupled), truth("error", error)
     _check_cost(refine)
     found = _curves(case, at, coupled, options | {"refine": refine})
     _check_small(case, found)

@@ -97,6 +97,8 @@ def gear_indicators(
             "not describe that gear: check the teeth, and the ratio of its shaft to the tachometer's",
             stacklevel=2,
         )
+    if not isinstance(before, (list, tuple)):
+        raise ValueError(f"before is {type(before).__name__}, but give a list of earlier averages")
     history = [x, *map(_turn, before)]
     residuals = [residual_signal(turn, teeth, shaft_orders=shaft_orders) for turn in history]
     envelopes = [_band_envelope(turn, teeth) for turn in history]

@@ -128,6 +128,8 @@ def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
 
 def _check_names(pair, inputs):
     """Reject inputs that are unknown, incomplete, or do not go with a pair."""
+    if not isinstance(inputs, Mapping):
+        raise ValueError(f"inputs = {inputs!r}, but give a dict: {{'force': (500.0, 4000.0), 'level': (0.1, 0.5)}}")
     if unknown := [name for name in inputs if name not in INPUTS]:
         raise ValueError(f"inputs: {unknown[0]!r} is unknown; there are {', '.join(INPUTS)}")
     if "force" not in inputs:
