@@ -77,14 +77,14 @@ def _answer(state, method, phases, *, error):
                 "are not in this section: solve in three dimensions",
             )
         comparison, further = compared(scene, method, phases, error=error)
-    curve = comparison.reference
+    curve, alone = comparison.reference, bool(left_out or further)
     return {
-        "headline": "Transverse section alone: " * bool(left_out or further) + comparison.headline,
+        "headline": "Transverse section alone: " * alone + comparison.headline,
         "named": f"{title_of(state)}; {state['force']:g} N in the line of action, {state['b_1']:g} and {state['b_2']:g} mm wide",
         "definition": comparison.definition,
         "method": f"{method}: {phases} phases in a mesh cycle"
         + (", with estimated errors" if error else ", a first picture without estimates" if method == "ritz" else ""),
-        "section": bool(left_out or further),
+        "section": alone,
         "table": (comparison.loss_table() or comparison.table()).cells(),
         "curves": [*(_curve("healthy", entry) for entry in comparison.healthy.values()),
                    _curve(comparison.kind or "healthy", curve)],

@@ -30,7 +30,7 @@ def check_scene(scene: Scene) -> list[str]:
                     check_hollows(gear, hollows)
     out = []
     for noun, there, build in (("machine", scene.machine, flat_machine), ("set", scene.set, build_set)):
-        for case in (None, *dict.fromkeys(case for pair in scene.pairs.values() for case in pair.damage)) if there else ():
+        for case in (None, *scene.cases) if there else ():
             try:
                 build(scene, case)
             except ValueError as error:

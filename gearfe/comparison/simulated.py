@@ -32,9 +32,7 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
         machine = flat_machine(scene)
         n = 2 * len(machine.dofs)
         Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
-    cases = {name for pair in scene.pairs.values() for name in pair.damage}
-    if case is not None and case not in cases:
-        raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(sorted(cases)) or 'none'}")
+    scene.check_case(case)
     in_case = [one for pair in scene.pairs.values() for damages in pair.damage.get(case, {}).values() for one in damages]
     damage = [] if scene.machine.get("contact") == "impact" else in_case
     along = not all(hurt.through for hurt in damage)

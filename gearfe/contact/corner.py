@@ -9,6 +9,7 @@ there differ by cos(beta_b).
 """
 
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -59,11 +60,15 @@ class CornerLaw:
         load = unit * 2.0 ** round(math.log2(line_load / unit))  # loads are rounded so that nearly equal loads share a table
         near = [_reached(own, end, MARGIN * load, modulus) for end in (0, 1)]
         away = [pair.p_bt * 2.0 ** math.ceil(math.log2(max(a, n) / pair.p_bt)) for a, n in zip(further, near, strict=True)]
+        # the body of a gear with a chip of a part of the width has the whole tooth, wherever the chip lies
+        chips = tuple(one and (one if one.through else replace(one, width=(0.0, 1.0))) for one in chips)
         kept, case = solved_gears(cache), (pair, chips, materials, load)
         self._tables = [
             kept.get(("corner", *case, end, -n, a), partial(_table, *case, end, (-n, a), kept))
             for end, n, a in zip((0, 1), near, away, strict=True)
         ]
+        self._gears = tuple(zip((pair.gear_1, pair.gear_2), materials, chips, strict=True))
+        self._soft, self._cache = sum(half_plane(m) for m in materials), cache
 
     def ends(self, cells):
         """End of the path (0 start, 1 end) whose corner each cell touches or nearly touches, -1 away from both."""
@@ -71,6 +76,18 @@ class CornerLaw:
         for k, sign in ((0, -1), (1, 1)):
             near = sign * (self.path[k] - cells.nominal) < self.inside[k]
             out[np.where(cells.corner > 0, sign * (cells.nominal - middle) > 0, near)] = k
+        return out
+
+    def softer(self, *rolls):
+        """Add to ``ln(2 / a) + 1/2`` ``(n,)`` away from corners, at roll lengths ``(n,)`` of both gears [mm].
+
+        The bodies have the material of chips that cover a part of the width. The section with and without it gives the effect.
+        """
+        out = np.zeros(rolls[0].size)
+        for (gear, material, chip), roll in zip(self._gears, rolls, strict=True):
+            if chip is not None and not chip.through:
+                chipped, whole = (_read(gear, material, one, roll, self._cache) for one in (chip, None))
+                out += (chipped - whole) / self._soft
         return out
 
     def __call__(self, ends, nominal, line_load):
@@ -172,7 +189,8 @@ def _table(whole, chips, materials, line_load, end, span, cache):
     away = away[meets]
     if away.size < 2:
         return None
-    smooth = sum(_read(*case, roll[meets], cache) for case, roll in zip(gears, rolls, strict=True))
+    in_body = [(gear, material, chip and (chip if chip.through else None)) for gear, material, chip in gears]
+    smooth = sum(_read(*case, roll[meets], cache) for case, roll in zip(in_body, rolls, strict=True))
     closing = pressed(rows, loads) - mesh.found.gap[meets, column]
     width = half_width(loads[:, None], radius[meets], modulus)
     out = (closing / loads[:, None] - smooth) / c - np.log(2 / width) - 0.5

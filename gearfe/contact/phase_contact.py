@@ -2,17 +2,18 @@
 
 import math
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from ..core.steps import steps
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
-from ..geometry.pair.broken import broken_at, pair_at
+from ..geometry.pair.broken import ToothPairs
 from ..geometry.pair.contacts import TIP, neighbours_of
 from ..geometry.pair.lines import bands_of
 from .bodies import between, faces_of, mirrors_of
+from .broken_teeth import without_recesses
 from .cell_sharing import SharedLines
 from .cells import SETTLED, TIMES, Cells, carrying, cells_of
 from .corner import CornerLaw, in_fillet, plain_radius
@@ -87,13 +88,13 @@ class PhaseContact:
     """
 
     def __init__(self, case, force, *, step, extended, longer, cache=True):
-        pair, materials, pits, flanks = case.pair, case.materials, case.pits, case.forms
+        pair, materials, flanks, (pits, broken) = case.pair, case.materials, case.forms, without_recesses(case)
         self.pair, self.pits, self.step, self.extended, self.longer = pair, pits, step, extended, longer
         self.force = force
         # shafts that are not integral are already part of the bodies
         outside = [None if held and held.integral else held for held in case.held or ()]
         self.hubs = [held and held.hub() for held in outside] if any(outside) else None
-        self.pair_of = lru_cache(maxsize=None)(partial(pair_at, pair, case.broken))
+        self.pairs = ToothPairs(pair, broken)
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
         self.floors = sorted({pit.depth for gear_pits in pits for pit in gear_pits if pit.side == "loaded"})
         self.deepest = DEEPEST * pair.gear_1.m_n
@@ -112,7 +113,6 @@ class PhaseContact:
             further = [max(away, (2 - pair.eps_alpha) * pair.p_bt) for away in further]
         self._laws, self._make_law = {}, partial(CornerLaw, pair, materials, load, further, cache=cache)
         self.least_neighbours = neighbours_of(pair) if any(case.cracks) or any(case.broken) else 1
-        self._broken_at = partial(broken_at, pair, case.broken)
         kinked = flanks is not None and any(form.kinks for form in flanks)
         self.kinks = KinkLaw(pair, materials, load, flanks, cache=cache) if kinked else None
 
@@ -191,7 +191,7 @@ class PhaseContact:
         pieces = []
         for phase, reach, closing in zip(phases, reaches.tolist(), closings.tolist(), strict=True):
             away = reach - self.least if self.extended else 0.0
-            pieces.append(pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, away, closing, self.pair_of))
+            pieces.append(pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, away, closing, self.pairs))
         sizes = []
         for group in pieces:
             length = sum(piece.last - piece.first for piece in group if not piece.floor or all(each.floor for each in group))
@@ -213,14 +213,14 @@ class PhaseContact:
         fine = {}
         if self.flanks is not None and any(form.wide for form in self.flanks):
             for _ in range(TIMES):
-                finer = carrying(*cells_of(*arguments, fine=fine, pair_of=self.pair_of), pieces, self.sized, self.bed)
+                finer = carrying(*cells_of(*arguments, fine=fine, pairs=self.pairs), pieces, self.sized, self.bed)
                 least = {at: FINEST * self._half_width(high - low) for at, (low, high, _) in finer.items()}
                 finer = {at: (*zone[:2], max(zone[2], least[at])) for at, zone in finer.items()}
                 finer = {at: zone for at, zone in finer.items() if zone[2] < SETTLED * (fine[at][2] if at in fine else self.step)}
                 if not finer:
                     break
                 fine |= finer
-        return cells_of(*arguments, longer=self.longer, fine=fine, pair_of=self.pair_of)
+        return cells_of(*arguments, longer=self.longer, fine=fine, pairs=self.pairs)
 
     def _batch(self, cells, bodies):
         """`CellBatch` of several phases. The equal halves of a herringbone pair are solved once."""
@@ -258,24 +258,29 @@ class PhaseContact:
         for end, form in enumerate((self.flanks or ())[::-1]):
             at[(at == end) & (form.edge is not None) & np.isin(cells.corner, (0, *TIP))] = -1  # no sharp corner there
         corner, bent = (at >= 0).any(), kinks is not None and bool(kinks.zones)
+        soft = np.zeros(at.size)
+        for law, on in laws:
+            away = np.flatnonzero(on & (at < 0))
+            soft[away] = law.softer(cells.roll_1[away], cells.roll_2[away])
 
         def local(line_load):
-            out = np.zeros(at.size)
+            out = soft.copy()
             for law, on in laws if corner else ():
                 out += law(np.where(on, at, -1), cells.nominal, line_load)
             return out + kinks(at < 0, cells.nominal, line_load) if bent else out
 
-        return local if corner or bent else None
+        return local if corner or bent or soft.any() else None
 
     def _laws_at(self, cells):
         """Laws of corners, each with the cells for which it holds ``(n,)``."""
-        by_law = {}
-        for order in np.unique(cells.order).tolist() if self.extended else ():
-            chips = tuple(one and replace(one, tooth=0) for one in self._broken_at(order))
+        by_law, part = {}, self.pairs.parts(cells.z)
+        for place in sorted(set(zip(cells.order.tolist(), part.tolist(), strict=True))) if self.extended else ():
+            chips = tuple(one and replace(one, tooth=0) for one in self.pairs.broken_at(*place))
             if chips not in self._laws:
                 self._laws[chips] = self._make_law(chips=chips)
-            by_law.setdefault(self._laws[chips], []).append(order)
-        return [(law, np.isin(cells.order, orders)) for law, orders in by_law.items()]
+            on = (cells.order == place[0]) & (part == place[1])
+            by_law[self._laws[chips]] = by_law.get(self._laws[chips], False) | on
+        return list(by_law.items())
 
     def _ends(self, cells):
         """Return the end of the path whose corner each cell touches or nearly touches, see `CornerLaw.ends`."""

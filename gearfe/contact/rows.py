@@ -163,35 +163,38 @@ def hat_rows(contact, at, knots, kernels, host, tips):
     at_hats = tuple(np.repeat(values, count) for values in np.array(at).T)
     roll = roll_at_arc(gear, np.concatenate([row.mean(axis=0) for row in knots]))
     gap, other, way = met(contact, at_hats, roll, host)
-    values = np.array([*(roll, other)[:: 1 if host == 0 else -1], gap, *way.turns, way.rate, *np.concatenate(way.parts)])
+    values = np.array([*(roll, other)[:: (1, -1)[host]], gap, *way.turns, way.rate, *np.concatenate(way.parts)])
     cuts = np.cumsum(count)[:-1]
     meets = np.split(np.isfinite(gap), cuts)
     parts = [row[:, on] for row, on in zip(np.split(values, cuts, axis=1), meets, strict=True)]
     order = points.order[[column for _, column in at]]
-    bodies = [
-        flexible.within([part[k] for part in parts], (sign * order).tolist())
-        for k, (flexible, sign) in enumerate(zip(contact.flexibility, (1, -1), strict=True))
-    ]
-    local = sum(contact.coefficients), np.log(gear.m_n)  # the local field extends over about a module
+    sides = enumerate(zip(contact.flexibility, (1, -1), strict=True))
+    bodies = [flexible.within([part[k] for part in parts], (sign * order).tolist()) for k, (flexible, sign) in sides]
     made, alike = [None] * len(parts), {}
     for k, tooth in enumerate(order.tolist()):
         alike.setdefault((tooth, parts[k].shape[1]), []).append(k)
     for (tooth, _), rows in alike.items():  # process rows with the same number of hats on one tooth together
         values = np.array([parts[k] for k in rows]).swapaxes(0, 1)
-        (roll_1, roll_2, gaps, *turns, rate), forces = values[:6], values[6:].reshape(2, 2, *values[0].shape)
         kernel = np.array([_between(knots[k], kernels[k], meets[k]) for k in rows])
-        influence = local[0] * (kernel + local[1]) / (rate[:, :, None] * rate[:, None])
-        leaning = zip(contact.flexibility, (roll_1, roll_2), (tooth, -tooth), forces, turns, strict=True)
-        for thin, placed in zip(contact.thinning, (roll_1, roll_2), strict=False):
-            influence = influence + np.array([thin.between(one, tooth) for one in placed])
-        for coefficient, within, (flexible, *row) in zip(contact.coefficients, bodies, leaning, strict=True):
-            smooth = np.array([within[k] for k in rows])
-            influence = influence + towards(flexible, smooth, *row, coefficient * local[1])
-        reach = np.array([tips[k] for k in rows])[:, :, None]
-        fillet = reach[:, 0] & on_fillet(pair.gear_2, roll_2) | reach[:, 1] & on_fillet(pair.gear_1, roll_1)
-        for k, *row in zip(rows, roll_1, roll_2, gaps, influence, *turns, fillet, strict=True):
+        smooth = [np.array([within[k] for k in rows]) for within in bodies]
+        fields = _fields(contact, tooth, values, kernel, smooth, np.array([tips[k] for k in rows])[:, :, None], np.log(gear.m_n))
+        for k, *row in zip(rows, *fields, strict=True):
             made[k] = HatRow(*row)
     return made
+
+
+def _fields(contact, tooth, values, kernel, smooth, reach, size):
+    """Fields of `HatRow`, of rows on one tooth. The local field extends over about a module, whose logarithm is `size`."""
+    (roll_1, roll_2, gaps, *turns, rate), forces = values[:6], values[6:].reshape(2, 2, *values[0].shape)
+    influence = sum(contact.coefficients) * (kernel + size) / (rate[:, :, None] * rate[:, None])
+    for thin, placed in zip(contact.thinning, (roll_1, roll_2), strict=False):
+        influence = influence + np.array([thin.between(one, tooth) for one in placed])
+    leaning = zip(contact.flexibility, smooth, (roll_1, roll_2), (tooth, -tooth), forces, turns, strict=True)
+    for coefficient, row in zip(contact.coefficients, leaning, strict=True):
+        influence = influence + towards(*row, coefficient * size)
+    gear_1, gear_2 = contact.pair.gear_1, contact.pair.gear_2
+    fillet = reach[:, 0] & on_fillet(gear_2, roll_2) | reach[:, 1] & on_fillet(gear_1, roll_1)
+    return roll_1, roll_2, gaps, influence, *turns, fillet
 
 
 def _between(knots, kernel, on):

@@ -126,8 +126,8 @@ def off_path(contact, cells, load, radius, approach):
     It is zero where contact on the path carries. `load`, `radius` ``(n,)`` are those of the `Cells`.
     """
     on = np.flatnonzero(load > 0)
-    ends = {order: contact.pair_of(order).path for order in set(cells.order[on].tolist())}
-    start, end = np.array([ends[order] for order in cells.order[on].tolist()]).T
+    places = zip(cells.order[on].tolist(), contact.pairs.parts(cells.z[on]).tolist(), strict=True)
+    start, end = np.array([contact.pairs(*place).path for place in places]).T
     if ((cells.nominal[on] >= start) & (cells.nominal[on] <= end)).any():
         return 0.0
     gap = math.cos(contact.beta_b) * cells.gap[on]

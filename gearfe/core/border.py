@@ -179,19 +179,34 @@ def _rule(hint):
     if hint in PLAIN:
         return _Rule(WORDS[hint], PLAIN[hint])
     if origin in (typing.Union, types.UnionType):
-        like = any(str(one).startswith(("numpy._typing", "<class 'numpy._typing")) for one in inner)
-        return _Rule("numbers", _even) if like else _any_of([_rule(one) for one in inner])
+        return _union(inner)
     if origin is np.ndarray:
         return _Rule("an array of real numbers", functools.partial(_array, "i" if "int" in str(inner[1]) else "f"))
     if not isinstance(origin, type):
-        return _instance(hint) if isinstance(hint, type) and not getattr(hint, "_is_protocol", False) else None
+        plain = isinstance(hint, type) and not getattr(hint, "_is_protocol", False)
+        return _instance(hint) if plain else None
+    if origin is Callable:
+        return _Rule("a function", functools.partial(_is_a, Callable, "a function"))
+    if issubclass(origin, Iterable):
+        return _row_of(origin, inner)
+    return _instance(origin)
+
+
+def _row_of(origin, inner):
+    """Rule of a mapping, a row of a fixed length, or a sequence."""
     if issubclass(origin, Mapping):
         return _mapping(inner)
     if origin is tuple and inner[-1:] != (...,):
         return _row([_rule(one) for one in inner])
-    if issubclass(origin, Iterable):
-        return _sequence(_rule(inner[0]), Iterable if origin is Iterable else Collection, tuple if origin is tuple else None)
-    return _Rule("a function", functools.partial(_is_a, Callable, "a function")) if origin is Callable else _instance(origin)
+    return _sequence(_rule(inner[0]), Iterable if origin is Iterable else Collection, tuple if origin is tuple else None)
+
+
+def _union(inner):
+    """Rule of a union. One with a type of numpy stands for all that makes an array."""
+    numpy_types = ("numpy._typing", "<class 'numpy._typing")
+    if any(str(one).startswith(numpy_types) for one in inner):
+        return _Rule("numbers", _even)
+    return _any_of([_rule(one) for one in inner])
 
 
 def _any_of(rules):

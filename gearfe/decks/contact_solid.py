@@ -15,7 +15,7 @@ from ..geometry.mesh.holes import SIZES as HOLES
 from ..geometry.mesh.holes import filled, holed_sector
 from ..geometry.mesh.relieved_solid import relieved_points
 from ..geometry.mesh.solid import solid
-from ..geometry.pair.broken import pair_at
+from ..geometry.pair.broken import ToothPairs
 from ..geometry.pair.contacts import FORM, Contacts, contacts
 from ..geometry.pair.contacts import touching as touching_sections
 from ..geometry.pair.gear_pair import GearPair
@@ -122,7 +122,7 @@ def touching(case: Case, phase: float, approach: float) -> Touching:
         candidates = _modified(pair, candidates, heights, forms)
     out = Touching([], [], ([], []), [], [], ([], []))
     for k, order in enumerate(candidates.order.tolist()):
-        own = pair_at(pair, case.broken, order)
+        own = ToothPairs(pair, case.broken)(order)
         if own is None:
             continue
         if own != pair:
@@ -168,17 +168,14 @@ def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float
         gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
         low = -(gear.b - common) / 2
         teeth = [(1, -1)[number] * order % gear.z for order in touch.order]
-        if any(hurt._removes_contact for hurt in (damages or damage[1 - number])):  # loads change quickly along the width on both
+        # loads change quickly along the width on both gears
+        holed = any(hurt._removes_contact for hurt in (damages or damage[1 - number]))
+        if holed:
             cut = [_strip(gear, touch, number, k, tooth, low, fineness) for k, tooth in enumerate(teeth)]
             body = _holed(gear, damages, cut, how)
         else:
             patches = {tooth: [_patch(gear, touch, number, k, fineness)] for k, tooth in enumerate(teeth)}
-            fine = [(z, z, END * gear.b / how.layers) for z in (0.0, gear.b)]
-            options = {"layer": gear.b / how.layers, "loaded": teeth, "patches": patches, "fine": fine}
-            broken = case.broken[number]
-            mesh = solid(gear, cracks=case.cracks[number], broken=broken, refine=how.refine, sizes=SIZES, **options)
-            body = part_of(mesh)
-            body = replace(body, faces=body.faces | {f"fillet {tooth}": faces[:4] for tooth, faces in mesh.fillets.items()})
+            body = _layered(gear, case, number, patches, how)
         if forms is not None:
             body = replace(body, points=relieved_points(body.points, gear, forms[number], teeth))
         turn = float(pair.turn(nominal_at(pair, phase, low))[number])
@@ -222,6 +219,15 @@ def _strip(gear, found, number, k, tooth, low, per_width):
     radius, angle = flank(gear, found.rolls[number][k])
     line = np.array([*cartesian(radius, angle + 2 * math.pi * tooth / gear.z), found.heights[k] - low])
     return line, 1.5 * found.width[k], found.width[k] / per_width
+
+
+def _layered(gear, case, number, patches, how):
+    """Mesh a whole gear in layers of hexahedra, fine on the patches of the loaded teeth."""
+    fine = [(z, z, END * gear.b / how.layers) for z in (0.0, gear.b)]
+    options = {"layer": gear.b / how.layers, "loaded": list(patches), "patches": patches, "fine": fine}
+    mesh = solid(gear, cracks=case.cracks[number], broken=case.broken[number], refine=how.refine, sizes=SIZES, **options)
+    body = part_of(mesh)
+    return replace(body, faces=body.faces | {f"fillet {tooth}": faces[:4] for tooth, faces in mesh.fillets.items()})
 
 
 def _holed(gear: Gear, damage, strips, how) -> DeckBody:

@@ -139,16 +139,16 @@ class GearReader:
             self.assume(f"gear {name}: dedendum 1.25", "the file states neither root diameter nor tool; ISO 53, profile A")
 
     def _tool(self, gear, tool, row, name, scale):
-        stated = {}
-        for key, quantity in (("dedendum", "addendum"), ("rack_tip_radius", "tip_corner_radius")):
-            middle = "_coefficient" if key == "dedendum" else "_factor"
-            if tool:
-                factor = tool.number(f"{quantity}{middle}_reference_profile")
-                length = tool.number(f"{quantity}_reference_profile", "mm") or tool.number("tip_corner_radius_cutter", "mm")
-                length = length if key == "rack_tip_radius" or quantity == "addendum" else None
-                if factor is not None or length is not None:
-                    stated[key] = factor * scale if factor is not None else length / row["m_n_mm"]
-        row |= stated
+        if tool:
+            radius = tool.number("tip_corner_radius_reference_profile", "mm") or tool.number("tip_corner_radius_cutter", "mm")
+            for key, factor, length in (
+                ("dedendum", "addendum_coefficient", tool.number("addendum_reference_profile", "mm")),
+                ("rack_tip_radius", "tip_corner_radius_factor", radius),
+            ):
+                if (stated := tool.number(f"{factor}_reference_profile")) is not None:
+                    row[key] = stated * scale
+                elif length is not None:
+                    row[key] = length / row["m_n_mm"]
         if "rack_tip_radius" not in row:
             row["rack_tip_radius"], source = (0.2, "usual for rings") if gear.type == "ring_gear" else (0.38, "ISO 53, profile A")
             self.assume(f"gear {name}: tip radius {row['rack_tip_radius']} of the tool", f"the file states no tool; {source}")

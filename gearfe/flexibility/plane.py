@@ -1,7 +1,7 @@
 """`Flexibility`: elastic flexibility of a gear between its contacts, for all section methods."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -43,6 +43,15 @@ def reached_teeth(gear: Gear, damage: Iterable[Any], neighbours: int) -> list[in
     """Numbers of the teeth that are solved with damage: `neighbours` and `FURTHER` to either side of a damaged tooth."""
     reach = neighbours + FURTHER
     return sorted({(one.tooth + k) % gear.z for one in damage for k in range(-reach, reach + 1)})
+
+
+def glued(
+    gear: Gear, teeth: Sequence[int], influence: Callable[[int, int], Floats], opening: Mapping[int, Floats], stiffness: Floats
+) -> tuple[dict[int, Floats], dict[tuple[int, int], Floats]]:
+    """Influence of loads with all cracks glued shut: of each tooth on itself, and on the teeth at most half a turn ahead."""
+    between = {(i, j): influence(i, j) - opening[i].T @ stiffness @ opening[j] for i in teeth for j in teeth}
+    ahead = {(i, j): one for (i, j), one in between.items() if i != j and (j - i) % gear.z <= gear.z // 2}
+    return {tooth: between[tooth, tooth] for tooth in teeth}, ahead
 
 
 @dataclass(frozen=True, slots=True, eq=False)

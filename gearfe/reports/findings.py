@@ -55,10 +55,8 @@ def find(scene, case=None, *, duration=0.2, phases=64):
     if duration != 0:
         check_run(duration)
     scene = load_scene(scene) if not hasattr(scene, "pairs") else scene
-    cases = list(dict.fromkeys(name for pair in scene.pairs.values() for name in pair.damage))
-    if case is not None and case not in cases:
-        raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(cases) or 'none'}")
-    findings = Findings(scene, case or (cases[0] if cases else None))
+    scene.check_case(case)
+    findings = Findings(scene, case or next(iter(scene.cases), None))
     compared = [(name, None) for name in scene.pairs]
     compared += [(name, findings.case) for name, pair in scene.pairs.items() if findings.case in pair.damage]
     moves = bool(scene.machine and duration)

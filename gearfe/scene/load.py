@@ -110,8 +110,9 @@ class Scene:
 
     def __repr__(self) -> str:
         """Name, title, pairs and cases in one line."""
-        cases = sorted({case for pair in self.pairs.values() for case in pair.damage})
-        return f"<Scene {self.name}: {self.title}; pairs {', '.join(self.pairs)}; cases {', '.join(cases) or 'none'}>"
+        return (
+            f"<Scene {self.name}: {self.title}; pairs {', '.join(self.pairs)}; cases {', '.join(sorted(self.cases)) or 'none'}>"
+        )
 
     def _repr_html_(self) -> str:
         """Title and a table of the pairs, which notebooks display."""
@@ -153,6 +154,16 @@ class Scene:
         ValueError if there is no such pair or case.
         """
         return self.pair(pair).case(case)
+
+    @property
+    def cases(self) -> tuple[str, ...]:
+        """Names of the cases of damage of all pairs."""
+        return tuple(dict.fromkeys(name for pair in self.pairs.values() for name in pair.damage))
+
+    def check_case(self, case: str | None) -> None:
+        """Raise ValueError unless a pair has this case of damage, or it is None."""
+        if case is not None and case not in self.cases:
+            raise ValueError(f"scene {self.name} has no case {case!r}; it has {', '.join(sorted(self.cases)) or 'none'}")
 
 
 def scene_names() -> list[str]:

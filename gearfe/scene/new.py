@@ -97,17 +97,11 @@ def new_scene(
     force, told_force = _force(pair.gear_1, width, torque_Nm)
     stated["pair"]["stage"]["force_N"] = force
     if not bore_mm:
-        held = "rim" if ring else "bore"
-        bore, wide = pinion["r_bore_mm"], wheel[f"r_{held}_mm"]
-        what = f"bore radius {bore} mm (pinion) and {held} radius {wide} mm (wheel), held"
-        values = {"gear.pinion.r_bore_mm": bore, f"gear.wheel.r_{held}_mm": wide}
-        stated["assumption"] = [{"what": what, "why": "a start: give the true ones", "holds": values}]
-    size = {"length_mm": crack[0], "angle_deg": crack[1]} if crack else {"level": 0.3, "angle_deg": 45.0}
+        stated["assumption"] = [_assumed(pinion, wheel, "rim" if ring else "bore")]
+    size = dict(zip(("length_mm", "angle_deg"), crack, strict=True)) if crack else {"level": 0.3, "angle_deg": 45.0}
     stated["crack"] = [{"case": "cracked", "gear": "pinion", **size}]
     numbers = _numbers(pair, force)
-    if (tip_relief_um is None) != (tip_length_mm is None) or (tip_relief_um or 1.0) < 0:
-        raise ValueError(f"tip relief of {tip_relief_um} um over {tip_length_mm} mm: give both, the amount positive")
-    amount, length = tip_relief_um or round(numbers["amount"], 1), tip_length_mm or round(numbers["length"], 3)
+    amount, length = _relief(tip_relief_um, tip_length_mm, numbers)
     flanks = {side: {"gear": side, "tip_relief_um": amount, "tip_start_length_mm": length} for side in ("pinion", "wheel")}
     stated |= {} if tip_relief_um is None else {"flank": flanks}
     with _of_torque(torque_Nm):
@@ -146,6 +140,20 @@ def _gears(rack, teeth, x, helix_deg, ring, bore_mm):
         {"z": z, **rack, "x": float(shift), "beta_deg": beta, **form, name: radius, "material": "steel"}
         for z, shift, beta, form, (name, radius) in zip(teeth, x, helix, (RACK, RING if ring else RACK), held, strict=True)
     )
+
+
+def _relief(amount, length, usual):
+    """Amount [um] and length [mm] of the tip relief."""
+    if (amount is None) != (length is None) or (amount or 1.0) < 0:
+        raise ValueError(f"tip relief of {amount} um over {length} mm: give both, the amount positive")
+    return amount or round(usual["amount"], 1), length or round(usual["length"], 3)
+
+
+def _assumed(pinion, wheel, held):
+    bore, wide = pinion["r_bore_mm"], wheel[f"r_{held}_mm"]
+    what = f"bore radius {bore} mm (pinion) and {held} radius {wide} mm (wheel), held"
+    values = {"gear.pinion.r_bore_mm": bore, f"gear.wheel.r_{held}_mm": wide}
+    return {"what": what, "why": "a start: give the true ones", "holds": values}
 
 
 def _numbers(pair, force):

@@ -81,9 +81,10 @@ def toml(tables: dict[str, Any]) -> str:
     return "\n\n".join(filter(None, _written(tables, ""))) + "\n"
 
 
-def _written(table, head, mark=""):
-    plain = {key: value for key, value in table.items() if not (_tables(value) or (isinstance(value, dict) and not mark))}
-    lines = [f"{mark or '['}{head}{']]' if mark else ']'}"] if head and (plain or mark) else []
+def _written(table, head, mark="["):
+    alone = mark == "["
+    plain = {key: value for key, value in table.items() if not (_tables(value) or (alone and isinstance(value, dict)))}
+    lines = [f"{mark}{head}{mark.replace('[', ']')}"] if head and (plain or not alone) else []
     yield "\n".join([*lines, *(f"{_key(key)} = {toml_value(value)}" for key, value in plain.items())])
     for key, value in table.items():
         if _tables(value):

@@ -92,8 +92,8 @@ def text_table(path: StrPath, lines: list[str], header: str | None = None) -> Fo
     if there are no rows of numbers, or one that does not fit the others: its line is named.
     """
     numbered = [(i, line.strip()) for i, line in enumerate(lines, 1) if line.strip()]
-    comments = [line.lstrip("#% ") for _, line in numbered if line[0] in "#%"]
     rows = [(i, line) for i, line in numbered if line[0] not in "#%"]
+    comments = [line.lstrip("#% ") for _, line in numbered if line[0] in "#%"]
     columns = None if header is None else re.split(r"[,;\t]", header)
     way = _way(rows, columns)
     if way is None:
@@ -101,16 +101,21 @@ def text_table(path: StrPath, lines: list[str], header: str | None = None) -> Fo
         raise ValueError(f"{path}: no rows of numbers{first}")
     titles = [line for _, line in rows[: way.above]]
     recording = Found({})
-    pairs = [named(cell) for cell in columns or _names(titles, comments, way, recording)]
-    recording.units = dict(pairs)
-    if len(recording.units) < len(pairs):
-        raise ValueError(f"{path}: two columns have the same name ({', '.join(name for name, _ in pairs)})")
-    table = _table(path, rows[way.above :], way, len(pairs))
+    recording.units = _named(path, columns or _names(titles, comments, way, recording))
+    table = _table(path, rows[way.above :], way, len(recording.units))
     recording.vectors = dict(zip(recording.units, table.T, strict=True))
-    _clocks(path, recording, way.cells(rows[way.above][1], len(pairs)))
+    _clocks(path, recording, way.cells(rows[way.above][1], len(recording.units)))
     for line in (*titles, *comments):
         _state(path, recording, line, way.mark)
     return recording
+
+
+def _named(path, cells):
+    """Units by the names of the columns."""
+    pairs = [named(cell) for cell in cells]
+    if len(dict(pairs)) < len(pairs):
+        raise ValueError(f"{path}: two columns have the same name ({', '.join(name for name, _ in pairs)})")
+    return dict(pairs)
 
 
 def named(cell: str) -> tuple[str, str]:
@@ -126,13 +131,7 @@ def _way(rows, given):
     Thousands are parted only if more rows are numbers then, or none fits otherwise. None if no row is numbers.
     """
     best, most, looked = None, (0, False), rows[-LOOKED:]
-    marks = [(mark, "") for mark in GROUPS] + [(mark, group) for mark, groups in GROUPS.items() for group in groups]
-    # a mark between thousands that is the separator ends a cell
-    ways = [
-        (*mark, separator) for mark, separator in product(marks, SEPARATORS) if not mark[1] or separator not in (None, mark[0])
-    ]
-    for mark, group, separator in ways:
-        way = Way(separator, mark, group)
+    for way in _ways():
         counts = Counter(n for _, line in looked if (n := way.numbers(line)))
         count = max(counts, key=counts.__getitem__, default=0)
         above = next((i for i, (_, line) in enumerate(rows) if count and way.numbers(line) == count), 0)
@@ -143,6 +142,14 @@ def _way(rows, given):
         if most == (len(looked), True):
             break
     return best
+
+
+def _ways():
+    """Yield every `Way`, those without marks between thousands first. Such a mark that is the separator ends a cell."""
+    marks = [(mark, "") for mark in GROUPS] + [(mark, group) for mark, groups in GROUPS.items() for group in groups]
+    for (mark, group), separator in product(marks, SEPARATORS):
+        if not group or separator not in (None, mark):
+            yield Way(separator, mark, group)
 
 
 def _fits(rows, way):
@@ -156,18 +163,21 @@ def _fits(rows, way):
 def _names(titles, comments, way, found):
     """Names of the columns with their units, from the rows above the numbers, or the comments."""
     rows, said = ([cells for line in lines if len(cells := way.cells(line)) == way.columns] for lines in (titles, comments))
-    if len(rows) > 1 and all(UNITS.fullmatch(cell) for cell in rows[-1]):
+    if len(rows) > 1 and all(map(UNITS.fullmatch, rows[-1])):
         return [f"{name} [{unit.strip('[]()')}]" for name, unit in zip(*rows[-2:], strict=True)]
     last = way.cells(titles[-1]) if titles else []
-    if last and (len(last) == way.columns or (not rows and len(last) > 1)):
+    if last and (len(last) == way.columns or (not rows and last[1:])):
         return last  # a header whose count does not fit is reported with the first row
-    for cells in reversed(said):
-        if len(cells) > 1 or (cells[0].endswith("]") and not {":", "="} & {*cells[0]}):
-            return cells
+    if said := list(filter(_are_names, said)):
+        return said[-1]
     if way.columns == 1:
         return ["signal"]
     found.hint = f"{way.columns} columns without names; give header=, 'time [s], acceleration [m/s^2]'"
     return [f"column {i}" for i in range(1, way.columns + 1)]
+
+
+def _are_names(cells):
+    return len(cells) > 1 or (cells[0].endswith("]") and not {":", "="} & {*cells[0]})
 
 
 def _table(path, rows, way, count):

@@ -11,7 +11,8 @@ from ..core.threads import single
 from ..flexibility.finite_elements.line_load import check_spread, contact_line, strip, under_line
 from ..flexibility.finite_elements.one_tooth import check_load_along, check_one
 from ..geometry.aliases import Floats
-from ..geometry.damage.crack import Crack, check_apart, deepest, meshed_path
+from ..geometry.damage.crack import Crack, check_apart, meshed_path
+from ..geometry.damage.crack_form import deepest
 from ..geometry.damage.front import open_part, shallowest, whole
 from ..geometry.damage.kinds import check_crack
 from ..geometry.mesh.solid import solid

@@ -51,7 +51,7 @@ class Chip:
         Radius of a rounded cut [mm], at least the length of its chord; default: a plane.
     width : (float, float), optional
         Heights between which the tip is lost [mm], counted as that of a `Pit`; default: the whole face width. A part of the width
-        needs three dimensions. It acts as a spall from the corner to the tip, which takes contact away.
+        needs three dimensions. Plain sums replace it by a spall from the corner to the tip.
 
     Raises
     ------

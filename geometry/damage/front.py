@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from .crack import SLACK, Crack, deepest, extremes, front
+from .crack import Crack
+from .crack_form import SLACK, deepest, extremes, front
 
 # Depths, in parts of the largest, down to which a mesh follows a front that runs out: the first at which it does not fold.
 LEAST = 0.1, 0.15, 0.2, 0.25

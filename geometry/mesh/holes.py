@@ -57,6 +57,15 @@ class Holed:
     removed: tuple
 
 
+def _check_teeth(gear, teeth):
+    if teeth is None:
+        return
+    if not is_whole(teeth):
+        raise ValueError(f"teeth = {teeth!r}, but give an odd whole number of teeth, or None for all")
+    if teeth < 1 or teeth % 2 == 0 or teeth > gear.z // 2:
+        raise ValueError(f"teeth = {teeth}: give an odd number of at most half the teeth of z = {gear.z}")
+
+
 def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, sizes=None, strips=(), stretch=1.0):
     """Mesh a sector of `gear`, or all of it, with pits as holes.
 
@@ -92,10 +101,7 @@ def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, s
     RuntimeError
         If the cut volume is not that of the pits, or gmsh cannot mesh the rest.
     """
-    if teeth is not None and not is_whole(teeth):
-        raise ValueError(f"teeth = {teeth!r}, but give an odd whole number of teeth, or None for all")
-    if teeth is not None and (teeth < 1 or teeth % 2 == 0 or teeth > gear.z // 2):
-        raise ValueError(f"teeth = {teeth}: give an odd number of at most half the teeth of z = {gear.z}")
+    _check_teeth(gear, teeth)
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0")
     if crack is not None:
@@ -105,16 +111,15 @@ def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, s
     _check_place(gear, pits, crack)
     size = {name: value * gear.m_n / refine for name, value in (SIZES | (sizes or {})).items()}
     for finer in FINER:
+        finer_sizes = {name: value / finer for name, value in size.items()}
         try:
-            drawn = section(gear, crack, teeth, broken)
-            finer_sizes = {name: value / finer for name, value in size.items()}
-            made = _attempt(gear, pits, crack, drawn, teeth, finer_sizes, strips, stretch)
+            made = _attempt(gear, pits, crack, section(gear, crack, teeth, broken), teeth, finer_sizes, strips, stretch)
         except UnmeshedError:  # pits that touch leave thin walls
             if finer == FINER[-1]:
                 raise
-            continue
-        if _sizes_of(made.points, made.cells).min() > 0:
-            return made
+        else:
+            if _sizes_of(made.points, made.cells).min() > 0:
+                return made
     raise RuntimeError(f"the helix of z = {gear.z} turns tets of this mesh inside out: raise refine")
 
 

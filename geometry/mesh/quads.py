@@ -187,21 +187,26 @@ def _mouths(gear, size, found):
     return {side: mouths.get(side, (only[0], size["fillet"])) for side in ("unloaded", "loaded")}
 
 
+def _pieces(gear, owner, side, size, teeth, damage, patches):
+    """Pieces of the outline of half a tooth."""
+    mouths, broken = damage
+    if owner in missing_teeth(gear, broken):
+        return no_tooth(gear, size)
+    away = min(abs((owner - k + gear.z // 2) % gear.z - gear.z // 2) for k in [*teeth, *mouths])
+    chip, loaded = chip_of(gear, broken, owner), side == "loaded" and owner in teeth
+    cut = chip and (chip.end_roll(gear, side), chip.top(gear, side))
+    return half_tooth(gear, size, away, loaded, mouths.get(owner, {}).get(side), patches.get(owner, ()), cut)
+
+
 def _rim(gear, draft, size, teeth, damage, patches):
     """Return the toothed outline clockwise from the tip of tooth 0: line numbers, loaded flanks, fillets, end nodes of cracks."""
-    lines, flanks, fillets, marks, last, (mouths, broken) = [], {}, {}, {}, None, damage
-    gone = missing_teeth(gear, broken)
-    halves = [(tooth, side) for k in range(gear.z) for tooth, side in ((k, "loaded"), ((k + 1) % gear.z, "unloaded"))]
+    lines, flanks, fillets, marks, last = [], {}, {}, {}, None
+    halves = [half for k in range(gear.z) for half in ((k, "loaded"), ((k + 1) % gear.z, "unloaded"))]
     for owner, side in halves:
-        away = min(abs((owner - k + gear.z // 2) % gear.z - gear.z // 2) for k in [*teeth, *mouths])
         loaded = side == "loaded" and owner in teeth
-        chip = chip_of(gear, broken, owner)
-        if owner in gone:
-            pieces = no_tooth(gear, size)
-        else:
-            cut = chip and (chip.end_roll(gear, side), chip.top(gear, side))
-            pieces = half_tooth(gear, size, away, loaded, mouths.get(owner, {}).get(side), patches.get(owner, ()), cut)
-        below = 1 + next((k for k, piece in enumerate(pieces) if piece[0] == "flank"), 0)
+        pieces = _pieces(gear, owner, side, size, teeth, damage, patches)
+        names = [piece[0] for piece in pieces]
+        below = 1 + names.index("flank") if "flank" in names else 1
         sign = 1 if side == "loaded" else -1
         for k, (name, radius, angle, params) in list(enumerate(pieces))[::sign]:
             final = (owner, side, k) == (0, "unloaded", 0)

@@ -122,14 +122,7 @@ def _attempt(described, sizes, refine, finer):
     longest = np.hypot(*(points[:, triangles] - points[:, triangles[[1, 2, 0]]])).max(axis=0)
     if (twice <= 2 * FLAT * longest**2).any():
         return None
-    faces, doubles, at = [], {}, count
-    for i, (start, line) in enumerate(chains):
-        if i % 2 == 0:  # every second chain only leads the mesh ahead of the tip
-            chain = np.append(start, at + np.arange(line.shape[1]))
-            points, triangles, double = open_seam(points, triangles, chain)
-            faces.append(np.array([chain, double]))
-            doubles[start] = int(double[0])
-        at += line.shape[1]
+    points, triangles, faces, doubles = _opened(points, triangles, chains, count)
     vertices = {name: np.arange(first[k], first[k + 1] + 1) % count for k, (name, _, _) in enumerate(pieces)}
     left, right = (_apart(side, triangles, doubles) for side in (vertices["left"], vertices["right"][::-1]))
     rolls = next((params for name, params, _ in pieces if name == "flank"), np.zeros(0))
@@ -158,20 +151,32 @@ def _twice_areas(points, triangles):
     return x * v - y * u
 
 
+def _opened(points, triangles, chains, at):
+    """Open the cracks: points, triangles, both faces of each crack, and the second node of each mouth by its first."""
+    faces, doubles = [], {}
+    for i, (start, line) in enumerate(chains):
+        if i % 2 == 0:  # every second chain only leads the mesh ahead of the tip
+            chain = np.append(start, at + np.arange(line.shape[1]))
+            points, triangles, double = open_seam(points, triangles, chain)
+            faces.append(np.array([chain, double]))
+            doubles[start] = int(double[0])
+        at += line.shape[1]
+    return points, triangles, faces, doubles
+
+
 def _pieces(gear, size, cracks, broken=None, cuts=()):
     """Return the outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
     pitch = math.pi / gear.z
     marks = {crack.side: start_arc(gear, crack) for crack in cracks}
-    tips = [(meshed_path(gear, crack)[:, -1], crack.side) for crack in cracks]
+    tips = [meshed_path(gear, crack)[:, -1] for crack in cracks]
     thick = abs(gear.r_f - gear.held)
-    near_bore = [(thick, thick, 0.5 * gear.held)] if not gear.internal else []
+    near_bore = [] if gear.internal else [(thick, thick, 0.5 * gear.held)]
     side = gear.r_f - gear.outward * spaced(
         0.0, thick, max(thick / 2, size["side"]), [(0.0, 0.0, size["side"]), *near_bore], 1, 0.7
     )
     side[-1] = gear.held
     inner = 2 * pitch * gear.held
-    close = [(gear.held * (pitch - math.atan2(*tip)), abs(math.hypot(*tip) - gear.held)) for tip, _ in tips]
-    close = [(place, place, 0.7 * away) for place, away in close]
+    close = [(at := gear.held * (pitch - math.atan2(*tip)), at, 0.7 * abs(math.hypot(*tip) - gear.held)) for tip in tips]
     bottom = pitch - spaced(0.0, inner, min(inner, max(1.5 * thick, 0.1 * inner)), close, 1, GROWTH) / gear.held
     bottom[-1] = -pitch
     for cut in cuts:
@@ -189,7 +194,7 @@ def _pieces(gear, size, cracks, broken=None, cuts=()):
     back = _flank(ends_at["unloaded"], size["back"], size["kink"], max(2 * width, size["corner"]))
     front = _flank(ends_at["loaded"], size["flank"], size["kink"], size["corner"])
     tip = spaced(-width, width, size["root"], [(width, width, min(size["corner"], width))], 1, GROWTH) / gear.r_a
-    top = [("tip", tip, lambda a: cartesian(gear.r_a, a))] if broken is None else _broken_top(gear, size, broken)
+    top = _broken_top(gear, size, broken) if broken else [("tip", tip, lambda a: cartesian(gear.r_a, a))]
     for name, sign in (("unloaded", -1), ("loaded", 1)):
         arc, phi = roots[name]
         part = [
@@ -198,8 +203,7 @@ def _pieces(gear, size, cracks, broken=None, cuts=()):
         ]
         part = [piece for piece in part if piece[1].size > 1]
         if sign < 0:
-            out += [*part, ("back", back, lambda r: _flank_points(gear, r, -1))]
-            out += top
+            out += [*part, ("back", back, lambda r: _flank_points(gear, r, -1)), *top]
         else:
             out.append(("flank", front[::-1], lambda r: _flank_points(gear, r, 1)))
             out += [(kind, params[::-1], place) for kind, params, place in part[::-1]]
@@ -244,7 +248,7 @@ def _roots(gear, size, mark, tips, side):
     fine, largest = [], size["fillet"]
     arcs = np.linspace(below, top, 200)
     sign = 1 if side == "loaded" else -1
-    for tip, _ in tips:
+    for tip in tips:
         away = np.hypot(*(cartesian(*root_curve(gear, arcs)) * [[sign], [1]] - tip[:, None]))
         near = arcs[np.argmin(away)]
         fine.append((near, near, 0.7 * away.min()))

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..damage.crack import check_apart, check_single, deepest
+from ..damage.crack import check_apart, check_single
+from ..damage.crack_form import deepest
 from ..damage.front import open_part, whole
 from ..tooth.gear import Gear
 from ..tooth.profile import turned
@@ -81,6 +82,14 @@ def layers(b, size, *, breaks=(), fine=()):
     return np.concatenate([parts[0][:1], *[part[1:] for part in parts]])
 
 
+def _levels(gear, layer, refine, cracks, fronts, fine):
+    """Heights of the layers [mm], at the ends and along the fronts of cracks too."""
+    breaks = [z for crack in cracks for z in crack.width or ()]
+    breaks += [z for front in fronts for z in (*front.kinks(), *np.ravel(front.open()))]
+    fine = [*fine, *(place for front in fronts for place in front.steep())]
+    return layers(gear.b, layer / refine, breaks=breaks, fine=[(a, b, size / refine) for a, b, size in fine])
+
+
 def solid(gear, *, layer, loaded=(0,), cracks=(), broken=(), patches=(), refine=1.0, sizes=None, fine=()):
     """Mesh a whole gear, all teeth and the true rim.
 
@@ -111,12 +120,10 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), broken=(), patches=(), refine=
     options = {"broken": broken, "patches": patches, "refine": refine, "sizes": sizes}
     section = quad_section(gear, loaded=loaded, cracks=shapes, **options)
     moves = {k: follow_front(section, k, crack) for k, crack in enumerate(cracks) if not (crack.even or crack.bends)}
-    breaks = [z for crack in cracks for z in crack.width or ()]
-    breaks += [z for _, front in moves.values() for z in (*front.kinks(), *np.ravel(front.open()))]
-    fine = [*fine, *(place for _, front in moves.values() for place in front.steep())]
-    levels = layers(gear.b, layer / refine, breaks=breaks, fine=[(a, b, size / refine) for a, b, size in fine])
+    fronts = {k: front for k, (_, front) in moves.items()}
+    levels = _levels(gear, layer, refine, cracks, fronts.values(), fine)
     made = extrude(section, levels, gear.twist_rate, moves.values())
-    made = replace(made, fronts={k: front for k, (_, front) in moves.items()})
+    made = replace(made, fronts=fronts)
     for number, cut in enumerate(section.cuts):
         made = _open(made, cut, number + 1, cracks)
     return made

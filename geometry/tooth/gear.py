@@ -106,6 +106,16 @@ class Gear:
         given = ((field.name, getattr(self, field.name)) for field in fields(self) if getattr(self, field.name) != field.default)
         return f"Gear({', '.join(f'{name}={value!r}' for name, value in given)})"
 
+    def _check_angles(self):
+        if not math.radians(5) <= self.alpha_n <= math.radians(45):
+            raise ValueError(
+                f"alpha_n = {self.alpha_n} rad, but it must lie between 5 and 45 degrees; angles are radians in Python"
+            )
+        if not abs(self.beta) < math.radians(60):
+            raise ValueError(
+                f"beta = {self.beta} rad, but helix angles of 60 degrees and more are not supported; angles are radians in Python"
+            )
+
     def _check_numbers(self):
         if (self.r_bore is None) == (self.r_rim is None):
             found = "are both missing" if self.r_bore is None else f"= {self.r_bore} and {self.r_rim} are both given"
@@ -126,14 +136,7 @@ class Gear:
         for name in ("m_n", "b", "addendum", "dedendum"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive")
-        if not math.radians(5) <= self.alpha_n <= math.radians(45):
-            raise ValueError(
-                f"alpha_n = {self.alpha_n} rad, but it must lie between 5 and 45 degrees; angles are radians in Python"
-            )
-        if not abs(self.beta) < math.radians(60):
-            raise ValueError(
-                f"beta = {self.beta} rad, but helix angles of 60 degrees and more are not supported; angles are radians in Python"
-            )
+        self._check_angles()
         if self.rack_tip_radius < 0:
             raise ValueError(f"rack_tip_radius = {self.rack_tip_radius}, but it must be at least 0")
 

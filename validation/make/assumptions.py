@@ -99,6 +99,12 @@ def read():
     return [(r["scene"], r["pair"], r["change"], float(r["value"])) for r in rows_of(CSV)]
 
 
+def _pit_lines(known):
+    for scene, _, change, loss in known:
+        if change.startswith("pits"):
+            yield f"| {scene}, {PITTED[scene]} | {change.split(':')[0]} | {loss:.4g} |"
+
+
 def text():
     """Arguments of `page.text`, from the tables."""
     known = read()
@@ -129,10 +135,8 @@ def text():
         | scene, case | change | loss |
         |---|---|---|
         """,
+        *_pit_lines(known),
     ]
-    for scene, _, change, loss in known:
-        if change.startswith("pits"):
-            lines.append(f"| {scene}, {PITTED[scene]} | {change.split(':')[0]} | {loss:.4g} |")
     bores = [value[*pair, name] for pair in pairs for name in changes if name.startswith("bores")]
     rest = max(abs(value[*pair, name]) for pair in pairs for name in changes if (*pair, name) in value and "bores" not in name)
     answer = (

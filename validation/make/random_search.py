@@ -7,7 +7,7 @@ from itertools import groupby
 import numpy as np
 
 import gearfe as gf
-from gearfe.geometry.damage.crack import STARTS
+from gearfe.geometry.damage.crack_form import STARTS
 
 from ..shared import kept_rows, page
 from ..shared.arbiter.large import large_k

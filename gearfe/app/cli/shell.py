@@ -78,14 +78,19 @@ def _end_tidily(number, _):
     raise SystemExit(128 + number)
 
 
-def run(work, options=()):
-    """Call `work`, a function without arguments, and return the exit code. `options`: names of the verb's options."""
+def _prepare():
+    """Let the process end tidily on SIGTERM, and print characters that a stream cannot encode as text."""
     with contextlib.suppress(ValueError):  # only the main thread can set signal handlers
         signal.signal(signal.SIGTERM, _end_tidily)
     codecs.register_error("spelled", spelled)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="spelled")
+
+
+def run(work, options=()):
+    """Call `work`, a function without arguments, and return the exit code. `options`: names of the verb's options."""
+    _prepare()
     try:
         with warnings.catch_warnings(), contextlib.redirect_stdout(sys.stdout and Harmless(sys.stdout)):
             for kind in (UserWarning, FutureWarning):

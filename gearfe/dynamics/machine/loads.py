@@ -63,6 +63,11 @@ class Load:
         """Times at which the history bends or jumps [s]."""
         return np.unique(self.value[0]) if isinstance(self.value, tuple) else np.empty(0)
 
+    @property
+    def changes(self) -> bool:
+        """Whether the load changes with time."""
+        return callable(self.value) or self.breaks.size > 1
+
 
 def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
     """Return times [s] and values of a history.

@@ -129,9 +129,7 @@ def _builder(scene, case):
     """Return the function that builds the machine of a scene, and its contact."""
     if not scene.machine:
         raise ValueError(f"scene {scene.name} has no [machine] table: add one with model, speed_rpm and torque_Nm")
-    if case is not None and not any(case in pair.damage for pair in scene.pairs.values()):
-        known = sorted({name for pair in scene.pairs.values() for name in pair.damage})
-        raise ValueError(f"scene {scene.name} has no case {case!r}; it has {', '.join(known) or 'none'}")
+    scene.check_case(case)
     model, contact = scene.machine["model"], scene.machine.get("contact", "linear")
     one_of("[machine] model", model, MACHINES)
     one_of("[machine] contact", contact, ("linear", "impact"))

@@ -96,14 +96,7 @@ class Machine:
         Raises ValueError for masses that are not positive, springs that are negative, or rows of another length.
         """
         n, mass = len(self.dofs), numbers("mass", self.mass, " [kg], moments of inertia [kg m2]")
-        if mass.shape != (n,) or not (np.isfinite(mass).all() and (mass > 0).all()):
-            raise ValueError(f"mass: give {n} positive numbers, one per degree of freedom ({', '.join(self.dofs[:4])}, ...)")
-        if len(set(self.dofs)) < n:
-            raise ValueError(f"dofs: {', '.join(self.dofs)}, but give each degree of freedom once")
-        elements: tuple[Spring | GearMesh | Load, ...] = (*self.springs, *self.meshes, *self.loads)
-        for element in elements:
-            if element.row.shape != (n,):
-                raise ValueError(f"{element.name}: its row needs {n} finite numbers, one per degree of freedom")
+        self._check_sizes(mass)
         R = np.array([s.row for s in self.springs]).reshape(-1, n)
         K, C = (R.T @ (np.array([getattr(s, key) for s in self.springs])[:, None] * R) for key in "kc")
         frame = np.zeros((n, n))
@@ -118,6 +111,17 @@ class Machine:
         law |= {"damping": law["damping"] + np.array(extra)}
         G = np.array([m.row for m in self.meshes]).reshape(-1, n)
         settle(self, mass=mass, K=K + frame, C=C, frame=frame, G=G, law=law)
+
+    def _check_sizes(self, mass):
+        n = len(self.dofs)
+        if mass.shape != (n,) or not (np.isfinite(mass).all() and (mass > 0).all()):
+            raise ValueError(f"mass: give {n} positive numbers, one per degree of freedom ({', '.join(self.dofs[:4])}, ...)")
+        if len(set(self.dofs)) < n:
+            raise ValueError(f"dofs: {', '.join(self.dofs)}, but give each degree of freedom once")
+        elements: tuple[Spring | GearMesh | Load, ...] = (*self.springs, *self.meshes, *self.loads)
+        for element in elements:
+            if element.row.shape != (n,):
+                raise ValueError(f"{element.name}: its row needs {n} finite numbers, one per degree of freedom")
 
     def __repr__(self):
         """One line: numbers of degrees of freedom, springs, meshes and loads."""

@@ -50,8 +50,7 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
     plan = plan or propagator.plan(machine, h, machine.working(), adapt)
     looks = 4 * steps + 1 if any(callable(load.value) for load in machine.loads) else 1
     flat = excitation.flatten(machine, start + np.linspace(0.0, duration, looks))
-    breaks = np.unique(np.concatenate([np.empty(0), *(load.breaks for load in machine.loads)]))
-    run = partial(run, plan, machine, flat, breaks=breaks)
+    run = partial(run, plan, machine, flat)
     z = plan.inverse @ state
     with np.errstate(over="ignore", invalid="ignore"):
         if counts:

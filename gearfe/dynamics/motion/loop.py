@@ -40,7 +40,7 @@ class Matrices(NamedTuple):
     P: np.ndarray
 
 
-def run(plan, machine, flat, z, steps, every, breaks, start=0.0, acting=None):
+def run(plan, machine, flat, z, steps, every, start=0.0, acting=None):
     """Integrate `steps` steps from `z` at time `start`. Return the state after each `every` steps, and counts.
 
     Parameters
@@ -64,7 +64,7 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0, acting=None):
     _, rows, columns, per_depth = np.insert(flat.shape, [m] * rubs, 0.0, axis=0).T
     mesh = np.concatenate([np.arange(m), flat.rub["mesh"], flat.change["mesh"]])
     parts = records(mesh=mesh, rows=rows, columns=columns, per_depth=per_depth)
-    edges = np.append(np.asarray(breaks, dtype=float), np.inf)
+    edges = np.append(np.unique(np.concatenate([np.empty(0), *(load.breaks for load in machine.loads)])), np.inf)
     states, counts = np.empty((1 + steps // every, z.size)), np.zeros(3, dtype=np.int64)
     clock = float(start), plan.h, every, plan.allowed, plan.scale
     acting = np.zeros((0, 0)) if acting is None else acting

@@ -62,16 +62,16 @@ def common_period(machine: Machine) -> float:
     ValueError
         If there is none (frequencies without a common multiple, loads that change).
     """
-    if any(load.breaks.size > 1 or callable(load.value) for load in machine.loads):
+    if any(load.changes for load in machine.loads):
         raise ValueError("the loads change with time: give the period")
     if machine.speed is not None:
         raise ValueError("the speed changes with time: there is no periodic motion; use simulate")
-    rates = [abs(m.frequency) / m.cycles() for m in machine.meshes if m.frequency]
-    rates += [abs(f) for m in machine.meshes for _, f, _ in m.error if f]
+    rates = [abs(m.frequency) / m.cycles() for m in machine.meshes]
+    rates = [rate for rate in (*rates, *(abs(f) for m in machine.meshes for _, f, _ in m.error)) if rate]
     if not rates:
         raise ValueError("no load or mesh of this machine is periodic: give the period")
     parts = [Fraction(rate / rates[0]).limit_denominator(10000) for rate in rates]
-    if any(abs(float(part) * rates[0] / rate - 1) > 1e-9 for part, rate in zip(parts, rates, strict=True)):
+    if not np.allclose(np.array(parts, dtype=float) * rates[0], rates, rtol=1e-9, atol=0.0):
         raise ValueError(f"frequencies {', '.join(f'{r:.6g}' for r in sorted(set(rates)))} Hz have no common period")
     turns = math.lcm(*(part.denominator for part in parts))
     return turns / math.gcd(*(int(part * turns) for part in parts)) / rates[0]
@@ -152,7 +152,6 @@ class _Flow:
         self.machine, self.times = machine, np.linspace(0.0, period, 2 * steps + 1)
         self.plan = propagator.plan(machine, period / steps / 2, machine.working())
         self.flat = excitation.flatten(machine, np.linspace(0.0, period, 16 * steps + 1))
-        self.breaks = np.unique(np.concatenate([np.empty(0), *(load.breaks for load in machine.loads)]))
         self.linear = closed(machine.law) and not machine.curved  # even with friction
 
     def __call__(self, z):
@@ -160,7 +159,7 @@ class _Flow:
         from .loop_parts import announced
 
         with announced():
-            return run(self.plan, self.machine, self.flat, z, self.times.size - 1, 1, self.breaks)
+            return run(self.plan, self.machine, self.flat, z, self.times.size - 1, 1)
 
     def monodromy(self, states):
         """Return the monodromy matrix (final state by initial state of a period) by differences of motions, exact if linear."""

@@ -138,14 +138,14 @@ def _check_names(pair, inputs):
         raise ValueError("inputs: no 'force', but k depends on the load: give a range or a number [N]")
     if "angle" in inputs and "level" not in inputs:
         raise ValueError("inputs: an 'angle' of a crack, but no 'level': give both")
-    ring = [name for name in inputs if name in (*SHAPE, "bore_2")]
+    ring = [name for name in (*SHAPE, "bore_2") if name in inputs]
     if ring and pair.gear_2.internal:
         raise ValueError(f"inputs: {ring[0]!r}, but gear 2 is a ring, whose trimmed tip makes k discontinuous: omit this input")
-    shape = [name for name in inputs if name in SHAPE]
+    shape = ring and ring[0] in SHAPE
     if shape and not math.isclose(pair.a, free_centre_distance(pair.gear_1, pair.gear_2), rel_tol=1e-9):
         raise ValueError(
-            f"inputs: {shape[0]!r} moves the centre distance without backlash, which a surrogate then takes, but the pair has "
-            f"a = {pair.a:g} mm: give a pair with a = None, or leave {shape[0]!r} out"
+            f"inputs: {ring[0]!r} moves the centre distance without backlash, which a surrogate then takes, but the pair has "
+            f"a = {pair.a:g} mm: give a pair with a = None, or leave {ring[0]!r} out"
         )
 
 

@@ -17,7 +17,7 @@ from ....geometry.damage.missing import MissingTooth, missing_teeth
 from ....geometry.kept import keeping
 from ....geometry.mesh.sector import sector
 from ....geometry.tooth.profile import arc_at, roll_at_arc
-from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning, reached_teeth
+from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, glued, leaning, reached_teeth
 from ...solved import solved_gears
 from .join import join
 from .panel import SectionModel, check_order, panel
@@ -90,14 +90,10 @@ def _damaged(model, cracks, broken, neighbours, cache):
     teeth = [tooth for tooth in reached if tooth not in gone]
     between = opening["influence"]
     stiffness = np.linalg.inv(between)
-    near, within, far, leans = {}, {}, {}, {}
-    for i in teeth:
-        for j in teeth:
-            glued = influence[i, j] - opening[i].T @ stiffness @ opening[j]
-            if i == j:
-                near[i], within[i], leans[i] = _own_tooth(ends[i], glued)
-            elif (j - i) % gear.z <= gear.z // 2:
-                far[i, j] = _spline(ends[i], glued, ends[j])
+    own, ahead = glued(gear, teeth, lambda i, j: influence[i, j], opening, stiffness)
+    parts = {tooth: _own_tooth(ends[tooth], own[tooth]) for tooth in teeth}
+    near, within, leans = ({tooth: part[k] for tooth, part in parts.items()} for k in range(3))
+    far = {(i, j): _spline(ends[i], one, ends[j]) for (i, j), one in ahead.items()}
     seam = SeamFaces({t: _opening(ends[t], opening[t]) for t in teeth}, between, stiffness)
     unknowns, fine = sum(p.unknowns for p in panels.values()), HATS * model.refine
     seam = seam if cracks else None
