@@ -31,12 +31,12 @@ from .state import CASE, SeveralError, read, tables_of, title_of
 
 QUICK, FINE, SOLID = 32, 64, 16  # phases per mesh cycle
 KEPT = 128 * 2**20  # memory of solved gears in one process [bytes]
-ALONG = {  # values of quantities along the width in a section
+ALONG = {  # quantities that a transverse section does not vary along the width
     "pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta_x": 0.0, "tilt_1": 0.0, "tilt_2": 0.0, "part": "all of it",
 }  # fmt: skip
 STRESS = (1000, 750)  # picture [px]
-SECONDS = 0.5  # of vibration
-SHOWN = 1500  # points of a plotted spectrum
+SECONDS = 0.5  # duration of the vibration record [s]
+SHOWN = 1500  # most points of a plotted spectrum
 UM = 1e6  # m to um
 
 

@@ -30,8 +30,8 @@ from .returns import returns_of
 REFERENCE, REFERENCE_SOLID = "fe", "ritz3d"  # reference methods of sections, and of gears that need three dimensions
 REFERENCES = (REFERENCE, REFERENCE_SOLID, "fe3d")
 FORMULATIONS = tuple(row.name for row in ROWS if row.kind != "solid" and row.name != REFERENCE)  # formulations for spur gears
-STORED = 32  # phases of the cycle of curves on file
-COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU seconds per curve, for the time left
+STORED = 32  # phases per cycle of stored curves
+COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU time per curve [s], for the estimate of the remaining time
 
 
 class OwnPair(CaseOptions, total=False):
@@ -98,7 +98,7 @@ def compare(
     named = own_models(models, taken=(REFERENCE, *FORMULATIONS))
     returns = {} if isinstance(scene, (Case, GearPair, type(None))) else returns_of(_loaded(scene), *key)
     plan, cycles = _beside(key, chosen, phases, returns)
-    for method in methods:  # load libraries before the times are measured
+    for method in methods:  # Libraries are loaded before the timed part.
         METHODS[method].load()
     with gmsh_session():
         pass

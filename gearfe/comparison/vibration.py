@@ -19,12 +19,12 @@ from ..signal.spectral_lines import BINS, expected_lines, find_lines
 from .record_length import resolving_seconds, too_short
 from .simulated import RANGE, fault_lines
 
-NEAR = 50  # bins on either side that give the noise floor of a line
-# ratio of the median to the lower quartile of noise amplitudes (Rayleigh distribution)
+NEAR = 50  # half-width of the window for the noise floor [bins]
+# Ratio of the median to the lower quartile of noise amplitudes (Rayleigh distribution).
 QUARTILE = math.sqrt(math.log(2) / math.log(4 / 3))
-FLOOR = 5.0  # least ratio of a line to its noise floor; the largest of five noise bins reaches it once in millions of cases
-ROUNDING = 1e-9  # motions below this part of the largest motion are rounding errors
-PULSES = 2  # least number of fault harmonics in an envelope: tooth pulses have many, run-out and misplaced planets have one
+FLOOR = 5.0  # least ratio of a line to its noise floor; noise in five bins reaches it once in millions of cases
+ROUNDING = 1e-9  # Motions below this part of the largest motion are rounding errors.
+PULSES = 2  # least number of fault harmonics in an envelope; tooth pulses have many, run-out and planet position errors have one
 RISE = 2.0  # least ratio of a fault line to the same line of the healthy machine
 OF_GEARS = ("FM4", "NA4", "energy ratio")  # indicators by gear, of `gearfe.signal.gear_indicators`
 WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "shaft frequency", "f_carrier": "carrier frequency"}

@@ -175,7 +175,7 @@ def mirrors_of(cells, bodies):
             at, (body, offset) = cells.half == half, bodies[half][side]
             ends = [cells.depth[at] + offset + sign * cells.width[at] / 2 for sign in (-1, 1)]
             low[at], high[at] = (np.array(ends) if not far else body.gear.b - np.array(ends[::-1])) / math.cos(body.gear.beta_b)
-            weight, place = body.edge, (far, offset, body.gear.b)  # faces of equally wide gears are flush
+            weight, place = body.edge, (far, offset, body.gear.b)  # The end faces of gears with equal width are flush.
         faces[place] = (weight + faces.get(place, (0.0,))[0], low, high)
     return list(faces.values())
 

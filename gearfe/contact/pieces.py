@@ -15,8 +15,8 @@ from ..geometry.pair.broken import ToothPairs, touching_each
 from ..geometry.pair.contacts import FORM, end_corners, near_pitches, touching
 from ..geometry.pair.lines import covered
 
-SAMPLES = 400  # samples of the gap beyond the path, per base pitch
-PARTS = 4  # straight segments of a line beyond the path, each searched for pits
+SAMPLES = 400  # samples of the gap beyond the path per base pitch
+PARTS = 4  # straight segments of a line beyond the path, in each of which pits are searched
 
 
 class Piece(NamedTuple):
@@ -49,7 +49,8 @@ def gaps(pair):
         gap = touching(pair, at + sense * away)[2]
         met = np.flatnonzero(np.isfinite(gap))
         first = met[0] if met.size else gap.size
-        if 0 < first < gap.size - 2:  # first contact lies between two samples: use at most the gap at the previous sample
+        # First contact lies between two samples, so the gap at the previous sample is an upper bound.
+        if 0 < first < gap.size - 2:
             first -= 1
             gap[first] = max(2 * gap[first + 1] - gap[first + 2], 0.0)
         span = slice(first, met[-1] + 1 if met.size else gap.size)
@@ -111,7 +112,8 @@ def pieces_of(pair, phase, pits, bands, beta_b, reach=0.0, closing=0.0, pairs=No
 def _limits(pair, reach):
     """Abscissae [mm] of `_parts`, and numbers of pieces whose first or last end is at an edge that undercut leaves."""
     (start, end), further = pair.path, beyond(pair, reach)
-    before, after = (away[0] if away.size else 0.0 for away, _ in gaps(pair))  # first touch of a corner and a flank
+    # distance of the first contact of a corner and a flank
+    before, after = (away[0] if away.size else 0.0 for away, _ in gaps(pair))
     limits = (end + further[1], end + min(after, further[1]), end, start, start - min(before, further[0]), start - further[0])
     at_start, at_end = (number in FORM for number in end_corners(pair))
     return limits, (

@@ -21,10 +21,10 @@ from ..geometry.tooth.profile import arc_at, roll_at_arc
 from ..geometry.tooth.side import on_fillet
 from .directions import met
 
-FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # hat lengths next to a corner and at most [m_n], and growth per length
-RESOLVED = 4.0  # hats per half width at a corner: a narrower contact is not resolved
-SHARP = 100.0  # hats at a corner per half width of a smooth contact, because edge contact is narrower
-LEAST = 7.5e-6  # length of the shortest hats, while a half width spans `RESOLVED` of them [m_n]
+FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # hat length next to a corner, largest hat length [m_n], growth with the distance
+RESOLVED = 4.0  # least number of hat functions per half-width at a corner; narrower contacts are not resolved
+SHARP = 100.0  # hat functions at a corner per half-width of a smooth contact, because edge contact is narrower
+LEAST = 7.5e-6  # shortest hat, if a half-width spans `RESOLVED` of them [m_n]
 WITHIN = 4.0  # hat functions per Hertzian half-width where a Hertzian contact and a corner share a row
 
 
@@ -78,7 +78,7 @@ def _side_of(offsets, length):
     """Offsets up to half of `length` [mm], stretched so that they end there."""
     half = length / 2
     count = int(np.searchsorted(offsets, half))
-    if count >= offsets.size:  # outside the zone: continue with even steps
+    if count >= offsets.size:  # Outside the zone the steps are equal.
         step = offsets[-1] - offsets[-2]
         number = np.arange(1, max(2, int(np.ceil((half - offsets[-1]) / step)) + 1))
         offsets = np.append(offsets, offsets[-1] + number * (half - offsets[-1]) / number[-1])
@@ -173,7 +173,7 @@ def hat_rows(contact, at, knots, kernels, host, tips):
     made, alike = [None] * len(parts), {}
     for k, tooth in enumerate(order.tolist()):
         alike.setdefault((tooth, parts[k].shape[1]), []).append(k)
-    for (tooth, _), rows in alike.items():  # process rows with the same number of hats on one tooth together
+    for (tooth, _), rows in alike.items():  # Rows with the same number of hat functions on one tooth are processed together.
         values = np.array([parts[k] for k in rows]).swapaxes(0, 1)
         kernel = np.array([_between(knots[k], kernels[k], meets[k]) for k in rows])
         smooth = [np.array([within[k] for k in rows]) for within in bodies]
@@ -246,7 +246,7 @@ def _placed(contact, one, host):
         return next(iter(marks.values())) + _standing(contact, one, host)[0]
     offsets, ends = _offsets(gear.m_n, fine, one.zone, one.finest), _ends(marks, host)
     low, high = marks.get(2 - host, -np.inf), marks.get(1 + host, np.inf)
-    if low > high:  # both tips overlap: contact is at one of them
+    if low > high:  # Both tips overlap, so contact is at one of them.
         low = high = marks[1 + host]
     places = np.unique([min(max(mark, low), high) for mark in marks.values()])
     places = _apart(places, offsets[1], ends[1])

@@ -15,9 +15,9 @@ from .contact_deck import ContactDeck, write_contact_section
 from .contact_solid import write_contact_solid
 from .pressing import Pressing
 
-FURTHEST = 1e6  # phase [mesh cycles] up to which rounding does not move contacts
+FURTHEST = 1e6  # largest phase at which rounding does not move contacts [mesh cycles]
 
-GIVEN = ("face", "damage", "flanks", "misalignment")  # options of a case
+GIVEN = ("face", "damage", "flanks", "misalignment")  # options that define the case
 
 
 class DeckOptions(TypedDict, total=False):

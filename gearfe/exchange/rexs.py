@@ -18,7 +18,7 @@ from .rexs_power import Power, PowerMesh
 from .rexs_shifts import Shifts
 
 CLOSES = 1e-3  # tolerance [mm] for a centre distance from profile shifts
-PER_WIDTH = 100.0  # N along the line of action for each mm of width, if the file states no load
+PER_WIDTH = 100.0  # default force along the line of action per mm of face width [N]
 SILENT = {"gear_unit", "gear_casing", "cylindrical_stage", "planetary_stage", "shaft", "shaft_section", "material"}
 SILENT |= {"external_load", "cylindrical_gear_manufacturing_settings", "cylindrical_stage_gear_data"}
 

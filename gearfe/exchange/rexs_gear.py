@@ -7,7 +7,7 @@ from .rexs_file import Component, Model
 
 GEARS = ("cylindrical_gear", "ring_gear")
 STEEL = {"E_MPa": 206_000.0, "nu": 0.3}
-NEAR = 0.02  # tolerance of radii for rounding [modules]
+NEAR = 0.02  # rounding tolerance of radii [m_n]
 
 
 def outward(gear: Component) -> int:
@@ -63,7 +63,7 @@ class GearReader:
         if beta is None:
             beta = 0.0
             self.assume(f"gear {name}: spur", "the file states no helix angle")
-        row["beta_deg"] = beta + 0.0  # no -0.0
+        row["beta_deg"] = beta + 0.0  # Adding 0.0 changes -0.0 to 0.0.
         return row
 
     def _needed(self, gear, name, value, attribute):
@@ -128,7 +128,8 @@ class GearReader:
         tip, root = (gear.number(f"{end}_diameter", "mm") for end in ("tip", "root"))
         if tip is not None and (addendum := sign * ((tip / 2 - r) / m_n - row["x"])) > -1:
             row["addendum"] = addendum
-        if root is not None and not ("dedendum" in row and abs(root_radius(gear, row) - root / 2) < NEAR * m_n):  # a nominal root
+        # The stated root diameter is a nominal one.
+        if root is not None and not ("dedendum" in row and abs(root_radius(gear, row) - root / 2) < NEAR * m_n):
             dedendum = sign * ((r - root / 2) / m_n + cut)
             if 0.5 < dedendum < 2:
                 row["dedendum"] = dedendum

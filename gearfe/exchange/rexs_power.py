@@ -9,7 +9,7 @@ import numpy as np
 from .rexs_file import Component, Model
 
 COUPLED = ("coupling", "switchable_coupling")
-KNOWN = 1e-9  # tolerance of the torque balance, and of undetermined values (null space)
+KNOWN = 1e-9  # tolerance of the torque balance and of undetermined values
 
 
 class PowerMesh(NamedTuple):
@@ -95,7 +95,7 @@ class Power:
             return {}
         solution, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=1e-12)
         if np.abs(matrix @ solution - right).max() > KNOWN * np.abs(right).max():
-            return {}  # the stated torques do not balance
+            return {}  # The stated torques are not in balance.
         unknown = (np.abs(np.linalg.svd(matrix)[2][rank:]) > KNOWN).any(axis=0)
         forces = dict(zip((mesh.name for mesh in meshes), np.where(unknown, 0.0, np.abs(solution)).tolist(), strict=False))
         return {name: force for name, force in forces.items() if force}

@@ -18,8 +18,8 @@ from .look import COLOURS, GEARS, blank
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-HURT = COLOURS[1]  # damage
-NEAR = 3.6  # half height of the close-up [modules]
+HURT = COLOURS[1]  # colour of damage
+NEAR = 3.6  # half-height of the close-up [m_n]
 
 
 def plot_pair(
@@ -91,7 +91,7 @@ def plot_pair(
 def _draw_gear(views, pair, i, turn, damages):
     """Outline of gear 1 (`i` 0) or 2, and its damage in front."""
     gear = (pair.gear_1, pair.gear_2)[i]
-    frame = _turned(turn) * [(1, pair.outward)[i], 1]  # a ring's own frame is mirrored in place
+    frame = _turned(turn) * [(1, pair.outward)[i], 1]  # The frame of a ring gear is mirrored.
     centre = [[0.0], [(0.0, pair.centre_2)[i]]]
     shapes = [frame @ points + centre for points in (outline_points(gear, points=24), _edge(gear))]
     ahead = (1, -1)[i] * 2 * math.pi / gear.z  # rotation from a tooth to the tooth of the pair ahead

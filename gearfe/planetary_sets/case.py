@@ -24,9 +24,9 @@ from ..geometry.tooth.modified import Flank
 from .rim_supports import check_support
 from .standing import assembled
 
-KINDS = Crack | MissingTooth | Chip  # damage of a section
+KINDS = Crack | MissingTooth | Chip  # types of damage of a section
 GEARS = ("sun", "planet", "ring")
-LARGEST = 0.1  # modules: larger position errors are probably given in another unit
+LARGEST = 0.1  # limit of position errors [m_n]; larger values are probably given in another unit
 
 
 def planet_name(index: int) -> str:

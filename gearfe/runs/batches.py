@@ -77,7 +77,7 @@ def batch(
     work = work or mesh_stiffness
     every = _checked(cases)
     if getattr(multiprocessing.current_process(), "_inheriting", False):
-        sys.exit(1)  # a worker has imported an unguarded script; the parent process prints the remedy
+        sys.exit(1)  # A worker imported an unguarded script, and the parent process prints the remedy.
     workers = count_of(workers, every)
     of_script = workers > 1 and _of_script(work, every)
     started, tally = time.perf_counter(), Tally("cases", len(every), progress)

@@ -18,7 +18,7 @@ import re
 
 from ..geometry.checks import shown
 
-OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # words in the effects of an assumption
+OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # words that mark an assumption on stiffness
 
 
 def split(file, assumptions, given, tables):

@@ -10,9 +10,10 @@ from typing import Any, cast
 from .parts import DAMAGE
 from .schema import LISTS, Key, scene_schema
 
-OUTSIDE = ("pair", "case")  # keys by themselves: which pair, which case of damage ("healthy": none)
-BEFORE_LOAD = ("gear", "material")  # inputs of the healthy gears; then damage; the rest shares the gears
-PRINTED = ("reference", "assumption", "given", "later")  # statements on the source that do not affect computed values
+OUTSIDE = ("pair", "case")  # keys without a dot: the pair and the damage case ("healthy": none)
+# Inputs of the healthy gears come first, then damage. Cases that differ in other inputs share solved gears.
+BEFORE_LOAD = ("gear", "material")
+PRINTED = ("reference", "assumption", "given", "later")  # statements about the source, which do not affect computed values
 Tables = dict[str, Any]
 
 

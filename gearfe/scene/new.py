@@ -18,7 +18,7 @@ HEAD = """\
 # Lines that begin with # and no space are what else it can say: take the # away, and they hold.
 
 """
-# reduced addendum, because a full one may reach into the pinion's fillet
+# The addendum is reduced, because a full one may reach into the pinion's fillet.
 RING = {"addendum": 0.8, "dedendum": 1.25, "rack_tip_radius": 0.2}
 RACK = {"addendum": 1.0, "dedendum": 1.25, "rack_tip_radius": 0.38}
 
@@ -130,7 +130,7 @@ def _check_inputs(path, pairs):
 def _gears(rack, teeth, x, helix_deg, ring, bore_mm):
     """Tables of pinion and wheel."""
     module, helix = rack["m_n_mm"], (float(helix_deg), (helix_deg if ring else -helix_deg) + 0.0)
-    transverse = module / math.cos(math.radians(helix_deg))  # the root circle of an external gear lies 1.25 modules inside
+    transverse = module / math.cos(math.radians(helix_deg))  # The root circle of an external gear is 1.25 modules inside.
     held = [("r_bore_mm", round(0.5 * (0.5 * transverse * z - 1.25 * module), 1)) for z in teeth]
     if ring:
         held[1] = "r_rim_mm", round(0.5 * transverse * teeth[1] + 5 * module, 1)

@@ -11,11 +11,11 @@ from ..core.units import NEWTON_PER_UM
 REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
 NOT, NEVER, FORMULA = "not reproduced", "not reproducible", "no number printed"
 STATEMENT = "statement"
-DEPENDS = "depends"  # a statement that holds under some of the values that its source leaves out
-ASSUMED = "set by an assumption"  # within the tolerance, or in order, but set by a value of ours
-DISTINCT = 1e-3  # two of our values whose relative difference is smaller have no order
-CHANGE = 3.0  # a trend needs relative changes between a third and three times the printed ones
-SHOWN_AS = {"N/m": "N/um"}  # units of the sources that are shown in ours
+DEPENDS = "depends"  # The statement holds for some of the values that the source omits.
+ASSUMED = "set by an assumption"  # The result agrees, but an assumed value determines it.
+DISTINCT = 1e-3  # Two computed values with a smaller relative difference have no order.
+CHANGE = 3.0  # A trend agrees if the relative change is between a third and three times the printed one.
+SHOWN_AS = {"N/m": "N/um"}  # units of the sources: units shown
 COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
 
 

@@ -29,9 +29,9 @@ GEAR_SOURCES = {
     "energy ratio": "rms of the difference signal over rms of the regular signal; Vecer 2005",
     "sideband level factor": "sum of the first sidebands' amplitudes f_m +- f_shaft over the rms of the average; Vecer 2005",
 }
-CLEAR = 3.0  # threshold over the median of adjacent orders: white noise exceeds it in 0.2 % of the cases
-SHARP = 0.9  # part of the mesh line that an average keeps: below it the indicators of local faults change
-EMPTY = 1e-9  # part of the average below which a remainder is rounding
+CLEAR = 3.0  # threshold relative to the median of adjacent orders; white noise exceeds it in 0.2 % of cases
+SHARP = 0.9  # least part of the mesh line that an average must keep; below it, indicators of local faults change
+EMPTY = 1e-9  # A smaller remainder, relative to the average, is a rounding error.
 
 
 def gear_indicators(

@@ -16,7 +16,7 @@ from .series import Signal
 from .tachometer import SPEEDS, with_speed_record, with_tachometer
 from .text_table import text_table
 
-LONGEST = 60  # characters of a unit
+LONGEST = 60  # longest unit [characters]
 READERS = {
     ".npz": array_file, ".mat": array_file, ".h5": hdf_file, ".hdf5": hdf_file, ".wav": wav_file, ".uff": uff_file,
     ".unv": uff_file, ".uf": uff_file, ".tdms": tdms_file, ".parquet": parquet_file,

@@ -9,7 +9,7 @@ import numpy as np
 from ..core.checks import numbers, whole
 from .given import hertz
 
-NEAR = 1e-3  # tolerance: part of a tooth, or of the sum over all planets
+NEAR = 1e-3  # tolerance of whole numbers of teeth
 HIGHEST = {"harmonics": 1, "turns": 3, "window": 1}
 
 

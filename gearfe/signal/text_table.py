@@ -14,15 +14,15 @@ import numpy as np
 from ..geometry.aliases import StrPath
 from .found import KEYS, Found, plain
 
-SEPARATORS = (";", "\t", ",", None)  # separators of cells; None: blanks
-LOOKED = 200  # rows at the end of a table from which its number format is found
-LONGEST = 300  # characters of a title that states a value
+SEPARATORS = (";", "\t", ",", None)  # cell separators; None: blanks
+LOOKED = 200  # number of rows at the end of a table that determine its number format
+LONGEST = 300  # longest title that states a value [characters]
 UNITS = re.compile(
     r"-|%|V|mV|pC|g|s|ms|us|rad|deg|°|k?Hz|rpm|1/min|[munkM]?(m|N|Nm|Pa|W|A)|[mu]?m/s(\^?2|²|\*\*2)?|°C|K|bar|hh:mm:ss\S*|\[.*\]|\(.*\)"
 )
 STATEMENT = re.compile(r"([\w ]+?)\s*(?:[\[(](\w+)[\])])?\s*[:=;,\t]+\s*([^;,\t]+(?:,\d+)?)[;,\t\s]*(\w*)[;,\t\s]*")
-SPACE = "[ \xa0\u2009\u202f]"  # blanks, also those that do not break
-GROUPS = {  # by decimal mark: thousands separators (a regular expression), and numbers that have them
+SPACE = "[ \xa0\u2009\u202f]"  # blanks, including non-breaking ones
+GROUPS = {  # by decimal mark: pattern of thousands separators, pattern of numbers with them
     mark: {one: re.compile(rf"[-+]?\d{{1,3}}({one}\d{{3}})+({re.escape(mark)}\d*)?(e[-+]?\d+)?", re.IGNORECASE) for one in groups}
     for mark, groups in {".": (",", "'", SPACE), ",": (r"\.", "'", SPACE)}.items()
 }
@@ -30,7 +30,7 @@ DATE = re.compile(r"\d{4}([-/.])\d{1,2}\1\d{1,2}|\d{1,2}([-/.])\d{1,2}\2\d{2,4}"
 CLOCK = re.compile(
     rf"(?:(?:{DATE.pattern})[T ]\s*)?(?P<h>\d{{1,2}}):(?P<m>\d{{2}}):(?P<s>\d{{2}}(?:[.,]\d+)?)\s*(?:Z|[-+]\d{{2}}:?\d{{2}})?"
 )
-DAY = 86400.0  # s
+DAY = 86400.0  # length of a day [s]
 
 
 class Way(NamedTuple):
@@ -48,7 +48,8 @@ class Way(NamedTuple):
     def cells(self, line: str, count: int | None = None) -> list[str]:
         """Cells of a row: with a known `count` also the empty ones at its end, otherwise separators at the end are dropped."""
         whole = line if self.separator is None else line.rstrip(f"{self.separator} ")
-        if self.separator is not None and '"' in line and len(line) <= csv.field_size_limit():  # between quotes no cell ends
+        # Separators inside quotes do not end a cell.
+        if self.separator is not None and '"' in line and len(line) <= csv.field_size_limit():
             cells = [cell.strip() for cell in next(csv.reader([whole], delimiter=self.separator))]
         else:
             cells = [cell.strip().strip('"').strip() for cell in whole.split(self.separator)]
@@ -167,7 +168,7 @@ def _names(titles, comments, way, found):
         return [f"{name} [{unit.strip('[]()')}]" for name, unit in zip(*rows[-2:], strict=True)]
     last = way.cells(titles[-1]) if titles else []
     if last and (len(last) == way.columns or (not rows and last[1:])):
-        return last  # a header whose count does not fit is reported with the first row
+        return last  # A header with the wrong number of columns is reported with the first row.
     if said := list(filter(_are_names, said)):
         return said[-1]
     if way.columns == 1:
@@ -186,7 +187,7 @@ def _table(path, rows, way, count):
     comma = way.mark == ","
     if not (way.group or way.mark == way.separator or (comma and any("." in line for line in lines))):
         plain_lines = [line.replace(",", ".") for line in lines] if comma else lines
-        with contextlib.suppress(ValueError):  # a cell is empty, a time of a clock, or wrong
+        with contextlib.suppress(ValueError):  # The cell is empty, a clock time, or invalid.
             table = np.loadtxt(plain_lines, delimiter=way.separator, ndmin=2, quotechar='"', comments=None)
             if table.shape[1] == count:
                 return table
@@ -217,7 +218,7 @@ def _clocks(path, found, first):
             found.other.append(f"{name!r} (dates)")
             del found.vectors[name]
         elif CLOCK.fullmatch(cell):
-            rising = np.unwrap(found.vectors.pop(name), period=DAY)  # past midnight too
+            rising = np.unwrap(found.vectors.pop(name), period=DAY)  # The times may pass midnight.
             found.take_clock(path, name, cell, rising - rising[0], 5)
 
 

@@ -9,11 +9,12 @@ from .gear_indicators import SHARP, gear_indicators, has_mesh_line
 from .orders import mesh_coherence, residual_signal, synchronous_average
 from .series import Signal
 
-SIGMAS = 6.0  # standard deviations of the kurtosis of noise above 3; white noise exceeds it in less than 0.1 % of averages
-# Deviations of healthy teeth from each other exceed these in less than 1 % of gears, see tests/signal/test_false_alarms.py.
-RISE = 2.5  # times the FM4 of the healthy record, whose difference signal has the same variance
+# threshold of the kurtosis above 3, in standard deviations for noise; white noise exceeds it in under 0.1 % of averages
+SIGMAS = 6.0
+# Healthy gears exceed these limits in less than 1 % of cases, see tests/signal/test_false_alarms.py.
+RISE = 2.5  # limit of FM4 relative to the healthy record, whose difference signal has the same variance
 ALONE = 24.0  # limit of FM4 if there is no healthy record
-FEWEST = 4  # revolutions, two for each half of the record
+FEWEST = 4  # least number of revolutions, two for each half of the record
 
 
 class ToothVerdict(NamedTuple):

@@ -20,9 +20,9 @@ from .kink import CRITERIA, turn_angle
 from .paris import ParisLaw, cycles_along
 from .tip_response import fe_response, ritz_response
 
-NEIGHBOURS = 1  # teeth to either side whose loads count
-PHASES = 97  # places of the pair between the first contact of one neighbour and the last of the other
-SHORTEST = 1e-3  # least growth of a step [modules]
+NEIGHBOURS = 1  # number of teeth on either side whose loads count
+PHASES = 97  # positions of the pair between first contact of one neighbour and last contact of the other
+SHORTEST = 1e-3  # least crack extension per step [m_n]
 LOADINGS = ("engagement", "single")
 METHODS = ("auto", "ritz", "fe")
 
@@ -231,7 +231,7 @@ class _Tip:
         if self.model.method != "fe" and "fe" not in self.methods:
             try:
                 found = ritz_response(self.gear, self.material, crack, self.loads, self.refine, self.model.held)
-            except (ValueError, RuntimeError):  # the crack leaves its sector or cannot be meshed coarsely
+            except (ValueError, RuntimeError):  # The crack leaves its sector or cannot be meshed coarsely.
                 if self.model.method == "ritz":
                     raise
             else:

@@ -20,9 +20,9 @@ from ..geometry.tooth.profile import arc_at, cartesian, flank, flank_normal, tur
 from ..stiffness.supported import check_integral
 from .fields import Field, von_mises
 
-SPREAD = 0.15  # half width of the load about its line [m_n]
-BEND = math.radians(40)  # edges at which the surface bends by more are drawn
-PARTS = 5  # divisions of each side of a loaded triangle
+SPREAD = 0.15  # half-width of the load about its line [m_n]
+BEND = math.radians(40)  # Edges with a larger change of the surface direction are drawn.
+PARTS = 5  # number of divisions of each side of a loaded triangle
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +181,7 @@ def contact_of(case, phases, order, *, extended=True):
     if given:
         return contact
     carried = contact.load[:, contact.order == order].sum(axis=1)
-    # a pair that carries the whole load has the same load at several phases
+    # A pair that carries the whole load has the same load at several phases.
     alike = np.flatnonzero(carried > (1 - 1e-9) * carried.max())
     best = int(alike[alike.size // 2])
     numbers = {name: getattr(contact, name)[[best]] for name in ("phase", "k", "approach", "load", "unloaded")}
@@ -261,7 +261,7 @@ def _pressure(sector, nodes, number, lines, spread):
             if press.sum() <= 0:
                 near = np.hypot(z - heights[cell], away)
                 face = np.unravel_index(near.argmin(), near.shape)
-                if near[face] > math.sqrt(area[face[0]]):  # not even within the size of a triangle
+                if near[face] > math.sqrt(area[face[0]]):  # The point is not within the size of a triangle.
                     raise RuntimeError("the mesh is too coarse to carry the load of a contact line: raise refine")
                 press[face] = 1.0
             press *= load.sum() / press.sum()

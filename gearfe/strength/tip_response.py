@@ -25,9 +25,9 @@ from ..geometry.mesh.sector import CUT, sector
 from ..geometry.tooth.profile import arc_at
 from .fracture import ring, tip_reads
 
-PLACES = 24  # places of a load on a flank, between which K is a polynomial of the roll length
-MIDDLE = 0.8  # part of the sector in which a tip of `ritz` may lie; at 0.82, K was 2 % off
-WIDE = 0.05  # half width of a load of `fe` [m_n]; at 0.12, K of a tip 0.6 m_n below the load was 1.3 % off
+PLACES = 24  # number of load positions on a flank, between which K is a polynomial of the roll length
+MIDDLE = 0.8  # part of the sector in which a crack tip of `ritz` may lie; at 0.82, K had an error of 2 %
+WIDE = 0.05  # half-width of a load of `fe` [m_n]; at 0.12, K of a tip 0.6 m_n below the load had an error of 1.3 %
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +129,8 @@ def fe_response(gear, material, crack, teeth, refine, carried, held=None):
     )
     body = HeldSection(mesh.mesh if held is None else _partly_held(mesh.mesh, held), material)
     low, high = sorted((gear.roll_f, gear.roll_a))
-    carried = max(carried[0] - 0.02 * gear.m_n, low), min(carried[1] + 0.02 * gear.m_n, high)  # one place is a short range
+    # A single position becomes a short range.
+    carried = max(carried[0] - 0.02 * gear.m_n, low), min(carried[1] + 0.02 * gear.m_n, high)
     places = _places(*carried)
     units = [narrow_load(mesh, tooth, float(arc_at(gear, place)), WIDE * gear.m_n) for tooth in teeth for place in places]
     faces, seam = face_columns(mesh), mesh.seams[0].faces

@@ -23,8 +23,8 @@ from ..tooth.profile import (
 from .crack_form import STARTS, TANGENTS, check_front, check_path, corners_of, deepest, two_or_three
 from .given import finite, tooth_and_side
 
-SECTOR = 0.9  # part of a pitch within which a sector can be meshed with a polyline
-SHORTEST = 1e-4  # length of the shortest crack [m_n]: k falls by 1e-5, and meshes are not finer
+SECTOR = 0.9  # part of a pitch in which a polyline crack can be meshed
+SHORTEST = 1e-4  # shortest crack [m_n]; it changes k by 1e-5, and no mesh resolves less
 
 
 @dataclass(frozen=True, slots=True)

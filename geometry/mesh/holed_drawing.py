@@ -108,7 +108,7 @@ def _tip(gear, side, chip):
 def _half(gear, side, mark, chip=None):
     """Curves of half a tooth clockwise: kind, radii and angles of its points, whether the crack's end is at its lower end."""
     sign = 1 if side == "loaded" else -1
-    # even in roll: even in arc a spline would be off the involute near the base circle
+    # Points equidistant in roll length: equidistant in arc, the spline would deviate from the involute near the base circle.
     rolls = np.linspace(gear.roll_a if chip is None else chip.end_roll(gear, side), gear.roll_f, 17)
     arcs = [fillet_length(gear), *([] if mark is None or not 0 < mark < fillet_length(gear) else [mark]), 0.0]
     fillets = [root_curve(gear, np.linspace(a, b, 13)) for a, b in zip(arcs[:-1], arcs[1:], strict=True)]

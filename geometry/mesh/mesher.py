@@ -40,7 +40,7 @@ def gmsh_session():
         if gmsh.isInitialized():
             raise RuntimeError("this program has gmsh open, which has one session for all: call gmsh.finalize() before gearfe")
         with _handlers_kept():
-            gmsh.initialize(readConfigFiles=False, interruptible=False)  # a user's own options would change the mesh
+            gmsh.initialize(readConfigFiles=False, interruptible=False)  # A user's options file would change the mesh.
         try:
             gmsh.option.setNumber("General.Terminal", 0)
             gmsh.option.setNumber("General.NumThreads", 1)
@@ -62,7 +62,7 @@ def _handlers_kept():
         yield
         return
     sigaction = ctypes.CDLL(None).sigaction
-    kept = {number: ctypes.create_string_buffer(256) for number in map(int, TOUCHED)}  # a struct sigaction is shorter
+    kept = {number: ctypes.create_string_buffer(256) for number in map(int, TOUCHED)}  # larger than any struct sigaction
     for number, old in kept.items():
         sigaction(number, None, old)
     try:
@@ -112,7 +112,7 @@ def triangulate(loops, chains, ring, free=()):
             tags = [start + 1] + [geo.addPoint(x, y, 0.0) for x, y in points.T]
             inner += [geo.addLine(a, b) for a, b in zip(tags[:-1], tags[1:], strict=True)]
         alone = [geo.addPoint(x, y, 0.0) for x, y in free]
-        surface = geo.addPlaneSurface(closed[::-1] if ring else closed)  # the outer loop first
+        surface = geo.addPlaneSurface(closed[::-1] if ring else closed)  # gmsh requires the outer loop first.
         geo.synchronize()
         if alone:
             gmsh.model.mesh.embed(0, alone, 2, surface)

@@ -131,7 +131,8 @@ def _attempt(gear, teeth, damage, patches, size, algorithm):
         damaged.setdefault(crack.tooth % gear.z, []).append((number, crack))
     mouths = {tooth: _mouths(gear, size, tooth_cracks) for tooth, tooth_cracks in damaged.items()}
     outline, flanks, fillets, marks = _rim(gear, draft, size, teeth, (mouths, broken), patches)
-    rim = abs(gear.r_f - gear.held)  # two quads through it at least: with one a ring's section is 0.2 ... 0.5 % too stiff
+    # At least two quads across the rim are required: one makes a ring's section 0.2 to 0.5 % too stiff.
+    rim = abs(gear.r_f - gear.held)
     count = max(8, math.ceil(math.pi * gear.held / min(rim / 2, 3 * size["far"])))
     turn = quarters(np.linspace(0.0, 2 * math.pi, count + 1))
     bore = draft.add(gear.held * np.array([np.sin(turn), np.cos(turn)]), closed=True)
@@ -263,7 +264,7 @@ def _finish(gear, draft, made, bore, flanks, fillets, cuts):
     for pair, place in draft.middles.items():
         middles[:, lookup[pair]] = place
     tips = {int(tip) for cut in cuts for tip in cut.edges[1, np.flatnonzero(np.diff(cut.crack))]}
-    for tip in tips:  # displacements vary with the square root of the distance from the tip
+    for tip in tips:  # Displacements vary with the square root of the distance from the crack tip.
         at = np.flatnonzero((unique == tip).any(axis=0))
         middles[:, at] = 0.75 * points[:, [tip]] + 0.25 * points[:, unique[:, at].sum(axis=0) - tip]
     count = points.shape[1]

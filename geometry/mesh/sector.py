@@ -19,7 +19,7 @@ from .mesher import triangulate
 from .outline import MERGED, inside, spaced
 from .triangle import BULGE, ENDS, GAUSS, jacobians
 
-# Edge lengths in modules: loaded flank, the other one, tip corner of the loaded flank, a form point with a kink, fillet,
+# Edge lengths [m_n]: loaded flank, other flank, tip corner of the loaded flank, form point with a kink, fillet,
 # root arc, sides and tip, crack, crack tip
 SIZES = {
     "flank": 0.8,
@@ -32,10 +32,10 @@ SIZES = {
     "crack": 0.5,
     "crack tip": 0.004,
 }
-FLAT = 1e-6  # least area of a triangle, in squares of its longest edge: three points of a straight crack make one without area
-ON_LINE = 0.05  # points of a ring closer to the line of a crack than this part of the ring's radius lie on it
-CUT = 0.2  # vertices of the held edge closer to a given one than this part of half a pitch are left out
-CHECKED = 6  # order at whose quadrature points the maps are checked
+FLAT = 1e-6  # least area relative to the squared longest edge; three points of a straight crack would enclose no area
+ON_LINE = 0.05  # Points of a ring lie on the line of a crack within this distance, relative to the ring's radius.
+CUT = 0.2  # Vertices of the held edge closer to a given one than this part of half a pitch are left out.
+CHECKED = 6  # polynomial order whose quadrature points are used to check the maps
 GROWTH = 1.2  # growth of the edge length per length, away from fine places
 
 
@@ -114,7 +114,7 @@ def _attempt(described, sizes, refine, finer):
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
     chains, around = _chains(gear, size, cracks, loop)
     if chains and not inside(loop, np.hstack([line for _, line in chains] + [around])).all():
-        return None  # a chord of the outline cuts the crack off: gmsh would not end
+        return None  # A chord of the outline cuts the crack off, and gmsh would not terminate.
     points, triangles = triangulate([loop], chains, False, around.T)
     twice = _twice_areas(points, triangles)
     if twice.sum() < 0:
@@ -131,7 +131,7 @@ def _attempt(described, sizes, refine, finer):
         vertices.get("flank", np.zeros(0, dtype=int))[::-1], rolls[::-1], tuple(faces),
     )  # fmt: skip
     bulges = made.edge_bulges
-    bent = bulges.any(axis=(0, 1, 2))  # the other triangles are straight, so that their corners suffice
+    bent = bulges.any(axis=(0, 1, 2))  # The other triangles are straight, so checking their corners is sufficient.
     (xx, xy), (yx, yy) = jacobians(points, triangles[:, bent], bulges[..., bent], CHECKED).transpose(1, 2, 0, 3)
     return made if (xx * yy - xy * yx).min() > 0 else None
 
@@ -155,7 +155,7 @@ def _opened(points, triangles, chains, at):
     """Open the cracks: points, triangles, both faces of each crack, and the second node of each mouth by its first."""
     faces, doubles = [], {}
     for i, (start, line) in enumerate(chains):
-        if i % 2 == 0:  # every second chain only leads the mesh ahead of the tip
+        if i % 2 == 0:  # Odd chains only guide the mesh ahead of the crack tip.
             chain = np.append(start, at + np.arange(line.shape[1]))
             points, triangles, double = open_seam(points, triangles, chain)
             faces.append(np.array([chain, double]))

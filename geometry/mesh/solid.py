@@ -70,7 +70,7 @@ class Solid:
         return self.faces[name].reshape(8, -1, self.levels.size - 1)
 
 
-MOST = 5000  # layers of elements
+MOST = 5000  # largest number of element layers
 
 
 def layers(b, size, *, breaks=(), fine=()):
@@ -142,7 +142,8 @@ def follow_front(section, number, crack):
     ]
     others = [edges[[0, 2]].ravel() for k, edges, _ in lines if k != number]
     (line,) = [_chain(section, edges[[0, 2]], depth) for k, edges, depth in lines if k == number]
-    triangles = np.hstack([quads[list(at)] for at in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))])  # the corners of all quads
+    # the four triangles at the corners of each quad
+    triangles = np.hstack([quads[list(at)] for at in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))])
     arm = section.points[:, ends[1]] - section.points[:, ends[0]]
     place = ((section.points[:, middle] - section.points[:, ends[0]]) * arm).sum(axis=0) / (arm**2).sum(axis=0)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from .mesher import gmsh_session, mesh_options
 
-GROWTH = 0.5  # growth of the edge length of tets per length, away from fine places
+GROWTH = 0.5  # growth of the edge length with the distance from fine places
 
 
 class UnmeshedError(RuntimeError):
@@ -84,7 +84,7 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
         _sizes(gmsh, inner, fine, rim, far, strips)
         try:
             mesh.generate(3)
-        except Exception as error:  # gmsh itself raises just Exception
+        except Exception as error:  # gmsh raises only `Exception`.
             raise UnmeshedError(
                 f"gmsh cannot mesh this solid: {error}; increase refine, or increase the distance of surfaces that nearly touch"
             ) from error

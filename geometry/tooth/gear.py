@@ -9,7 +9,7 @@ from ..checks import is_number
 from ..renamed import renamed
 from .involute import inv
 
-LARGEST = 1e9  # limit of all numbers of a gear: a kilometre has 1e6 mm
+LARGEST = 1e9  # upper limit of all dimensions (1 km is 1e6 mm)
 
 
 @lru_cache(maxsize=256)
@@ -96,7 +96,8 @@ class Gear:
                 f"z = {self.z}, x = {self.x}: the tooth is pointed below its tip circle (thickness at r_a = "
                 f"{2 * self.half_thickness(self.r_a) * self.r_a:.4g} mm); lower {'the' if self.internal else 'x or'} addendum"
             )
-        from .profile import form_point  # here: tooth needs a Gear, and a Gear without a flank must not exist
+        # Imported here, because `tooth` imports `Gear`. This check rejects gears without an involute flank.
+        from .profile import form_point
 
         self._cap_tip_radius()
         form_point(self)

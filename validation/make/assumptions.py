@@ -18,11 +18,11 @@ from ..shared.table_rows import rows_of, write_table
 
 BASE = "as assumed [N/m]"
 CSV = TABLES / "assumptions.csv"
-SCENES = [  # scenes of articles; the bores of herringbone_contact_line are chosen and not assumed
+SCENES = [  # Scenes of articles. The bores of herringbone_contact_line are chosen, not assumed.
     name for name in scene_names() if name != "herringbone_contact_line" and gf.load_scene(name).references
 ]
-WIDE = 8  # phases in three dimensions
-PITTED = {"planetary_pitting": "mild_rows", "helical_pitting": "severe"}  # scene: case whose pits are changed
+WIDE = 8  # phases of three-dimensional curves
+PITTED = {"planetary_pitting": "mild_rows", "helical_pitting": "severe"}  # by scene, the case whose pits are varied
 
 CONVENTIONS = {
     "30-degree tangent, 45 degrees": {},

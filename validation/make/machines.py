@@ -18,7 +18,7 @@ from ..shared.page import put
 from . import joint
 
 FOLDER = places.PAGES
-PAGES = {  # page and its module: scene
+PAGES = {  # by page (and module): scene
     "planetary_pitting": "planetary_pitting",
     "compound_planetary": "compound_planetary",
     "helical_pitting": "helical_pitting",
@@ -30,7 +30,7 @@ ARTICLES = {
     "helical_pitting": "article S3",
     "herringbone_machine": "article S4",
 }
-ELSEWHERE = {  # references of a scene that another page computes
+ELSEWHERE = {  # references of a scene that another page reproduces
     "stiffness_analytical": "herringbone",
     "stiffness_fe": "herringbone",
     "stiffness_error": "herringbone",

@@ -6,7 +6,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-PRINTED = 30  # lines of a spectrum
+PRINTED = 30  # largest number of printed spectral lines
 
 
 def signal(arguments):
@@ -177,7 +177,8 @@ def _told(one):
     whole = np.interp(one.angle[0] + 2 * np.pi * np.arange(int(turns) + 1), one.angle, one.time)
     speed = 1 / np.diff(whole)
     text += f"; shaft: {speed.min():.4g} to {speed.max():.4g} Hz, {turns:.1f} revolutions"
-    smeared = (speed.max() - speed.min()) * turns > speed.mean()  # the speed change smears the first order over more than one bin
+    # The speed change smears the first order over more than one bin.
+    smeared = (speed.max() - speed.min()) * turns > speed.mean()
     return f"{text}; lines are smeared over Hz, but sharp over orders (--orders)" if smeared else text
 
 

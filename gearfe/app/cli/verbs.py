@@ -81,7 +81,7 @@ def _in_set(scene, name, curve):
 
     if scene.set is None or not METHODS[curve.meta["method"]].converged:
         return ""
-    from ...comparison.told_set import told_in_set  # only sets need it: 0.1 s
+    from ...comparison.told_set import told_in_set  # imported here, because only sets need it and it takes 0.1 s
 
     with part("stiffness in the whole set", 0.8, 1.0):
         return told_in_set(scene, name, curve)

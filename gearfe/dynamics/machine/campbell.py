@@ -15,7 +15,7 @@ from .modes import natural_frequencies
 from .tables import Machine
 
 MOST_HARMONICS = 1000  # limit of the harmonics of a mesh
-FASTEST = 50.0  # limit of the relative speed: a larger number is probably in rpm
+FASTEST = 50.0  # limit of the relative speed, because a larger number is probably in rpm
 
 
 class Crossing(NamedTuple):
@@ -126,7 +126,7 @@ def _orders(machine, harmonics):
     for source in stages:
         lines = {"driving gear": source.turning, "damaged tooth": source.fault, "carrier": source.carrier}
         out |= {name if single else f"{name} {source.name}": value for name, value in lines.items() if value}
-    # meshes with the same frequency share one line
+    # Meshes with the same frequency share one line.
     unique = {round(value, 9): name for name, value in reversed(out.items())}
     return {name: value for name, value in out.items() if name in unique.values()}
 

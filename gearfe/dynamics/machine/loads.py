@@ -11,7 +11,7 @@ from ...core.checks import numbers, whole
 from ...core.record import ranged, settle, settle_numbers, settle_row
 from ...geometry.aliases import Floats
 
-# value of a load: a number, times and values, or a function of an array of times
+# Value of a load: a number, times with values, or a function of an array of times.
 History = float | tuple[ArrayLike, ArrayLike] | Callable[[Floats], ArrayLike]
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from ..machine.contact_law import force
 from .response import Response
 
-LOOKS = 200  # times at which variable loads are evaluated
+LOOKS = 200  # number of times at which variable loads are evaluated
 
 
 def dynamic_factors(response: Response) -> dict[str, float]:

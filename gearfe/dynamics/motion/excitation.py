@@ -33,7 +33,7 @@ class Flat(NamedTuple):
     knots: np.ndarray  # (n, 2): time, value
     knot_place: np.ndarray
     twin: np.ndarray
-    pace: np.ndarray  # (n, 3): time, speed over the nominal one, turned time
+    pace: np.ndarray  # (n, 3): time, speed over the nominal one, angle of rotation
     secant: np.ndarray
     shape: np.ndarray  # (meshes + changes, 4)
 
@@ -119,7 +119,7 @@ def _laid_out(meshes):
 def _twins(one, two):
     """Whether two meshes have the same stiffness at all times, like both halves of a herringbone gear."""
     ahead = one.phase - two.phase
-    ahead = ahead if one.changes else ahead - round(ahead)  # whole cycles matter only with damaged teeth
+    ahead = ahead if one.changes else ahead - round(ahead)  # Whole cycles matter only with damaged teeth.
     if (one.frequency, len(one.changes)) != (two.frequency, len(two.changes)) or abs(ahead) > 1e-12:
         return False
     pairs = list(zip(one.changes, two.changes, strict=True))

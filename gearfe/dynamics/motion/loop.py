@@ -76,7 +76,7 @@ def run(plan, machine, flat, z, steps, every, start=0.0, acting=None):
 
 def _matrices(plan, kept, still):
     """`Matrices` of a plan with the columns `kept` of the forces, those that are constant having the values `still`."""
-    wide = max(still.size, 1)  # nothing acts
+    wide = max(still.size, 1)  # no load acts
 
     def columns(matrix):
         index = wide * np.arange(matrix.shape[1] // wide)[:, None] + kept
@@ -137,7 +137,7 @@ def _copy(out, values, first):
 
 
 @compiled
-def _write(states, row, z):  # a loop, because numba takes 2 s to compile its error message for array assignment
+def _write(states, row, z):  # written as a loop, because numba needs 2 s to compile the error message of an array assignment
     for i in range(z.size):
         states[row, i] = z[i]
 

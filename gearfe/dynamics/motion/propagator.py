@@ -27,7 +27,7 @@ from ..machine.contact_law import closed
 from ..machine.modes import modal, natural_frequencies
 
 UNSTABLE = "the machine is unstable (a parametric resonance without enough damping), or the step is too long"
-LEVELS, DEEPER = 6, 8  # largest number of halvings of a step: near contact changes, and with an adapted step
+LEVELS, DEEPER = 6, 8  # limits of step halving: near contact changes, and with an adaptive step
 LOCAL = 1e-5  # `Plan.allowed` at the default step, as a part of the largest mesh force
 STEPS = 80  # initial number of steps per mesh cycle
 SHARE = 0.35  # initial step, as a part of the period of the stiffest mesh
@@ -95,7 +95,7 @@ def plan(machine, h, x=None, adapt=False):
     K, C, k, c = machine.linear(x)
     squared, modes = modal(K - machine.frame, machine.mass)
     n = len(squared)
-    unit = math.sqrt(squared[-1]) or 1.0  # scaled, so that displacements and velocities have one magnitude
+    unit = math.sqrt(squared[-1]) or 1.0  # Scaling gives displacements and velocities one order of magnitude.
     D = modes.T @ C @ modes
     A = np.block([[np.zeros((n, n)), unit * np.eye(n)], [-(np.diag(squared) + modes.T @ machine.frame @ modes) / unit, -D]])
     turn, size = _blocks(A, squared, D)

@@ -7,8 +7,8 @@ from ...core.memory import free_memory
 from ..machine.tables import Machine
 from .reference import SOLVERS
 
-DEEPEST, FASTEST = 1.0, 1e3  # limits of compressions [m] and their rates [m/s]: beyond the size and speed of any gear
-LONGEST, LATEST = 1e11, 1e9  # steps of a run; its start [s]
+DEEPEST, FASTEST = 1.0, 1e3  # limits of compression [m] and compression rate [m/s], beyond any gear
+LONGEST, LATEST = 1e11, 1e9  # largest number of steps, latest start [s]
 
 
 def check_initial(machine, state):

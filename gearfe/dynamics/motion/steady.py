@@ -17,8 +17,8 @@ from .response import Response
 from .run_checks import initial_state
 from .step_control import chosen_step
 
-DISTURBED = 1e-5  # size of disturbances of the initial state of a nonlinear motion, as a part of the size of the motion
-STABLE = 1e-6  # above 1: a multiplier this large still counts as 1 (rigid-body motion, no damping)
+DISTURBED = 1e-5  # relative size of the disturbances that test the stability of a nonlinear motion
+STABLE = 1e-6  # tolerance above 1 for Floquet multipliers of rigid-body motion and undamped modes
 
 
 MOST_STEPS = 10_000_000  # largest number of steps in a period
@@ -152,10 +152,10 @@ class _Flow:
         self.machine, self.times = machine, np.linspace(0.0, period, 2 * steps + 1)
         self.plan = propagator.plan(machine, period / steps / 2, machine.working())
         self.flat = excitation.flatten(machine, np.linspace(0.0, period, 16 * steps + 1))
-        self.linear = closed(machine.law) and not machine.curved  # even with friction
+        self.linear = closed(machine.law) and not machine.curved  # also true with friction
 
     def __call__(self, z):
-        from .loop import run  # loads the compiler
+        from .loop import run  # This import loads the compiler.
         from .loop_parts import announced
 
         with announced():

@@ -110,7 +110,7 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), 
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
     edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
-    even = {"span": SPAN, "growth": GROWTH / refine}  # refine the graded ends, too
+    even = {"span": SPAN, "growth": GROWTH / refine}  # The graded ends are refined too.
 
     def vertices(tooth, size, **ends):
         end = loaded_side(gear, broken, tooth)
@@ -258,7 +258,7 @@ def own_tooth(on, influence, coefficient):
     the single hat plus the difference between both at the next wide one.
     """
     smooth = influence - coefficient * hat_logarithm(on.knots, on.knots)
-    arc, wide, single = on.arc[:-1], wider(on.knots[:, :-1]), np.diag(smooth)[:-1]  # without the corner's
+    arc, wide, single = on.arc[:-1], wider(on.knots[:, :-1]), np.diag(smooth)[:-1]  # The corner's hat function is excluded.
     middle, values = wide @ arc, np.einsum("ij,jk,ik->i", wide, smooth[:-1, :-1], wide)
     inner = CubicSpline(middle[1:-1], values[1:-1])
     values[[0, -1]] = single[[0, -1]] + inner(arc[[1, -2]]) - single[[1, -2]]

@@ -14,7 +14,7 @@ from ...geometry.aliases import Floats
 from ...geometry.damage.crack import Crack
 from ...geometry.pair.gear_pair import GearPair, free_centre_distance
 
-INPUTS = {  # descriptions by name of the input
+INPUTS = {  # by input: description
     "force": "force along the line of action over the whole width [N], on a logarithmic scale",
     "level": "level of a root crack of a pinion tooth, see Crack",
     "angle": "its angle to the centre-line [rad]",
@@ -26,15 +26,15 @@ INPUTS = {  # descriptions by name of the input
     "bore_2": "bore of the wheel, in its root radii",
 }
 WHOLE = ("z_1", "z_2")
-SHAPE = ("z_1", "z_2", "x_1", "x_2")  # inputs that change contact ratio and centre distance
+SHAPE = ("z_1", "z_2", "x_1", "x_2")  # inputs that change the contact ratio or the centre distance
 
 
 @dataclass(frozen=True)
 class Space:
     """Ranges of some `INPUTS` about a pair of spur gears. The others are held."""
 
-    pair: GearPair  # source of all other values
-    ranges: dict[str, tuple[float, float]]  # ends of what varies
+    pair: GearPair  # pair that provides all other values
+    ranges: dict[str, tuple[float, float]]  # limits of the varied inputs
     held: dict[str, float]  # inputs with a single value
 
     @cached_property

@@ -67,7 +67,7 @@ def sweep(
     every, fields = blocks(checked)
     stored = begin(folder, _about(checked, sum(len(block.cases) for block in every)), SHAPE)
     with locked(folder):
-        if stored["study"]["block"] != checked.block:  # the block size does not define the study
+        if stored["study"]["block"] != checked.block:  # The block size is not part of the study's definition.
             checked = replace(checked, block=stored["study"]["block"])
             every, fields = blocks(checked)
         about = _about(checked, stored["cases"])
@@ -132,7 +132,7 @@ def plan_sweep(study: StrPath | Mapping[str, Any], folder: StrPath = ".", *, wor
     checked = read_study(study)
     every, fields = blocks(checked)
     small, chosen = slim(checked), every[len(every) // 2]
-    rows(small, chosen.single(0))  # warm-up that loads modules and tables
+    rows(small, chosen.single(0))  # This first run loads modules and tables.
 
     def trial():
         made = rows(small, chosen)

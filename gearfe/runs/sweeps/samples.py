@@ -11,8 +11,8 @@ from ...core.checks import is_number
 from ...geometry.checks import shown
 from ...scene.reading import LARGEST
 
-WIDEST = 10.0  # standard deviation of a logarithm: two thirds of the values over nine decades
-LEAST = 1e-9  # part of a distribution that must lie within its limits: below, its values are rounding
+WIDEST = 10.0  # largest standard deviation of a logarithm, with two thirds of the values over nine decades
+LEAST = 1e-9  # least part of a distribution within its limits, above rounding errors
 METHODS = ("sobol", "random", "latin", "saltelli")
 
 

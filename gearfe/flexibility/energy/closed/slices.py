@@ -13,7 +13,7 @@ from ....geometry.pair.modified import first_touch, flank_contacts
 
 LOST = ("hertz", "slices", "summed")
 RULES = {False: leggauss(1), True: leggauss(24)}
-SHORT = leggauss(10)  # for panels shorter than a quarter of a base pitch
+SHORT = leggauss(10)  # Gauss points for panels shorter than a quarter of a base pitch
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ def stations(case, phase, *, lost="hertz", edges=None):
     order = contacts(pair, [phase.min() - lag, phase.max()], extended=False).order
     edges = edges(order) if edges and lag > 0 else {}
     pitted = any(p.side == "loaded" for found in pits for p in found)
-    if lag == 0 and not pitted:  # one station for each pair on the path of contact
+    if lag == 0 and not pitted:  # Each pair on the path of contact has one station.
         return _on_path(pair, phase, flanks, bands)
     summed = lost == "summed"
     taken = {} if summed else _taken(pair, phase, order, pits, bands)
@@ -86,7 +86,7 @@ def stations(case, phase, *, lost="hertz", edges=None):
     (i, j), (roll, weight, touching) = table[:, :2].astype(int).T, table[:, 2:5].T
     roll_2, gap = pair.mate_roll(roll), None
     if flanks is not None:
-        backwards = len(bands) == 1 and lag > 0 and pair.gear_1.beta > 0  # in this case the end z = b touches first
+        backwards = len(bands) == 1 and lag > 0 and pair.gear_1.beta > 0  # In this case the end z = b enters contact first.
         z = bands[0][1] - table[:, 5] if backwards else table[:, 5]
         met = first_touch(pair, flanks, roll, order[j], np.zeros(roll.size), z)
         roll, roll_2, gap = met.roll_1, met.roll_2, met.gap

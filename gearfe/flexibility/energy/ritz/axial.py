@@ -15,13 +15,13 @@ from scipy.linalg import block_diag
 
 from ...halfspace import modes
 
-PUSHING = 6  # degree, at most, of forces between faces of a crack over the whole width (`depth.degrees`: all nodes have that)
-OPEN = 6, 1.6  # degree of the opening along a part of the width: the least, and per normal module of that part
+PUSHING = 6  # highest degree of forces between crack faces over the whole width (`depth.degrees`: each node has that degree)
+OPEN = 6, 1.6  # degree of the opening over a part of the width: minimum, and increase per normal module
 # How far the short cubics about the end of a crack reach [m_n], and the shortest of them, in that. Set while looking at
 # hexahedra of one gear, 12 mm wide with a crack over half of that; judged on finer layers and on 8 mm of the same gear only.
 ENDS = 1.0, 0.2
-MOVED = 3  # polynomials that the depth of a front is multiplied by
-FRONT = 8  # additional Gauss points where the section follows a crack's front
+MOVED = 3  # number of polynomials in z that multiply the crack depth
+FRONT = 8  # additional Gauss points where the section varies along the crack front
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +165,7 @@ def _steps(band, k, width, m_n, shallow):
     They are as close as a ligament beyond is narrow, unless the crack is `shallow` there.
     """
     end, inwards = band[k], 1 - 2 * k
-    # short cubics of both ends that met would hold a cubic over the whole band, which is an opening already
+    # Short cubics of both ends that met would represent a cubic over the whole band, which is already an opening function.
     inside, outside = min(ENDS[0] * m_n, 0.4 * (band[1] - band[0])), min(ENDS[0] * m_n, 0.9 * (width - end if k else end))
     nearest = ENDS[1] * (inside if shallow else min(inside, outside))
     steps = [side * _graded(min(nearest, reach), reach) for side, reach in ((inwards, inside), (-inwards, outside))]
@@ -183,7 +183,7 @@ def _graded(nearest, reach):
 def _short(z, places, end, inwards):
     """Continuous cubics between `places`, zero at the first and the last, their slopes, and which vanish outside the crack."""
     value, rise, inside = [], [], []
-    for low, middle, high in zip(places[:-2], places[1:-1], places[2:], strict=True):  # hats
+    for low, middle, high in zip(places[:-2], places[1:-1], places[2:], strict=True):  # hat functions
         up, down = (z > low) & (z <= middle), (z > middle) & (z < high)
         value.append(np.where(up, (z - low) / (middle - low), np.where(down, (high - z) / (high - middle), 0.0)))
         rise.append(np.where(up, 1 / (middle - low), np.where(down, -1 / (high - middle), 0.0)))
@@ -207,7 +207,7 @@ def _depth(z, weight, front, whole, rise):
     carried = whole.T @ (weight * value)
     value, slope = value - whole @ carried, slope - rise @ carried
     size, turn = np.linalg.eigh(value.T @ (weight * value))
-    kept = size > 1e-12  # all functions were scaled to about 1 before
+    kept = size > 1e-12  # All functions are scaled to about 1.
     turn = turn[:, kept] / np.sqrt(size[kept])
     return value @ turn, slope @ turn
 

@@ -25,9 +25,9 @@ from ...condense import condense
 from ...plane_elements import bent_stiffness, stiffness
 from .tip import face_columns, load_columns, tip_columns, tip_of
 
-STRAIGHT = 1e-12  # edges with a smaller deviation from their chord are straight, relative to the sector size
+STRAIGHT = 1e-12  # Edges with a smaller deviation from their chord, relative to the sector size, are straight.
 CORNER = 1e6  # stiffness of the springs that hold a corner, in moduli
-GROUP = 10  # triangles eliminated together, and up to twice as many
+GROUP = 10  # least number of triangles eliminated together; at most twice as many
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +170,7 @@ def _local(sector, bulges, order, modulus, ratio):
     kept = 2 * (basis.count - basis.inside)
     if not basis.inside:
         return local
-    inside = np.linalg.inv(local[:, kept:, kept:])  # for few unknowns an inverse is faster than a solve
+    inside = np.linalg.inv(local[:, kept:, kept:])  # For few unknowns an inverse is faster than a solve.
     return local[:, :kept, :kept] - local[:, :kept, kept:] @ (inside @ local[:, kept:, :kept])
 
 
@@ -244,7 +244,8 @@ def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
     ends = sector.points[:, start], sector.points[:, stop]
     points = (ends[0][..., None] * (1 - gauss) + ends[1][..., None] * (1 + gauss)) / 2 + (1 - gauss**2) * bulge
     along = (ends[1] - ends[0])[..., None] / 2 + bulge @ _bulge_slope().T
-    outward = np.array([along[1], -along[0]]) * weight  # times the length element; triangles run counter-clockwise
+    # Multiplied by the length element. Triangles are numbered counter-clockwise.
+    outward = np.array([along[1], -along[0]]) * weight
     spread = flamant.traction(points.reshape(2, -1), outward.reshape(2, -1), where, inward, tip_side)
     force = -spread.reshape(2, n, start.size, gauss.size) @ lagrange(order, tuple(gauss)).T  # (2, n, edges, nodes)
     nodes = chain(np.array([start, stop])).T
@@ -256,11 +257,11 @@ def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
     read = values * inward[:, None]  # (2, nodes, n)
     read_rows, read_columns = (np.broadcast_to(indices, read.shape).ravel() for indices in _places(at, n + np.arange(n)))
     arc = arc_at(gear, roll)
-    with np.errstate(divide="ignore", invalid="ignore"):  # a load at itself, which is taken as zero
+    with np.errstate(divide="ignore", invalid="ignore"):  # The term of a load at its own place is set to zero.
         moved = flamant.displacement(where, where, inward, tip_side, *elastic)
         field = np.einsum("dji,di->ij", moved, inward) + 2 / (math.pi * elastic[0]) * np.log(np.abs(arc[:, None] - arc))
-    field[~np.isfinite(field)] = 0.0  # loads at one point with different directions do not interact
-    leans = (1 + elastic[1]) / (math.pi * elastic[0]) * np.sin(tilt) ** 2  # the surface is not normal to the load
+    field[~np.isfinite(field)] = 0.0  # Loads at one point with different directions are not coupled.
+    leans = (1 + elastic[1]) / (math.pi * elastic[0]) * np.sin(tilt) ** 2  # The surface is not normal to the load.
     np.fill_diagonal(field, leans)
     return [(rows, columns, force.ravel()), (read_rows, read_columns, read.ravel())], field
 

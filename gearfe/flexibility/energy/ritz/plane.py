@@ -22,10 +22,10 @@ from ...solved import solved_gears
 from .join import join
 from .panel import SectionModel, check_order, panel
 
-PLACES = 16  # loads on each flank
-FOOT = 20 * NEAREST  # distance from the first of them to the form point; from the last to the tip corner it is `NEAREST` [m_n]
-HATS = 2  # how many times shorter the hats at corners are than those of `fe`
-KNOTS = 48  # knots of the splines that represent their polynomial
+PLACES = 16  # number of loads on each flank
+FOOT = 20 * NEAREST  # distance of the first load from the form point [m_n]; the last load is `NEAREST` from the tip corner
+HATS = 2  # ratio of the hat lengths of `fe` at corners to these
+KNOTS = 48  # number of knots of the splines that represent the polynomials
 
 
 def flexibility(gear, material, cracks=(), *, broken=(), neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
