@@ -11,10 +11,9 @@ import numpy as np
 
 from ...scene.train import TrainStage
 from .gear_mesh import GearMesh
-from .layout import SPACE, Body, Layout
+from .layout import SPACE, Body
 from .member import gear_member
 from .planetary import stage_phases
-from .springs import Spring
 
 KINDS = ("sun_planet", "planet_ring")
 DAMPED = 0.02  # damping ratio of a planet on its pin
@@ -66,12 +65,12 @@ def planet_speeds(scene):
     return out
 
 
-def pin_springs(scene, layout: Layout, chains) -> list[Spring]:
+def pin_springs(scene, layout, chains):
     """Springs between planets and carrier, where planets move. Without a stated tilting stiffness, that of an even bearing.
 
     A bearing of radial stiffness k over the face width b has the tilting stiffness ``k b**2 / 12``.
     """
-    out: list[Spring] = []
+    out = []
     for name, stage in scene.train.stages.items() if moves(scene) else ():
         if stage.pin is None:
             raise ValueError(f"{scene.name}.toml [stage.{name}]: dofs = 'six' needs pin_N_per_um; give it, or dofs = 'torsion'")
