@@ -268,8 +268,13 @@ def _frequencies(machine, record, harmonics):
 
 def _lines(machine, channel, frequency):
     """Complex amplitudes of the lines of a machine, from its periodic motion, or from a simulation of long periods."""
+    sensor = machine.sensors.get(channel.removeprefix("sensor "))
+    if sensor is not None and not sensor.housing:
+        weights = sensor.weights or [1.0] * len(sensor.channels)
+        of_channels = zip(weights, sensor.channels, strict=True)
+        return sensor.gain(frequency) * sum(weight * _lines(machine, one, frequency) for weight, one in of_channels)
     period = common_period(machine)
-    if period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
+    if sensor is None and period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
         found = steady_state(machine, period=period).response
         return line_amplitudes(found.part(slice(None, -1)).signal(channel), frequency, np.ones)
     apart = np.diff(frequency, prepend=0.0).min()

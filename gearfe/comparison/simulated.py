@@ -29,9 +29,7 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
     """
     check_run(DURATIONS[0] if duration is None else duration, method)
     if channel is not None:
-        machine = flat_machine(scene)
-        n = 2 * len(machine.dofs)
-        Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
+        check_channel(flat_machine(scene), channel)
     scene.check_case(case)
     in_case = [one for pair in scene.pairs.values() for damages in pair.damage.get(case, {}).values() for one in damages]
     damage = [] if scene.machine.get("contact") == "impact" else in_case
@@ -53,6 +51,12 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
             name: recorded(machines[name], duration, rate, method=method, progress=progress)
             for name in steps(names, lambda name: f"motion, {name}")
         }
+
+
+def check_channel(machine, channel):
+    """Raise ValueError unless responses of a machine have this channel."""
+    n = 2 * len(machine.dofs)
+    Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
 
 
 def check_run(duration, method="fast"):

@@ -34,6 +34,7 @@ SIZES = {
 }
 FLAT = 1e-6  # least area relative to the squared longest edge; three points of a straight crack would enclose no area
 ON_LINE = 0.05  # Points of a ring lie on the line of a crack within this distance, relative to the ring's radius.
+CUT = 0.2  # Vertices of the held edge closer to a given one than this part of half a pitch are left out.
 CHECKED = 6  # polynomial order whose quadrature points are used to check the maps
 GROWTH = 1.2  # growth of the edge length per length, away from fine places
 
@@ -86,26 +87,28 @@ class Sector:
         object.__setattr__(self, "edge_bulges", out)
 
 
-def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None):
+def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None, cuts=()):
     """`Sector` of a gear with the cracks of its tooth, which may be `broken`: a `MissingTooth` or a `Chip`.
 
-    `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. ValueError if `refine` is not positive,
-    RuntimeError if no valid triangles were found.
+    `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. The held edge has vertices at the angles `cuts`
+    [rad] from the centre-line, positive towards the loaded side. ValueError if `refine` is not positive, RuntimeError if no valid
+    triangles were found.
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default")
     for finer in (1.0, 1.4, 2.0, 2.8):
-        made = _attempt(gear, cracks, broken, SIZES | (sizes or {}), refine, finer)
+        made = _attempt((gear, cracks, broken, tuple(cuts)), SIZES | (sizes or {}), refine, finer)
         if made is not None:
             return made
     raise RuntimeError(f"z = {gear.z}: no valid coarse triangles for this tooth; use method = 'fe'")
 
 
-def _attempt(gear, cracks, broken, sizes, refine, finer):
+def _attempt(described, sizes, refine, finer):
     """Return a sector with all edges but those of the sides divided by `finer`, or None if it folds."""
+    gear, cracks, broken, cuts = described
     size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
     size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
-    pieces = _pieces(gear, size, cracks, broken)
+    pieces = _pieces(gear, size, cracks, broken, cuts)
     first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])
     count = first[-1]
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
@@ -161,7 +164,7 @@ def _opened(points, triangles, chains, at):
     return points, triangles, faces, doubles
 
 
-def _pieces(gear, size, cracks, broken=None):
+def _pieces(gear, size, cracks, broken=None, cuts=()):
     """Return the outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
     pitch = math.pi / gear.z
     marks = {crack.side: start_arc(gear, crack) for crack in cracks}
@@ -176,6 +179,10 @@ def _pieces(gear, size, cracks, broken=None):
     close = [(at := gear.held * (pitch - math.atan2(*tip)), at, 0.7 * abs(math.hypot(*tip) - gear.held)) for tip in tips]
     bottom = pitch - spaced(0.0, inner, min(inner, max(1.5 * thick, 0.1 * inner)), close, 1, GROWTH) / gear.held
     bottom[-1] = -pitch
+    for cut in cuts:
+        near = np.abs(bottom - cut) < CUT * pitch
+        near[[0, -1]] = False
+        bottom = np.sort(np.append(bottom[~near], cut))[::-1]
     out = [("left", side[::-1], lambda r: cartesian(r, -pitch))]
     ends = [("right", side, lambda r: cartesian(r, pitch)), ("held", bottom, lambda a: cartesian(gear.held, a))]
     if isinstance(broken, MissingTooth):

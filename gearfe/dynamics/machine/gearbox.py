@@ -62,7 +62,7 @@ def check_bearings(scene):
         if not shaft.radial:
             raise ValueError(f"{where}: dofs = 'six' needs bearings_at_mm and bearings_N_per_um; give them, or dofs = 'torsion'")
         if not any(shaft.axial):
-            raise ValueError(f"{where} bearings_axial_N_per_um = [0, 0]: no bearing locates the shaft along its axis; give one")
+            raise ValueError(f"{where} bearings_axial_N_per_um: no bearing locates the shaft along its axis; give one")
 
 
 def gearbox(scene, stiffness, damage):

@@ -23,6 +23,7 @@ from .mesh_curves import Samples
 from .mesh_errors import with_errors
 from .pitted_planetary import scene_planetary
 from .scene_curves import own_forces, pair_backlash
+from .sensor import with_sensors
 from .stages import Fault
 from .tables import Machine
 
@@ -81,7 +82,7 @@ def build_machine(
             f"loads = {tuple(loads)}: the impact law has a coefficient and no curves under loads; take contact = 'linear'"
         )
     if contact == "impact":
-        return with_scene_errors(scene, build(scene, case))
+        return with_scene_errors(scene, with_sensors(scene, build(scene, case)))
     if not len(loads) or not all(math.isfinite(multiple) and multiple > 0 for multiple in loads):
         raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")
     rough = build(scene, case, phases=ROUGH, method=method, loads=None)
@@ -93,7 +94,7 @@ def build_machine(
     out = replace(out, notes=out.notes | {"mesh forces at rest [N]": forces, "loads stated for the pairs [N]": stated})
     meshes = tuple(replace(mesh, backlash=own or mesh.backlash) for mesh, own in zip(out.meshes, play, strict=True))
     out = _in_set(scene, replace(out, meshes=meshes), forces)
-    return with_scene_errors(scene, with_flanks(out))
+    return with_scene_errors(scene, with_flanks(with_sensors(scene, out)))
 
 
 def _in_set(scene, machine, forces):
@@ -113,7 +114,8 @@ def flat_machine(scene: Scene, case: str | None = None) -> Machine:
     ValueError if `build_machine` refuses it.
     """
     build, contact = _builder(scene, case)
-    return build(scene, case, **({} if contact == "impact" else {"phases": ROUGH, "method": None, "loads": None}))
+    options = {} if contact == "impact" else {"phases": ROUGH, "method": None, "loads": None}
+    return with_sensors(scene, build(scene, case, **options))
 
 
 def damaged_teeth(scene: Scene, case: str | None) -> Sequence[Fault]:

@@ -52,6 +52,8 @@ class Machine:
         Angular velocities of bodies that tilt, against the ground, counter-clockwise [rad/s]: with their gyroscopic moments.
     faults : tuple of Fault
         Teeth that differ, whose lines spectra are searched for; the driven stage's last stage names its frequencies.
+    sensors : dict of str to Sensor
+        Sensors by name (`gearfe.Sensor`), each a channel ``"sensor NAME"`` of a response.
 
     Attributes
     ----------
@@ -84,6 +86,7 @@ class Machine:
     spin: float = 0.0
     rotors: dict[str, float] = field(default_factory=dict)
     faults: tuple[Fault, ...] = ()
+    sensors: dict[str, Any] = field(default_factory=dict)
     K: Floats = field(init=False)
     C: Floats = field(init=False)
     G: Floats = field(init=False)
