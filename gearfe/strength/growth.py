@@ -44,12 +44,12 @@ class CrackModel:
         Leblond 1992).
     held : sequence of (float, float), optional
         Arcs of the bore (of a ring its outside) that are held [rad], from the centre-line of the cracked tooth, positive towards
-        its loaded flank. Default: all around. Only ``fe`` has arcs.
+        its loaded flank. Default: all around. `fe` rounds their ends to the edges of its mesh.
 
     Raises
     ------
     ValueError
-        If an option is unknown, an arc does not end after its start, or arcs are given for ``ritz``.
+        If an option is unknown or an arc does not end after its start.
     """
 
     method: str = "auto"
@@ -66,8 +66,6 @@ class CrackModel:
         arcs = tuple((number("held", start), number("held", stop)) for start, stop in self.held)
         if not arcs or any(not 0 < stop - start <= 2 * math.pi for start, stop in arcs):
             raise ValueError(f"held = {self.held} rad, but each arc ends after its start and is at most a full circle")
-        if self.method == "ritz":
-            raise ValueError("held: method 'ritz' holds the whole bore; use method = 'fe' for a part of it")
         object.__setattr__(self, "held", arcs)
 
 
@@ -231,9 +229,9 @@ class _Tip:
         return (*map(float, response.in_contact(free[top])), float(min(free[:, -2].min(), 0.0)))
 
     def _response(self, crack):
-        if self.model.method != "fe" and self.model.held is None and "fe" not in self.methods:
+        if self.model.method != "fe" and "fe" not in self.methods:
             try:
-                found = ritz_response(self.gear, self.material, crack, self.loads, self.refine)
+                found = ritz_response(self.gear, self.material, crack, self.loads, self.refine, self.model.held)
             except (ValueError, RuntimeError):  # The crack leaves its sector or cannot be meshed coarsely.
                 if self.model.method == "ritz":
                     raise

@@ -82,26 +82,28 @@ class Sector:
         object.__setattr__(self, "edge_bulges", out)
 
 
-def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None):
+def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None, cuts=()):
     """`Sector` of a gear with the cracks of its tooth, which may be `broken`: a `MissingTooth` or a `Chip`.
 
-    `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. ValueError if `refine` is not positive,
-    RuntimeError if no valid triangles were found.
+    `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. The held edge has vertices at the angles `cuts`
+    [rad] from the centre-line, positive towards the loaded side. ValueError if `refine` is not positive, RuntimeError if no valid
+    triangles were found.
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default")
     for finer in (1.0, 1.4, 2.0, 2.8):
-        made = _attempt(gear, cracks, broken, SIZES | (sizes or {}), refine, finer)
+        made = _attempt((gear, cracks, broken, tuple(cuts)), SIZES | (sizes or {}), refine, finer)
         if made is not None:
             return made
     raise RuntimeError(f"z = {gear.z}: no valid coarse triangles for this tooth; use method = 'fe'")
 
 
-def _attempt(gear, cracks, broken, sizes, refine, finer):
+def _attempt(described, sizes, refine, finer):
     """Return a sector with all edges but those of the sides divided by `finer`, or None if it folds."""
+    gear, cracks, broken, cuts = described
     size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
     size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
-    pieces = outline_pieces(gear, size, cracks, broken)
+    pieces = outline_pieces(gear, size, cracks, broken, cuts)
     first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])
     count = first[-1]
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])

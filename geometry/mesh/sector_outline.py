@@ -12,10 +12,11 @@ from ..tooth.profile import arc_at, cartesian, fillet, fillet_angle, fillet_leng
 from ..tooth.profile import root_half_angle as root_half
 from .outline import MERGED, spaced
 
+CUT = 0.2  # Vertices of the held edge closer to a given one than this part of half a pitch are left out.
 GROWTH = 1.2  # growth of the edge length per length, away from fine places
 
 
-def outline_pieces(gear, size, cracks, broken=None):
+def outline_pieces(gear, size, cracks, broken=None, cuts=()):
     """Return the outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
     pitch = math.pi / gear.z
     marks = {crack.side: start_arc(gear, crack) for crack in cracks}
@@ -30,6 +31,10 @@ def outline_pieces(gear, size, cracks, broken=None):
     close = [(at := gear.held * (pitch - math.atan2(*tip)), at, 0.7 * abs(math.hypot(*tip) - gear.held)) for tip in tips]
     bottom = pitch - spaced(0.0, inner, min(inner, max(1.5 * thick, 0.1 * inner)), close, 1, GROWTH) / gear.held
     bottom[-1] = -pitch
+    for cut in cuts:
+        near = np.abs(bottom - cut) < CUT * pitch
+        near[[0, -1]] = False
+        bottom = np.sort(np.append(bottom[~near], cut))[::-1]
     out = [("left", side[::-1], lambda r: cartesian(r, -pitch))]
     ends = [("right", side, lambda r: cartesian(r, pitch)), ("held", bottom, lambda a: cartesian(gear.held, a))]
     if isinstance(broken, MissingTooth):

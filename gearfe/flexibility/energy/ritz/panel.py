@@ -26,6 +26,7 @@ from ...plane_elements import bent_stiffness, stiffness
 from .tip import face_columns, load_columns, tip_columns, tip_of
 
 STRAIGHT = 1e-12  # Edges with a smaller deviation from their chord, relative to the sector size, are straight.
+CORNER = 1e6  # stiffness of the springs that hold a corner, in moduli
 GROUP = 10  # least number of triangles eliminated together; at most twice as many
 
 
@@ -68,7 +69,7 @@ def check_order(order):
         raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
 
 
-def panel(model, sector, roll, tilt=0.0, *, intensity=False):
+def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
     """Return the `Panel` of a `gearfe.geometry.mesh.sector.Sector` of a `SectionModel`.
 
     Parameters
@@ -79,21 +80,25 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False):
         By what angle the loads lean from the flank's normal towards the outside of the gear [rad]; small.
     intensity : bool
         Whether K_I and K_II at the tip of the only crack are two more openings [MPa sqrt(mm) per N/mm].
+    fixed : ndarray of bool, optional
+        Which edges along ``sector.held`` are held; the corners there are then unknowns of the sides, held by stiff springs.
+        Default: all, and the corners are no unknowns.
     """
     gear, material, state, order = model.gear, model.material, model.state, model.order
     modulus = material.plane_modulus(state)
     ratio = material.nu / (1 - material.nu) if state == "plane strain" else material.nu
     numbers, count, chain = numbering(sector, order)
-    sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
-    edge = _unknowns(np.append(sides, chain(sector.held)))
+    first, on = (1, True) if fixed is None else (0, _held_nodes(fixed, order))
+    sides = np.concatenate([chain(side)[first:] for side in (sector.left, sector.right)])
+    edge = _unknowns(np.append(sides, chain(sector.held) if fixed is None else chain(sector.held)[1:-1][on[1:-1]]))
     bulges = sector.edge_bulges
     parts, extra = _loads(gear, sector, bulges, chain, roll, order, (modulus, ratio), tilt)
     m, n = 2 * sides.size, roll.size
     parts.append(_apart(sector, chain, 2 * n))
     if intensity:
-        tip, first = tip_of(sector), int(parts[-1][1].max()) + 1
+        tip, after = tip_of(sector), int(parts[-1][1].max()) + 1
         at, column, force = tip_columns(sector, tip, numbers, order, material, state)
-        parts.append((at, first + column, force))
+        parts.append((at, after + column, force))
     rows, columns, values = (np.concatenate([part[k] for part in parts]) for k in range(3))
     k = int(columns.max(initial=2 * n - 1)) + 1 - 2 * n
     load = coo_array((values, (rows, columns)), shape=(2 * count, 2 * n + k))
@@ -103,11 +108,14 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False):
     loads, reads, faces = (edge.size + np.arange(first, stop) for first, stop in ((0, n), (n, 2 * n), (2 * n, 2 * n + k)))
     if n:
         where, inward, tip_side = _frames(gear, roll, tilt)
-        pinned = flamant.displacement(_matched(gear, sector, order), where, inward, tip_side, modulus, ratio)
+        pinned = flamant.displacement(_matched(gear, sector, order, on), where, inward, tip_side, modulus, ratio)
         total[:, loads] += total[:, : edge.size] @ pinned.transpose(2, 0, 1).reshape(edge.size, n)
     if intensity:
         total[np.ix_(faces[-2:], loads)] -= load_columns(sector, tip, *_frames(gear, roll, tilt))
         total[np.ix_(faces[-2:], faces[:-2])] -= face_columns(sector, tip, order)
+    if fixed is not None:
+        for corner, node in ((on[-1], 0), (on[0], sides.size // 2)):  # the held edge runs from the right side to the left one
+            total[[2 * node, 2 * node + 1], [2 * node, 2 * node + 1]] += corner * CORNER * modulus
     turn = _polar(gear, sides.size // 2)
     push = turn.T @ total[:m, edge.size :]
     return Panel(
@@ -184,16 +192,27 @@ def _frames(gear, roll, tilt=0.0):
     return np.array([radius * np.sin(angle), radius * np.cos(angle)]), inward, gear.outward * np.array([inward[1], -inward[0]])
 
 
-def _matched(gear, sector, order):
-    """Places ``(2, n)`` of the nodes of both sides, the held corner left out, and of the held edge."""
-    line = (lobatto(order) + 1) / 2
+def _held_nodes(fixed, order):
+    """Which nodes along the held edge belong to an edge that is held."""
+    on = np.append(np.repeat(fixed, order), False)
+    on[1:] |= np.repeat(fixed, order)
+    return on
+
+
+def _matched(gear, sector, order, on):
+    """Places ``(2, n)`` of the nodes of both sides and of the held edge that `panel` keeps.
+
+    `on` is the result of `_held_nodes`, or True where the whole edge is held.
+    """
+    line, first = (lobatto(order) + 1) / 2, int(on is True)
     out = []
     for side in (sector.left, sector.right):
         a, b = sector.points[:, side[:-1], None], sector.points[:, side[1:], None]
-        out.append((a * (1 - line[1:]) + b * line[1:]).reshape(2, -1))
+        corner = sector.points[:, side[: 1 - first]]
+        out += [corner, (a * (1 - line[1:]) + b * line[1:]).reshape(2, -1)]
     angle = np.arctan2(*sector.points[:, sector.held])
     places = np.append((angle[:-1, None] + np.diff(angle)[:, None] * line[:-1]).ravel(), angle[-1])
-    return np.hstack([*out, cartesian(gear.held, places)])
+    return np.hstack([*out, cartesian(gear.held, places if on is True else places[1:-1][on[1:-1]])])
 
 
 def _apart(sector, chain, first):
