@@ -51,6 +51,7 @@ from .dynamics.machine.pitted_planetary import pitted_planetary as pitted_planet
 from .dynamics.machine.planetary import planetary as planetary
 from .dynamics.machine.planetary import stage_phases as stage_phases
 from .dynamics.machine.run_up import with_speed as with_speed
+from .dynamics.machine.sensor import Sensor as Sensor
 from .dynamics.machine.single_mesh import single_mesh as single_mesh
 from .dynamics.machine.speed import Speed as Speed
 from .dynamics.machine.springs import Spring as Spring

@@ -14,8 +14,8 @@ from ..scene.study_tables import trimmed
 from .fields import FIELDS, SIDES, START, checked_state, key_at
 
 CASE, PAIR = "damaged", "stage"
-RUN = {"model", "speed_rpm", "torque_Nm"}  # keys of a machine that have a field on the page
-SPRUNG = ("flank", "support")  # tables of a gear
+RUN = {"model", "speed_rpm", "torque_Nm"}  # machine keys that have a field on the page
+SPRUNG = ("flank", "support")  # tables of a gear that contain its supports
 LEFT = (("gear", "gear_1", "gear_2", "pair", "case", "material"), ("pair", "case"))  # keys that refer to tables; tables of damage
 CLOSE = 1e-9  # relative tolerance of equal numbers, because torques are computed from forces
 

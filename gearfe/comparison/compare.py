@@ -30,8 +30,8 @@ from .returns import returns_of
 REFERENCE, REFERENCE_SOLID = "fe", "ritz3d"  # reference methods of sections, and of gears that need three dimensions
 REFERENCES = (REFERENCE, REFERENCE_SOLID, "fe3d")
 FORMULATIONS = tuple(row.name for row in ROWS if row.kind != "solid" and row.name != REFERENCE)  # formulations for spur gears
-STORED = 32  # phases of the cycle of curves on file
-COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU seconds per curve, for the time left
+STORED = 32  # phases per cycle of stored curves
+COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU time per curve [s], for the estimate of the remaining time
 
 
 class OwnPair(CaseOptions, total=False):
@@ -98,7 +98,7 @@ def compare(
     named = own_models(models, taken=(REFERENCE, *FORMULATIONS))
     returns = {} if isinstance(scene, (Case, GearPair, type(None))) else returns_of(_loaded(scene), *key)
     plan, cycles = _beside(key, chosen, phases, returns)
-    for method in methods:  # load libraries before the times are measured
+    for method in methods:  # Libraries are loaded before the timed part.
         METHODS[method].load()
     with gmsh_session():
         pass
@@ -140,18 +140,18 @@ def compare_cases(
     ValueError
         If the scene has no damage.
     """
+    if not scene.cases:
+        raise ValueError(f"scene {scene.name} has no cases of damage: add {' or '.join(map('[[{}]]'.format, DAMAGE))} tables")
     every = [(name, case) for name, pair in scene.pairs.items() for case in (None, *pair.damage)]
-    if all(case is None for _, case in every):
-        names = " or ".join(f"[[{name}]]" for name in DAMAGE)
-        raise ValueError(f"scene {scene.name} has no cases of damage: add {names} tables")
     wide = any(scene.case(*key).why_wide for key in every)
     stored = read_curves(scene) if wide else {}
     asked = tuple(every if cases is None else cases)
-    solid = wide and (reference == "fe3d" or all(key in stored for key in asked))
+    solid = wide and (reference == "fe3d" or stored.keys() >= {*asked})
     first = "fe3d" if solid else REFERENCE_SOLID if wide else REFERENCE
-    methods = (*dict.fromkeys([first, "ritz3d" if wide else "ritz"]), *SUMS)
+    methods = (*dict.fromkeys([first, REFERENCE_SOLID if wide else "ritz"]), *SUMS)
     plan = {key: (case := scene.case(*key), damage_cycle(case) if stored else damage_phases(case, phases)) for key in asked}
-    known = {(*key, "fe3d"): _on_file(plan[key][0], *row) for key, row in stored.items() if key in plan and solid}
+    filed = plan.keys() & stored.keys() if solid else ()
+    known = {(*key, "fe3d"): _on_file(plan[key][0], *stored[key]) for key in filed}
     return _compared(plan, asked, methods, Solve(), known=known)
 
 
@@ -186,37 +186,54 @@ def _compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None
     estimates of errors come after it; `known` are curves and their seconds.
     """
     solved, seconds, left_out, known, reference = {}, {}, left_out or {}, known or {}, methods[0]
-    work = [(key, method, False) for key in plan for method in methods] + [(key, reference, True) for key in asked if fresh]
-    cost = [0.0 if (*key, name) in known else COST.get(name, 0.3) * (1 + again) for key, name, again in work]
-    for key, method, again in steps(work, lambda item: f"{item[0][0]}, {item[0][1] or 'healthy'}: {item[1]}", cost):
-        place, timed, first = (*key, method), fresh and key in asked and not again, method == reference
+    work, cost = _work(plan, asked if fresh else (), methods, known)
+    for key, method, again in steps(work, lambda item: f"{_told(item[0], ', ')}: {item[1]}", cost):
+        place = (*key, method)
         if place in known:
             solved[place], seconds[place] = known[place]
             continue
         case, phases = plan[key]
-        own = replace(
-            how, method=method, phases=phases, cache=not timed and how.cache, refine=how.refine if first or not fresh else 1.0
-        )
-        own = replace(own, error=first and how.error and not timed and (again or not fresh or method == "fe3d"))
+        timed = fresh and key in asked and not again
+        own = replace(_one_method(how, method, reference, fresh, again), phases=phases, cache=not timed and how.cache)
+        own = replace(own, error=own.error and not timed)
         started = time.perf_counter()
         try:
             solved[place] = solve_fitted(case, own)
         except ValueError as error:
-            if first:
+            if method == reference:
                 raise
-            left_out[method if len(asked) == 1 else f"{method} of {key[0]} {key[1] or 'healthy'}"] = str(error)
+            left_out[method if len(asked) == 1 else f"{method} of {_told(key)}"] = str(error)
         else:
             seconds.setdefault(place, time.perf_counter() - started)
-    teeth = {key: _losses(plan, key, solved, replace(how, method=reference), cycles) for key in asked if key[1]}
-    return Comparison({key: case for key, (case, _) in plan.items()}, asked, solved, seconds, teeth, left_out)
+    cases, phases = ({key: one[k] for key, one in plan.items()} for k in (0, 1))
+    known = {key: replace(how, method=reference, phases=phases[key]) for key in asked if key[1]}
+    teeth = {key: _losses(cases[key], key, solved, own, cycles) for key, own in known.items()}
+    return Comparison(cases, asked, solved, seconds, teeth, left_out)
 
 
-def _losses(plan, key, solved, how, cycles):
+def _told(key, between=" "):
+    return f"{key[0]}{between}{key[1] or 'healthy'}"
+
+
+def _one_method(how, method, reference, fresh, again):
+    """`Solve` of a method. Estimates of errors come after the timed curves, except those of `fe3d`."""
+    if method != reference:
+        return replace(how, method=method, error=False, refine=1.0 if fresh else how.refine)
+    return replace(how, method=method, error=how.error and (again or not fresh or method == "fe3d"))
+
+
+def _work(plan, timed, methods, known):
+    """Return key, method and whether it is computed once more of all curves of a comparison, and their relative cost."""
+    work = [(key, method, False) for key in plan for method in methods] + [(key, methods[0], True) for key in timed]
+    return work, [0.0 if (*key, name) in known else COST.get(name, 0.3) * (1 + again) for key, name, again in work]
+
+
+def _losses(case, key, solved, how, cycles):
     """Phases of the zones and errors of the losses, by the words for each damaged tooth."""
-    (case, phases), out = plan[key], {}
+    out = {}
     for words, cycle in (cycles or {told_damage(case.pair, case.damage): None}).items():
         curves = (within(solved[key[0], which, how.method], cycle) for which in (None, key[1]))
-        rough = replace(how, phases=phases if cycle is None else cycle, error=False)
+        rough = replace(how, phases=how.phases if cycle is None else cycle, error=False)
         out[words] = cycle, loss_errors(*curves, case, rough) if how.error else {}
     return out
 
@@ -285,18 +302,14 @@ def _own(pair, given):
 
 def _methods(case, reference):
     """Return the reference and the formulations that model a case completely, and reasons for the others."""
-    if reference is not None:
-        one_of("reference", reference, REFERENCES)
+    one_of("reference", reference or REFERENCE, REFERENCES)
     solid, ring = case.why_wide, case.pair.gear_2.internal
     if reference == REFERENCE and solid:
         raise ValueError(f"reference = {reference!r}, a transverse section, but {solid}: use 'ritz3d' or 'fe3d'")
-    first = reference or (REFERENCE_SOLID if solid else REFERENCE)
-    rows = [row for row in ROWS if row.rings == "yes" or not ring]
-    if solid:
-        others = [row.name for row in rows if row.kind == "sum" or (row.name == REFERENCE_SOLID)]
-    else:
-        others = [row.name for row in rows if row.name in (REFERENCE, *FORMULATIONS) and (row.cracks or not case.damaged)]
-    methods = tuple(dict.fromkeys([first, *others]))
+    first, own = (REFERENCE_SOLID, (REFERENCE_SOLID, *SUMS)) if solid else (REFERENCE, (REFERENCE, *FORMULATIONS))
+    rows = [row for row in ROWS if row.name in own and (row.rings == "yes" or not ring)]
+    others = [row.name for row in rows if solid or row.cracks or not case.damaged]
+    methods = tuple(dict.fromkeys([reference or first, *others]))
     return methods, {row.name: why_not(row, case, solid) for row in ROWS if row.name not in methods}
 
 

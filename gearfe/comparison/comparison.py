@@ -16,7 +16,7 @@ from .losses import LARGEST, headline, kind_of, loss, rounded_up, told_cycle, wi
 
 ZONES = ("single", "double", "triple", "mean", "max", LARGEST)
 BRIEF = ("mean", "max", LARGEST)  # zones in tables of many cases
-Key = tuple[str, str | None]  # pair and case of damage; None: healthy
+Key = tuple[str, str | None]  # pair and damage case (None: healthy)
 
 
 class Row(NamedTuple):

@@ -158,7 +158,7 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
     '2 mm crack at 60 degrees: the mesh is 15.8 ± 0.3 % softer where the cracked tooth carries alone; 9.5 % on average'
     """
     alone = next((name for name in ALONE if name in found), None)
-    zone = None if kind == "chipped" else alone  # a chipped tooth has single contact where its flank is intact
+    zone = None if kind == "chipped" else alone  # For a chipped tooth the zone of single contact is the one of its intact flank.
     where = f"where the {kind} tooth {ALONE[zone]}" if zone else f"as the {kind} tooth passes"
     where = where.replace("carries", "would carry") if kind == "missing" else where
     most = percent_with_doubt(found[zone or LARGEST], doubt.get(zone or LARGEST, math.nan))

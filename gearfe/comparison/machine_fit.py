@@ -23,10 +23,10 @@ from .settled import recorded
 
 PATH = ("path.frequency_Hz", "path.damping_ratio", "path.mass_kg")
 BAND = 0.4  # lines above this part of the sampling rate are not used
-APART = 4.0  # widths 1/T of a spectral line between two lines, so that a Hann window parts them
+APART = 4.0  # smallest distance of two lines in widths 1/T, which a Hann window resolves
 STARTS = 6  # starting points per parameter; the best two are refined
-SHORT = 4  # mesh cycles of the common period up to which the periodic motion is solved directly
-CLEAR = 3.0  # ratio of the summed lines to the noise that a fit requires
+SHORT = 4  # longest common period for a direct periodic solution [mesh cycles]
+CLEAR = 3.0  # least ratio of the summed lines to the noise that a fit requires
 OFF = 0.02  # relative speed difference within which another record speed is searched
 
 
@@ -177,7 +177,7 @@ def fit_machine(
         fitted, values = changed(x)
         return np.abs(_lines(build_machine(fitted), channel, frequency) * _gain(_path(values), frequency))
 
-    def residuals(x: Floats) -> Floats:  # the mean of a noisy amplitude is larger than that without noise
+    def residuals(x: Floats) -> Floats:  # Noise increases the mean of a measured amplitude, so the residuals include it.
         return (measured - np.hypot(lines(x), noise)) / noise
 
     from scipy.optimize import least_squares
@@ -268,8 +268,13 @@ def _frequencies(machine, record, harmonics):
 
 def _lines(machine, channel, frequency):
     """Complex amplitudes of the lines of a machine, from its periodic motion, or from a simulation of long periods."""
+    sensor = machine.sensors.get(channel.removeprefix("sensor "))
+    if sensor is not None and not sensor.housing:
+        weights = sensor.weights or [1.0] * len(sensor.channels)
+        of_channels = zip(weights, sensor.channels, strict=True)
+        return sensor.gain(frequency) * sum(weight * _lines(machine, one, frequency) for weight, one in of_channels)
     period = common_period(machine)
-    if period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
+    if sensor is None and period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
         found = steady_state(machine, period=period).response
         return line_amplitudes(found.part(slice(None, -1)).signal(channel), frequency, np.ones)
     apart = np.diff(frequency, prepend=0.0).min()

@@ -21,11 +21,11 @@ TURN = {"deg": math.pi / 180, "rad": 1.0}
 ANGLES, RADII = ("angle", "pinion angle", "roll angle", "theta"), ("radius", "pinion radius", "contact radius")
 ABSCISSAE = "'phase' (mesh cycles), 'angle [deg]' or 'angle [rad]' (of the pinion) or 'radius [mm]' (one pair, on the pinion)"
 UNITS = "N/m, N/mm, N/um (also kN, MN, GN) or, per width, N/(mm um), N/(m um)"
-COARSEST = 1 / 20  # longest step between rows: of a mesh cycle, or of the active flank
+COARSEST = 1 / 20  # longest step between rows, relative to the mesh cycle or the active flank
 SNAP = 1e-4  # tolerance for rounded angles and phases [mesh cycles]
-EXACT = 1e-9  # the same for requested phases
+EXACT = 1e-9  # tolerance for requested phases [mesh cycles]
 DECIMAL_COMMA = re.compile(r"^([-+]?\d*),(\d+(?:e[-+]?\d+)?)$", re.IGNORECASE)
-STEEP = 0.1  # rise of k between rows, as a part of its mean, that means an entering pair
+STEEP = 0.1  # increase of k between rows, relative to its mean, that indicates an entering tooth pair
 
 
 @dataclass(frozen=True, slots=True, eq=False)

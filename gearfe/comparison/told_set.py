@@ -27,8 +27,8 @@ COLUMNS = (
     *(Column(f"load, {name}", "N") for name in ("least", "largest")),
 )
 
-MOST = 10_000  # limits of the number of positions and of cycles
-ENGAGED = 2  # mesh cycles in which a tooth passes its mesh
+MOST = 10_000  # largest number of positions, and of cycles
+ENGAGED = 2  # duration of the engagement of a tooth [mesh cycles]
 
 
 def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> Floats:

@@ -14,11 +14,11 @@ from ..geometry.pair.modified import first_touch
 from .pieces import cut
 
 BESIDE = 0.25  # distance from an end face [m_n] within which edge contact matters
-END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
-GROWTH = 0.6  # increase of the cell length per unit length, away from the ends
+END = 0.25  # length of the cells at the ends of contact relative to the longest; the pressure rises there
+GROWTH = 0.6  # growth of the cell length with the distance from the ends
 BEYOND = 12  # minimum number of cells beyond the path of contact, where gaps open
 CARRYING = 20  # minimum number of loaded cells in a phase if gaps change along the width
-SETTLED = 0.7  # the search for the carrying part of a line ends when a step leaves at least this much of its length
+SETTLED = 0.7  # The search for the carrying part of a line ends when a step keeps at least this part of its length.
 TIMES = 12  # maximum number of steps of that search
 
 
@@ -113,7 +113,7 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
     if flanks is not None:
         met = each_pair(pairs, order, z, lambda one, on: first_touch(one, flanks, nominal[on], order[on], gap[on], z[on]))
         roll_1, roll_2, gap, radius, corner = met.roll_1, met.roll_2, met.gap, met.radius, met.corner
-    gap = gap + floor * math.sqrt(1 + slope**2)  # pits are measured along the normal
+    gap = gap + floor * math.sqrt(1 + slope**2)  # Pit depths are measured along the normal.
     whole = Cells(half, order, z, width, depth, nominal, roll_1, roll_2, gap, corner, floor.astype(float), radius)
     kept = np.isfinite(gap)
     return (whole, phase) if kept.all() else (whole.some(kept), phase[kept])
@@ -142,7 +142,7 @@ def carrying(cells, phase, pieces, force, bed):
             continue
         order = at[np.argsort(cells.gap[at])]
         gap, width = cells.gap[order], np.cumsum(cells.width[order])
-        # approach if this number of cells carried load
+        # approach at which this number of cells would carry load
         pressed = (force / bed + np.cumsum(cells.gap[order] * cells.width[order])) / width
         deep = pressed[np.flatnonzero(pressed >= gap)[-1]]
         loaded = at[cells.gap[at] < deep]

@@ -22,7 +22,7 @@ from ..flexibility.halfspace import half_space
 from ..geometry.aliases import Floats
 
 JUMP = 0.2  # step of the roll length along a line at the end of a chip [m_n]
-APART = 1e-9  # gap over the width of a cell beyond which a recess lies between two cells
+APART = 1e-9  # gap relative to the cell width beyond which a recess lies between two cells
 
 
 def missing_material(case: Any, found: Any) -> Floats:

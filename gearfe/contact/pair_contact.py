@@ -23,12 +23,13 @@ from .sharing import LineContacts, line_contact, line_contacts, stacked
 from .sliding import bounded, left_out, sliding
 from .thinned import thinned_teeth
 
-CORNER = 1.0  # contacts within this many half widths of a corner are resolved by hat functions
-BEYOND = 1.5  # a row extends at least this number of half widths from its middle
-KINK = 16  # mark of a pair whose contact reaches a kink of a flank; smaller: the corners of a row, bit n - 1 for corner n
-SMOOTH = 0.5  # a corner whose gap is below this part of a smooth contact's parabola is a second contact
-UNKNOWN = ("roll_1", "roll_2", "gap", "coefficient", "radius", "tilt", "turn_1", "turn_2", "fillet")  # properties of a contact
-OVERLAP = 1e-3  # overlaps of crack faces below this part of the largest opening are ignored
+CORNER = 1.0  # distance from a corner within which hat functions resolve a contact [half-widths]
+BEYOND = 1.5  # least half-length of a row [half-widths]
+KINK = 16  # mark of a pair whose contact reaches a kink; smaller marks are corners, with bit n - 1 for corner n
+SMOOTH = 0.5  # A corner is a second contact if its gap is below this part of the parabola of the smooth contact.
+# unknown properties of a contact
+UNKNOWN = ("roll_1", "roll_2", "gap", "coefficient", "radius", "tilt", "turn_1", "turn_2", "fillet")
+OVERLAP = 1e-3  # Smaller overlaps of crack faces, relative to the largest opening, are ignored.
 
 
 def _closing(opening):
@@ -68,7 +69,7 @@ class PairContact:
         found = flank_contacts(pair, phase, extended=extended, flanks=flanks)
         self.found, self.path = points, _ = with_broken(found, pair, flexibility, extended, flanks)
         self.extended = extended
-        # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
+        # The leading pair is on the pinion's next tooth on the loaded side, and on the wheel's on the other side.
         matrices = [flexibility[0].matrix(points.roll_1, points.order), flexibility[1].matrix(points.roll_2, -points.order)]
         self.coefficient, self.turns = np.full(points.gap.shape, sum(self.coefficients)), np.ones((2, *points.gap.shape))
         if flanks is not None:
@@ -76,9 +77,9 @@ class PairContact:
         self.matrix = matrices[0] + matrices[1]
         self.thinning, self.thinner = thinned_teeth(flanks, materials, state, points)
         self.matrix[:, range(points.order.size), range(points.order.size)] += self.thinner
-        self.alone = np.diagonal(self.matrix, axis1=1, axis2=2)  # cracks glued shut
+        self.alone = np.diagonal(self.matrix, axis1=1, axis2=2)  # compliance of each contact alone, with bonded crack faces
         self.radius = self.flat_radius = points.radius
-        if any(form.edge for form in flanks or ()):  # a rounded tip shares the contact with the adjacent flank
+        if any(form.edge for form in flanks or ()):  # A rounded tip shares its contact with the adjacent flank.
             beside = pair.relative_radius(points.roll_1, points.roll_2)
             self.flat_radius = np.where(beside > 0, np.maximum(beside, points.radius), points.radius)
         self.opening = self.opening_at(points.roll_1, points.roll_2, points.order)
@@ -92,7 +93,7 @@ class PairContact:
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
         points, tilt = self.found, bounded(self, line_load)
-        # gaps are measured from first contact, because a light load closes less than their rounding error
+        # Gaps are measured from first contact: the approach at light loads is below their rounding error.
         least = points.gap.min(axis=1)
         reach, beyond = self._reach(line_load), points.gap - least[:, None]
         possible = beyond < reach[:, None]
@@ -241,7 +242,7 @@ class PairContact:
         width = half_width(line_load, np.where(radius > 0, radius, self.pair.pitch_relative_radius), self.modulus)
         pressed = sum(self.coefficients) * line_load * (np.log(2 * gear.m_n / width) + 0.5)
         away = np.abs(arc_at(gear, points.corner_roll[0]) - arc_at(gear, points.roll_1))
-        wheel = self.pair.gear_2  # the row is finer on the side of the corner's gear, so that neither gear is preferred
+        wheel = self.pair.gear_2  # The row is finer on the side of the corner's gear, so that both gears are treated alike.
         away[1::2] = np.abs(arc_at(wheel, points.corner_roll[1, 1::2]) - arc_at(wheel, points.roll_2))
         excess = points.corner_gap - np.where(possible, points.gap, 0.0)
         with np.errstate(invalid="ignore"):
@@ -251,7 +252,7 @@ class PairContact:
         corner = ((meets & (reached | second)) * (1 << np.arange(4))[:, None, None]).sum(axis=0)
         smooth = (corner > 0) & (points.corner == 0)
         also = (corner > 0) & (points.corner > 0) & (points.nominal > start) & (points.nominal < end) & (-points.gap < pressed)
-        apart = also | (smooth & ~(meets & reached).any(axis=0))  # the flanks also contact on the path
+        apart = also | (smooth & ~(meets & reached).any(axis=0))  # The flanks also touch on the path.
         further = np.where(meets & reached, away, 0.0).max(axis=0) + BEYOND * width
         zone = np.where(smooth, np.maximum(further, TIP_ZONE * gear.m_n), TIP_ZONE * gear.m_n)
         return corner, zone, np.where(apart, width, 0.0)
@@ -281,7 +282,7 @@ class PairContact:
         list of dict
             ``flexibility``, ``gap``, ``coefficient`` of the logarithm, ``radius``, pair ``column`` and crack ``opening``.
         """
-        alike, out = {}, {}  # phases at which the same pairs touch in the same way
+        alike, out = {}, {}  # groups of phases with the same touching pairs and corners
         for i, near, corner in wanted:
             alike.setdefault((tuple(near.tolist()), tuple((corner > 0).tolist())), []).append(i)
         for (near, row), phases in alike.items():

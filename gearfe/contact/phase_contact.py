@@ -25,9 +25,9 @@ from .pieces import beyond, gaps, pieces_of
 from .sliding import MOST, cracks_beyond_lines, off_path, slid
 
 FINEST = 1.5  # length of the shortest cell [Hertz half widths]
-ALIKE = 1e-9  # tolerance for equal halves, of which one is solved [base pitches]
+ALIKE = 1e-9  # tolerance of equal halves, of which only one is solved [base pitches]
 DEEPEST = 0.01  # search depth for the floor of a pit that covers a whole contact line [m_n]
-ROW = math.sqrt(2)  # cells are made for forces with this ratio
+ROW = math.sqrt(2)  # ratio of the forces for which cell divisions are made
 REACH = 1.3  # growth of the search radius for gaps if it was too small
 TOGETHER = 16  # phases that are solved at once
 
@@ -91,7 +91,7 @@ class PhaseContact:
         pair, materials, flanks, (pits, broken) = case.pair, case.materials, case.forms, without_recesses(case)
         self.pair, self.pits, self.step, self.extended, self.longer = pair, pits, step, extended, longer
         self.force = force
-        # shafts that are not integral are already part of the bodies
+        # Shafts that are not integral are already part of the bodies.
         outside = [None if held and held.integral else held for held in case.held or ()]
         self.hubs = [held and held.hub() for held in outside] if any(outside) else None
         self.pairs = ToothPairs(pair, broken)
@@ -105,11 +105,11 @@ class PhaseContact:
         self.furthest = max((float(gap[-1]) for _, gap in gaps(pair) if gap.size), default=0.0) if extended else 0.0
         unit = self.modulus * pair.gear_1.m_n * self.width
         self.sized = unit * ROW ** math.ceil(math.log(force / unit, ROW) - 1e-9)
-        # initial value: logarithmic deflection of the half-plane over the size of a tooth, and the same for the tooth
+        # The initial estimate is the logarithmic deflection of the half-plane over one tooth, doubled for the tooth itself.
         load, self.bed = force / self.width, math.pi * self.modulus / 40
         self.reach = self.sized / self.width / self.bed
         further = self._further(self.least + 80 / (math.pi * self.modulus) * load)
-        if case.missing:  # distance of the last adjacent teeth from their path
+        if case.missing:  # The teeth next to the gap are this far from their path.
             further = [max(away, (2 - pair.eps_alpha) * pair.p_bt) for away in further]
         self._laws, self._make_law = {}, partial(CornerLaw, pair, materials, load, further, cache=cache)
         self.least_neighbours = neighbours_of(pair) if any(case.cracks) or any(case.broken) else 1
@@ -234,7 +234,7 @@ class PhaseContact:
             line = np.cumsum(np.append(0, (np.diff(group.half) != 0) | (np.diff(group.order) != 0)))
             faces, mirrors, block = faces_of(group, halves), mirrors_of(group, halves), group.half
             yields.append(None)
-            if self.hubs is not None:  # both halves of a herringbone gear are on one hub
+            if self.hubs is not None:  # Both halves of a herringbone gear are on one hub.
                 yields[-1] = given_way(group, self.pair, self.hubs, self.bands, self.beta_b)
                 matrix, block = matrix + yields[-1], np.zeros(group.z.size, dtype=int)
                 faces = None if faces is None else (*faces[:2], np.zeros_like(faces[2]))
@@ -256,7 +256,8 @@ class PhaseContact:
         laws, kinks = self._laws_at(cells), self.kinks
         at = self._ends(cells)
         for end, form in enumerate((self.flanks or ())[::-1]):
-            at[(at == end) & (form.edge is not None) & np.isin(cells.corner, (0, *TIP))] = -1  # no sharp corner there
+            # A rounded tip has no sharp corner.
+            at[(at == end) & (form.edge is not None) & np.isin(cells.corner, (0, *TIP))] = -1
         corner, bent = (at >= 0).any(), kinks is not None and bool(kinks.zones)
         soft = np.zeros(at.size)
         for law, on in laws:

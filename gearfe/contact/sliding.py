@@ -10,7 +10,7 @@ from ..flexibility.plane import cracks_beyond
 from ..geometry.tooth.profile import arc_at, roll_at_arc
 from .thinned import UNSURE
 
-MOST = 0.05  # limit of the approach by sliding, relative to the deflection; larger strains are not small
+MOST = 0.05  # limit of the approach by sliding, relative to the deflection; larger values violate small strains
 STEP = 0.01  # step along the flank for the derivative of a flexibility [m_n]
 
 

@@ -28,8 +28,9 @@ from ..geometry.tooth.profile import fillet, flank, tangent_point
 from ..geometry.tooth.side import place
 
 FOOT = 16.67 / math.pi  # rotation of a root section of unit thickness under a unit moment, times E'
-POINTS = 200  # sections between root and tip circle
-UNSURE = 1 / 4  # error of the difference, from finite elements of thinned teeth (``tests/contact/test_thinned_flexibility.py``)
+POINTS = 200  # cross-sections between root and tip circle
+# relative error of the flexibility change, from finite elements of thinned teeth (``tests/contact/test_thinned_flexibility.py``)
+UNSURE = 1 / 4
 
 
 class Thinning:

@@ -7,7 +7,7 @@ import numpy as np
 from ..geometry.pair.broken import each_pair, touching_each
 from ..geometry.pair.modified import first_touch
 
-FINE, ROUNDS = 9, 2  # sample points along the cell with the least gap, and number of refinements of the search
+FINE, ROUNDS = 9, 2  # sample points along the cell with the least gap; number of refinements
 
 
 def least_gap(contact, found):
@@ -24,7 +24,7 @@ def least_gap(contact, found):
     half, order, nominal, z, width, floor = (
         np.array([getattr(c, n)[k] for c, k in zip(found, best, strict=True)]) for n in names
     )
-    # the abscissa decreases by `slope` for each mm of z
+    # The abscissa decreases by `slope` per mm of z.
     slope = math.tan(contact.beta_b) * np.sign([last - first for first, last in contact.bands])[half]
     low, high, gap = -width / 2, width / 2, np.zeros(0)
     for _ in range(ROUNDS):

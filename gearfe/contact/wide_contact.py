@@ -25,7 +25,7 @@ from .thinned import unmodelled
 from .unloaded import least_gap
 
 STEP = 0.2  # longest cell along the width [m_n]
-LONGER = 2  # cells that become one in the coarser solution that the error estimate compares with
+LONGER = 2  # number of cells merged into one in the coarser solution for the error estimate
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +139,7 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
             given = (one and partial(one, neighbours=neighbours) for one in (flexible, ahead))
             return bodies_of(case, contacts[0].bands, *given)
 
-        def within(orders):  # large deflections bring more teeth into contact than the initial approach
+        def within(orders):  # Large deflections bring more teeth into contact than the initial estimate.
             return made(max(orders, least))
 
         with part("", 0.0, 0.5):

@@ -31,7 +31,7 @@ def _number(name, value):
 PLAIN = {float: _number, int: whole, bool: truth}
 WORDS = {float: "a number", int: "a whole number", bool: "True or False", str: "a text", type(None): "None"}
 WORDS[os.PathLike] = "a path"
-MADE = {  # how users get these records; not all are public names
+MADE = {  # functions that return these records; not all are public names
     "Machine": "gf.build_machine(scene), gf.single_mesh(...), gf.planetary(...)", "Scene": "gf.load_scene(name)",
     "StiffnessCurve": "gf.mesh_stiffness(pair, force, material)", "Response": "gf.simulate(machine, duration)",
     "SetCurves": "gf.planetary_stiffness(case)", "Runs": "gf.open_runs(folder)", "Dataset": "gf.open_dataset(folder)",
@@ -39,7 +39,7 @@ MADE = {  # how users get these records; not all are public names
     "Spectrum": "gf.spectrum(signal)", "Spectrogram": "gf.spectrogram(signal)", "Kurtogram": "gf.fast_kurtogram(signal)",
     "Campbell": "gf.campbell(machine, speeds)",
 }  # fmt: skip
-NUMERIC = {"f": "iuf", "i": "iu"}  # kinds of arrays that arrays of floats and of whole numbers are made of
+NUMERIC = {"f": "iuf", "i": "iu"}  # kinds of arrays accepted for arrays of floats and of integers
 
 
 class _Rule(NamedTuple):
@@ -49,7 +49,8 @@ class _Rule(NamedTuple):
     settled: Callable[[str, Any], Any]
 
 
-BY_NAME = {"refine": _Rule("a number", lambda _, value: checked_refine(value))}  # numbers of one meaning everywhere
+# arguments with the same meaning in all functions
+BY_NAME = {"refine": _Rule("a number", lambda _, value: checked_refine(value))}
 
 
 class _Named(type):
@@ -79,7 +80,7 @@ def bordered(public: Any, name: str) -> Any:
     """
     if inspect.isfunction(public):
         out = _checked(public, name)
-        out.__module__, out.__qualname__ = "gearfe", name  # other processes import it from there
+        out.__module__, out.__qualname__ = "gearfe", name  # Other processes import the class from that module.
         return out
     if "__init__" in vars(public) and not issubclass(public, BaseException):
         public.__init__ = _checked(public.__init__, name, record=True)
@@ -98,7 +99,7 @@ def _checked(function, called, record=False):
             given = [_settled(*rule, value, record) for rule, value in zip(places, args, strict=False)]
             stated = {key: _settled(*named[key], value, record) if key in named else value for key, value in options.items()}
         except ValueError as misfit:
-            if record:  # the record's own message states unit and range
+            if record:  # The message of the record states unit and range.
                 _own_message(function, args, options, type(misfit))
             raise
         out = function(*given, *args[len(places) :], **stated)
@@ -179,19 +180,34 @@ def _rule(hint):
     if hint in PLAIN:
         return _Rule(WORDS[hint], PLAIN[hint])
     if origin in (typing.Union, types.UnionType):
-        like = any(str(one).startswith(("numpy._typing", "<class 'numpy._typing")) for one in inner)
-        return _Rule("numbers", _even) if like else _any_of([_rule(one) for one in inner])
+        return _union(inner)
     if origin is np.ndarray:
         return _Rule("an array of real numbers", functools.partial(_array, "i" if "int" in str(inner[1]) else "f"))
     if not isinstance(origin, type):
-        return _instance(hint) if isinstance(hint, type) and not getattr(hint, "_is_protocol", False) else None
+        plain = isinstance(hint, type) and not getattr(hint, "_is_protocol", False)
+        return _instance(hint) if plain else None
+    if origin is Callable:
+        return _Rule("a function", functools.partial(_is_a, Callable, "a function"))
+    if issubclass(origin, Iterable):
+        return _row_of(origin, inner)
+    return _instance(origin)
+
+
+def _row_of(origin, inner):
+    """Rule of a mapping, a row of a fixed length, or a sequence."""
     if issubclass(origin, Mapping):
         return _mapping(inner)
     if origin is tuple and inner[-1:] != (...,):
         return _row([_rule(one) for one in inner])
-    if issubclass(origin, Iterable):
-        return _sequence(_rule(inner[0]), Iterable if origin is Iterable else Collection, tuple if origin is tuple else None)
-    return _Rule("a function", functools.partial(_is_a, Callable, "a function")) if origin is Callable else _instance(origin)
+    return _sequence(_rule(inner[0]), Iterable if origin is Iterable else Collection, tuple if origin is tuple else None)
+
+
+def _union(inner):
+    """Rule of a union. One with a type of numpy stands for all that makes an array."""
+    numpy_types = ("numpy._typing", "<class 'numpy._typing")
+    if any(str(one).startswith(numpy_types) for one in inner):
+        return _Rule("numbers", _even)
+    return _any_of([_rule(one) for one in inner])
 
 
 def _any_of(rules):
@@ -200,14 +216,15 @@ def _any_of(rules):
 
     *first, last = dict.fromkeys(rule.words for rule in rules)
     words = f"{', '.join(first)} or {last}" if first else last
-    classes_first = sorted(rules, key=lambda rule: "number" in rule.words)  # some classes are rows of numbers
+    # Classes come first, because some of them are also sequences of numbers.
+    classes_first = sorted(rules, key=lambda rule: "number" in rule.words)
 
     def settled(name, value):
         misfit = None
         for rule in classes_first:
             try:
                 return rule.settled(name, value)
-            except ValueError as error:  # an error on an element, or on a value of the right type, is more specific
+            except ValueError as error:  # An error about an element, or about a value of the right type, is more specific.
                 general = isinstance(error, WrongTypeError) and str(error).startswith(f"{name} = ")
                 misfit = misfit if general else error
         raise misfit or _wrong(name, value, words)
@@ -302,7 +319,7 @@ def _mapping(inner):
         if not isinstance(value, Mapping):
             raise _wrong(name, value, words)
         for key, one in value.items() if rule else ():
-            if one is not None:  # None means missing; a single record counts as a list of one
+            if one is not None:  # None means missing. A single record counts as a list of one.
                 alone = rule.words.startswith("a list") and dataclasses.is_dataclass(one)
                 rule.settled(f"{name}[{key!r}]", [one] if alone else one)
         return value

@@ -27,7 +27,7 @@ from .supports.held import REFUSE, supports_of
 from .supports.shaft import Shaft
 from .supports.support import Support
 
-SIDES = (("pinion", 1), ("wheel", -1))  # the wheel's tooth of pair k is -k in its own frame
+SIDES = (("pinion", 1), ("wheel", -1))  # In the wheel's own frame, its tooth of pair k is -k.
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,7 +218,7 @@ class Case:
         return overlap(self.pair, face or self.runs, self.groove)
 
 
-LIGHTEST = 1e-12  # force or torque: below, terms of contact overflow
+LIGHTEST = 1e-12  # smallest force or torque; below, contact terms overflow
 FIRST = ("pair", "force", "material", "face", "groove")
 GIVEN = tuple(own for own in fields(Case) if own.init)
 NAMES = tuple(own.name for own in GIVEN)

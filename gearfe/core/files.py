@@ -28,12 +28,12 @@ from numpy.lib import format as npy
 from .checks import whole
 from .matlab_file import MOST_PACKED, variables
 
-# errors of files that are no archive of arrays, or one of an unknown type
+# Errors of files that are not an archive of arrays, or have an unknown type.
 NO_ARCHIVE: tuple[type[Exception], ...] = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, RuntimeError)
 NO_ARCHIVE += (MemoryError, KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError)
 _drawing = threading.Lock()
-LEAST_DPI, MOST_DPI = 10, 2400  # dots per inch of a picture: fonts need one pixel
-PART = ".part-"  # beginning of the names of temporary files
+LEAST_DPI, MOST_DPI = 10, 2400  # limits of the picture resolution [dpi]; fonts need at least one pixel
+PART = ".part-"  # prefix of temporary files
 
 CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # control characters that no text table contains
 
@@ -108,7 +108,7 @@ def check_output(path, kind):
     if isinstance(path, (str, os.PathLike)) and not str(path):
         raise ValueError(f"an empty file name for a {kind}: give one that ends in {', '.join(suffixes(kind))}")
     suffix_of(path, kind)
-    if os.path.isdir(path):  # unlike pathlib, this returns False for invalid names
+    if os.path.isdir(path):  # Unlike pathlib, `os.path.isdir` returns False for invalid names.
         raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
     os.unlink(_placed(path)[1])
 
@@ -166,16 +166,16 @@ def save_figure(figure, path, dpi):
         suffix_of(path, "picture")
         checked_dpi(dpi)
         for text in figure.findobj(lambda artist: hasattr(artist, "set_parse_math")):
-            words = text.get_text().encode(errors="replace").decode()  # the name of a file may not be UTF-8
+            words = text.get_text().encode(errors="replace").decode()  # The name of a file may not be valid UTF-8.
             if words != text.get_text():
                 text.set_text(words)
             if "$" in words:
-                # do not interpret names of files as formulas; axis numbers may be formulas
+                # File names are not interpreted as formulas. Axis numbers may be formulas.
                 text.set_parse_math("\\mathdefault" in words)
         import matplotlib
 
-        embedded = {"pdf.fonttype": 42, "ps.fonttype": 42}  # publishers reject fonts of type 3
-        with _drawing, matplotlib.rc_context(embedded), written(path) as name:  # fonts are shared by all threads
+        embedded = {"pdf.fonttype": 42, "ps.fonttype": 42}  # Publishers reject fonts of type 3.
+        with _drawing, matplotlib.rc_context(embedded), written(path) as name:  # All threads share the fonts.
             figure.savefig(name, dpi=dpi)
     return figure
 
@@ -243,7 +243,8 @@ def _decoded(content):
     """Return text of bytes and its encoding, or None if it has none of the usual encodings of tables."""
     marks = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16", codecs.BOM_UTF8: "utf-8-sig"}
     marked = next((name for mark, name in marks.items() if content.startswith(mark)), None)
-    wide = {"utf-16-le": content[1:400:2], "utf-16-be": content[:400:2]}  # in text of Latin letters every second byte is zero
+    # In UTF-16 text of Latin letters every second byte is zero.
+    wide = {"utf-16-le": content[1:400:2], "utf-16-be": content[:400:2]}
     guessed = [name for name, high in wide.items() if len(high) > 1 and high.count(0) > 0.9 * len(high)]
     for name in [marked] if marked else [*guessed, "utf-8", "cp1252"]:
         with contextlib.suppress(UnicodeDecodeError):

@@ -18,7 +18,7 @@ from .rexs_power import Power, PowerMesh
 from .rexs_shifts import Shifts
 
 CLOSES = 1e-3  # tolerance [mm] for a centre distance from profile shifts
-PER_WIDTH = 100.0  # N along the line of action for each mm of width, if the file states no load
+PER_WIDTH = 100.0  # default force along the line of action per mm of face width [N]
 SILENT = {"gear_unit", "gear_casing", "cylindrical_stage", "planetary_stage", "shaft", "shaft_section", "material"}
 SILENT |= {"external_load", "cylindrical_gear_manufacturing_settings", "cylindrical_stage_gear_data"}
 
@@ -159,25 +159,27 @@ class _Unit:
     def _planetary(self, planetary):
         """Pairs of the first planet of a planetary stage (the others are equal), and ids of all its stages."""
         parts = self.model.related("assembly", "assembly", planetary.id, "part")
-        stages = [one for one in parts if one.type == "cylindrical_stage"]
-        carrier = next((one.id for one in parts if one.type == "planet_carrier"), None)
+        stages = {one.id: one for one in parts if one.type == "cylindrical_stage"}
+        carriers = [one.id for one in parts if one.type == "planet_carrier"]
         shafts = {one.id for one in self.model.related("planet_shaft", "planetary_stage", planetary.id, "shaft")}
+        planets = len(shafts), carriers[0] if carriers else None
         tail = f"_{len(self.sets) + 1}" if len(self.model.of_type("planetary_stage")) > 1 else ""
-        found = list(self._planet_meshes(stages, shafts))
-        kinds = [kind for _, _, _, kind in found]
-        for stage, planet, other, kind in (found[kinds.index(kind)] for kind in ("sun", "ring") if kind in kinds):
-            names = ("planet", "ring") if kind == "ring" else ("sun", "planet")
-            ends = (planet, other) if kind == "ring" else (other, planet)
-            whole = [f"{one}{tail}" for one in names]
-            self._add_pair("_".join(names) + tail, ends, stage, whole, (len(shafts), carrier))
-        suns = [(stage, planet) for stage, planet, _, kind in found if kind == "sun"]
-        for _, planet in suns[1:]:
+        found: dict[str, list[tuple[Component, ...]]] = {"sun": [], "ring": []}
+        for *gears, kind in self._planet_meshes(stages.values(), shafts):
+            found[kind].append(tuple(gears))
+        suns, rings = found.values()
+        names = {one: f"{one}{tail}" for one in ("sun", "planet", "ring")}
+        for stage, planet, sun in suns[:1]:
+            self._add_pair(f"sun_planet{tail}", (sun, planet), stage, (names["sun"], names["planet"]), planets)
+        for stage, planet, ring in rings[:1]:
+            self._add_pair(f"planet_ring{tail}", (planet, ring), stage, (names["planet"], names["ring"]), planets)
+        for _, planet, _ in suns[1:]:
             self._copy(planet, suns[0][1])
-        self.copies |= {one.id for one in stages} - {stage.id for *_, stage in self.pairs.values()}
-        if {"sun", "ring"} <= set(kinds):
-            angles = [(stage.number("rotating_angle_around_neg_u_axis", "deg") or 0.0) % 360 for stage, _ in suns]
-            self.sets.append(PlanetSet(*(f"{one}{tail}" for one in ("sun", "planet", "ring")), suns[0][1], tuple(sorted(angles))))
-        return {one.id for one in stages}
+        self.copies |= stages.keys() - {stage.id for *_, stage in self.pairs.values()}
+        if suns and rings:
+            angles = [(stage.number("rotating_angle_around_neg_u_axis", "deg") or 0.0) % 360 for stage, *_ in suns]
+            self.sets.append(PlanetSet(*names.values(), suns[0][1], tuple(sorted(angles))))
+        return stages.keys()
 
     def _planet_meshes(self, stages, shafts):
         """Stage, planet, its mate, and whether that is the sun or the ring."""

@@ -6,7 +6,7 @@ from typing import Any
 from .rexs_file import Component
 from .rexs_gear import GearReader, outward, pitch_radius, root_radius
 
-CLEARANCE = 0.25  # modules, ISO 53, profile A
+CLEARANCE = 0.25  # bottom clearance [m_n], ISO 53, profile A
 
 
 class Shifts:

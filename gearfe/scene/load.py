@@ -27,12 +27,13 @@ from .dotted_keys import find_key, set_values
 from .reading import Reading, located
 from .references import Reference, read_references
 from .schema import arguments, scene_schema
+from .sensor_file import with_frf
 from .set_table import SceneSet, set_of
 from .toml_file import read_toml
 from .train import Train
 from .train_tables import train_of
 
-HEALTHY = "healthy"  # the case without damage
+HEALTHY = "healthy"  # name of the case without damage
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,8 +86,9 @@ class Scene:
     machine: dict[str, Any] = field(default_factory=dict)
     references: tuple[Reference, ...] = ()
     changed: tuple[str, ...] = ()
-    set: SceneSet | None = None  # a whole planetary set, `gearfe.planetary_sets.of_scene.build_set` gives its case
-    train: Train | None = None  # shafts of a gearbox, their speeds and torques
+    set: SceneSet | None = None  # a whole planetary set, converted by `gearfe.planetary_sets.of_scene.build_set`
+    train: Train | None = None  # gearbox shafts with their speeds and torques
+    sensors: dict[str, dict[str, Any]] = field(default_factory=dict)  # checked rows by name
 
     def __post_init__(self) -> None:
         """Raise ValueError if speeds, torques, forces or gears that follow from the file are those of other values."""
@@ -110,8 +112,9 @@ class Scene:
 
     def __repr__(self) -> str:
         """Name, title, pairs and cases in one line."""
-        cases = sorted({case for pair in self.pairs.values() for case in pair.damage})
-        return f"<Scene {self.name}: {self.title}; pairs {', '.join(self.pairs)}; cases {', '.join(cases) or 'none'}>"
+        return (
+            f"<Scene {self.name}: {self.title}; pairs {', '.join(self.pairs)}; cases {', '.join(sorted(self.cases)) or 'none'}>"
+        )
 
     def _repr_html_(self) -> str:
         """Title and a table of the pairs, which notebooks display."""
@@ -153,6 +156,16 @@ class Scene:
         ValueError if there is no such pair or case.
         """
         return self.pair(pair).case(case)
+
+    @property
+    def cases(self) -> tuple[str, ...]:
+        """Names of the cases of damage of all pairs."""
+        return tuple(dict.fromkeys(name for pair in self.pairs.values() for name in pair.damage))
+
+    def check_case(self, case: str | None) -> None:
+        """Raise ValueError unless a pair has this case of damage, or it is None."""
+        if case is not None and case not in self.cases:
+            raise ValueError(f"scene {self.name} has no case {case!r}; it has {', '.join(sorted(self.cases)) or 'none'}")
 
 
 def scene_names() -> list[str]:
@@ -201,7 +214,7 @@ def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
         file = Path(name_or_path)
         if not file.is_file():
             raise ValueError(_no_scene(str(name_or_path)))
-    return file.name, read_toml(file)
+    return file.name, with_frf(file, read_toml(file))
 
 
 def scene_of(file: str, data: dict[str, Any]) -> Scene:
@@ -219,6 +232,10 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     train = train_of(file, rows, gears, materials)
     pairs = {name: _pair(file, name, rows, gears, materials, train.forces if train else {}) for name in rows["pair"]}
     made = set_of(file, rows, pairs)
+    for name in (name for name, row in rows["sensor"].items() if row["frf"] is not None):
+        raise ValueError(
+            f"{file} [sensor.{name}] frf: this file is read with a scene file only; give frf_Hz, frf_real and frf_imag"
+        )
     run = dict(rows["machine"] or {})
     if run:
         run["bodies"] = {name: (float(body["mass_kg"]), float(body["inertia_kgm2"])) for name, body in run["bodies"].items()}
@@ -233,6 +250,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     return Scene(
         file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(rows["later"]),
         machine=run, references=() if own else read_references(file, rows["reference"]), changed=changed, set=made, train=train,
+        sensors=rows["sensor"],
     )  # fmt: skip
 
 

@@ -18,7 +18,7 @@ HEAD = """\
 # Lines that begin with # and no space are what else it can say: take the # away, and they hold.
 
 """
-# reduced addendum, because a full one may reach into the pinion's fillet
+# The addendum is reduced, because a full one may reach into the pinion's fillet.
 RING = {"addendum": 0.8, "dedendum": 1.25, "rack_tip_radius": 0.2}
 RACK = {"addendum": 1.0, "dedendum": 1.25, "rack_tip_radius": 0.38}
 
@@ -97,17 +97,11 @@ def new_scene(
     force, told_force = _force(pair.gear_1, width, torque_Nm)
     stated["pair"]["stage"]["force_N"] = force
     if not bore_mm:
-        held = "rim" if ring else "bore"
-        bore, wide = pinion["r_bore_mm"], wheel[f"r_{held}_mm"]
-        what = f"bore radius {bore} mm (pinion) and {held} radius {wide} mm (wheel), held"
-        values = {"gear.pinion.r_bore_mm": bore, f"gear.wheel.r_{held}_mm": wide}
-        stated["assumption"] = [{"what": what, "why": "a start: give the true ones", "holds": values}]
-    size = {"length_mm": crack[0], "angle_deg": crack[1]} if crack else {"level": 0.3, "angle_deg": 45.0}
+        stated["assumption"] = [_assumed(pinion, wheel, "rim" if ring else "bore")]
+    size = dict(zip(("length_mm", "angle_deg"), crack, strict=True)) if crack else {"level": 0.3, "angle_deg": 45.0}
     stated["crack"] = [{"case": "cracked", "gear": "pinion", **size}]
     numbers = _numbers(pair, force)
-    if (tip_relief_um is None) != (tip_length_mm is None) or (tip_relief_um or 1.0) < 0:
-        raise ValueError(f"tip relief of {tip_relief_um} um over {tip_length_mm} mm: give both, the amount positive")
-    amount, length = tip_relief_um or round(numbers["amount"], 1), tip_length_mm or round(numbers["length"], 3)
+    amount, length = _relief(tip_relief_um, tip_length_mm, numbers)
     flanks = {side: {"gear": side, "tip_relief_um": amount, "tip_start_length_mm": length} for side in ("pinion", "wheel")}
     stated |= {} if tip_relief_um is None else {"flank": flanks}
     with _of_torque(torque_Nm):
@@ -136,7 +130,7 @@ def _check_inputs(path, pairs):
 def _gears(rack, teeth, x, helix_deg, ring, bore_mm):
     """Tables of pinion and wheel."""
     module, helix = rack["m_n_mm"], (float(helix_deg), (helix_deg if ring else -helix_deg) + 0.0)
-    transverse = module / math.cos(math.radians(helix_deg))  # the root circle of an external gear lies 1.25 modules inside
+    transverse = module / math.cos(math.radians(helix_deg))  # The root circle of an external gear is 1.25 modules inside.
     held = [("r_bore_mm", round(0.5 * (0.5 * transverse * z - 1.25 * module), 1)) for z in teeth]
     if ring:
         held[1] = "r_rim_mm", round(0.5 * transverse * teeth[1] + 5 * module, 1)
@@ -146,6 +140,20 @@ def _gears(rack, teeth, x, helix_deg, ring, bore_mm):
         {"z": z, **rack, "x": float(shift), "beta_deg": beta, **form, name: radius, "material": "steel"}
         for z, shift, beta, form, (name, radius) in zip(teeth, x, helix, (RACK, RING if ring else RACK), held, strict=True)
     )
+
+
+def _relief(amount, length, usual):
+    """Amount [um] and length [mm] of the tip relief."""
+    if (amount is None) != (length is None) or (amount or 1.0) < 0:
+        raise ValueError(f"tip relief of {amount} um over {length} mm: give both, the amount positive")
+    return amount or round(usual["amount"], 1), length or round(usual["length"], 3)
+
+
+def _assumed(pinion, wheel, held):
+    bore, wide = pinion["r_bore_mm"], wheel[f"r_{held}_mm"]
+    what = f"bore radius {bore} mm (pinion) and {held} radius {wide} mm (wheel), held"
+    values = {"gear.pinion.r_bore_mm": bore, f"gear.wheel.r_{held}_mm": wide}
+    return {"what": what, "why": "a start: give the true ones", "holds": values}
 
 
 def _numbers(pair, force):

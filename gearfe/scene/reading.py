@@ -9,8 +9,8 @@ from typing import Any
 from ..geometry.checks import shown
 from .schema import LISTS, NAMES, REQUIRED, KeyTable, scene_schema, schema_of
 
-LARGEST, MOST = 1e30, 2**63  # no length, force or stiffness is larger, in any unit; whole numbers that arrays can hold
-PLAIN = {"boolean": bool, "values": dict}  # types of keys that are neither numbers nor texts
+LARGEST, MOST = 1e30, 2**63  # limits of lengths, forces and stiffnesses in any unit, and of integers
+PLAIN = {"boolean": bool, "values": dict}  # key types other than numbers and texts
 
 
 @dataclass(slots=True)

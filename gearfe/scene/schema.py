@@ -17,17 +17,17 @@ from typing import Any
 from ..geometry.checks import shown
 
 REQUIRED = object()
-LISTS = {  # type of list: type of its entries
+LISTS = {  # by type of list: type of its entries
     "numbers": "number", "strings": "string", "tables": "values", "gears": "gear", "bearings": "bearing",
 }  # fmt: skip
-NAMES = ("gear", "pair", "material", "shaft", "bearing")  # types of keys that name a table
+NAMES = ("gear", "pair", "material", "shaft", "bearing")  # key types that name a table
 TYPES = {
     "number": "a number", "integer": "a whole number", "string": "a text", "boolean": "true or false",
     "numbers": "a list of numbers", "strings": "a list of texts", "tables": "a list of tables",
     "values": "a table of values by dotted key", "gears": "a list of texts", "bearings": "a list of texts",
 }  # fmt: skip
 UNIT = re.compile(r"_([A-Za-z]+_per_\w+|mm|deg|um|N|MPa|Nm|rpm|s|Hz|kg|kgm2)$")
-IN_PYTHON: dict[str, Callable[[float], float]] = {  # units of TOML in those of the library: mm, N, MPa, rad
+IN_PYTHON: dict[str, Callable[[float], float]] = {  # conversion from TOML units to those of the library: mm, N, MPa, rad
     "deg": math.radians,
     "um": lambda value: value * 1e-3,
     "N/um": lambda value: value * 1e3,
@@ -35,7 +35,8 @@ IN_PYTHON: dict[str, Callable[[float], float]] = {  # units of TOML in those of 
     "urad/kN": lambda value: value / 1e9,
 }
 SPELLED = {"deg": "degrees", "Nm": "N m", "kgm2": "kg m2"}  # units in messages
-QUANTITY = r" = (?:[\[(][^\])]*[\])]|[-+\w.]+)(?: (?:N mm/rad|N/mm(?:\^3)?|rad/N|N m|mm|um|rad|MPa|N)\b)?"  # a value in a message
+# pattern of a value with its unit in a message
+QUANTITY = r" = (?:[\[(][^\])]*[\])]|[-+\w.]+)(?: (?:N mm/rad|N/mm(?:\^3)?|rad/N|N m|mm|um|rad|MPa|N)\b)?"
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,9 @@ from ..core.checks import number, whole
 from .given import hertz
 from .spectrum import Spectrum
 
-MOST_LINES = 10_000  # limit of harmonics, and of side lines of each
-HANN = 1.5  # equivalent noise bandwidth of its window, in bins
-BINS = 2  # bins on either side of an expected frequency in which the line is searched
+MOST_LINES = 10_000  # largest number of harmonics, and of sidebands of each
+HANN = 1.5  # equivalent noise bandwidth of the Hann window [bins]
+BINS = 2  # half-width of the search for a line around its expected frequency [bins]
 
 
 def expected_lines(

@@ -112,13 +112,7 @@ class Solve:
     def __post_init__(self) -> None:
         """Check all options that do not depend on a case."""
         object.__setattr__(self, "method", current(self.method))
-        custom = isinstance(self.method, OwnFlexibility)
-        if not custom and not (isinstance(self.method, str) and self.method in METHOD_NAMES):
-            from difflib import get_close_matches
-
-            near = get_close_matches(self.method.lower(), METHOD_NAMES, 1) if isinstance(self.method, str) else ()
-            more = f"; nearest: {near[0]}" if near else "" if isinstance(self.method, str) else ", or an OwnFlexibility"
-            raise ValueError(f"method = {self.method!r}, but it must be one of {', '.join(METHOD_NAMES)}{more}")
+        self._check_method()
         for name in ("error", "extended"):
             object.__setattr__(self, name, truth(name, getattr(self, name)))
         object.__setattr__(self, "refine", checked_refine(self.refine))
@@ -135,6 +129,16 @@ class Solve:
         check_phases(self.phases)
         for name in ("phases", "variants"):
             object.__setattr__(self, name, frozen(getattr(self, name)))
+
+    def _check_method(self):
+        named = isinstance(self.method, str)
+        if isinstance(self.method, OwnFlexibility) or (named and self.method in METHOD_NAMES):
+            return
+        from difflib import get_close_matches
+
+        near = get_close_matches(self.method.lower(), METHOD_NAMES, 1) if named else ()
+        more = f"; nearest: {near[0]}" if near else "" if named else ", or an OwnFlexibility"
+        raise ValueError(f"method = {self.method!r}, but it must be one of {', '.join(METHOD_NAMES)}{more}")
 
     def chosen(self, case: Case) -> tuple[Method, str]:
         """Return the method's row of the table, for ``auto`` the one that fits the case, and the reason for the choice."""

@@ -101,7 +101,7 @@ def tip_reads(body, faces):
     turn, place, q = ring(mesh, faces)
     used = np.flatnonzero((q[body.nodes] > 0).any(axis=0) & (q[body.nodes] < 1).any(axis=0))
     nodes = body.nodes[:, used]
-    grads = np.array([body.basis.basis[i][0].grad[:, used] for i in range(6)])  # node, direction, triangle, point
+    grads = np.array([body.basis.basis[i][0].grad[:, used] for i in range(6)])  # axes: node, direction, triangle, point
     grads = np.einsum("ab,nbtp->natp", turn, grads)
     shapes = np.array([body.basis.elem.lbasis(body.basis.X, i)[0] for i in range(6)])
     slope, at = np.einsum("nt,njtp->jtp", q[nodes], grads), np.einsum("int,np->itp", place[:, nodes], shapes)

@@ -17,8 +17,8 @@ from ..geometry.tooth.profile import flank, lengths, roll_at_arc
 
 # edge lengths in modules; the fillet determines the accuracy
 STRESS_EDGES = {"flank": 0.1, "fillet": 0.01, "near": 0.4, "far": 0.9}
-COARSER = (0.5, 0.7)  # resolutions that the estimated error compares with
-HIGH, NEIGHBOURS = 0.9, 3  # which points of the fillet belong to the neighbourhood of the peak, see `_peak`
+COARSER = (0.5, 0.7)  # coarser resolutions for the error estimate
+HIGH, NEIGHBOURS = 0.9, 3  # limits that select the fillet points near the peak, see `_peak`
 
 
 def _solve(gear, material, state, arc, half_width, edges, refine):

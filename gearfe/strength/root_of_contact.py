@@ -14,7 +14,7 @@ from ..flexibility.finite_elements.one_tooth import check_one
 from ..geometry.pair.gear_pair import GearPair
 from .root_stress import RootStress, stress_under_line
 
-SAMPLES = 2001  # heights at which the load is added up
+SAMPLES = 2001  # number of heights at which the load is summed
 
 
 @single

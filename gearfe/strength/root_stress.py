@@ -17,8 +17,9 @@ from .loaded_tooth import _peak
 
 # edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`; the fillet decides
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.06, "root": 0.4, "near": 0.7, "far": 2.0}
-LAYER, LAYERS, END = 0.8, 8, 0.25  # height of the layers [m_n], least number of them, height at the end faces against that
-GAUSS = np.array([-1.0, 1.0]) / math.sqrt(3)  # places of a face where derivatives are most accurate
+# layers of elements: height [m_n], least number, height at the end faces relative to the others
+LAYER, LAYERS, END = 0.8, 8, 0.25
+GAUSS = np.array([-1.0, 1.0]) / math.sqrt(3)  # points of a face at which derivatives are most accurate
 
 
 @dataclass(frozen=True, slots=True)

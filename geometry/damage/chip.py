@@ -14,10 +14,10 @@ from ..tooth.profile import arc_at, cartesian, flank
 from .given import finite, tooth_and_side
 from .spall import Spall
 
-DEEPEST = 0.9  # largest depth of a chip of a part of the width, as a part of half the tooth
-LEFT = 0.5  # arc of the flank that a chip leaves, at least [m_n]
+DEEPEST = 0.9  # largest depth of a chip over part of the width, relative to half the tooth height
+LEFT = 0.5  # shortest remaining arc of the flank [m_n]
 DRAWN = 17  # points of the line that shows a rounded cut
-FLAT = 1e-3  # least angle between the cut and the chord of the flank that it takes off [rad]
+FLAT = 1e-3  # smallest angle between the cut and the chord of the removed flank [rad]
 
 Piece = tuple[float, Callable[[Floats], Floats]]
 

@@ -10,15 +10,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from .crack import SLACK, Crack, deepest, extremes, front
+from .crack import Crack
+from .crack_form import SLACK, deepest, extremes, front
 
-# Depths, in parts of the largest, down to which a mesh follows a front that runs out: the first at which it does not fold.
+# Least depths that a mesh resolves where the crack front runs out, relative to the largest depth. They are tried in order.
 LEAST = 0.1, 0.15, 0.2, 0.25
 # A front that runs out ends at this part of the least depth: then as much of int depth**2 dz is added before as is lost beyond,
 # if the front is straight there.
 END = 2 / 3
-STEEP = 3.0  # how many times deeper a front gets, at most, over the height of a layer of elements where it is shallowest
-SAMPLES = 801  # heights at which a front is looked at first
+STEEP = 3.0  # largest growth factor of the front's depth over one layer of elements
+SAMPLES = 801  # heights at which the front is sampled first
 
 
 def open_part(crack, b, z):

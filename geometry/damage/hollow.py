@@ -17,7 +17,7 @@ import numpy as np
 
 from ..tooth.profile import arc_at, cartesian, flank, roll_at_arc
 
-PLACES = 65  # number of places along a flank at which hollows are searched
+PLACES = 65  # points of the flank from which hollows are searched
 
 
 def centre_arc(gear, hollow):

@@ -19,7 +19,7 @@ from .mesher import triangulate
 from .outline import MERGED, inside, spaced
 from .triangle import BULGE, ENDS, GAUSS, jacobians
 
-# Edge lengths in modules: loaded flank, the other one, tip corner of the loaded flank, a form point with a kink, fillet,
+# Edge lengths [m_n]: loaded flank, other flank, tip corner of the loaded flank, form point with a kink, fillet,
 # root arc, sides and tip, crack, crack tip
 SIZES = {
     "flank": 0.8,
@@ -32,9 +32,10 @@ SIZES = {
     "crack": 0.5,
     "crack tip": 0.004,
 }
-FLAT = 1e-6  # least area of a triangle, in squares of its longest edge: three points of a straight crack make one without area
-ON_LINE = 0.05  # points of a ring closer to the line of a crack than this part of the ring's radius lie on it
-CHECKED = 6  # order at whose quadrature points the maps are checked
+FLAT = 1e-6  # least area relative to the squared longest edge; three points of a straight crack would enclose no area
+ON_LINE = 0.05  # Points of a ring lie on the line of a crack within this distance, relative to the ring's radius.
+CUT = 0.2  # Vertices of the held edge closer to a given one than this part of half a pitch are left out.
+CHECKED = 6  # polynomial order whose quadrature points are used to check the maps
 GROWTH = 1.2  # growth of the edge length per length, away from fine places
 
 
@@ -86,32 +87,34 @@ class Sector:
         object.__setattr__(self, "edge_bulges", out)
 
 
-def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None):
+def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None, cuts=()):
     """`Sector` of a gear with the cracks of its tooth, which may be `broken`: a `MissingTooth` or a `Chip`.
 
-    `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. ValueError if `refine` is not positive,
-    RuntimeError if no valid triangles were found.
+    `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. The held edge has vertices at the angles `cuts`
+    [rad] from the centre-line, positive towards the loaded side. ValueError if `refine` is not positive, RuntimeError if no valid
+    triangles were found.
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default")
     for finer in (1.0, 1.4, 2.0, 2.8):
-        made = _attempt(gear, cracks, broken, SIZES | (sizes or {}), refine, finer)
+        made = _attempt((gear, cracks, broken, tuple(cuts)), SIZES | (sizes or {}), refine, finer)
         if made is not None:
             return made
     raise RuntimeError(f"z = {gear.z}: no valid coarse triangles for this tooth; use method = 'fe'")
 
 
-def _attempt(gear, cracks, broken, sizes, refine, finer):
+def _attempt(described, sizes, refine, finer):
     """Return a sector with all edges but those of the sides divided by `finer`, or None if it folds."""
+    gear, cracks, broken, cuts = described
     size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
     size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
-    pieces = _pieces(gear, size, cracks, broken)
+    pieces = _pieces(gear, size, cracks, broken, cuts)
     first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])
     count = first[-1]
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
     chains, around = _chains(gear, size, cracks, loop)
     if chains and not inside(loop, np.hstack([line for _, line in chains] + [around])).all():
-        return None  # a chord of the outline cuts the crack off: gmsh would not end
+        return None  # A chord of the outline cuts the crack off, and gmsh would not terminate.
     points, triangles = triangulate([loop], chains, False, around.T)
     twice = _twice_areas(points, triangles)
     if twice.sum() < 0:
@@ -119,14 +122,7 @@ def _attempt(gear, cracks, broken, sizes, refine, finer):
     longest = np.hypot(*(points[:, triangles] - points[:, triangles[[1, 2, 0]]])).max(axis=0)
     if (twice <= 2 * FLAT * longest**2).any():
         return None
-    faces, doubles, at = [], {}, count
-    for i, (start, line) in enumerate(chains):
-        if i % 2 == 0:  # every second chain only leads the mesh ahead of the tip
-            chain = np.append(start, at + np.arange(line.shape[1]))
-            points, triangles, double = open_seam(points, triangles, chain)
-            faces.append(np.array([chain, double]))
-            doubles[start] = int(double[0])
-        at += line.shape[1]
+    points, triangles, faces, doubles = _opened(points, triangles, chains, count)
     vertices = {name: np.arange(first[k], first[k + 1] + 1) % count for k, (name, _, _) in enumerate(pieces)}
     left, right = (_apart(side, triangles, doubles) for side in (vertices["left"], vertices["right"][::-1]))
     rolls = next((params for name, params, _ in pieces if name == "flank"), np.zeros(0))
@@ -135,7 +131,7 @@ def _attempt(gear, cracks, broken, sizes, refine, finer):
         vertices.get("flank", np.zeros(0, dtype=int))[::-1], rolls[::-1], tuple(faces),
     )  # fmt: skip
     bulges = made.edge_bulges
-    bent = bulges.any(axis=(0, 1, 2))  # the other triangles are straight, so that their corners suffice
+    bent = bulges.any(axis=(0, 1, 2))  # The other triangles are straight, so checking their corners is sufficient.
     (xx, xy), (yx, yy) = jacobians(points, triangles[:, bent], bulges[..., bent], CHECKED).transpose(1, 2, 0, 3)
     return made if (xx * yy - xy * yx).min() > 0 else None
 
@@ -155,22 +151,38 @@ def _twice_areas(points, triangles):
     return x * v - y * u
 
 
-def _pieces(gear, size, cracks, broken=None):
+def _opened(points, triangles, chains, at):
+    """Open the cracks: points, triangles, both faces of each crack, and the second node of each mouth by its first."""
+    faces, doubles = [], {}
+    for i, (start, line) in enumerate(chains):
+        if i % 2 == 0:  # Odd chains only guide the mesh ahead of the crack tip.
+            chain = np.append(start, at + np.arange(line.shape[1]))
+            points, triangles, double = open_seam(points, triangles, chain)
+            faces.append(np.array([chain, double]))
+            doubles[start] = int(double[0])
+        at += line.shape[1]
+    return points, triangles, faces, doubles
+
+
+def _pieces(gear, size, cracks, broken=None, cuts=()):
     """Return the outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
     pitch = math.pi / gear.z
     marks = {crack.side: start_arc(gear, crack) for crack in cracks}
-    tips = [(meshed_path(gear, crack)[:, -1], crack.side) for crack in cracks]
+    tips = [meshed_path(gear, crack)[:, -1] for crack in cracks]
     thick = abs(gear.r_f - gear.held)
-    near_bore = [(thick, thick, 0.5 * gear.held)] if not gear.internal else []
+    near_bore = [] if gear.internal else [(thick, thick, 0.5 * gear.held)]
     side = gear.r_f - gear.outward * spaced(
         0.0, thick, max(thick / 2, size["side"]), [(0.0, 0.0, size["side"]), *near_bore], 1, 0.7
     )
     side[-1] = gear.held
     inner = 2 * pitch * gear.held
-    close = [(gear.held * (pitch - math.atan2(*tip)), abs(math.hypot(*tip) - gear.held)) for tip, _ in tips]
-    close = [(place, place, 0.7 * away) for place, away in close]
+    close = [(at := gear.held * (pitch - math.atan2(*tip)), at, 0.7 * abs(math.hypot(*tip) - gear.held)) for tip in tips]
     bottom = pitch - spaced(0.0, inner, min(inner, max(1.5 * thick, 0.1 * inner)), close, 1, GROWTH) / gear.held
     bottom[-1] = -pitch
+    for cut in cuts:
+        near = np.abs(bottom - cut) < CUT * pitch
+        near[[0, -1]] = False
+        bottom = np.sort(np.append(bottom[~near], cut))[::-1]
     out = [("left", side[::-1], lambda r: cartesian(r, -pitch))]
     ends = [("right", side, lambda r: cartesian(r, pitch)), ("held", bottom, lambda a: cartesian(gear.held, a))]
     if isinstance(broken, MissingTooth):
@@ -182,7 +194,7 @@ def _pieces(gear, size, cracks, broken=None):
     back = _flank(ends_at["unloaded"], size["back"], size["kink"], max(2 * width, size["corner"]))
     front = _flank(ends_at["loaded"], size["flank"], size["kink"], size["corner"])
     tip = spaced(-width, width, size["root"], [(width, width, min(size["corner"], width))], 1, GROWTH) / gear.r_a
-    top = [("tip", tip, lambda a: cartesian(gear.r_a, a))] if broken is None else _broken_top(gear, size, broken)
+    top = _broken_top(gear, size, broken) if broken else [("tip", tip, lambda a: cartesian(gear.r_a, a))]
     for name, sign in (("unloaded", -1), ("loaded", 1)):
         arc, phi = roots[name]
         part = [
@@ -191,8 +203,7 @@ def _pieces(gear, size, cracks, broken=None):
         ]
         part = [piece for piece in part if piece[1].size > 1]
         if sign < 0:
-            out += [*part, ("back", back, lambda r: _flank_points(gear, r, -1))]
-            out += top
+            out += [*part, ("back", back, lambda r: _flank_points(gear, r, -1)), *top]
         else:
             out.append(("flank", front[::-1], lambda r: _flank_points(gear, r, 1)))
             out += [(kind, params[::-1], place) for kind, params, place in part[::-1]]
@@ -237,7 +248,7 @@ def _roots(gear, size, mark, tips, side):
     fine, largest = [], size["fillet"]
     arcs = np.linspace(below, top, 200)
     sign = 1 if side == "loaded" else -1
-    for tip, _ in tips:
+    for tip in tips:
         away = np.hypot(*(cartesian(*root_curve(gear, arcs)) * [[sign], [1]] - tip[:, None]))
         near = arcs[np.argmin(away)]
         fine.append((near, near, 0.7 * away.min()))

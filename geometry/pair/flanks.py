@@ -10,7 +10,7 @@ from ..renamed import renamed
 from ..tooth.flank_form import FlankForm
 from ..tooth.modified import Flank
 
-STEEPEST = 0.01  # largest misalignment per width: with more the axes are not parallel
+STEEPEST = 0.01  # largest misalignment per face width, beyond which the axes are not parallel
 
 
 @renamed(F_beta="F_beta_x")

@@ -17,7 +17,7 @@ from ..tooth.involute import inv, inverse_inv
 from ..tooth.profile import flank
 from .interference import overlap, radial_assembly
 
-OVERLAP = 1e-3  # deeper cuts of one outline into the other are interference [m_n]
+OVERLAP = 1e-3  # Deeper overlaps of the two outlines count as interference [m_n].
 
 
 @renamed(alpha_w="alpha_wt")

@@ -253,7 +253,7 @@ def covered(pair, pits, order, rolls, z):
         if not gear_pits or not order.size:
             continue
         tooth, near, far, bottom, top = _limits(gear, gear_pits)
-        height = z + (gear.b - common) / 2  # gears of different width lie centred on each other
+        height = z + (gear.b - common) / 2  # Gears of different width are centred on each other.
         meets = (tooth - (1 - 2 * which) * order[:, None]) % gear.z == 0
         meets &= (rolls[which].min(axis=1)[:, None] <= far) & (rolls[which].max(axis=1)[:, None] >= near)
         meets &= (height.min(axis=1)[:, None] < top) & (height.max(axis=1)[:, None] > bottom)

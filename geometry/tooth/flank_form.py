@@ -15,9 +15,9 @@ from .relief import relief_start
 from .tables import covering, each_tooth
 from .tip_edge import TipEdge
 
-LARGEST = 0.1  # limit of removed material [m_n], because thinning enters the flexibility only as the change of a beam
-BENT = 0.1  # least jump of the curvature, as a part of that of the flank, that makes the start of a parabolic relief a kink
-STEP = 1e-6  # roll length over which a slope is taken [m_n]
+LARGEST = 0.1  # limit of removed material [m_n], because thinning changes the flexibility only by a beam correction
+BENT = 0.1  # The start of a parabolic relief is a kink if the curvature jumps by more than this part of the flank's.
+STEP = 1e-6  # roll length of the difference quotient for slopes [m_n]
 
 
 class FlankForm:
@@ -221,7 +221,7 @@ class FlankForm:
 
         Eccentricity shifts the whole gear, which bends no flank.
         """
-        at = np.maximum(np.asarray(roll, dtype=float), 1e-3 * self.gear.r_b)  # an arc has no roll length at the base circle
+        at = np.maximum(np.asarray(roll, dtype=float), 1e-3 * self.gear.r_b)  # The roll length is zero at the base circle.
         on = self._on_flank(at)
         out = (self.gear.r_b / at) ** 2 * (self._formed(on, 2) - self._formed(on, 1) / at)
         return out if self.edge is None else np.where(self.edge.on(at), self.edge.bend(at), out)

@@ -130,7 +130,7 @@ class Plain:
             for gear, x in zip(shaft["gears"], shaft["gears_at_mm"], strict=True):
                 self.put_mass(name, x, *self.disc(gear))
             if self.six:
-                axial = shaft.get("bearings_axial_N_per_um", [shaft["bearings_N_per_um"][0], 0.0])
+                axial = shaft.get("bearings_axial_N_per_um", [shaft["bearings_N_per_um"][0], 0.0, 0.0])
                 for j, x in enumerate(shaft["bearings_at_mm"]):
                     i = self.block(name, x)[:3]
                     held = np.array([shaft["bearings_N_per_um"][j]] * 2 + [axial[j]])

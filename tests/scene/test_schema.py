@@ -14,7 +14,7 @@ import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.app.state import CASE, read, tables_of
 from gearfe.dynamics.machine.of_scene import MACHINES
-from gearfe.geometry.damage.crack import STARTS
+from gearfe.geometry.damage.crack_form import STARTS
 from gearfe.geometry.pair.lines import FACES
 from gearfe.runs.datasets.faults import FAULTS
 from gearfe.runs.sweeps.kinds import KINDS

@@ -18,11 +18,11 @@ from ..shared.table_rows import rows_of, write_table
 
 BASE = "as assumed [N/m]"
 CSV = TABLES / "assumptions.csv"
-SCENES = [  # scenes of articles; the bores of herringbone_contact_line are chosen and not assumed
+SCENES = [  # Scenes of articles. The bores of herringbone_contact_line are chosen, not assumed.
     name for name in scene_names() if name != "herringbone_contact_line" and gf.load_scene(name).references
 ]
-WIDE = 8  # phases in three dimensions
-PITTED = {"planetary_pitting": "mild_rows", "helical_pitting": "severe"}  # scene: case whose pits are changed
+WIDE = 8  # phases of three-dimensional curves
+PITTED = {"planetary_pitting": "mild_rows", "helical_pitting": "severe"}  # by scene, the case whose pits are varied
 
 CONVENTIONS = {
     "30-degree tangent, 45 degrees": {},
@@ -99,6 +99,12 @@ def read():
     return [(r["scene"], r["pair"], r["change"], float(r["value"])) for r in rows_of(CSV)]
 
 
+def _pit_lines(known):
+    for scene, _, change, loss in known:
+        if change.startswith("pits"):
+            yield f"| {scene}, {PITTED[scene]} | {change.split(':')[0]} | {loss:.4g} |"
+
+
 def text():
     """Arguments of `page.text`, from the tables."""
     known = read()
@@ -129,10 +135,8 @@ def text():
         | scene, case | change | loss |
         |---|---|---|
         """,
+        *_pit_lines(known),
     ]
-    for scene, _, change, loss in known:
-        if change.startswith("pits"):
-            lines.append(f"| {scene}, {PITTED[scene]} | {change.split(':')[0]} | {loss:.4g} |")
     bores = [value[*pair, name] for pair in pairs for name in changes if name.startswith("bores")]
     rest = max(abs(value[*pair, name]) for pair in pairs for name in changes if (*pair, name) in value and "bores" not in name)
     answer = (

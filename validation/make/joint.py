@@ -14,7 +14,7 @@ from ..shared.kept_rows import kept, stored
 from ..shared.table_rows import read
 
 NAME = "joint"
-DECIDES = joint_inputs.DRAWS // 4  # draws by which the halves of an input must differ to be called what decides
+DECIDES = joint_inputs.DRAWS // 4  # An input is decisive if its lower and upper halves differ by at least this number of draws.
 HOW = f"""
 `python -m validation joint` makes this page and the sections of the four pages from `tables/joint.jsonl`: a row is one draw.
 The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, even in the logarithm of each input; ranges,
@@ -201,7 +201,7 @@ def tell():
     rows = [[f"[{name}.md]({name}.md)", sum(counts(name)), *counts(name)] for name in joint_inputs.RANGES]
     page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges())
     for name in joint_inputs.RANGES:
-        home("machines").write_page(name)  # the page takes its section from this module
+        home("machines").write_page(name)  # That page includes a section made by this module.
 
 
 def cheap():

@@ -99,6 +99,10 @@ def verdict(known):
         yield f"- {what}: {len(within)} of {len(own)} within {asked}: {_listed(within)}."
         if len(within) < len(own):
             yield f"  **Beyond {asked}**: {_listed({name: own[name] for name in own if name not in within})}."
+    yield from _of_pits(known, away)
+
+
+def _of_pits(known, away):
     meshes = {}
     for (name, mesh), found in pitted(known).items():
         meshes.setdefault(name, []).append((mesh, found))

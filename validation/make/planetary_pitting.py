@@ -62,7 +62,7 @@ def _measured(name, law=OWN):
     return {case: values_of(case, True, SENSOR, law)[name] for case in CASES}
 
 
-MEASURED = {  # indicators by reference
+MEASURED = {  # by reference: indicator
     "sc_measured": "SC (S0)", "rms": "rms", "kurtosis": "kurtosis", "shape_factor": "shape factor", "amplitudes": "peak",
 }  # fmt: skip
 

@@ -37,7 +37,7 @@ The printed values are the `[[reference]]` rows of the scene files. The statemen
 A link leads to the page with the verdict. The other numbers are inputs.
 """  # noqa: E501
 CSV = TABLES / "printed.csv"
-PAGES = {  # pages with the rows of a scene's references
+PAGES = {  # by page: references shown on it
     "planetary_pitting": "planetary_pitting",
     "compound_planetary": "compound_planetary",
     "helical_pitting": "helical_pitting",

@@ -7,7 +7,7 @@ from itertools import groupby
 import numpy as np
 
 import gearfe as gf
-from gearfe.geometry.damage.crack import STARTS
+from gearfe.geometry.damage.crack_form import STARTS
 
 from ..shared import kept_rows, page
 from ..shared.arbiter.large import large_k
@@ -16,14 +16,14 @@ from ..shared.places import TABLES
 from ..shared.table_rows import rows_of, write_table
 
 TRUTH, LARGE, TABLE = (TABLES / f"random_search{part}.csv" for part in ("_outlines", "_calculix", ""))
-FIRST, COUNT = 910_000, 330  # seeds from here on, pairs
+FIRST, COUNT = 910_000, 330  # first seed, number of pairs
 KINDS = ("closed", "rim", "deep", "bent", "several", "thin", "extreme", "ring")
 SIDES = "pinion", "wheel"
 STEEL = gf.Material(E=207e3, nu=0.3)
 INDEPENDENT = ("seed", "phase", "k_N_um_mm", "error_percent")
 FIELDS = ("seed", "kind", "pair", "load_N_mm", "phase", "deflection_um", "k_N_um_mm")
 FIELDS += ("off_percent", "estimate_percent", "outlines_percent")
-MESHES = {"refines": (0.7, 1.0)}  # CalculiX takes the second mesh and has its mesh error
+MESHES = {"refines": (0.7, 1.0)}  # CalculiX uses the second mesh, and the difference of both is its mesh error.
 
 
 def random_case(seed):

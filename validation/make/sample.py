@@ -16,7 +16,7 @@ from ..shared.table_rows import rows_of, write_table
 from . import sample_three
 
 TABLE = TABLES / "sample.csv"
-FIRST, COUNT = 86_000, 100  # first seed and number of pairs; none of them was used during development
+FIRST, COUNT = 86_000, 100  # first seed and number of pairs; no pair was used during development
 FIELDS = ("seed", "date", "pair", "damage", "load_N_mm", "difference", "fe_error", "fe_estimate", "ritz_error", "ritz_estimate")
 FIELDS += ("apart_covered", "fe_covered", "ritz_covered", "cpu_s")
 FINE = {"refine": 2.0, "order": 5}  # refinement of `ritz`, the reference of both errors

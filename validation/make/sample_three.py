@@ -32,7 +32,7 @@ KINDS = {
 }  # none of these seeds was used during development
 PHASES = 5
 FINE = {"order": 4, "refine": 1.25}  # refinement of `ritz3d`, the reference of both errors
-FURTHER = 4  # axial degrees more in it
+FURTHER = 4  # additional axial degrees of the reference
 ASKED = {
     "difference of the two": ("fe3d", "ritz3d"),
     "`fe3d` against the finer": ("fe3d", "fine"),

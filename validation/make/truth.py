@@ -19,10 +19,11 @@ from ..shared.table_rows import rows_of, write_table
 
 CSV = TABLES / "truth.csv"
 CONTACT = TABLES / "calculix.csv"
-LINE_LOAD, PHASES, NEAR = 150.0, 12, 0.06  # N/mm; phases; cycles from the ends of double contact
-PENALTY = 500.0  # setting of `write_contact_inp`: pressure per overlap, in units of E per mm
+# line load [N/mm]; number of phases; distance from the ends of double contact [mesh cycles]
+LINE_LOAD, PHASES, NEAR = 150.0, 12, 0.06
+PENALTY = 500.0  # setting of `write_contact_inp`: pressure per overlap [E/mm]
 RING = "the source does not give its ring fillet; a sharper one (cutter of 40 teeth, tip radius 0.1) gives 17.17"
-REASONS = {  # rows outside their tolerance
+REASONS = {  # reasons for rows outside their tolerance
     ("stage_17_37_91", "f_m"): "the source multiplies its rounded carrier frequency, 2.1 Hz, by 91; 800 rpm give 190.99 Hz",
     ("healthy_ring", "27/72, min, fe"): RING,
     ("healthy_ring", "27/72, min, ritz"): RING,
@@ -69,7 +70,8 @@ def quick_rows(tables):
         case = f"mode {i % 6 + 1}, {'translational' if i > 5 else 'rotational'}"
         yield _row("natural_frequencies", case, theirs, ours, one["tolerance"])
     names = ("f_m", "sun fault", "planet fault", "carrier", "contact ratio sun-planet", "contact ratio planet-ring")
-    for table, digit in (("stage_17_37_91", 0.05), ("stage_21_31_84", 0.005)):  # frequencies have one or two decimals
+    # The source rounds frequencies to one or two decimals.
+    for table, digit in (("stage_17_37_91", 0.05), ("stage_21_31_84", 0.005)):
         one = tables[table]
         for i, (name, theirs, ours) in enumerate(zip(names, one["value"], reference.stage(table), strict=True)):
             yield _row(table, name, theirs, ours, *((digit * (1 + 1e-6), True) if i < 4 else (one["tolerance"], False)))

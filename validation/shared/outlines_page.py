@@ -44,6 +44,15 @@ once, after the last change above. Differences in per cent.
 """
 
 
+def _largest(row, found):
+    """Line of the table of the largest differences."""
+    return (
+        f"| {row['seed']} | {row['pair']} {row['crack']} | {row['load_N_mm']} | {row['phase_48']}/48 | "
+        f"{float(row['k_N_um_mm']):.3f} | {float(row['mesh_error_percent']):.3f} | {found['difference']:.3f} | "
+        f"{found['estimate']:.3f} | {row['places']} |\n"
+    )
+
+
 def write():
     """Write the page."""
     parts, answers = [INTRODUCTION], []
@@ -66,13 +75,7 @@ def write():
             parts.append(f"| {name} | {some.size} | {spread} |\n")
         parts.append("\n| seed | pair | load [N/mm] | phase | k arbiter | mesh error % | difference % | estimate % | pressed |\n")
         parts.append("|---|---|---|---|---|---|---|---|---|\n")
-        for i in np.argsort(-off)[:10]:
-            row, found = rows[i]
-            parts.append(
-                f"| {row['seed']} | {row['pair']} {row['crack']} | {row['load_N_mm']} | {row['phase_48']}/48 | "
-                f"{float(row['k_N_um_mm']):.3f} | {float(row['mesh_error_percent']):.3f} | {found['difference']:.3f} | "
-                f"{found['estimate']:.3f} | {row['places']} |\n"
-            )
+        parts += [_largest(*rows[i]) for i in np.argsort(-off)[:10]]
         parts.append("\n" + "".join(f"Refused: {text}\n" for text in refused) + "\n")
     parts.append(_fresh())
     answer = (

@@ -16,7 +16,7 @@ from .places import PAGES, ROOT, digest
 
 WRAP = {"break_long_words": False, "break_on_hyphens": False}
 
-QUESTIONS = {  # questions by page, in the order of the list of pages
+QUESTIONS = {  # by page: question, in the order of the list of pages
     "truth": "Does gearfe find what others published or computed?",
     "outlines": "Is the contact of teeth right, beside whole outlines pressed together?",
     "sample": "Do the error estimates cover, on pairs that nobody chose?",

@@ -9,7 +9,7 @@ from importlib import resources
 from ...stiffness.methods import NAMES, described, having
 from . import exchange, filling, sets, shell, signals, tools, verbs
 
-# words of the help texts; the suffixes are those of gearfe.core.files
+# Values inserted into help texts. The suffixes must equal those of gearfe.core.files.
 WORDS = {
     "methods": ", ".join(name for name in NAMES if name != "auto"),
     "estimating": having("error"),
@@ -63,7 +63,8 @@ MODULES = {"exchange": exchange, "filling": filling, "sets": sets, "signals": si
 
 def main(argv=None):
     """Run the command line, and return the exit code."""
-    os.environ.setdefault("OMP_NUM_THREADS", "1")  # before numpy loads: on small matrices more threads wait for each other
+    # Set before numpy loads: for small matrices, additional threads only wait for each other.
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
     parser = _Parser(prog="gearfe", description="Compute gear mesh stiffness, transmission error and gearbox vibration.")
     parser.add_argument("--version", action=_Version, help="print the version and exit")
     known = parser.add_subparsers(dest="verb", required=True, metavar="VERB")

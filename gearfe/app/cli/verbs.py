@@ -28,7 +28,7 @@ def stiffness(arguments):
     from ...comparison.returns import returns_of
     from ...comparison.told_scene import told_supports
     from ...scene.load import load_scene
-    from ...stiffness.methods import METHODS, fitted
+    from ...stiffness.methods import fitted
     from ...stiffness.solve import Solve
 
     if arguments.forces or arguments.torques:
@@ -54,12 +54,7 @@ def stiffness(arguments):
         name = arguments.pair or next(iter(scene.pairs))
         with part("", 0.0, 0.8 if scene.set else 1.0):
             found = beside_health(case, how, returns=returns_of(scene, name, arguments.case))
-        in_set = ""
-        if scene.set is not None and METHODS[found.reference.meta["method"]].converged:  # closed forms need no mesh
-            from ...comparison.told_set import told_in_set  # only sets need it: 0.1 s
-
-            with part("stiffness in the whole set", 0.8, 1.0):
-                in_set = told_in_set(scene, name, found.reference)
+        in_set = _in_set(scene, name, found.reference)
     curve, meta = found.reference, found.reference.meta
     print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:\n")
     if in_set:
@@ -78,6 +73,18 @@ def stiffness(arguments):
 
         curve.plot(arguments.plot, _title(scene, arguments, told(curve)))
         print(f"written: {arguments.plot}")
+
+
+def _in_set(scene, name, curve):
+    """Words on the stiffness of a pair in its set. Empty without a set, and for closed forms, which need no mesh."""
+    from ...stiffness.methods import METHODS
+
+    if scene.set is None or not METHODS[curve.meta["method"]].converged:
+        return ""
+    from ...comparison.told_set import told_in_set  # imported here, because only sets need it and it takes 0.1 s
+
+    with part("stiffness in the whole set", 0.8, 1.0):
+        return told_in_set(scene, name, curve)
 
 
 def transmission_error(arguments):
@@ -119,36 +126,14 @@ def transmission_error(arguments):
 
 def compare(arguments):
     """``gearfe compare``."""
-    from ...comparison.compare import compare as run
-    from ...comparison.compare import compare_cases
     from ...comparison.printed_stiffness import printed_cases, printed_text
-    from ...comparison.told_scene import told_supports
     from ...scene.load import load_scene
     from ...scene.references import printed_stiffness
 
     scene = load_scene(arguments.scene)
-    printed, one = printed_cases(scene), arguments.pair or arguments.case or arguments.model or arguments.plot
-    several = arguments.all_cases or (printed and not one)
-    if several and one:
-        raise ValueError("--all-cases is every pair in every case: leave out --pair, --case, --model and --plot")
-    if several and arguments.reference not in (None, "fe3d"):
-        raise ValueError(f"--reference {arguments.reference} with --all-cases: only fe3d can be asked for")
-    options = {"phases": arguments.phases, "reference": arguments.reference}
-    with working("finite elements and energy methods"):
-        if several:
-            result = compare_cases(scene, None if arguments.all_cases else printed, **options)
-        else:
-            more = {"models": arguments.model, "refine": arguments.refine}
-            result = run(scene, arguments.pair, case=arguments.case, **more, **options)
-    meta, reference = result.reference.meta, result.methods[0]
-    load = "" if several else f", {meta['force_N']:g} N on {meta['width_mm']:g} mm"
-    names = ", ".join(dict.fromkeys(pair for pair, _ in result.asked))
-    print(f"{scene.title}\n\n{result.headline}\n")
-    print(f"{names}: mesh stiffness along the line of action{load};\n{result.definition}")
-    if soft := told_supports(result.reference):
-        print(soft)
-    for one in result.by_tooth() if result.healthy else ():
-        print(f"\nloss of stiffness by the damage; {one.definition}\n\n{one.loss_table()}")
+    result, several = _results(scene, printed_cases(scene), arguments)
+    reference = result.methods[0]
+    _print_losses(scene, result)
     print(f"\nerrors against {reference}; the estimate is the discretisation error of the reference itself\n")
     table = result.table(digits=5 if several else 4)
     print(table)
@@ -168,6 +153,40 @@ def compare(arguments):
     if arguments.output:
         (result.record() if arguments.output.lower().endswith(".csv") else table).save(arguments.output)
         print(f"\nwritten: {arguments.output}")
+
+
+def _results(scene, printed, arguments):
+    """`Comparison` of a pair, or of several cases, which the arguments ask for."""
+    from ...comparison.compare import compare, compare_cases
+
+    one = arguments.pair or arguments.case or arguments.model or arguments.plot
+    several = arguments.all_cases or (printed and not one)
+    if several and one:
+        raise ValueError("--all-cases is every pair in every case: leave out --pair, --case, --model and --plot")
+    if several and arguments.reference not in (None, "fe3d"):
+        raise ValueError(f"--reference {arguments.reference} with --all-cases: only fe3d can be asked for")
+    options = {"phases": arguments.phases, "reference": arguments.reference}
+    with working("finite elements and energy methods"):
+        if several:
+            return compare_cases(scene, None if arguments.all_cases else printed, **options), True
+        return compare(
+            scene, arguments.pair, case=arguments.case, models=arguments.model, refine=arguments.refine, **options
+        ), False
+
+
+def _print_losses(scene, result):
+    """Print the answer of a comparison, what it compares, and the losses of each damaged tooth."""
+    from ...comparison.told_scene import told_supports
+
+    meta, several = result.reference.meta, len(result.asked) > 1
+    load = "" if several else f", {meta['force_N']:g} N on {meta['width_mm']:g} mm"
+    names = ", ".join(dict.fromkeys(pair for pair, _ in result.asked))
+    print(f"{scene.title}\n\n{result.headline}\n")
+    print(f"{names}: mesh stiffness along the line of action{load};\n{result.definition}")
+    if soft := told_supports(result.reference):
+        print(soft)
+    for one in result.by_tooth() if result.healthy else ():
+        print(f"\nloss of stiffness by the damage; {one.definition}\n\n{one.loss_table()}")
 
 
 def print_assumptions(scene, every, told=None):
@@ -330,8 +349,7 @@ def scenes(arguments):
 
     for name in scene_names():
         scene = load_scene(name)
-        cases = {case for pair in scene.pairs.values() for case in pair.damage}
-        print(f"{name}: pairs {', '.join(scene.pairs)}" + (f"; cases {', '.join(sorted(cases))}" if cases else ""))
+        print(f"{name}: pairs {', '.join(scene.pairs)}" + (f"; cases {', '.join(sorted(scene.cases))}" if scene.cases else ""))
         print(f"{scene.title}\n")
         _print_notes(scene)
         print()

@@ -62,7 +62,7 @@ def check_bearings(scene):
         if not shaft.radial:
             raise ValueError(f"{where}: dofs = 'six' needs bearings_at_mm and bearings_N_per_um; give them, or dofs = 'torsion'")
         if not any(shaft.axial):
-            raise ValueError(f"{where} bearings_axial_N_per_um = [0, 0]: no bearing locates the shaft along its axis; give one")
+            raise ValueError(f"{where} bearings_axial_N_per_um: no bearing locates the shaft along its axis; give one")
 
 
 def gearbox(scene, stiffness, damage):
@@ -97,7 +97,7 @@ def gearbox(scene, stiffness, damage):
         "torques [N m]": dict(train.torques),
         "mass of shafts": "lumped at the stations",
     }
-    if len(train.stages) == 1:  # counter-clockwise as the planets are numbered, for sensors on the ring
+    if len(train.stages) == 1:  # counter-clockwise like the planet numbers, for sensors on the ring
         (name, stage), *_ = train.stages.items()
         notes["carrier frequency [Hz]"] = _sense(scene, name)[1] * train.speeds[stage.carrier] / (2 * math.pi)
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, _stages(scene), rotors=rotors)
@@ -195,7 +195,7 @@ def pair_phases(scene):
     flank of a tooth at the angle c passes the pitch point, at the angle d, where ``sense (c - d) + half thickness = 0``.
     """
     train, out = scene.train, {}
-    base = {train.ends["motor"]["shaft"]: 0.0}  # angle of the mark of each shaft, 0 after couplings and planetary stages
+    base = {train.ends["motor"]["shaft"]: 0.0}  # angle of the mark on each shaft, zero after couplings and planetary stages
     for link in train.links:
         if link.name not in train.pairs:
             base.setdefault(link.one, 0.0), base.setdefault(link.two, 0.0)

@@ -48,7 +48,7 @@ def with_errors(
         for name, (amplitude, frequency, start) in runout.items():
             dx, dy = (_entry(machine, mesh, f"{name}.{axis}") for axis in "xy")
             size, angle = math.hypot(dx, dy), math.atan2(dy, dx)
-            if size and amplitude:  # -cos(turn - angle) as a sine
+            if size and amplitude:  # -cos(turn - angle) is written as a sine.
                 errors.append((amplitude * size, frequency, start - angle - math.pi / 2))
         for name, (sx, sy) in place.items():
             shift = _entry(machine, mesh, f"{name}.x") * sx + _entry(machine, mesh, f"{name}.y") * sy

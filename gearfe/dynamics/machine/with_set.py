@@ -22,7 +22,7 @@ RINGS = ("lumped", "body")
 BODY, AXES = "ring", ("x", "y", "theta")
 EVEN = 1e-6  # tolerance for equally spaced positions [mesh cycles]
 SAME = 1e-6  # relative tolerance of radii and directions
-PERFECT = 1e-12  # m: gaps below it are rounding
+PERFECT = 1e-12  # Smaller gaps are rounding errors [m].
 
 
 def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str, str] = NAMES) -> Machine:

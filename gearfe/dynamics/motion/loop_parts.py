@@ -23,11 +23,11 @@ def kept(function):
     """
     try:
         dispatcher = njit(cache=True, error_model="numpy")(function)
-    except RuntimeError:  # without a cache folder each process compiles
+    except RuntimeError:  # Without a cache folder each process compiles.
         return compiled(function)
     if dispatcher is function:
         return _not_compiled
-    dispatcher._cache._cache_file._source_stamp = _stamp()  # numba checks only the file of the function itself
+    dispatcher._cache._cache_file._source_stamp = _stamp()  # numba checks only the file of the function itself.
     return dispatcher
 
 

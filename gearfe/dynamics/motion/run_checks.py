@@ -7,8 +7,8 @@ from ...core.memory import free_memory
 from ..machine.tables import Machine
 from .reference import SOLVERS
 
-DEEPEST, FASTEST = 1.0, 1e3  # limits of compressions [m] and their rates [m/s]: beyond the size and speed of any gear
-LONGEST, LATEST = 1e11, 1e9  # steps of a run; its start [s]
+DEEPEST, FASTEST = 1.0, 1e3  # limits of compression [m] and compression rate [m/s], beyond any gear
+LONGEST, LATEST = 1e11, 1e9  # largest number of steps, latest start [s]
 
 
 def check_initial(machine, state):
@@ -45,6 +45,15 @@ def check_memory(machine, duration, count, filtered):
         )
 
 
+def _check_output(duration, rate, step, dt, every):
+    if rate is not None and not duration * rate * (1 + 1e-12) >= 1:
+        raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
+    if dt is not None and (rate is not None or step is not None):
+        raise ValueError("dt is both the step and the interval of the output: give rate and step instead, or one of them")
+    if rate is not None and every != 1:
+        raise ValueError(f"rate = {rate} Hz and every = {every}: both thin out the output; give a lower rate alone")
+
+
 def check_run(machine, duration, method, rate, step, dt, start, every):
     """Raise ValueError if arguments of `simulate` are out of range or contradict each other."""
     if not isinstance(machine, Machine):
@@ -56,18 +65,13 @@ def check_run(machine, duration, method, rate, step, dt, start, every):
     for name, value in {"dt": dt, "step": step}.items():
         if value is not None and not value <= duration:
             raise ValueError(f"{name} = {value} s, but it must be positive and no longer than the duration")
-    if rate is not None and not duration * rate * (1 + 1e-12) >= 1:
-        raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
+    _check_output(duration, rate, step, dt, every)
     shortest = min(value for value in (dt, step, duration, rate and 1 / rate) if value)
     if duration / shortest > LONGEST:
         raise ValueError(
             f"duration = {duration:g} s in steps of {shortest:.3g} s: {duration / shortest:.3g} of them, but at most "
             f"{LONGEST:.0e} are computed: give a shorter duration, or a longer step"
         )
-    if dt is not None and (rate is not None or step is not None):
-        raise ValueError("dt is both the step and the interval of the output: give rate and step instead, or one of them")
-    if rate is not None and every != 1:
-        raise ValueError(f"rate = {rate} Hz and every = {every}: both thin out the output; give a lower rate alone")
     if abs(start) > LATEST:
         raise ValueError(
             f"start = {start:g} s, but give a time within {LATEST:g} s, because phases at later times are lost by rounding"

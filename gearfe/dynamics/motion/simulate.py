@@ -34,15 +34,15 @@ from .step_control import (
 )
 from .thinned import stages, thinned
 
-FINE = 4  # steps of the reference per `default_step`, before the filter
+FINE = 4  # steps of the reference per `default_step`, before filtering
 FINER = 3  # number of times that the step of a whole run is halved if contact is lost
 ALLOWED = 2 * WANTED_OPEN  # allowed difference with contact loss, as a part of the range
 WHOLE = 1e-3  # allowed difference of a whole run with requested error, as a part of the range
 COARSE = 0.1  # estimate of a given step above which a warning is issued, as a part of the range
-SLOW = 5.0  # expected computing time of a whole run [s]: above, it is reported
+SLOW = 5.0  # computing time above which a run reports its expected duration [s]
 TRIED = 100_000  # steps of a trial run that estimates the time of a run of `MANY` steps
 MANY = 100 * TRIED
-NUDGE, GROWN = 1e-9, 1e-2  # disturbance of the initial state, and the size that it may reach, as parts of the range
+NUDGE, GROWN = 1e-9, 1e-2  # initial disturbance and its largest permitted growth, relative to the range
 
 
 @single
@@ -173,7 +173,7 @@ def simulate(
     if method != "fast":
         return compared(_reference(machine, duration, count, state, method, rtol, start, filtered))
     own = state if initial is not None else None
-    from .loop_parts import announced  # loads the compiler
+    from .loop_parts import announced  # This import loads the compiler.
 
     run = _Runs(machine, duration, count, state, own, start, filtered, progress)
     with announced(progress) as compiled:
@@ -260,7 +260,7 @@ class _Runs:
             try:
                 place, span = beginning(self.machine, self.duration, self.own, self.start)
                 found = estimate(self.machine, out.stats["dt"], span, [place])
-            except RuntimeError:  # this part of the run becomes unstable with another step, although the run does not
+            except RuntimeError:  # A part of the run may be unstable with another step although the run itself is stable.
                 found = Estimate(math.inf, False, length, 0.0, math.inf)
         doubt = max(found.error, unseen(self.machine, self.start, self.duration, out.stats["dt"]))
         if not doubt <= COARSE:

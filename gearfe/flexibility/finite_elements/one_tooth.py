@@ -15,9 +15,9 @@ from ...geometry.tooth.profile import arc_at
 from .elasticity import HeldSection
 from .fe import flank_load
 
-MOST_LOAD = 0.05  # N/mm over E m_n: no mesh of teeth is stiffer than b E / 5, so that it would approach by m_n / 4
+MOST_LOAD = 0.05  # largest line load over E m_n; the largest possible stiffness b E / 5 gives an approach of m_n / 4
 NARROW = 0.05  # half width of a narrow load [m_n]
-SAMPLES = 65  # heights at which a load along the width is looked at
+SAMPLES = 65  # number of heights at which a load distribution is sampled
 
 
 def check_gear(gear):

@@ -59,7 +59,7 @@ def losses(machine: Machine) -> tuple[float, float]:
     worst = (0.0, 0.0)
     for mesh in machine.meshes:
         for _, _, change in mesh.changes:
-            # the neighbours mesh symmetrically before and after
+            # The adjacent teeth mesh symmetrically before and after.
             phase = np.linspace(-0.25, change.start + change.end + 0.25, 1001)
             loss = -change(phase) / mesh.cycle(phase % 1.0)
             worst = max(worst, (float(loss.max()), float(loss.mean())))

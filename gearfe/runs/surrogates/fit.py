@@ -20,10 +20,10 @@ from .space import Space, space_of
 from .surrogate import ERRORS, Surrogate
 from .zoned import DEGREE, breaks_of, phases_of, piece_of, series_of
 
-FEWEST, MOST = 16, 20_000  # cases of a fit
-CHECKED = 64  # phases per mesh cycle at which a held-back case is compared
+FEWEST, MOST = 16, 20_000  # limits of the number of cases in a fit
+CHECKED = 64  # phases per mesh cycle at which held-back cases are compared
 SETS = tuple((degree, power) for degree in range(1, 9) for power in (1.0, 0.75, 0.6))  # limits of sums of degrees**power
-BUSY = 0.6  # terms for each case at most
+BUSY = 0.6  # largest number of polynomial terms per case
 
 
 def fit_surrogate(

@@ -14,7 +14,7 @@ from ...geometry.aliases import Floats
 from ...geometry.damage.crack import Crack
 from ...geometry.pair.gear_pair import GearPair, free_centre_distance
 
-INPUTS = {  # descriptions by name of the input
+INPUTS = {  # by input: description
     "force": "force along the line of action over the whole width [N], on a logarithmic scale",
     "level": "level of a root crack of a pinion tooth, see Crack",
     "angle": "its angle to the centre-line [rad]",
@@ -26,15 +26,15 @@ INPUTS = {  # descriptions by name of the input
     "bore_2": "bore of the wheel, in its root radii",
 }
 WHOLE = ("z_1", "z_2")
-SHAPE = ("z_1", "z_2", "x_1", "x_2")  # inputs that change contact ratio and centre distance
+SHAPE = ("z_1", "z_2", "x_1", "x_2")  # inputs that change the contact ratio or the centre distance
 
 
 @dataclass(frozen=True)
 class Space:
     """Ranges of some `INPUTS` about a pair of spur gears. The others are held."""
 
-    pair: GearPair  # source of all other values
-    ranges: dict[str, tuple[float, float]]  # ends of what varies
+    pair: GearPair  # pair that provides all other values
+    ranges: dict[str, tuple[float, float]]  # limits of the varied inputs
     held: dict[str, float]  # inputs with a single value
 
     @cached_property
@@ -138,14 +138,14 @@ def _check_names(pair, inputs):
         raise ValueError("inputs: no 'force', but k depends on the load: give a range or a number [N]")
     if "angle" in inputs and "level" not in inputs:
         raise ValueError("inputs: an 'angle' of a crack, but no 'level': give both")
-    ring = [name for name in inputs if name in (*SHAPE, "bore_2")]
+    ring = [name for name in (*SHAPE, "bore_2") if name in inputs]
     if ring and pair.gear_2.internal:
         raise ValueError(f"inputs: {ring[0]!r}, but gear 2 is a ring, whose trimmed tip makes k discontinuous: omit this input")
-    shape = [name for name in inputs if name in SHAPE]
+    shape = ring and ring[0] in SHAPE
     if shape and not math.isclose(pair.a, free_centre_distance(pair.gear_1, pair.gear_2), rel_tol=1e-9):
         raise ValueError(
-            f"inputs: {shape[0]!r} moves the centre distance without backlash, which a surrogate then takes, but the pair has "
-            f"a = {pair.a:g} mm: give a pair with a = None, or leave {shape[0]!r} out"
+            f"inputs: {ring[0]!r} moves the centre distance without backlash, which a surrogate then takes, but the pair has "
+            f"a = {pair.a:g} mm: give a pair with a = None, or leave {ring[0]!r} out"
         )
 
 

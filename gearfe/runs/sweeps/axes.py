@@ -10,7 +10,7 @@ from ...scene.schema import schema_of
 from . import samples
 
 RUNS = "gearfe.runs"
-MOST = 10**7  # limit of cases, whose values alone take gigabytes
+MOST = 10**7  # limit of cases; their values alone require gigabytes
 SPEC = {*schema_of(RUNS)["steps"].keys, *samples.SHAPES, "choice", "within"}
 
 

@@ -145,7 +145,7 @@ def _solver(at, count, teeth, law):
     if at.gap is not None:
         unloaded = np.full(count, np.inf)
         np.minimum.at(unloaded, at.phase, at.gap)
-        gap = at.gap - unloaded[at.phase]  # gaps relative to first contact, which avoids rounding errors at light loads
+        gap = at.gap - unloaded[at.phase]  # Gaps are relative to first contact, which avoids rounding errors at light loads.
 
     def solve(line_load):
         line = line_load / total(np.ones(teeth.shape))[at.phase]

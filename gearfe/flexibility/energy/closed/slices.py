@@ -6,13 +6,14 @@ from itertools import product
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
+from ....core.checks import one_of
 from ....geometry.pair.contacts import contacts
 from ....geometry.pair.lines import covered, halves
 from ....geometry.pair.modified import first_touch, flank_contacts
 
 LOST = ("hertz", "slices", "summed")
 RULES = {False: leggauss(1), True: leggauss(24)}
-SHORT = leggauss(10)  # for panels shorter than a quarter of a base pitch
+SHORT = leggauss(10)  # Gauss points for panels shorter than a quarter of a base pitch
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,24 +68,25 @@ def stations(case, phase, *, lost="hertz", edges=None):
         From the pair orders to a dict by order: roll lengths of the pinion [mm] at which that pair's stiffness is not smooth.
     """
     pair, pits, flanks, bands = case.pair, case.pits, case.forms, faces_of(case)
-    if lost not in LOST:
-        raise ValueError(f"lost = {lost!r}, but it must be one of {', '.join(LOST)}")
+    one_of("lost", lost, LOST)
     lag = max(band[2] for band in bands)
     order = contacts(pair, [phase.min() - lag, phase.max()], extended=False).order
     edges = edges(order) if edges and lag > 0 else {}
     pitted = any(p.side == "loaded" for found in pits for p in found)
-    if lag == 0 and not pitted:  # one station for each pair on the path of contact
+    if lag == 0 and not pitted:  # Each pair on the path of contact has one station.
         return _on_path(pair, phase, flanks, bands)
-    rows, taken = [], {} if lost == "summed" else _taken(pair, phase, order, pits, bands)
-    summed = _summed(pair, order, pits, bands) if lost == "summed" else np.zeros((order.size, len(bands)))
+    summed = lost == "summed"
+    taken = {} if summed else _taken(pair, phase, order, pits, bands)
+    left = 1 - (_summed(pair, order, pits, bands) if summed else np.zeros((order.size, len(bands))))
+    rows = [np.zeros((0, 6))]
     for (i, p), (j, number), (k, band) in product(enumerate(phase), enumerate(order), enumerate(bands)):
-        found = _line(pair, p + number, taken.get((i, j, k), ()), band, lost, edges.get(number, ()), 1 - summed[j, k])
-        rows += [np.column_stack([np.full(len(f), i), np.full(len(f), j), f]) for f in found]
-    table = np.concatenate(rows) if rows else np.zeros((0, 6))
+        for found in _line(pair, p + number, taken.get((i, j, k), ()), band, lost, edges.get(number, ()), left[j, k]):
+            rows.append(np.column_stack([np.full((len(found), 2), (i, j)), found]))
+    table = np.concatenate(rows)
     (i, j), (roll, weight, touching) = table[:, :2].astype(int).T, table[:, 2:5].T
     roll_2, gap = pair.mate_roll(roll), None
     if flanks is not None:
-        backwards = len(bands) == 1 and lag > 0 and pair.gear_1.beta > 0  # in this case the end z = b touches first
+        backwards = len(bands) == 1 and lag > 0 and pair.gear_1.beta > 0  # In this case the end z = b enters contact first.
         z = bands[0][1] - table[:, 5] if backwards else table[:, 5]
         met = first_touch(pair, flanks, roll, order[j], np.zeros(roll.size), z)
         roll, roll_2, gap = met.roll_1, met.roll_2, met.gap

@@ -6,9 +6,9 @@ import numpy as np
 
 from ....geometry.mesh.triangle import ENDS
 
-LEAF = 2  # triangles eliminated together first
-CUTS = 8  # directions in which sets of triangles are divided
-ON_EDGE, INSIDE = 2, 1  # nodes of cubic triangles
+LEAF = 2  # number of triangles eliminated together first
+CUTS = 8  # number of directions in which sets of triangles are divided
+ON_EDGE, INSIDE = 2, 1  # inner nodes of cubic triangles: per edge, per triangle
 
 
 def dissect(sector):
