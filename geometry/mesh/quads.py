@@ -220,7 +220,7 @@ def _rim(gear, draft, size, teeth, damage, patches):
             if k == below and loaded:
                 fillets[owner] = draft.edges(added)[::-1, ::-1]
             if name == "fillet":
-                marks[owner, side] = last if sign > 0 else draft.lines[added[0] - 1][0]
+                marks[owner, side] = (draft.lines[added[0] - 1][0], last)[sign > 0]
     return lines, flanks, fillets, marks
 
 
