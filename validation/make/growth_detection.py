@@ -28,7 +28,7 @@ def grown():
 
 
 def averaged(curve, error=None, damage=()):
-    """Synchronous average of the acceleration along the line of action, without noise [m/s^2]."""
+    """Return the synchronous average of the acceleration along the line of action, without noise [m/s^2]."""
     machine = gf.single_mesh(0.2, curve, MESH, force=CASE.force, zeta=0.07, teeth=(GEAR.z, 31), damage=damage)
     if error is not None:
         machine = gf.with_errors(machine, profile=error)
@@ -125,8 +125,11 @@ def answer(growth, chosen, chance):
             if length == length
             else f"- By {name}, the crack is not detected with 90 % probability at any of these lengths."
         )
-    return "\n".join([*lines, f"- The crack grows from 0.3 mm to {growth.length[-1]:.1f} mm in {growth.cycles[-1]:.3g} revolutions "
-                      f"({growth.outcome}). False alarms are 1 % of records of healthy gears."])  # fmt: skip
+    lines.append(
+        f"- The crack grows from 0.3 mm to {growth.length[-1]:.1f} mm in {growth.cycles[-1]:.3g} revolutions "
+        f"({growth.outcome}). False alarms are {100 * FALSE:g} % of records of healthy gears."
+    )
+    return "\n".join(lines)
 
 
 def table(growth, chosen, rows, chance):
@@ -161,14 +164,15 @@ def picture(growth, chosen, rows, chance):
 
 
 HOW = f"""
-`python -m validation growth_detection` computes the page. The pair has 21 and 31 teeth of module 2 mm, 20 mm width and a load of
-2000 N. The crack starts at the 30-degree tangent at 45 degrees. Each revolution is one cycle of Paris's law with
+`python -m validation growth_detection` computes the page. The pair has 21 and 31 teeth of module 2 mm, 20 mm width and a load
+of 2000 N. The crack starts at the 30-degree tangent at 45 degrees. Each revolution is one cycle of Paris's law with
 da/dN = 5.21e-13 dK^3 (mm, MPa sqrt(mm)) and a threshold of 63 (BS 7910:2013, steel in air). The loads are those of the healthy
 pair. Vibration is that of one mass of 0.2 kg on the mesh, at a shaft frequency of 50 Hz. The damping ratio is 0.07.
 
-The {GEARS} healthy gears have pitch deviations with a standard deviation of {1e6 * PITCH:g} um. The sensor noise is {NOISE:g} m/s^2,
-averaged over {TURNS} revolutions. The load differs by {100 * LOAD:g} % between two records. These three values are assumed, and they
-decide the result. The residual signal has neither mesh lines nor shaft orders. The crack's part of it is added to that of a healthy
-gear, in any tooth. {DRAWS} records are drawn for each length, and the limits are the {100 - 100 * FALSE:g} % quantiles of healthy
-records. FM4 alone needs no history. The change since a healthy record is the RMS of the difference of two residual signals of one gear.
+The {GEARS} healthy gears have pitch deviations with a standard deviation of {1e6 * PITCH:g} um. The sensor noise is
+{NOISE:g} m/s^2, averaged over {TURNS} revolutions. The load differs by {100 * LOAD:g} % between two records. These three values are
+assumed, and they decide the result. The residual signal has neither mesh lines nor shaft orders. The crack's part of it is
+added to that of a healthy gear, in any tooth. {DRAWS} records are drawn for each length, and the limits are the
+{100 - 100 * FALSE:g} % quantiles of healthy records. FM4 alone needs no history. The change since a healthy record is the RMS of
+the difference of two residual signals of one gear.
 """
