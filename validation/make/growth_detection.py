@@ -87,10 +87,8 @@ def detection(healthy, change):
                        for load, crack in zip(loads, (0.0, part), strict=True))  # fmt: skip
         centred = now - now.mean(axis=1, keepdims=True)
         found[name] = (centred**4).mean(axis=1) / (centred**2).mean(axis=1) ** 2, (now - before).std(axis=1)
-    return [
-        float((hurt > np.quantile(sound, 1 - FALSE)).mean())
-        for sound, hurt in zip(found["healthy"], found["cracked"], strict=True)
-    ]
+    pairs = zip(found["healthy"], found["cracked"], strict=True)
+    return [float((hurt > np.quantile(sound, 1 - FALSE)).mean()) for sound, hurt in pairs]
 
 
 def run(again=True):
@@ -170,8 +168,8 @@ da/dN = 5.21e-13 dK^3 (mm, MPa sqrt(mm)) and a threshold of 63 (BS 7910:2013, st
 pair. Vibration is that of one mass of 0.2 kg on the mesh, at a shaft frequency of 50 Hz. The damping ratio is 0.07.
 
 The {GEARS} healthy gears have pitch deviations with a standard deviation of {1e6 * PITCH:g} um. The sensor noise is
-{NOISE:g} m/s^2, averaged over {TURNS} revolutions. The load differs by {100 * LOAD:g} % between two records. These three values are
-assumed, and they decide the result. The residual signal has neither mesh lines nor shaft orders. The crack's part of it is
+{NOISE:g} m/s^2, averaged over {TURNS} revolutions. The load differs by {100 * LOAD:g} % between two records. These three
+values are assumed, and they decide the result. The residual signal has neither mesh lines nor shaft orders. The crack's part of it is
 added to that of a healthy gear, in any tooth. {DRAWS} records are drawn for each length, and the limits are the
 {100 - 100 * FALSE:g} % quantiles of healthy records. FM4 alone needs no history. The change since a healthy record is the RMS of
 the difference of two residual signals of one gear.

@@ -22,6 +22,8 @@ QUESTIONS = {  # by page: question, in the order of the list of pages
     "sample": "Do the error estimates cover, on pairs that nobody chose?",
     "random_search": "Do the error estimates cover cases that are hard on purpose?",
     "growth": "Do root cracks grow where tests and another solver say?",
+    "growth_detection": "How early could a growing root crack have been detected?",
+    "growth_conventions": "What do straight cracks change, compared with the computed path?",
     "three": "Is the stiffness in three dimensions right?",
     "assumptions": "What do values that articles leave out do to the stiffness?",
     "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
