@@ -169,8 +169,9 @@ pair. Vibration is that of one mass of 0.2 kg on the mesh, at a shaft frequency 
 
 The {GEARS} healthy gears have pitch deviations with a standard deviation of {1e6 * PITCH:g} um. The sensor noise is
 {NOISE:g} m/s^2, averaged over {TURNS} revolutions. The load differs by {100 * LOAD:g} % between two records. These three
-values are assumed, and they decide the result. The residual signal has neither mesh lines nor shaft orders. Its part due to the crack is
-added to that of a healthy gear, in any tooth. {DRAWS} records are drawn for each length, and the limits are the
-{100 - 100 * FALSE:g} % quantiles of healthy records. FM4 alone needs no history. The change since a healthy record is the RMS of
-the difference of two residual signals of one gear.
+values are assumed, and they decide the result.
+
+The residual signal has neither mesh lines nor shaft orders. The part of the crack in it is added to that of a healthy gear, in
+any tooth. {DRAWS} records are drawn for each length. The limits are the {100 - 100 * FALSE:g} % quantiles of healthy records. FM4
+alone needs no history. The change since a healthy record is the RMS of the difference of two residual signals of one gear.
 """
