@@ -226,7 +226,7 @@ def test_what_other_pages_say():
     low, _, high = shares("map.md", "coupled")[8:11]
     says("faq.md", "`coupled` is the best of them, {} to {} % low in nine cases of ten", -high, -low)
     sets = (PAGES / "sets.md").read_text(encoding="utf-8")
-    alone = [float(x) for x in re.search(r"k of sun and planet (\d+), of planet and ring (\d+) N/um", sets).groups()]
+    alone = [float(x) for x in re.search(r"k of (\d+) N/um \(sun and planet\) and (\d+) N/um", sets).groups()]
     rows = re.findall(r"\| (\d?) \| (\d+) \| all around \| (\d+) \| (\d+) \|", sets)
     below = [100 * (1 - float(sun) / alone[0]) for planets, rim, sun, _ in rows if rim == "5" and planets in "35"]
     above = [100 * (float(ring) / alone[1] - 1) for *_, ring in rows]
