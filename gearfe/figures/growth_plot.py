@@ -1,6 +1,7 @@
 """Animation (matplotlib) of a growing root crack: its path in the section, and the stress intensity over its length."""
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -10,15 +11,14 @@ from ..geometry.damage.crack import crack_path
 from ..geometry.tooth.drawing import outline_points
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import cartesian
-from ..strength.growth import Growth
 from .look import COLOURS, blank
 
 RATE = 4  # frames per second
 ROOM = 1.2  # space around the tooth and the crack [modules]
 
 
-def animate_growth(growth: Growth, gear: Gear, path: StrPath) -> None:
-    """Draw the steps of `growth` of a crack in a `gear` as a .gif file."""
+def animate_growth(growth: Any, gear: Gear, path: StrPath) -> None:
+    """Draw the steps of a `gearfe.Growth` in its `gear` as a .gif file."""
     from matplotlib.animation import PillowWriter
 
     figure, (body, curve) = blank((8.0, 3.6), 1, 2)

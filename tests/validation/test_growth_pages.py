@@ -37,8 +37,8 @@ def test_a_straight_crack_loses_the_stiffness_on_file():
 def test_detection_has_its_false_alarm_rate_without_a_crack_and_certainty_with_a_large_one():
     healthy = np.array(kept_rows.stored("growth_detection")["healthy"]["residual"])
     n = healthy.shape[1]
-    nothing = growth_detection.detection(healthy, np.zeros(n))
+    nothing = growth_detection.detection(healthy, np.zeros(n), 30.0)
     assert nothing == pytest.approx([growth_detection.FALSE] * 2, abs=0.008)
     impulse = np.zeros(n)
     impulse[: n // 100] = 50 * healthy.std()
-    assert growth_detection.detection(healthy, impulse) == pytest.approx([1.0, 1.0])
+    assert growth_detection.detection(healthy, impulse, 30.0) == pytest.approx([1.0, 1.0])

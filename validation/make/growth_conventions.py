@@ -94,8 +94,8 @@ def answer(life, loss):
     for angle in (45, 60):
         life_of, off_of = ratio[:, ANGLES.index(angle)], off[:, ANGLES.index(angle)]
         lines.append(
-            f"- A straight crack at {angle} degrees has {life_of.min():.2f} to {life_of.max():.2f} times the life of the computed "
-            f"path. Its largest loss of stiffness differs by {off_of.min():+.1f} to {off_of.max():+.1f} points of a percent."
+            f"- A straight crack at {angle} degrees has {life_of.min():.2f} to {life_of.max():.2f} times the life of the path. "
+            f"Its largest loss of stiffness differs by {off_of.min():+.1f} to {off_of.max():+.1f} points of a percent."
         )
     lines.append(
         f"- Over all angles from 5 to 90 degrees, the life is {ratio.min():.2f} to {ratio.max():.2f} times that of the path."
