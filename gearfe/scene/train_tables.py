@@ -143,7 +143,10 @@ def _stage(file, name, rows, gears, homes, shafts):
     bearing = None if row["planet_bearing"] is None else rows["bearing"][row["planet_bearing"]]
     at = row["carrier_at_mm"] or 0.0
     pairs = row["sun_planet"], row["planet_ring"]
-    return TrainStage((sun, planet, rim), pairs, row["n_planets"], row["carrier"], at, row["carrier_inertia_kgm2"], bearing)
+    units = {"pin_N_per_um": 1e6, "pin_axial_N_per_um": 1e6, "pin_tilt_Nm_per_mrad": 1e3}
+    pins = (None if row[key] is None else unit * row[key] for key, unit in units.items())
+    inertia, mass = row["carrier_inertia_kgm2"], row["carrier_mass_kg"]
+    return TrainStage((sun, planet, rim), pairs, row["n_planets"], row["carrier"], at, inertia, bearing, mass, *pins)
 
 
 def _links(file, rows, gears, train):

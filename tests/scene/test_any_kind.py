@@ -119,6 +119,8 @@ WHOLE_GEARBOX = PLANETARY | {  # every key of these that stands in no other scen
         "ring": {"housing": "inner", "angle_deg": 30.0},
     },
     "load": {"brake": end("out", at_mm=120.0, slope_Nms_per_rad=0.1), "pump": end("two", torque_Nm=5.0)},
+    "stage": {"set": PLANETARY["stage"]["set"] | {"carrier_mass_kg": 1.0, "pin_N_per_um": 100.0, "pin_axial_N_per_um": 10.0,
+                                                  "pin_tilt_Nm_per_mrad": 1.0}},
     "machine": PLANETARY["machine"] | {"dofs": "six", "density_kg_per_m3": 7800.0, "damping_per_stiffness_s": 1e-6},
 }  # fmt: skip
 ELSE = [
