@@ -56,7 +56,7 @@ class ScenePair:
 
     @property
     def damage(self) -> dict[str, dict[str, list[Damage]]]:
-        """Damage by case and side as `gearfe.mesh_stiffness` takes it, of one body on each side."""
+        """Return the damage by case and side as an argument of `gearfe.mesh_stiffness`, of one body on each side."""
         return {case: {side: parts.of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
 
     def case(self, name: str | None = None) -> Case:
