@@ -100,7 +100,7 @@ def _tops(marks, ends, offsets):
 
 
 def _apart(places, least, last):
-    """Rising places without those closer than `least` [mm] to the previous one (to the next one if `last` is kept)."""
+    """Return rising places without those closer than `least` [mm] to the previous one (to the next one with `last`)."""
     away = np.diff(places) >= least * (1 - 1e-9)
     return places[np.append(away, True) if last else np.append(True, away)]
 
@@ -208,12 +208,12 @@ def _between(knots, kernel, on):
 
 
 def _alone(one):
-    """Whether a row has one corner and nothing else. All such rows have the same arrangement of hats."""
+    """Return whether a row has a single corner and nothing else, so that its hat functions have the standard arrangement."""
     return len(_numbers(one)) == 1 and not one.width
 
 
 def _standing(contact, one, host):
-    """Knots of a row that is `_alone`, from its corner, and what its hats are to each other."""
+    """Return the knots of a row that is `_alone`, from its corner, and the local influence between its hat functions."""
     (gear, fine), ends = _scale(contact, host), _ends(_numbers(one), host)
     return _alone_hats(gear.m_n, fine, one.zone, one.finest, ends)
 

@@ -160,7 +160,7 @@ class _Draft:
         self.points, self.lines, self.middles = [], [], {}
 
     def add(self, points, *, closed=False, first=None, last=None):
-        """Lines along points ``(2, 4 k + 1)``: every fourth an end, in between quarter, middle, quarter; numbers from 1."""
+        """Add k lines of five points each along `points` ``(2, 4 k + 1)`` and return their numbers, from 1."""
         numbers, end = [], points.shape[1] - 1
         for i in range(0, points.shape[1], 2):
             number = numbers[0] if closed and i == end else {0: first, end: last}.get(i)

@@ -129,7 +129,7 @@ def halves(pair, face, groove=0.0):
 
 
 def face_bands(pair, face="helical", groove=0.0):
-    """Return the bands of the face, as `Band`, of the `halves` of a pair.
+    """Return the bands of the face width in contact, one `Band` for each helical half of a pair.
 
     The pinion's beta is that of the half at z = 0, and the phase is counted at z = 0, for a herringbone pair at both outer ends:
     with beta > 0 the inner ends touch first, with beta < 0 the outer ones. `halves` describes the parameters. A helical pair of

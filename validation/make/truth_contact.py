@@ -45,7 +45,7 @@ def contact_row(phase):
 
 
 def springs(phases):
-    """Approach added by the contact of CalculiX, relative: its pressure is `PENALTY` E times the overlap, not infinitely hard.
+    """Return the relative increase of the approach by the contact springs of CalculiX, `PENALTY` E times the overlap.
 
     Under Hertz's pressure a pair overlaps by ``8 p0 / (3 pi)`` over that stiffness, weighted by the work of the pressure; the
     pairs count by the load they carry. None where a corner carries: its pressure has no peak.
