@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
 from ..geometry.damage.chip import Chip
-from ..geometry.damage.crack import Crack
+from ..geometry.damage.crack import Crack, check_apart
 from ..geometry.damage.kinds import Damage
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.damage.pit import pit_row
@@ -63,6 +63,7 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
             for side in sides(file, where, row, name, rows["pair"]):
                 with located(file, where, row):
                     made = make(row, pair, SIDES.index(side), rows["pair"][name])
+                    check_apart((pair.gear_1, pair.gear_2)[SIDES.index(side)], [one for one in made if isinstance(one, Crack)])
                 if side != first:
                     turned = [replace(one, side="unloaded") for one in made if isinstance(one, (Crack, Chip))]
                     made = [*turned, *(one for one in made if isinstance(one, MissingTooth))]
