@@ -157,8 +157,6 @@ def fit_machine(
     ValueError
         If a range or key is invalid, the record has another speed, or has fewer lines than there are keys.
     """
-    if not isinstance(record, Signal):
-        raise ValueError(f"record = {record!r}, but give a Signal, such as the result of gearfe.read_signal")
     low, high = _ranges(vary)
     file, tables = read_tables(scene)
     logs = low > 0

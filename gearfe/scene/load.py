@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core.case import Case
-from ..core.files import check_path
+from ..core.file_readers import check_path
 from ..core.material import Material
 from ..core.record import check_named
 from ..core.supports.shaft import Shaft
@@ -57,7 +57,7 @@ class ScenePair:
     @property
     def damage(self) -> dict[str, dict[str, list[Damage]]]:
         """Damage by case and side as `gearfe.mesh_stiffness` takes it, of one body on each side."""
-        return {case: {side: _of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
+        return {case: {side: parts.of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
 
     def case(self, name: str | None = None) -> Case:
         """Return the pair as a `Case` with a case of damage, or healthy if None. Raises ValueError for an unknown case."""
@@ -239,7 +239,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     run = dict(rows["machine"] or {})
     if run:
         run["bodies"] = {name: (float(body["mass_kg"]), float(body["inertia_kgm2"])) for name, body in run["bodies"].items()}
-    cases = {kind: _by_case(rows[kind]) for kind in parts.DAMAGE}
+    cases = {kind: parts.by_case(rows[kind]) for kind in parts.DAMAGE}
     for kind, by_case in cases.items():
         for name in {"", HEALTHY} & by_case.keys():
             raise ValueError(f"{file} [{kind}] case = {name!r}: this names gears without damage; give another name")
@@ -308,17 +308,3 @@ def _pair(file, name, rows, gears, materials, forces):
         misalignment=misalignment,
         supports=parts.supports_of(file, rows, name, materials),
     )
-
-
-def _of_one_body(owned):
-    """Damage of the body that is named first: a pair has one on each side."""
-    first = next(iter(owned))
-    return [one for owner, damage in owned.items() if owner.body == first.body for one in damage]
-
-
-def _by_case(rows):
-    """Rows of damage by case."""
-    out = {}
-    for row in rows:
-        out.setdefault(row["case"], []).append(row)
-    return out

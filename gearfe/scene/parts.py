@@ -207,3 +207,17 @@ def _flank(row, gear):
     flank = Flank(**fields)
     flank.on(gear)
     return flank
+
+
+def of_one_body(owned):
+    """Damage of the body that is named first: a pair has one on each side."""
+    first = next(iter(owned))
+    return [one for owner, damage in owned.items() if owner.body == first.body for one in damage]
+
+
+def by_case(rows):
+    """Rows of damage by case."""
+    out = {}
+    for row in rows:
+        out.setdefault(row["case"], []).append(row)
+    return out

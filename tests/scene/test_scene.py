@@ -206,7 +206,7 @@ def near_beta():
 def test_built_in_scenes_state_what_their_assumptions_hold_for(name):
     scene = gf.load_scene(name)
     assert scene.changed == ()
-    assert scene.references or scene.train, "rigs state lines in the tests of gearboxes"
+    assert scene.references or scene.train, "the PHM 2009 page prints no result"
 
 
 def test_a_copy_with_other_gears_is_no_longer_the_article(tmp_path):
