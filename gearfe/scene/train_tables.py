@@ -97,7 +97,9 @@ def _shaft(file, name, row, rows, materials):
     places = sorted(row["gears_at_mm"])
     if min(np.diff(places), default=1.0) <= PART * made.length:
         raise ValueError(
-            f"{file} [{where}] gears_at_mm = {row['gears_at_mm']}: give each gear a different position on the shaft of lengths_mm = {row['lengths_mm']}"
+            f"{file} [{where}] gears_at_mm = {row['gears_at_mm']}, lengths_mm = {row['lengths_mm']}: give each gear a different "
+            "position"
+            "position"
         )
     for at in places:
         _along(file, where, "gears_at_mm", at, made)
