@@ -74,8 +74,9 @@ def report(
         found.seconds["stress pictures"] = time.perf_counter() - drawing
     cost = [*found.seconds.items(), ("all", time.perf_counter() - started)]
     return write(
-        found=found, scene=found.scene, case=found.case, command=_command(found), pictures=pictures, contacts=contacts, sets=sets,
-        growth=growth, gears=_gears, tooth=_tooth(found), methods=_methods(found), assumed=_assumed(found.scene), version=versions()["gearfe"],
+        found=found, scene=found.scene, case=found.case, command=_command(found), pictures=pictures, contacts=contacts,
+        sets=sets, growth=growth, gears=_gears, tooth=_tooth(found), methods=_methods(found), assumed=_assumed(found.scene),
+        version=versions()["gearfe"],
         cost=Table(("part", Column("time", "s", "{:.1f}")), cost, "What it cost"), duration=duration, total=cost[-1][1],
         libraries=Table(("library", "version"), list(versions().items()), "Versions"), mark=MARK,
         draw=_numbered(), figures=figures, told=lambda pair: [told_load(pair), *told_details(pair), *pair.pair.notes],

@@ -268,5 +268,5 @@ def cheap():
     return [
         (f"rim {key}", {"outcome": row["outcome"]}, lambda key=key: rim_row(*map(float, key.split())))
         for key, row in kept_rows.stored("growth_rims").items()
-        if float(key.split()[0]) < 1  # cracks of thick rims leave their sector
+        if key.startswith("0.3")  # longer cracks of thicker rims are not cheap
     ]
