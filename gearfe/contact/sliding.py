@@ -115,7 +115,7 @@ def left_out(contact, line, closing, beyond, shut):
 
 
 def _changed(contact, radius, gap, closed, closing):
-    """Return the uncertainty of gaps off the path, see `left_out`: at most their closed part `closed` [mm]."""
+    """Return the change of gaps off the path by sliding [mm], see `left_out`. It is limited to their closed part `closed`."""
     u = math.tan(contact.pair.alpha_wt) * closing
     return np.minimum((np.sqrt(2 * radius * np.maximum(gap, 0.0)) * u + u**2 / 2) / radius, closed)
 
