@@ -9,7 +9,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..core.case import Case
+from ..core.case import Case, check_load
 from ..core.file_readers import check_path
 from ..core.material import Material
 from ..core.record import check_named
@@ -33,8 +33,6 @@ from .toml_file import read_toml
 from .train import Train
 from .train_tables import train_of
 
-HEALTHY = "healthy"  # name of the case without damage
-
 
 @dataclass(frozen=True, slots=True)
 class ScenePair:
@@ -56,7 +54,7 @@ class ScenePair:
 
     @property
     def damage(self) -> dict[str, dict[str, list[Damage]]]:
-        """Damage by case and side as `gearfe.mesh_stiffness` takes it, of one body on each side."""
+        """Return the damage by case and side as an argument of `gearfe.mesh_stiffness`, of one body on each side."""
         return {case: {side: parts.of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
 
     def case(self, name: str | None = None) -> Case:
@@ -239,10 +237,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     run = dict(rows["machine"] or {})
     if run:
         run["bodies"] = {name: (float(body["mass_kg"]), float(body["inertia_kgm2"])) for name, body in run["bodies"].items()}
-    cases = {kind: parts.by_case(rows[kind]) for kind in parts.DAMAGE}
-    for kind, by_case in cases.items():
-        for name in {"", HEALTHY} & by_case.keys():
-            raise ValueError(f"{file} [{kind}] case = {name!r}: this names gears without damage; give another name")
+    cases = parts.cases_of(file, rows)
     kept, changed, own = assumed.split(file, rows["assumption"], rows["given"], rows | cases)
     title, source = rows["title"], rows["source"]
     if own:
@@ -275,7 +270,10 @@ def _with_backlash(pair: GearPair, wanted: float) -> GearPair:
             f"backlash_um = {1e3 * wanted:g}, but teeth of m_n_mm = {pair.gear_1.m_n:g} have less: give a smaller one"
         )
     thinner = more * math.cos(pair.gear_1.beta) / (2 * math.cos(pair.gear_1.alpha_t))
-    one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
+    try:
+        one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
+    except ValueError as error:
+        raise ValueError(f"backlash_um = {1e3 * wanted:g}, but the thinner teeth are impossible: {error}") from error
     return GearPair(one, two, pair.a)
 
 
@@ -287,6 +285,7 @@ def _pair(file, name, rows, gears, materials, forces):
     force = row["force_N"] or (1e3 * torque / gears[names[0]].r_b if torque else forces.get(name))
     if force is None:
         raise ValueError(f"{file} [pair.{name}]: missing key 'force_N' or 'torque_Nm'; expected a number in N or N m")
+    used = materials[rows["gear"][names[0]]["material"]], materials[rows["gear"][names[1]]["material"]]
     with located(file, f"pair.{name}", row):
         for key in ("m_n_mm", "alpha_n_deg", "beta_deg"):
             one, two = (rows["gear"][gear][key] for gear in names)
@@ -295,11 +294,12 @@ def _pair(file, name, rows, gears, materials, forces):
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
         if row["backlash_um"] is not None:
             made = _with_backlash(made, 1e-3 * row["backlash_um"])
+        check_load(made, force, used)
         misalignment = parts.misalignment_of(made, row)
     owned = parts.damage_of(file, rows, name, made)
     return ScenePair(
         made,
-        materials=tuple(materials[rows["gear"][gear]["material"]] for gear in names),
+        materials=used,
         force=float(force),
         face=row["face"],
         groove=float(row["groove_mm"]),

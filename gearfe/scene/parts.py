@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
 from ..geometry.damage.chip import Chip
-from ..geometry.damage.crack import Crack, check_apart
-from ..geometry.damage.kinds import Damage
+from ..geometry.damage.crack import Crack
+from ..geometry.damage.kinds import Damage, check_damage
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.damage.pit import pit_row
 from ..geometry.damage.spall import Spall
@@ -63,7 +63,7 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
             for side in sides(file, where, row, name, rows["pair"]):
                 with located(file, where, row):
                     made = make(row, pair, SIDES.index(side), rows["pair"][name])
-                    check_apart((pair.gear_1, pair.gear_2)[SIDES.index(side)], [one for one in made if isinstance(one, Crack)])
+                    check_damage((pair.gear_1, pair.gear_2)[SIDES.index(side)], made)
                 if side != first:
                     turned = [replace(one, side="unloaded") for one in made if isinstance(one, (Crack, Chip))]
                     made = [*turned, *(one for one in made if isinstance(one, MissingTooth))]
@@ -102,7 +102,14 @@ def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
         )
     pitch = pitch if span is None else span / max(row["count"] - 1, 1)
     options = {"face": _face(made, pair), "groove": pair["groove_mm"], "both": row["both_halves"], "mirrored": row["mirrored"]}
-    return pit_line(made, which, row["along"], row["count"], pitch, middle=middle, **options, **numbers)
+    pits = pit_line(made, which, row["along"], row["count"], pitch, middle=middle, **options, **numbers)
+    heights, width = [pit.z for pit in pits], (made.gear_1, made.gear_2)[which].b
+    if min(heights) < 0 or max(heights) > width:
+        raise ValueError(
+            f"count = {row['count']}, middle_mm = {middle:g}, pitch_mm = {pitch or 0:g}, span_mm = {span or 0:g}: centres of the "
+            f"pits lie from {min(heights):.4g} to {max(heights):.4g} mm of a face of {width:g} mm; give a smaller pitch or fewer"
+        )
+    return pits
 
 
 def spall_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
@@ -129,6 +136,7 @@ def _face(made, pair):
     return pair["face"] or ("helical" if made.gear_1.beta else "spur")
 
 
+HEALTHY = "healthy"  # name of the case without damage
 DAMAGE: dict[str, Callable[[Row, GearPair, int, Row], list[Damage]]] = {
     "crack": crack_of, "pits": pits_of, "spall": spall_of, "missing_tooth": missing_of, "chip": chip_of,
 }  # fmt: skip
@@ -215,9 +223,12 @@ def of_one_body(owned):
     return [one for owner, damage in owned.items() if owner.body == first.body for one in damage]
 
 
-def by_case(rows):
-    """Rows of damage by case."""
-    out = {}
-    for row in rows:
-        out.setdefault(row["case"], []).append(row)
-    return out
+def cases_of(file, rows):
+    """Rows of damage by kind and case. ValueError for a case with the name of healthy gears."""
+    cases: dict[str, dict[str, list[Row]]] = {kind: {} for kind in DAMAGE}
+    for kind, by_case in cases.items():
+        for row in rows[kind]:
+            if row["case"] in ("", HEALTHY):
+                raise ValueError(f"{file} [{kind}] case = {row['case']!r}: this names gears without damage; give another name")
+            by_case.setdefault(row["case"], []).append(row)
+    return cases

@@ -222,7 +222,8 @@ def check_apart(gear, cracks):
     for crack in cracks:
         if crack.width is not None and crack.width[1] > gear.b * (1 + 1e-9):
             raise ValueError(
-                f"crack open from z = {crack.width[0]:g} to {crack.width[1]:g} mm, but the face ends at {gear.b:g} mm"
+                f"width = ({crack.width[0]:g}, {crack.width[1]:g}) mm: the crack opens beyond the face, "
+                f"which ends at {gear.b:g} mm"
             )
     paths = [(crack.tooth % gear.z, crack.side, crack.width or (0.0, gear.b), crack_path(gear, crack)) for crack in cracks]
     for i, (tooth, side, width, path) in enumerate(paths):
@@ -259,7 +260,7 @@ def _sampled(path, count=200):
 
 
 def check_sector(gear: Gear, crack: "Crack", part: float = SECTOR) -> None:
-    """ValueError if a crack leaves the middle `part` of the sector of its tooth, of which a method makes the gear."""
+    """Raise ValueError if a crack leaves the middle `part` of its sector, in which a method can represent it."""
     turn = np.abs(np.arctan2(*_sampled(crack_path(gear, crack)))).max()
     if turn > part * math.pi / gear.z:
         raise ValueError(

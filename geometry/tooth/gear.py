@@ -168,8 +168,8 @@ class Gear:
                 raise ValueError(f"z_cutter = {self.z_cutter}, but a pinion cutter for z = {self.z} has 5 to {self.z - 1} teeth")
         elif self.r_f <= 0:
             raise ValueError(
-                f"dedendum = {self.dedendum}, x = {self.x}: no root circle is left (radius {self.r_f:.4g} mm): give a smaller "
-                "dedendum, or raise x"
+                f"x = {self.x}, dedendum = {self.dedendum}: the root circle of z = {self.z} has no radius ({self.r_f:.6g} mm); "
+                "give another profile shift or dedendum"
             )
         elif not 0 < self.r_bore < self.r_f:
             raise ValueError(
