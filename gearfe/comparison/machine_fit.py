@@ -169,8 +169,6 @@ def fit_machine(
         If a range or key is invalid, the record has another speed or still changes in its middle, or has fewer lines than there
         are keys.
     """
-    if not isinstance(record, Signal):
-        raise ValueError(f"record = {record!r}, but give a Signal, such as the result of gearfe.read_signal")
     low, high = _ranges(vary)
     file, tables = read_tables(scene)
     logs = low > 0

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..core.case import SIDES
+from ..core.case_parts import SIDES
 from ..geometry.damage.chip import Chip, Recess
 from ..geometry.pair.contacts import Touch, touching
 from ..geometry.pair.gear_pair import with_tips

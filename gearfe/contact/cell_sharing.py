@@ -10,8 +10,8 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 
 from ..geometry.aliases import Floats
 from .joined_lines import FLOOR, JoinedLines
-from .pair_contact import OVERLAP
 from .sharing import share
+from .unknowns import OVERLAP
 
 MOST = 60  # limit of steps; the second half solve exact contact problems
 WIDTHS = 20  # iterations with updated contact widths; the relaxation factor is 0.5 in the second half

@@ -18,42 +18,16 @@ from ..geometry.tooth.profile import arc_at
 from .broken_teeth import with_broken
 from .directions import leaning
 from .kinks import kink_rows, near_kink
-from .rows import LEAST, RESOLVED, SHARP, HatRow, Wanted, corner_rows, finest_hat
+from .rows import LEAST, RESOLVED, SHARP, Wanted, corner_rows, finest_hat
 from .sharing import LineContacts, line_contact, line_contacts, stacked
 from .sliding import bounded, left_out, sliding
 from .thinned import thinned_teeth
+from .unknowns import UNKNOWN, aligned, near_contacts, overlaps
 
 CORNER = 1.0  # distance from a corner within which hat functions resolve a contact [half-widths]
 BEYOND = 1.5  # least half-length of a row [half-widths]
 KINK = 16  # mark of a pair whose contact reaches a kink; smaller marks are corners, with bit n - 1 for corner n
 SMOOTH = 0.5  # A corner is a second contact if its gap is below this part of the parabola of the smooth contact.
-# unknown properties of a contact
-UNKNOWN = ("roll_1", "roll_2", "gap", "coefficient", "radius", "tilt", "turn_1", "turn_2", "fillet")
-OVERLAP = 1e-3  # Smaller overlaps of crack faces, relative to the largest opening, are ignored.
-
-
-def _closing(opening):
-    """Whether crack faces overlap, by the last axis."""
-    return opening.min(axis=-1) < -OVERLAP * np.abs(opening).max(axis=-1)
-
-
-def _within(contacts, reach):
-    """Without the unknowns whose gap cannot close."""
-    near = contacts["gap"] <= max(reach, contacts["gap"].min())
-    if near.all():
-        return contacts
-    kept = {name: values if values is None else values[near] for name, values in contacts.items()}
-    return kept | {"flexibility": contacts["flexibility"][np.ix_(near, near)]}
-
-
-def _aligned(rows):
-    """Return unknowns of rows of hats of different lengths (see `_single`), filled with nan gaps."""
-    out = {name: stacked([getattr(row, name) for row in rows]) for name in HatRow._fields}
-    for k, row in enumerate(rows):
-        size = row.gap.size
-        out["roll_1"][k, size:], out["roll_2"][k, size:], out["gap"][k, size:] = row.roll_1[-1], row.roll_2[-1], np.nan
-    zero = np.zeros(out["gap"].shape)
-    return out | {"coefficient": zero, "tilt": zero, "radius": zero + 1}
 
 
 class PairContact:
@@ -104,13 +78,13 @@ class PairContact:
         kink = near_kink(self, line_load) & possible & (corner == 0)
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
         if self.opening is not None:
-            done &= ~_closing(np.einsum("pcf,pc->pf", self.opening, line))
+            done &= ~overlaps(np.einsum("pcf,pc->pf", self.opening, line))
         open_ = np.flatnonzero(~done)
         closed, fillet = [], []
         if open_.size:
             sets, _ = self.problems(line_load, open_, possible, (corner, zone, width), kink, tilt)
             sets = [problem | {"gap": problem["gap"] - least[i]} for i, problem in zip(open_.tolist(), sets, strict=True)]
-            sets = [_within(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
+            sets = [near_contacts(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
             line[open_], pressure[open_], closing[open_], tangent[open_], closed, fillet = self._solved(
                 sets, line_load, line[open_], open_
             )
@@ -155,7 +129,7 @@ class PairContact:
             carried = force[k, : contacts["gap"].size]
             if not settled[k]:
                 carried[:], approach[k], tangent[k] = self._share(contacts, line_load)
-            if self.opening is not None and _closing(carried @ contacts["opening"]):
+            if self.opening is not None and overlaps(carried @ contacts["opening"]):
                 closed.append(k)
                 carried[:], approach[k], tangent[k] = self._share_closing(contacts, line_load, carried, phases[k])
             if (contacts["fillet"] & (carried > 0)).any():
@@ -291,7 +265,7 @@ class PairContact:
 
     def _built(self, phases, near, row, rows, tilt):
         parts = [
-            _aligned([rows[i, column] for i in phases.tolist()]) if resolved else self._single(phases, column, tilt)
+            aligned([rows[i, column] for i in phases.tolist()]) if resolved else self._single(phases, column, tilt)
             for column, resolved in zip(near, row, strict=True)
         ]
         column = np.repeat(near, [part["gap"].shape[1] for part in parts])

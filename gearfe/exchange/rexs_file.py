@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..core.files import check_path
+from ..core.file_readers import check_path
 from ..geometry.aliases import StrPath
 
 LARGEST = 50_000_000  # largest model file [bytes]

@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from ..core.case import check_load
+from ..core.case_parts import check_load
 from ..core.checks import numbers, truth
 from ..core.frozen import Frozen
 from ..core.material import Material

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from ..core.case import Case
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.mesh_stiffness import mesh_stiffness
 from .runner import Tally, check_workers, count_of, results
 
 
@@ -26,16 +26,6 @@ class Batch:
     seconds: list[float]
     elapsed: float
     workers: int
-
-
-def _checked(cases):
-    try:
-        cases = list(cases)
-    except TypeError:
-        cases = []
-    if not cases or not all(isinstance(case, (Case, Mapping)) for case in cases):
-        raise ValueError("cases: give a list of one Case or dict at least")
-    return cases
 
 
 def batch(
@@ -75,7 +65,9 @@ def batch(
     """
     check_workers(workers)
     work = work or mesh_stiffness
-    every = _checked(cases)
+    every = list(cases)
+    if not every:
+        raise ValueError("cases: give a list of one Case or dict at least")
     if getattr(multiprocessing.current_process(), "_inheriting", False):
         sys.exit(1)  # A worker imported an unguarded script, and the parent process prints the remedy.
     workers = count_of(workers, every)

@@ -9,8 +9,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..core.case import Case
-from ..core.files import check_path
+from ..core.case import Case, check_load
+from ..core.file_readers import check_path
 from ..core.material import Material
 from ..core.record import check_named
 from ..core.supports.shaft import Shaft
@@ -57,7 +57,7 @@ class ScenePair:
     @property
     def damage(self) -> dict[str, dict[str, list[Damage]]]:
         """Damage by case and side as `gearfe.mesh_stiffness` takes it, of one body on each side."""
-        return {case: {side: _of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
+        return {case: {side: parts.of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
 
     def case(self, name: str | None = None) -> Case:
         """Return the pair as a `Case` with a case of damage, or healthy if None. Raises ValueError for an unknown case."""
@@ -239,7 +239,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     run = dict(rows["machine"] or {})
     if run:
         run["bodies"] = {name: (float(body["mass_kg"]), float(body["inertia_kgm2"])) for name, body in run["bodies"].items()}
-    cases = {kind: _by_case(rows[kind]) for kind in parts.DAMAGE}
+    cases = {kind: parts.by_case(rows[kind]) for kind in parts.DAMAGE}
     for kind, by_case in cases.items():
         for name in {"", HEALTHY} & by_case.keys():
             raise ValueError(f"{file} [{kind}] case = {name!r}: this names gears without damage; give another name")
@@ -271,7 +271,10 @@ def _with_backlash(pair: GearPair, wanted: float) -> GearPair:
             "more, or leave it out"
         )
     thinner = more * math.cos(pair.gear_1.beta) / (2 * math.cos(pair.gear_1.alpha_t))
-    one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
+    try:
+        one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
+    except ValueError as error:
+        raise ValueError(f"backlash_um = {1e3 * wanted:g}, but the thinner teeth are impossible: {error}") from error
     return GearPair(one, two, pair.a)
 
 
@@ -283,15 +286,17 @@ def _pair(file, name, rows, gears, materials, forces):
     force = row["force_N"] or (1e3 * torque / gears[names[0]].r_b if torque else forces.get(name))
     if force is None:
         raise ValueError(f"{file} [pair.{name}]: missing key 'force_N' or 'torque_Nm'; expected a number in N or N m")
+    used = materials[rows["gear"][names[0]]["material"]], materials[rows["gear"][names[1]]["material"]]
     with located(file, f"pair.{name}", row):
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
         if row["backlash_um"] is not None:
             made = _with_backlash(made, 1e-3 * row["backlash_um"])
+        check_load(made, force, used)
         misalignment = parts.misalignment_of(made, row)
     owned = parts.damage_of(file, rows, name, made)
     return ScenePair(
         made,
-        materials=tuple(materials[rows["gear"][gear]["material"]] for gear in names),
+        materials=used,
         force=float(force),
         face=row["face"],
         groove=float(row["groove_mm"]),
@@ -300,17 +305,3 @@ def _pair(file, name, rows, gears, materials, forces):
         misalignment=misalignment,
         supports=parts.supports_of(file, rows, name, materials),
     )
-
-
-def _of_one_body(owned):
-    """Damage of the body that is named first: a pair has one on each side."""
-    first = next(iter(owned))
-    return [one for owner, damage in owned.items() if owner.body == first.body for one in damage]
-
-
-def _by_case(rows):
-    """Rows of damage by case."""
-    out = {}
-    for row in rows:
-        out.setdefault(row["case"], []).append(row)
-    return out

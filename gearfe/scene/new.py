@@ -177,7 +177,7 @@ def _of_torque(torque):
     try:
         yield
     except ValueError as error:
-        if torque is None or not str(error).startswith("force = "):
+        if torque is None or "force_N = " not in str(error):
             raise
         raise ValueError(f"torque = {torque:g} N m: {error}") from error
 

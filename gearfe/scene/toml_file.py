@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.files import check_path
+from ..core.file_readers import check_path
 from ..geometry.aliases import StrPath
 from ..geometry.renamed import warn_renamed
 

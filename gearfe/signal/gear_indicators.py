@@ -127,8 +127,8 @@ def has_mesh_line(amplitude, teeth):
 def _by_name(signals):
     """Return records by name. Those of a list have their own names."""
     records = list(signals.values()) if isinstance(signals, Mapping) else signals
-    if not isinstance(records, (list, tuple)) or not records or not all(isinstance(record, Signal) for record in records):
-        raise ValueError(f"signals = {signals!r}, but give one record or more, by name or in a list")
+    if not records:
+        raise ValueError("signals: give one record or more, by name or in a list")
     named = signals if isinstance(signals, Mapping) else {record.name: record for record in records}
     if len(named) < len(records):
         raise ValueError("two records have the same name: give them by name, in a dict")

@@ -70,8 +70,6 @@ def indicator_table(
         frequency, or less than 4 bins of the spectrum; if a line or a sideband lies above half of the rate, or has no bin within
         `tolerance`; if the spectrum is zero around the mesh frequency; if scipy does not know `window`.
     """
-    if not isinstance(signals, Mapping):
-        raise ValueError(f"signals = {signals!r}, but give a dictionary of records by case name")
     if healthy not in signals:
         raise ValueError(f"no case {healthy!r} to compare with; there are {', '.join(signals) or 'none'}: give one as healthy=")
     first = signals[healthy]

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..core.checks import number, whole
+from ..core.checks import whole
 from .given import hertz
 from .spectrum import Spectrum
 
@@ -108,10 +108,7 @@ def find_lines(
     ValueError
         If a line lies outside the spectrum or the tolerance holds no bin.
     """
-    tolerance = BINS * found.resolution if tolerance is None else number("tolerance", tolerance)
-    if not isinstance(lines, Mapping):
-        raise ValueError(f"lines = {lines!r}, but give frequencies by name")
-    lines = {name: number(f"line {name}", value) for name, value in lines.items()}
+    tolerance = BINS * found.resolution if tolerance is None else tolerance
     out = {}
     for name, expected in lines.items():
         if expected > found.frequency[-1] + 1e-6 * found.resolution:

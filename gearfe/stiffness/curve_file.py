@@ -4,7 +4,8 @@ import json
 
 import numpy as np
 
-from ..core.files import Content, read_text
+from ..core.file_readers import read_text
+from ..core.files import Content
 
 COLUMNS = {"phase": "-", "k": "N/m", "k_tangent": "N/m", "deflection": "m"}
 OPTIONAL = {"error": "N/m", "unloaded": "m", "support_deflection": "m"}

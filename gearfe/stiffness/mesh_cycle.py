@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.case import SIDES, Case
+from ..core.case import Case
+from ..core.case_parts import SIDES
 from ..flexibility.plane import FURTHER
 from ..geometry.aliases import Floats
 from ..geometry.checks import WrongTypeError, shown

@@ -9,7 +9,7 @@ import numpy as np
 from ..core.material import Material
 from ..core.threads import single
 from ..flexibility.finite_elements.line_load import check_spread, contact_line, strip, under_line
-from ..flexibility.finite_elements.one_tooth import check_load_along, check_one
+from ..flexibility.finite_elements.one_tooth import check_load_along
 from ..geometry.aliases import Floats
 from ..geometry.damage.crack import Crack, check_apart, meshed_path
 from ..geometry.damage.crack_form import deepest
@@ -98,7 +98,6 @@ def stress_intensity_along_front(
     RuntimeError
         If the mesh cannot follow the front, or the system does not fit into memory.
     """
-    check_one(gear, material, refine)
     check_load_along(line_load, gear, material)
     check_crack(crack)
     if crack.tooth % gear.z or crack.bends:

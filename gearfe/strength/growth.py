@@ -5,7 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..core.case import SIDES, Case
+from ..core.case import Case
+from ..core.case_parts import SIDES
 from ..core.checks import number, one_of, whole
 from ..core.material import Material
 from ..core.table import Column, Table

@@ -9,7 +9,7 @@ from ..core.material import Material
 from ..core.threads import single
 from ..flexibility.finite_elements.hexahedron import face_shapes
 from ..flexibility.finite_elements.line_load import check_spread, contact_line, strip, under_line
-from ..flexibility.finite_elements.one_tooth import check_line_load, check_one
+from ..flexibility.finite_elements.one_tooth import check_line_load
 from ..geometry.aliases import Floats
 from ..geometry.mesh.solid import Solid, solid
 from ..geometry.tooth.gear import Gear
@@ -95,7 +95,6 @@ def root_stress_along_width(
     RuntimeError
         If the system does not fit into memory.
     """
-    check_one(gear, material, refine)
     check_line_load(line_load, gear, material)
     spread = check_spread(gear, half_width)
     return stress_under_line(gear, contact_line(gear, radius), line_load, material, spread=spread, refine=refine)

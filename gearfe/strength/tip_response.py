@@ -21,7 +21,8 @@ from ..geometry.damage.crack import check_sector
 from ..geometry.kept import keeping
 from ..geometry.mesh.outline import stations
 from ..geometry.mesh.section_mesh import section
-from ..geometry.mesh.sector import CUT, sector
+from ..geometry.mesh.sector import sector
+from ..geometry.mesh.sector_outline import CUT
 from ..geometry.tooth.profile import arc_at
 from .fracture import ring, tip_reads
 

@@ -103,7 +103,9 @@ class Chip:
         if self.width is None:
             return (self,)
         if self.width[1] > gear.b * (1 + 1e-9):
-            raise ValueError(f"chip from z = {self.width[0]:g} to {self.width[1]:g} mm, but the face ends at {gear.b:g} mm")
+            raise ValueError(
+                f"width = ({self.width[0]:g}, {self.width[1]:g}) mm: the chip goes beyond the face, which ends at {gear.b:g} mm"
+            )
         roll, where, other = self.cut(gear)
         half = gear.half_thickness(gear.r_a)
         edge = gear.r_a * np.array([math.sin(half), math.cos(half)])
@@ -133,16 +135,13 @@ class Chip:
         roll = math.sqrt(max(radius**2 - gear.r_b**2, 0.0))
         left = float(arc_at(gear, roll) - arc_at(gear, gear.roll_f))
         if radius < gear.r_b or left < LEFT * gear.m_n:
-            raise ValueError(
-                f"chip depth {self.depth:g} mm leaves less than {LEFT:g} modules of the flank of z = {gear.z}: give a "
-                "smaller depth"
-            )
+            raise ValueError(f"depth = {self.depth:g} mm: the chip leaves less than {LEFT:g} modules of the flank (z = {gear.z})")
         (x, y), half = cartesian(*flank(gear, roll)), gear.half_thickness(gear.r_a)
         edge = gear.r_a * np.array([math.sin(half), math.cos(half)])
         chord = math.atan2(x - edge[0], gear.outward * (edge[1] - y))
         if self.angle < chord + FLAT:
             raise ValueError(
-                f"chip angle {math.degrees(self.angle):.4g} degrees, but its cut lies in the tooth of z = {gear.z} only above "
+                f"angle = {self.angle:.4g} rad: the cut of a chip lies in the tooth of z = {gear.z} only above "
                 f"{math.degrees(chord):.4g} degrees: give a larger angle"
             )
         along = self._directions(gear)[0]
@@ -183,7 +182,7 @@ class Chip:
             return _line(start, stop)
         length, radius = float(np.hypot(*(stop - start))), self.radius
         if radius < length:
-            raise ValueError(f"chip radius {radius:g} mm, but its cut is {length:.4g} mm long: give at least this length")
+            raise ValueError(f"radius = {radius:g} mm: the cut of the chip is {length:.4g} mm long; give at least this length")
         half = math.asin(length / 2 / radius)
         along, away = self._directions(gear)
 

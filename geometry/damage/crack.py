@@ -222,7 +222,8 @@ def check_apart(gear, cracks):
     for crack in cracks:
         if crack.width is not None and crack.width[1] > gear.b * (1 + 1e-9):
             raise ValueError(
-                f"crack open from z = {crack.width[0]:g} to {crack.width[1]:g} mm, but the face ends at {gear.b:g} mm"
+                f"width = ({crack.width[0]:g}, {crack.width[1]:g}) mm: the crack opens beyond the face, "
+                f"which ends at {gear.b:g} mm"
             )
     paths = [(crack.tooth % gear.z, crack.side, crack.width or (0.0, gear.b), crack_path(gear, crack)) for crack in cracks]
     for i, (tooth, side, width, path) in enumerate(paths):

@@ -128,8 +128,8 @@ def check_hollows(gear, hollows):
         low, high = sorted((gear.r_form, gear.r_a))
         if not low <= hollow.radius <= high:
             raise ValueError(
-                f"{noun} at radius = {hollow.radius:.6g} mm, but the flank of z = {gear.z} runs from {low:.6g} to {high:.6g} mm: "
-                f"put the {noun}'s centre there"
+                f"{noun} at radius = {hollow.radius:.6g} mm, but the flank of the {gear.z}-tooth gear runs from {low:.6g} to "
+                f"{high:.6g} mm: put the {noun}'s centre there"
             )
         if not 0 <= hollow.z <= gear.b:
             raise ValueError(f"{noun} at z = {hollow.z:.6g} mm, but the face is {gear.b:.6g} mm wide: give 0 <= z <= b")
@@ -137,8 +137,8 @@ def check_hollows(gear, hollows):
         half = float(radius * math.sin(angle))
         if hollow.depth >= half:
             raise ValueError(
-                f"{noun} of depth = {hollow.depth:.6g} mm, but half the tooth of z = {gear.z} is only {half:.6g} mm thick at its "
-                "upper end: make it shallower or put it nearer the root"
+                f"{noun} of depth = {hollow.depth:.6g} mm, but half the tooth of the {gear.z}-tooth gear is only {half:.6g} mm "
+                "thick at its upper end: make it shallower or put it nearer the root"
             )
 
 

@@ -14,7 +14,8 @@ from typing import Any, get_args
 from ..checks import by_gear
 from ..tooth.gear import Gear
 from .chip import Chip
-from .crack import Crack
+from .crack import Crack, check_apart
+from .hollow import check_hollows
 from .missing import MissingTooth
 from .pit import Pit
 from .spall import Spall
@@ -65,6 +66,15 @@ def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     damage = tuple(damage)
     weakens, removes = (tuple(defect for defect in damage if defect._removes_contact is removing) for removing in (False, True))
     return weakens, removes
+
+
+def check_damage(gear: Gear, defects: Iterable[Damage]) -> None:
+    """Raise ValueError for damage that the gear cannot have: beyond its flank, face or sector, or two that meet."""
+    parts = parts_of(gear, defects)
+    weakens, removes = split(parts)
+    check_apart(gear, weakens)
+    check_broken(gear, parts)
+    check_hollows(gear, removes)
 
 
 def check_broken(gear, defects):

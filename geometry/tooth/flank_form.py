@@ -9,12 +9,16 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
 from ..aliases import Floats
+from ..checks import shown
 from .gear import Gear
 from .lead import LeadForm
 from .relief import relief_start
 from .tables import covering, each_tooth
 from .tip_edge import TipEdge
 
+AMOUNTS = (  # fields of a `Flank` that remove material
+    "tip_relief", "root_relief", "profile_crowning", "profile_slope", "helix_crowning", "helix_slope", "twist", "end_relief",
+)  # fmt: skip
 LARGEST = 0.1  # limit of removed material [m_n], because thinning changes the flexibility only by a beam correction
 BENT = 0.1  # The start of a parabolic relief is a kink if the curvature jumps by more than this part of the flank's.
 STEP = 1e-6  # roll length of the difference quotient for slopes [m_n]
@@ -99,18 +103,19 @@ class FlankForm:
         most = LARGEST * self.gear.m_n
         sections = self.at(np.linspace(0, self.gear.b, 17))
         largest = max(1.0, float(np.abs(self._scales).max(initial=0.0)))
-        eccentric = np.array([self.flank.eccentricity])
+        given = {name: getattr(self.flank, name) for name in AMOUNTS}
+        shape = ", ".join(f"{name} = {shown(amount)} mm" for name, amount in given.items() if np.any(amount))
         for name, values in (
-            ("removed from the flank", largest * sections._shaped(roll[None, :], 0)),
-            ("of pitch deviation", self._shifts),
-            ("of eccentricity", eccentric),
-            ("of wear", np.zeros(1) if self._worn is None else self._wear(roll, 0)),
+            (shape or "table", largest * sections._shaped(roll[None, :], 0)),
+            ("pitch", self._shifts),
+            (f"eccentricity = {self.flank.eccentricity:g} mm", np.array([self.flank.eccentricity])),
+            ("wear", np.zeros(1) if self._worn is None else self._wear(roll, 0)),
         ):
             worst = float(np.abs(values).max(initial=0.0))
             if worst > most:
                 raise ValueError(
-                    f"{worst:.4g} mm {name} of z = {self.gear.z}: more than a tenth of the module, {most:.4g} mm, so that the "
-                    "tooth would be another one; amounts are in mm (20 um are 0.02)"
+                    f"{name}: the flank of z = {self.gear.z} deviates by {worst:.4g} mm, but a tenth of the module, "
+                    f"{most:.4g} mm, is the limit: give smaller amounts"
                 )
 
     def removed(self, roll: ArrayLike, derivative: int = 0) -> Floats:

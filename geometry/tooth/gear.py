@@ -166,6 +166,11 @@ class Gear:
                 )
             if not 5 <= self.z_cutter < self.z:
                 raise ValueError(f"z_cutter = {self.z_cutter}, but a pinion cutter for z = {self.z} has 5 to {self.z - 1} teeth")
+        elif self.r_f <= 0:
+            raise ValueError(
+                f"x = {self.x}, dedendum = {self.dedendum}: the root circle of z = {self.z} has no radius ({self.r_f:.6g} mm); "
+                "give another profile shift or dedendum"
+            )
         elif not 0 < self.r_bore < self.r_f:
             raise ValueError(
                 f"r_bore = {self.r_bore} mm, but the bore must lie inside the root circle: give 0 < r_bore < {self.r_f:.6g} mm"

@@ -164,7 +164,7 @@ def test_a_rounded_cut_of_a_large_radius_is_a_plane():
     off = (bent - bent[:, :1]).T @ np.array([1.0, 1.0]) / math.sqrt(2)  # distance from the chord, away from the tooth
     chord = np.hypot(*(bent[:, -1] - bent[:, 0]))
     assert off.min() == pytest.approx(-(2.0 - math.sqrt(4 - chord**2 / 4)), rel=1e-6)
-    with pytest.raises(ValueError, match=r"chip radius 1 mm, but its cut is 1\.\d+ mm long: give at least this length"):
+    with pytest.raises(ValueError, match=r"radius = 1 mm: the cut of the chip is 1\.\d+ mm long; give at least this length"):
         case(radius=1.0)
 
 
@@ -228,7 +228,7 @@ def test_what_does_not_model_it_refuses_it():
         gf.export_mesh("x.vtu", PAIR.gear_1, [gf.Chip(depth=1.0)], cells="tetrahedra")
     with pytest.raises(ValueError, match=r"leaves less than 0\.5 modules of the flank"):
         case(depth=6.0)
-    with pytest.raises(ValueError, match=r"chip angle 5 degrees, but its cut lies in the tooth of z = 17 only above"):
+    with pytest.raises(ValueError, match=r"angle = 0\.08727 rad: the cut of a chip lies in the tooth of z = 17 only above"):
         case(angle=math.radians(5))
     for wrong in ({"depth": -1.0}, {"angle": 2.0}, {"tooth": 0.5}, {"depth": math.nan}, {"radius": -1.0}):
         with pytest.raises(ValueError, match=next(iter(wrong))):
@@ -304,7 +304,7 @@ def test_chips_of_a_part_over_the_whole_width_are_whole_chips(chip):
     ("width", "method", "message"),
     [
         ((0, 7.5), "ritz", "chips with method = 'ritz', a transverse section"),
-        ((0, 16), "ritz3d", "chip from z = 0 to 16 mm, but the face ends at 15 mm"),
+        ((0, 16), "ritz3d", "width = \\(0, 16\\) mm: the chip goes beyond the face, which ends at 15 mm"),
         ((7, 3), "ritz3d", "give two rising heights from 0 on"),
     ],
 )

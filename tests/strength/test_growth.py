@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import gearfe as gf
+from gearfe.app.cli import main
 from gearfe.geometry.damage.crack import crack_path
 from gearfe.geometry.tooth.profile import fillet_length
 from gearfe.strength.kink import kinked, turn_angle
@@ -272,3 +273,17 @@ def test_paths_that_leave_the_body_are_refused_by_their_gear(path, message):
 def test_a_start_off_the_root_is_refused():
     with pytest.raises(ValueError, match=r"start = 9.0 mm, but the root of z = 21 goes from"):
         gf.stress_intensity(GEAR, gf.Crack(length=1.0, start=9.0), 22.0, 100.0, STEEL)
+
+
+def test_the_verb_prints_the_life_with_its_interval_and_draws_the_growth(tmp_path, capsys):
+    scene, moving = str(gf.new_scene(tmp_path / "mine.toml")), tmp_path / "grown.gif"
+    main(
+        ["crack", scene, "--case", "cracked", "--steps", "2", "--paris", "1e-13", "3", "--scatter", "4", "--animate", str(moving)]
+    )
+    lines = capsys.readouterr().out.splitlines()
+    life, low, high = (float(lines[0].split()[k]) for k in (0, 2, 4))
+    assert (low, high) == pytest.approx((life / 4, 4 * life), rel=2e-3)
+    assert lines[1].startswith("unfinished: 2 steps")
+    assert moving.read_bytes()[:6] == b"GIF89a"
+    assert main(["crack", scene, "--case", "cracked", "--steps", "2", "--animate", str(tmp_path / "grown.png")]) != 0
+    assert "no moving picture" in capsys.readouterr().err

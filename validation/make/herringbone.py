@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.comparison.compare import compare_cases, damage_cycle, solve_fitted
+from gearfe.comparison.compare import compare_cases, damage_cycle
 from gearfe.comparison.losses import tooth_stiffness
 from gearfe.comparison.printed_stiffness import printed_cases
+from gearfe.comparison.solved_curves import solve_fitted
 from gearfe.scene.stored import read_curves, stored_file, write_curves
 
 from ..shared import herringbone_page, herringbone_statements, page

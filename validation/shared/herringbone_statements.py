@@ -3,7 +3,7 @@
 import numpy as np
 
 import gearfe as gf
-from gearfe.core.case import overlap
+from gearfe.core.case_parts import overlap
 
 from .kept_rows import kept
 

@@ -7,7 +7,7 @@ import tomllib
 from importlib import resources
 
 from ...stiffness.methods import NAMES, described, having
-from . import exchange, filling, sets, shell, signals, tools, verbs
+from . import comparing, exchange, filling, sets, shell, signals, tools, verbs
 
 # Values inserted into help texts. The suffixes must equal those of gearfe.core.files.
 WORDS = {
@@ -58,7 +58,15 @@ def _nearest(word, names):
 
 
 TYPES = {"int": int, "float": float, "ratio": _ratio}
-MODULES = {"exchange": exchange, "filling": filling, "sets": sets, "signals": signals, "tools": tools, "verbs": verbs}
+MODULES = {
+    "comparing": comparing,
+    "exchange": exchange,
+    "filling": filling,
+    "sets": sets,
+    "signals": signals,
+    "tools": tools,
+    "verbs": verbs,
+}
 
 
 def main(argv=None):

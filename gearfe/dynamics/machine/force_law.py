@@ -19,7 +19,8 @@ from ...core.record import settle
 from ...geometry.aliases import Floats
 from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.curve import StiffnessCurve, joined
-from ...stiffness.solve import PairOptions, Solve, solve, split_arguments
+from ...stiffness.mesh_stiffness import PairOptions, split_arguments
+from ...stiffness.solve import Solve, solve
 from .secant import Secant
 
 ROWS, COLUMNS = 1024, 64  # table size of a force law: phases per mesh cycle, deflections

@@ -67,8 +67,6 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
     action, rotate the ring by some per cent less than the row of a mesh gives. On very soft springs more than all deflections of
     the set would then be removed, which is an error.
     """
-    if not isinstance(machine, Machine) or not isinstance(curves, SetCurves):
-        raise ValueError(f"with_set({machine!r}, {curves!r}), but give a Machine and the result of planetary_stiffness")
     if ring == "in k":
         warn_renamed('ring = "in k"', '"lumped"')
         ring = "lumped"

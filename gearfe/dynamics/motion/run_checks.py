@@ -4,7 +4,7 @@ import numpy as np
 
 from ...core.checks import numbers
 from ...core.memory import free_memory
-from ..machine.tables import Machine
+from ...core.time_limit import check_time
 from .reference import SOLVERS
 
 DEEPEST, FASTEST = 1.0, 1e3  # limits of compression [m] and compression rate [m/s], beyond any gear
@@ -56,10 +56,6 @@ def _check_output(duration, rate, step, dt, every):
 
 def check_run(machine, duration, method, rate, step, dt, start, every):
     """Raise ValueError if arguments of `simulate` are out of range or contradict each other."""
-    if not isinstance(machine, Machine):
-        raise ValueError(
-            f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
-        )
     if method != "fast" and method not in SOLVERS:
         raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
     for name, value in {"dt": dt, "step": step}.items():
@@ -76,3 +72,13 @@ def check_run(machine, duration, method, rate, step, dt, start, every):
         raise ValueError(
             f"start = {start:g} s, but give a time within {LATEST:g} s, because phases at later times are lost by rounding"
         )
+
+
+def check_duration(duration, cost):
+    """Return the seconds of a run at a `cost` for each second of motion.
+
+    Raises ValueError if they are above the limit.
+    """
+    what = f"duration = {duration:g} s, {cost:.2g} s for each second of motion"
+    check_time(what, cost * duration, "give a shorter duration, or a longer step=")
+    return cost * duration

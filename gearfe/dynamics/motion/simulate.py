@@ -9,16 +9,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import truth, whole
+from ...core.checks import whole
 from ...core.record import ranged
 from ...core.threads import single
-from ...core.time_limit import check_time
 from ..machine.tables import Machine
 from .fixed_step import fixed_steps
 from .law_range import compared
 from .reference import reference
 from .response import Response, all_channels
-from .run_checks import check_initial, check_memory, check_run, initial_state
+from .run_checks import check_duration, check_initial, check_memory, check_run, initial_state
 from .step_control import (
     WANTED_OPEN,
     Estimate,
@@ -154,9 +153,6 @@ def simulate(
         for name, value, unit in (("rate", rate, " Hz"), ("step", step, " s"), ("dt", dt, " s"))
     )
     every = whole("every", every, 1)
-    error, filtered = (
-        None if value is None else truth(name, value) for name, value in (("error", error), ("filtered", filtered))
-    )
     check_run(machine, duration, method, rate, step, dt, start, every)
     if initial is None:
         state = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
@@ -183,19 +179,6 @@ def simulate(
             out = run.given(math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1, error)
     seconds = {"seconds": out.stats["seconds"] - compiled.seconds, "compiled": compiled.seconds}
     return compared(replace(out, stats=out.stats | seconds))
-
-
-def check_duration(duration, cost):
-    """Return the seconds of a run at a `cost` for each second of motion.
-
-    Raises ValueError if they are above the limit.
-    """
-    what, remedy = (
-        f"duration = {duration:g} s, {cost:.2g} s for each second of motion",
-        "give a shorter duration, or a longer step=",
-    )
-    check_time(what, cost * duration, remedy)
-    return cost * duration
 
 
 def _reference(machine, duration, count, state, method, rtol, start, filtered):

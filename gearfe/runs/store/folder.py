@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from ...core.checks import whole
-from ...core.files import PART, check_path, written
+from ...core.file_readers import check_path
+from ...core.files import PART, written
 from ...geometry.aliases import StrPath
 
 COUNT = object()  # marker for an integer of at least 1 in the schema of a note

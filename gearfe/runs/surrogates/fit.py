@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.stats import qmc
 
-from ...core.case import two_materials
+from ...core.case_parts import two_materials
 from ...core.checks import whole
 from ...core.material import Material
 from ...geometry.aliases import Floats

@@ -114,8 +114,6 @@ def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
 
     ValueError if an input is unknown, no range, or does not go with this pair.
     """
-    if not isinstance(pair, GearPair):
-        raise ValueError(f"pair = {pair!r}, but give a GearPair")
     if pair.gear_1.beta:
         raise ValueError("the pair is helical, but a surrogate is one of the transverse section: give spur gears")
     _check_names(pair, inputs)

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
-from ...core.files import Content, check_output, read_npz, save_as
+from ...core.file_readers import read_npz
+from ...core.files import Content, check_output, save_as
 from ...core.record import check_keys
 from ...geometry.aliases import Floats, StrPath
 from ...geometry.pair.gear_pair import GearPair

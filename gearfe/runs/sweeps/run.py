@@ -18,7 +18,7 @@ from .study import Study, read_study, slim
 
 def _check_processes(workers, scheduler):
     check_workers(workers)
-    if scheduler is not None and not (isinstance(scheduler, str) and scheduler.strip()):
+    if scheduler is not None and not scheduler.strip():
         raise ValueError(f"scheduler = {scheduler!r}, but give the address of a Dask scheduler, such as 'tcp://host:8786'")
     if workers is not None and scheduler is not None:
         raise ValueError("workers are processes of this machine, a scheduler has its own: give one of them")
