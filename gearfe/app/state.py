@@ -95,7 +95,7 @@ def _check_single(name, scene, tables):
 
 
 def _assumptions(entries, starts):
-    """Assumptions that hold values of the chosen pair, with the page's keys, and those that hold none."""
+    """Return the assumptions with values of the chosen pair, with the page's keys, and those without values."""
     for entry in entries:
         values = entry.get("holds", {})
         held = {new + key.removeprefix(old): value for key, value in values.items() for old, new in starts if key.startswith(old)}

@@ -142,7 +142,7 @@ class Comparison:
         return {name: loss(healthy[name], hurt[name]) for name in hurt if name in healthy}
 
     def rows(self) -> Iterator[Row]:
-        """All that was asked for, by pair, case, zone and method."""
+        """Yield all computed values by pair, case, zone and method."""
         for key in self.asked:
             curves, losses = self._cut(key), self.losses(key)
             zones = {name: curve.zones() for name, curve in curves.items()}

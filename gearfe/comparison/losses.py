@@ -69,7 +69,7 @@ def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
 
 
 def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int, str]:
-    """Damage in words by number of the tooth pair. Teeth are named unless the only one is tooth 0 of the pinion.
+    """Describe the damage by number of the tooth pair. Teeth are named unless the only one is tooth 0 of the pinion.
 
     `returns` is how often they mesh, in words (`gearfe.comparison.returns.returns_of`).
 
@@ -134,7 +134,7 @@ def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: 
 
 
 def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Damage]] | None) -> str:
-    """Damage in words.
+    """Describe damage in words.
 
     Examples
     --------

@@ -124,7 +124,7 @@ class MachineFit:
         return signal, {"faults": [_label(one) for one in faulty.faults], "error": self.error}
 
     def _shift(self, machine):
-        """Time by which the machine is ahead so that its lines have the phases of the record [s]."""
+        """Return the time shift [s] with which the lines of the machine have the phases of the record."""
         ours = _lines(machine, self.channel, self.frequency) * _gain(_path(self.values), self.frequency)
         theirs = line_amplitudes(self.record, self.frequency)
         times = np.linspace(0, 1 / self.frequency[0], 20 * self.frequency.size + 1)[:-1]
@@ -324,7 +324,7 @@ def _lines(machine, channel, frequency):
 
 
 def _reach(jacobian, scale, free, whole):
-    """Half widths of 95 % confidence intervals. Undetermined directions have the whole range."""
+    """Return the half-widths of 95 % confidence intervals. Undetermined parameters have their whole range."""
     _, sizes, ways = np.linalg.svd(jacobian * whole, full_matrices=False)
     spread = 1 / np.maximum(sizes, 1e-12)
     quantile = float(stdtrit(free, 0.975)) if scale > 1 and free else 1.96

@@ -90,7 +90,7 @@ def _names(scene, top) -> Iterator[tuple[int, float, str]]:
 
 
 def named_table(found: Spectrum, scene: Scene, times: float = 10.0) -> tuple[Table, str]:
-    """`named_lines` as a table, and how many are named, in words."""
+    """Return the table of `named_lines`, and a sentence with the number of named lines."""
     lines, covered = named_lines(found, scene, times)
     columns = [
         Column("frequency", "Hz", "{:.2f}"),

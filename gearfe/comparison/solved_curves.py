@@ -58,7 +58,7 @@ def _one_method(how, method, reference, fresh, again):
 
 
 def _work(plan, timed, methods, known):
-    """Return key, method and whether it is computed once more of all curves of a comparison, and their relative cost."""
+    """Return key, method, whether the curve is repeated for the table, and relative cost of each curve of a comparison."""
     work = [(key, method, False) for key in plan for method in methods] + [(key, methods[0], True) for key in timed]
     return work, [0.0 if (*key, name) in known else COST.get(name, 0.3) * (1 + again) for key, name, again in work]
 

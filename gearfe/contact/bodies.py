@@ -130,7 +130,7 @@ def between(cells, bodies):
 
 
 class _Line(NamedTuple):
-    """Cells `at` of one tooth in one phase, whose first cell is number `start` of all."""
+    """Cells `at` of one tooth in one phase. `start` is the number of its first cell."""
 
     phase: int
     tooth: int

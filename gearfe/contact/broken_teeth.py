@@ -47,7 +47,7 @@ def without_recesses(case):
 
 
 def _chipped(points, pair, flexibility, extended, path, flanks):
-    """Contacts in which flanks end at the corners of chips. The ends of their path are put into `path`."""
+    """Return the contacts of flanks that end at the corners of chips, and store the ends of their path in `path`."""
     cut = [getattr(own, "tips", {}) for own in flexibility]
     if not any(cut):
         return points

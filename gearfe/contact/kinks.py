@@ -15,7 +15,7 @@ SHALLOW = 1e-3  # kinks with a smaller slope need no shorter hats
 
 
 def near_kink(contact, line_load):
-    """For each phase and pair of a `gearfe.contact.pair_contact.PairContact`: whether a kink lies within its contact."""
+    """Return whether a kink is within the contact, for each phase and pair of a `gearfe.contact.pair_contact.PairContact`."""
     points = contact.found
     out = np.zeros(points.gap.shape, dtype=bool)
     if contact.flanks is None:

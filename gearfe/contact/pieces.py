@@ -38,7 +38,7 @@ class Piece(NamedTuple):
 
 @keeping(64)
 def gaps(pair):
-    """Return how far beyond the path (before its start, after its end) [mm], and the least gap from there on, where there is one.
+    """Return distances beyond the path [mm], before its start and after its end, and the least gap from there on.
 
     Where nothing touches at the end of the path itself, gaps count from where a corner first meets the mate.
     """
@@ -132,7 +132,7 @@ def _along(roll, slope, width, limits, ends, slack):
 
 
 def _with_floors(pieces, floors, width):
-    """Cut pieces where shallow pits (gear, depth, intervals of each piece) begin and end."""
+    """Divide contact line segments at the ends of shallow pits, given as (gear, depth, intervals of each segment)."""
     out = []
     for k, piece in enumerate(pieces):
         above = [(gear, depth, *part) for gear, depth, intervals in floors for part in intervals[k]]
@@ -187,7 +187,7 @@ def _parts(roll, slope, width, limits, slack):
 
 
 def _left(piece, taken, width):
-    """Pieces that the intervals `taken` (first, last) leave of one."""
+    """Return the parts of a segment outside the intervals `taken` (first, last)."""
     out, at, fine = [], piece.first, piece.ends[0]
     for a, b in sorted(taken):
         if a > at:
@@ -203,7 +203,7 @@ def _near(teeth, pits, z):
 
 
 def _taken(pairs, pits, bands, pieces, slope):
-    """Intervals of depth that pits take from each piece.
+    """Return the intervals in which pits remove contact from each segment.
 
     Beyond the path a line is bent, so it is looked at in `PARTS`.
     """

@@ -100,7 +100,7 @@ def _tops(marks, ends, offsets):
 
 
 def _apart(places, least, last):
-    """Rising places without those closer than `least` [mm] to the previous one (to the next one if `last` is kept)."""
+    """Return rising places without those closer than `least` [mm] to the previous one (to the next one with `last`)."""
     away = np.diff(places) >= least * (1 - 1e-9)
     return places[np.append(away, True) if last else np.append(True, away)]
 
@@ -167,7 +167,7 @@ def hat_rows(contact, at, knots, kernels, host, tips):
     cuts = np.cumsum(count)[:-1]
     meets = np.split(np.isfinite(gap), cuts)
     parts = [row[:, on] for row, on in zip(np.split(values, cuts, axis=1), meets, strict=True)]
-    order = points.order[[column for _, column in at]]
+    order = points.order[np.array(at)[:, 1]]
     sides = enumerate(zip(contact.flexibility, (1, -1), strict=True))
     bodies = [flexible.within([part[k] for part in parts], (sign * order).tolist()) for k, (flexible, sign) in sides]
     made, alike = [None] * len(parts), {}
@@ -208,12 +208,12 @@ def _between(knots, kernel, on):
 
 
 def _alone(one):
-    """Whether a row has one corner and nothing else. All such rows have the same arrangement of hats."""
+    """Return whether a row has a single corner and nothing else, so that its hat functions have the standard arrangement."""
     return len(_numbers(one)) == 1 and not one.width
 
 
 def _standing(contact, one, host):
-    """Knots of a row that is `_alone`, from its corner, and what its hats are to each other."""
+    """Return the knots of a row that is `_alone`, from its corner, and the local influence between its hat functions."""
     (gear, fine), ends = _scale(contact, host), _ends(_numbers(one), host)
     return _alone_hats(gear.m_n, fine, one.zone, one.finest, ends)
 

@@ -83,7 +83,7 @@ class Thinning:
         return float(1 - left[0] / half[0])
 
     def _sections(self, tooth):
-        """Heights, half thicknesses and what is left of these, first at the foot, then from root to tip circle [mm]."""
+        """Return heights, half thicknesses and remaining half thicknesses [mm], at the foot, then from root to tip circle."""
         foot = float(fillet(self.gear, tangent_point(self.gear))[0])
         radius = np.append(foot, np.linspace(self.gear.r_f, self.gear.r_a, POINTS + 1))
         angle = place(self.gear, radius).angle

@@ -16,7 +16,7 @@ def overlaps(opening):
 
 
 def near_contacts(contacts, reach):
-    """Without the unknowns whose gap cannot close."""
+    """Return the contacts without the unknowns whose gap cannot close."""
     near = contacts["gap"] <= max(reach, contacts["gap"].min())
     if near.all():
         return contacts

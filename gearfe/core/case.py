@@ -194,7 +194,7 @@ class Case:
 
     @property
     def damaged_pairs(self) -> tuple[int, ...]:
-        """Numbers of the tooth pairs with damage, that of the first crack or pit first."""
+        """Return the numbers of the tooth pairs with damage, beginning with that of the first crack or pit."""
         return tuple(
             dict.fromkeys(
                 sense * defect.tooth
@@ -241,7 +241,7 @@ def _as_mapping(case):
 
 
 def _stated(given):
-    """Read-only copy of what is given by gear, without empty entries, or None if nothing is left."""
+    """Return a read-only copy of values by gear without empty entries, or None if nothing remains."""
     return Frozen({name: value for name, value in given.items() if value}) if given and any(given.values()) else None
 
 

@@ -28,7 +28,7 @@ def two_materials(material: Any) -> tuple[Material, Material]:
 
 
 def overlap(pair: GearPair, face: str | None, groove: float) -> float:
-    """Overlap ratio of a pair (of one half, if herringbone) whose teeth run as `face` says, or 0 for spur."""
+    """Return the overlap ratio of a pair (of one half if `face` is herringbone), or 0 for spur gears."""
     width = min(pair.gear_1.b, pair.gear_2.b)
     if face == "herringbone":
         width = (width - groove) / 2

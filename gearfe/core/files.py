@@ -118,12 +118,12 @@ def suffix_of(path, kind, *, reading=False):
 
 
 def save(path, kind, content):
-    """Write a `Content` in the format that the suffix of `path` asks for."""
+    """Write a `Content` in the format of the suffix of `path`."""
     save_as(suffix_of(path, kind), path, content)
 
 
 def save_as(suffix, path, content):
-    """Write a `Content` in the format of a suffix, whatever that of `path`."""
+    """Write a `Content` in the format of a given suffix, independent of that of `path`."""
     with written(path) as name:
         FORMATS[suffix].write(name, content)
 

@@ -41,7 +41,7 @@ def _attributes(kind):
 
 
 def check_stated(record):
-    """Raise ValueError unless the arrays of a record have the stated shapes, and what has no stated exception is finite."""
+    """Raise ValueError unless the arrays have the stated shapes and, without a stated exception, finite values."""
     sizes = {}
     for name, (shape, special) in _attributes(type(record)).items():
         value = getattr(record, name)

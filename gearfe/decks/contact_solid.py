@@ -114,7 +114,7 @@ def nominal_at(pair: GearPair, phase: float, z: Floats | float) -> Floats:
 
 
 def touching(case: Case, phase: float, approach: float) -> Touching:
-    """Return the tooth pairs whose flanks meet within `REACH` approaches anywhere along the width, and their contact places."""
+    """Return the tooth pairs with gaps below `REACH` approaches anywhere along the width, and their contact places."""
     pair, forms, common = case.pair, case.forms, min(case.pair.gear_1.b, case.pair.gear_2.b)
     heights, modulus = np.linspace(0.0, common, SECTIONS), contact_modulus(case.materials)
     candidates = contacts(pair, (nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
@@ -258,7 +258,7 @@ def _uncovered(faces):
 
 
 def _renamed(name, tooth, z):
-    """Flank of a mesh whose tooth 0 is tooth `tooth` of the gear."""
+    """Return the name of a flank of a mesh in which tooth 0 is tooth `tooth` of the gear."""
     return f"flank {(int(name.split()[1]) + tooth) % z}" if name.startswith("flank ") else name
 
 

@@ -87,7 +87,7 @@ class GearUnit:
         return stages.keys()
 
     def _planet_meshes(self, stages, shafts):
-        """Stage, planet, its mate, and whether that is the sun or the ring."""
+        """Yield stage, planet, its mate, and whether the mate is the sun or the ring."""
         for stage in stages:
             gears = [gear for role in ("gear_1", "gear_2") if (gear := self._gear_of(stage, role)) is not None]
             planet = next((one for one in gears if self._shaft(one) in shafts), None)
@@ -96,7 +96,7 @@ class GearUnit:
                 yield stage, planet, other, "ring" if other.type == "ring_gear" else "sun"
 
     def _copy(self, planet, first):
-        """Note that a planet is taken as equal to the first one."""
+        """Record that a planet is assumed equal to the first one."""
         flanks = [self.reader.flanks(gear) for gear in (planet, first)]
         self.copies |= {planet.id, *(flank.id for flank in flanks[0].values())}
         alike = [{key: value for key, value in gear.values.items() if key not in POSITION} for gear in (planet, first)]

@@ -205,7 +205,7 @@ class Flexibility:
 
 
 def outermost(solved: Iterable[int], z: int) -> list[int]:
-    """Those of the `solved` teeth of a gear with `z` teeth that have a neighbour which was not solved."""
+    """Return the `solved` teeth of a gear with `z` teeth that have an unsolved neighbour."""
     teeth = set(solved)
     return [tooth for tooth in teeth if not {(tooth + 1) % z, (tooth - 1) % z} <= teeth]
 

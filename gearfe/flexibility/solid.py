@@ -85,7 +85,7 @@ class Flexibility3D:
         return (across[:, :, None] * along[:, None, :]).reshape(across.shape[0], -1)
 
     def between(self, first, second):
-        """B of a tooth, or between two teeth, or None if they are too far apart to have been solved."""
+        """Return the matrix B of a tooth, or between two teeth, or None if these are too far apart to interact."""
         z = self.gear.z
         whole = self if self.healthy is None else self.healthy
         if (second - first) % z == 0:

@@ -159,7 +159,7 @@ class PlanetaryCase:
         return tuple(map(tuple, errors.tolist()))
 
     def _by_gear(self, what, given, kind, *, single):
-        """By gear, planets one by one: ``{"sun": ..., "planet1": ..., "ring": ...}``, those given only."""
+        """Return the given values by gear, with each planet: ``{"sun": ..., "planet1": ..., "ring": ...}``."""
         if given is None:
             return Frozen({})
         if not isinstance(given, Mapping):

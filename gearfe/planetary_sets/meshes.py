@@ -76,7 +76,7 @@ class SetMesh:
 
 
 class PlacedContacts(NamedTuple):
-    """`MeshContacts` of a mesh at one position, pinion tooth `first` of pair 0, and how many pairs are ahead of the newest."""
+    """`MeshContacts` of a mesh at one position, with the pinion tooth `first` of pair 0 and the number of leading pairs."""
 
     contacts: MeshContacts
     first: int

@@ -37,7 +37,7 @@ def processes(workers: int, *, own: bool = False) -> Iterator[ProcessPoolExecuto
 
 @contextlib.contextmanager
 def _one_in_environment():
-    """Let processes started here have one thread: the libraries read it from the environment when they start."""
+    """Limit processes started here to one thread by environment variables, which libraries read at their start."""
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, "1"))
     try:

@@ -22,7 +22,7 @@ OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # words that 
 
 
 def split(file, assumptions, given, tables):
-    """Assumptions that hold, and what was changed.
+    """Return the valid assumptions, and the changes that make the others invalid.
 
     Of checked ``[[assumption]]`` tables, the values `given` by the source by dotted key, and the scene's `tables` with their
     defaults filled in: ``what``, ``why`` and ``depends`` of those that hold; one text for each value that is no longer the

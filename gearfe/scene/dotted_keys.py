@@ -59,7 +59,7 @@ def _kinds(tables):
 
 
 def _check_number(dotted, key, single, rest):
-    """Raise ValueError unless what follows a key is nothing, or the number in a list."""
+    """Raise ValueError unless nothing follows a key, or a valid index of a list."""
     if rest and not (key.type in LISTS and len(rest) == 1 and rest[0].isdigit()):
         raise ValueError(f"{dotted!r} names no single value; write for instance {single}")
 
@@ -82,7 +82,7 @@ def set_values(tables: Tables, values: Mapping[str, Any]) -> Tables:
 
 
 def _homes(tables, dotted):
-    """Return the `Key`, the tables that hold it, and what follows: the number in a list."""
+    """Return the `Key`, the tables that contain it, and the index of a list, if any."""
     parts, homes, table = dotted.split("."), [tables], scene_schema()["scene"]
     while (key := table.keys[parts.pop(0)]).of:
         table = scene_schema()[key.of]

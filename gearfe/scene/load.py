@@ -33,8 +33,6 @@ from .toml_file import read_toml
 from .train import Train
 from .train_tables import train_of
 
-HEALTHY = "healthy"  # name of the case without damage
-
 
 @dataclass(frozen=True, slots=True)
 class ScenePair:
@@ -56,7 +54,7 @@ class ScenePair:
 
     @property
     def damage(self) -> dict[str, dict[str, list[Damage]]]:
-        """Damage by case and side as `gearfe.mesh_stiffness` takes it, of one body on each side."""
+        """Return the damage by case and side as an argument of `gearfe.mesh_stiffness`, of one body on each side."""
         return {case: {side: parts.of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
 
     def case(self, name: str | None = None) -> Case:
@@ -239,10 +237,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     run = dict(rows["machine"] or {})
     if run:
         run["bodies"] = {name: (float(body["mass_kg"]), float(body["inertia_kgm2"])) for name, body in run["bodies"].items()}
-    cases = {kind: parts.by_case(rows[kind]) for kind in parts.DAMAGE}
-    for kind, by_case in cases.items():
-        for name in {"", HEALTHY} & by_case.keys():
-            raise ValueError(f"{file} [{kind}] case = {name!r}: this names gears without damage; give another name")
+    cases = parts.cases_of(file, rows)
     kept, changed, own = assumed.split(file, rows["assumption"], rows["given"], rows | cases)
     title, source = rows["title"], rows["source"]
     if own:

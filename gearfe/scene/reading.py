@@ -99,7 +99,7 @@ def checked(package: str, name: str, file: str, where: str, given: Any) -> dict[
 
 
 def fits(value: Any, kind: str, count: int | None = None) -> bool:
-    """Whether a value is of a type of keys, a list of so many."""
+    """Return whether a value has the type of a key, or is a list with this number of values."""
     if kind in LISTS:
         return isinstance(value, list) and count in (None, len(value)) and all(fits(one, LISTS[kind]) for one in value)
     if kind not in ("number", "integer"):

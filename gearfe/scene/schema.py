@@ -87,7 +87,7 @@ class Key:
 
     @property
     def expected(self) -> str:
-        """Type and unit in words."""
+        """Describe type and unit in words."""
         words = TYPES.get(self.type, "a text").replace("a list of", "two" if self.count == 2 else "a list of")
         return f"{words} in {SPELLED.get(self.unit, self.unit)}" if self.unit else words
 
@@ -151,7 +151,7 @@ class KeyTable:
         yield from (f"give {one} and {two} together" for one, two in self.together if (one in given) != (two in given))
 
     def _of_kind(self, kind, given):
-        """Yield what a row of a kind lacks or must not have."""
+        """Yield the missing and the forbidden keys of a row of a kind."""
         of_kinds = [key for key in self.keys.values() if key.kinds]
         own = [key for key in of_kinds if kind in key.kinds]
         has = ", ".join(key.name for key in own) or "no other key"

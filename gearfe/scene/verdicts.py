@@ -142,7 +142,7 @@ def _words(rows):
 
 
 def _cells(reference, rows, number):
-    """Cells of the rows of a reference. What equals that of the row above is left out."""
+    """Return the cells of the rows of a reference. A cell equal to the one above is empty."""
     above, pair = ["", ""], None
     for row in rows:
         name = "" if above[0] else f"{reference.quantity}{_unit(reference)} [{number}]"

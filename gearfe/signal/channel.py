@@ -130,7 +130,7 @@ def _rate(path, found, name, given, time):
 
 
 def _whole(path, name, values):
-    """Raise ValueError if samples are missing: how many, and the longest stretch without."""
+    """Raise ValueError with the number of missing samples and the longest gap, if samples are missing."""
     bad = np.flatnonzero(~np.isfinite(values))
     if not bad.size:
         return

@@ -116,7 +116,7 @@ def gear_indicators(
 
 
 def has_mesh_line(amplitude, teeth):
-    """Whether one of the first three mesh orders stands out of the orders half a mesh order to either side."""
+    """Return whether one of the first three mesh orders exceeds the orders within half a mesh order."""
     for order in range(teeth, min(4 * teeth, amplitude.size), teeth):
         around = amplitude[max(order - teeth // 2, 1) : order + teeth // 2 + 1]
         if amplitude[order] > CLEAR * np.median(around):

@@ -142,7 +142,7 @@ def _split_antoni(x, parts):
 
 
 def _judged_antoni(bands, parts):
-    """Bands without the samples that the filter takes from before the record, and without their mean."""
+    """Return the bands without the filter's initial samples and without their mean."""
     cut = [x[15 if parts == 2 and i % 2 else 16 :] for i, x in enumerate(bands)]
     return [x - x.mean() for x in cut]
 

@@ -94,7 +94,7 @@ def with_estimated_speed(
 
 
 def _path(signal, order, speeds, count, size):
-    """Middles of windows and the speed in each, by the path whose lines hold most.
+    """Return the middle of each window and the speed there, by the path with the largest line amplitudes.
 
     Raises ValueError if noise would give as much.
     """
@@ -128,7 +128,7 @@ def _followed(score, step):
 
 
 def _check_followed(signal, order, time, score, step, path):
-    """Compare with the best path through the same windows with permuted speeds, in which no line continues."""
+    """Raise ValueError if the found speed path is hardly better than a path through windows with shifted speeds (chance)."""
     turned = np.array([np.roll(frame, int(i * GOLDEN * frame.size)) for i, frame in enumerate(score)])
     rows = np.arange(len(path))
     chance = turned[rows, _followed(turned, step)].mean()

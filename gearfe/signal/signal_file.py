@@ -222,7 +222,7 @@ def channels(path: StrPath, header: str | None = None) -> Found:
 
 
 def _choose(path, found, column):
-    """Full name of the channel meant."""
+    """Return the full name of the requested channel."""
     names = found.channels()
     if column is None and len(names) == 1:
         return names[0]

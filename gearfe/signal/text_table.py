@@ -146,7 +146,7 @@ def _way(rows, given):
 
 
 def _ways():
-    """Yield every `Way`, those without marks between thousands first. Such a mark that is the separator ends a cell."""
+    """Yield every `Way` of reading cells, beginning with those without thousands separators."""
     marks = [(mark, "") for mark in GROUPS] + [(mark, group) for mark, groups in GROUPS.items() for group in groups]
     for (mark, group), separator in product(marks, SEPARATORS):
         if not group or separator not in (None, mark):
@@ -154,7 +154,7 @@ def _ways():
 
 
 def _fits(rows, way):
-    """Whether the row above the numbers has as many cells as they have, and is not itself numbers written in another way."""
+    """Return whether the row above the numbers is a header with the same number of cells."""
     if not way.above:
         return False
     line = rows[way.above - 1][1]

@@ -68,7 +68,7 @@ def _largest(average, teeth):
 
 
 def _of_healthy(healthy, average, teeth):
-    """FM4 of the healthy record, and the variance of its residual signal over that of an `average`, at most 1."""
+    """Return FM4 of the healthy record, and the variance of its residual over that of an `average`, at most 1."""
     if healthy is None:
         return math.nan, 1.0
     sound = synchronous_average(healthy)[0]

@@ -91,7 +91,7 @@ def _solid_case(material, damage, options):
 
 
 def unsolved(gear, material, damage=(), *, cache=True, **options):
-    """`finite_elements.solver.SolveCost` by key of the solves that `solved_solid` would need now.
+    """Return the costs (`finite_elements.solver.SolveCost`) of the solves that `solved_solid` still requires, by key.
 
     RuntimeError, with the numbers, if one of them does not fit into memory.
     """

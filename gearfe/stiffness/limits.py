@@ -26,7 +26,7 @@ def check_count(phases: Any) -> int:
 
 
 def check_range(phases: NDArray, pairs: float) -> None:
-    """ValueError for phases so large that rounding moves contacts, or over so many cycles that the contacts fill the memory.
+    """Raise ValueError for phases too large for rounding, or over more cycles than the memory permits.
 
     `phases` ``(n,)``; `pairs` is the contact ratio, the mean number of pairs in contact.
     """

@@ -200,7 +200,7 @@ def _gears(case):
 
 
 def _plain(flank, gear):
-    """Return the most frequent flank with explicit pitch, so that all teeth are solved in the same way."""
+    """Return a flank whose teeth all have the most frequent pitch error and scale, without eccentricity."""
     if not flank.on(gear).differs:
         return flank
     pitch = (_commonest(flank.pitch or (0.0,)),) * gear.z

@@ -124,7 +124,7 @@ class OwnFlexibility:
 
 
 def _check(side: str, one: object) -> None:
-    """ValueError unless `one` is a function, a Flexibility, or the name of a method that has one."""
+    """Raise ValueError unless `one` is a function, a Flexibility, or the name of a method with a flexibility."""
     sections = having("name", "section")
     home = getattr(one, "__name__", None) if isinstance(one, ModuleType) else getattr(one, "__module__", None)
     for name in SUMS:

@@ -71,7 +71,7 @@ class CrackModel:
 
 @dataclass(frozen=True, slots=True)
 class Growth:
-    """A crack that has grown.
+    """Result of crack growth.
 
     Attributes
     ----------

@@ -216,7 +216,7 @@ def _strips(gear, lines, edge, spread):
 
 
 def _moved(nodes, cells, material, held, loads):
-    """Displacements ``(3 nodes, phases)`` [mm], nan where there is no cell."""
+    """Solve for the displacements ``(3 nodes, phases)`` [mm] under `loads`; nan for nodes outside the `cells`."""
     used = np.unique(cells)
     free = np.setdiff1d(used, held)
     cost = plan(3 * free.size)

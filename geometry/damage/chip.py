@@ -96,7 +96,7 @@ class Chip:
         return self.width is None
 
     def recesses(self, gear: Gear) -> "tuple[Chip | Spall, ...]":
-        """Return what takes its place: itself, or for a part of the width one recess on each flank that it shortens.
+        """Return the equivalent recesses: the chip itself, or for a part of the width one recess on each shortened flank.
 
         A recess is as deep as the cut at the tip, at most nearly half the tooth. ValueError if its width ends beyond the face.
         """
@@ -174,7 +174,7 @@ class Chip:
         return np.array([along, gear.outward * along[::-1] * [1, -1]])
 
     def _face(self, gear: Gear) -> Piece:
-        """Cut from its corner to its other end. The flank of the corner is at positive x."""
+        """Return the line of the cut from the new corner to its other end. The flank of the corner is at positive x."""
         roll, where, other = self.cut(gear)
         start = cartesian(*flank(gear, roll))
         stop = cartesian(gear.r_a, other) if where == "tip" else cartesian(*flank(gear, other)) * [-1, 1]
@@ -263,6 +263,6 @@ def chip_of(gear: Gear, broken: Iterable[Any], tooth: int) -> Chip | None:
 
 
 def loaded_side(gear: Gear, broken: Iterable[Any], tooth: int) -> Gear:
-    """Return the gear whose loaded flanks end where that of a tooth with such damage ends."""
+    """Return a gear whose loaded flanks end at the same height as that of a damaged tooth."""
     chip = chip_of(gear, broken, tooth)
     return gear if chip is None else shortened(gear, chip.end_roll(gear, "loaded"))

@@ -260,7 +260,7 @@ def _sampled(path, count=200):
 
 
 def check_sector(gear: Gear, crack: "Crack", part: float = SECTOR) -> None:
-    """ValueError if a crack leaves the middle `part` of the sector of its tooth, of which a method makes the gear."""
+    """Raise ValueError if a crack leaves the middle `part` of its sector, in which a method can represent it."""
     turn = np.abs(np.arctan2(*_sampled(crack_path(gear, crack)))).max()
     if turn > part * math.pi / gear.z:
         raise ValueError(

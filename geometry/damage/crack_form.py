@@ -71,7 +71,10 @@ def two_or_three(name, values, counts):
 
 
 def _polynomial(crack):
-    """Coefficients of the open part, or of its square, by the place t in 0..1 along the crack's width: constant first."""
+    """Return polynomial coefficients, constant first, of the open part of a crack over t = 0..1 along its width.
+
+    Of a `rounded` crack, the polynomial is the square of the open part.
+    """
     first, *middle, last = (end**2 for end in crack.ends) if crack.rounded else crack.ends
     if not middle:
         return first, last - first, 0.0
@@ -95,7 +98,7 @@ def deepest(crack):
 
 
 def front(crack, b, z):
-    """Open part of the crack's length at heights `z` [mm], beyond the ends that of the nearer end, and its slope [1/mm]."""
+    """Return the open part of the crack's length at heights `z` [mm] (constant beyond its ends), and its slope [1/mm]."""
     low, high = crack.width or (0.0, b)
     constant, linear, square = _polynomial(crack)
     place = (np.asarray(z, dtype=float) - low) / (high - low)

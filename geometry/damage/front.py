@@ -93,7 +93,7 @@ class Front:
 
     @property
     def ends(self):
-        """Heights at which the crack is said to end [mm]."""
+        """Return the stated end heights of the crack [mm]."""
         return self.crack.width or (0.0, self.width)
 
     def depth(self, z):
@@ -119,7 +119,7 @@ class Front:
         return end not in self.ends
 
     def steep(self):
-        """Heights at which it is `least` deep, and how far it is from there to `STEEP` times that: ``(z, z, distance)`` [mm]."""
+        """Return the heights with the depth `least`, those with `STEEP` times that depth, and their distances [mm]."""
         deeper = self.crossings(STEEP * self.least)
         return [(z, z, min(abs(z - other) for other in deeper)) for z in self.crossings(self.least) if deeper]
 

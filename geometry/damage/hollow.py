@@ -74,7 +74,7 @@ def breaks(gear, hollow):
 
 
 def profile(gear, hollow):
-    """Part of the profile ``(2, n)`` [mm] that a hollow takes, in the frame of its tooth."""
+    """Return the part of the profile ``(2, n)`` [mm] that a hollow removes, in the frame of its tooth."""
     return cartesian(*flank(gear, np.linspace(*rolls(gear, hollow), 9))) * [[1 if hollow.side == "loaded" else -1], [1]]
 
 
@@ -85,7 +85,7 @@ def flank_edge(gear, hollow):
 
 
 def takes_all(gear, hollow):
-    """Whether a hollow takes its whole flank: all four corners of it lie within the outline."""
+    """Return whether a hollow covers its whole flank, so that all four corners are within its outline."""
     u = arc_at(gear, np.array([gear.roll_f, gear.roll_a])) - centre_arc(gear, hollow)
     w = np.array([0.0, gear.b]) - hollow.z
     return bool(hollow._contains(u, w[:, None]).all())

@@ -39,7 +39,7 @@ def removed_volume(gear, hollows):
 
 
 def _taken(gear, one, before):
-    """Volume of a hollow less what those `before` it have."""
+    """Return the volume of a hollow without its overlap with those `before` it."""
     spread = one.depth * math.tan(gear.beta_b) ** 2 + 0.02 * min(one.axes)
     reach = np.array(one.reach) * 1.02 + 2 * spread + one.depth * abs(math.tan(gear.beta_b))
     low, high = max(centre_arc(gear, one) - reach[0], arc_at(gear, gear.roll_f)), centre_arc(gear, one) + reach[0]

@@ -177,7 +177,7 @@ def _sizes_of(points, cells):
 
 
 def _check_volume(gear, pits, volumes, made):
-    """RuntimeError if the body is not what was drawn, or the pits are not what was cut and meshed."""
+    """Raise RuntimeError if the volume of the body or of the pits differs from the drawn one."""
     want, cut, meshed = volumes
     missing = [k for k in range(len(pits)) if not (made.plug == k).any()]
     if not (abs(cut - want) <= CUT * want and abs(meshed - cut) <= MESHED * cut):  # also rejects nan

@@ -160,7 +160,7 @@ def _opened(points, triangles, chains, at):
 
 
 def _chains(gear, size, cracks, loop):
-    """For each crack the rim vertex it starts at with its further vertices, then its tip with those of a line ahead of it.
+    """Return, for each crack, its rim vertex and path, then the tip with a guiding line ahead of it.
 
     Also returns points ``(2, n)`` around tips and kinks, in rings as wide as the edges there.
     """
@@ -196,7 +196,7 @@ def _chains(gear, size, cracks, loop):
 
 
 def _rings(centre, radii, taken, lines):
-    """Six points on each ring about `centre`, those left out that are closer to taken ones than half the ring's radius.
+    """Return six points on each ring about `centre`, without those closer to existing points than half the radius.
 
     Also those on `lines` (starts ``(2, n)``, ends), between their vertices: with them they would make triangles of no area.
     """

@@ -70,6 +70,8 @@ class ToothPairs:
     def along(self, order: int, band: tuple[float, float]) -> list[tuple[GearPair | None, float, float]]:
         """Return the different pairs along a band of the face width, each between two depths from the band's first end [mm]."""
         first, last = band
+        if self._heights.size == 2:
+            return [(self(order), 0.0, abs(last - first))]
         ends = np.unique(np.abs(np.clip(self._heights, min(band), max(band)) - first))
         sense = 1 if last > first else -1
         out: list[tuple[GearPair | None, float, float]] = []
@@ -80,7 +82,7 @@ class ToothPairs:
 
 
 def each_pair(pairs: ToothPairs, order: NDArray, z: NDArray, found_of: Callable[[Any, Any], Touch]) -> Touch:
-    """Return the `Touch` of sections ``(n,)`` of the tooth pairs `order` at heights `z` [mm], each with its own tips.
+    """Return the `Touch` of each tooth pair of `order` ``(n,)`` at the heights `z` [mm], with the tips of that pair.
 
     ``found_of(pair, on)`` solves the sections `on`, an index or a mask, with the tips of `pair`.
     """

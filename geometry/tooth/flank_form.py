@@ -131,7 +131,7 @@ class FlankForm:
         return out
 
     def _on_flank(self, roll: ArrayLike) -> Floats:
-        """Roll lengths, those in the fillet moved to the form point."""
+        """Return roll lengths, with those in the fillet moved to the form point."""
         rolls = np.asarray(roll, dtype=float)
         return np.maximum(rolls, self.low) if self.high > self.low else np.minimum(rolls, self.low)
 
@@ -167,7 +167,7 @@ class FlankForm:
     def _off_centre(self, roll: NDArray, derivative: int) -> Floats:
         """Return the distance of an eccentric gear's flank along the normal, which rotates with the roll length."""
         gear, flank = self.gear, self.flank
-        teeth = self.sense * (_along(self._tooth, roll) - flank.eccentric_tooth)  # type: ignore[arg-type]  # there are some here
+        teeth = self.sense * (_along(self._tooth, roll) - flank.eccentric_tooth)  # type: ignore[arg-type]  # tooth tables are present here
         turn = gear.base_half_angle - gear.outward * roll / gear.r_b + 2 * math.pi * teeth / gear.z
         rate = -gear.outward / gear.r_b
         return flank.eccentricity * (np.sin(turn), rate * np.cos(turn), -(rate**2) * np.sin(turn))[derivative]
@@ -193,7 +193,7 @@ class FlankForm:
         return out
 
     def before_edge(self, roll: Floats) -> Floats:
-        """Roll lengths, those on the edge of the tip moved to its beginning."""
+        """Return roll lengths, with those on the tip edge moved to its beginning."""
         if self.edge is None:
             return roll
         return np.minimum(roll, self.edge.start) if self.high > self.low else np.maximum(roll, self.edge.start)

@@ -113,5 +113,5 @@ class TipEdge:
         return self.gear.outward * (roll - self.start) > 0
 
     def bend(self, roll: Floats) -> Floats:
-        """Curvature of the edge more than that of the involute it replaces [1/mm]."""
+        """Return the curvature of the tip edge minus that of the involute [1/mm]."""
         return (1 / self.rounding if self.rounding else 0.0) - self.gear.outward / roll

@@ -164,7 +164,7 @@ def runs():
 
 
 def write_more():
-    """Table of both laws."""
+    """Write the tables of the statements under all force laws."""
     beside("planetary_pitting", BESIDE, OWN, ROWS, LINEAR, ALONE)
     write_repeats()
     beside("planetary_pitting_paths", BY_PATH, *PATHS)

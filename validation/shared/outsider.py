@@ -39,7 +39,7 @@ RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 
 @dataclass(frozen=True, slots=True)
 class OutsiderCase:
-    """A pair in contact: `damage` as in `mesh_stiffness`, the phase, load [N/mm], meshes as options of `write_contact_inp`.
+    """A pair for CalculiX: `damage` of `mesh_stiffness`, phase, load [N/mm], and meshes as options of `write_contact_inp`.
 
     `pits` as in `write_contact_inp`: a case with pits has two controls in the same mesh.
     """

@@ -39,7 +39,7 @@ print(", ".join(responses["crack50"].names[:6]), "...")
 
 signals = {}
 for case, response in responses.items():
-    late = response.time > 0.5  # after the start has died down
+    late = response.time > 0.5  # after the start-up transient
     signals[case] = gf.Signal(response["sun2.theta acceleration"][late], rate=1 / response.time[1], unit="rad/s^2")
 spectra = {case: gf.spectrum(signal) for case, signal in signals.items()}
 stage = machine.stages[-1]

@@ -78,7 +78,7 @@ def line_cycle(pair, coefficient, *, lost=None, width=None):
 
 
 def ellipse_loss(pair, pits, *, width=None):
-    """Length of the contact line that elliptical pits take from a tooth of a helical pinion [mm], as a function of its phase.
+    """Return the contact line length [mm] that elliptical pits remove from a helical pinion tooth, as a function of its phase.
 
     Parameters
     ----------

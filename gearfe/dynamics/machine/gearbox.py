@@ -196,7 +196,7 @@ def _joints(layout: Layout, train: Train, chains: dict[str, Chain]) -> list[Spri
 
 
 def pair_phases(scene):
-    """Phase at t = 0 of each pair between shafts, which follows from where the teeth of the gears on each shaft stand.
+    """Return the phase at t = 0 of each pair between shafts, from the angular positions of the gears on each shaft.
 
     Tooth 0 of the first gear of the motor's shaft stands at 0; tooth 0 of a driven gear meets tooth 0 of its driver. The driving
     flank of a tooth at the angle c passes the pitch point, at the angle d, where ``sense (c - d) + half thickness = 0``.

@@ -21,7 +21,7 @@ PLAY = 1e-4  # backlash [m]
 
 
 def pits_loss(pair, pits):
-    """Length of contact line [mm] that pits take from tooth 0 of the pinion, a function of an array of its phases.
+    """Return the contact line length [mm] that pits remove from tooth 0 of the pinion, as a function of its phases.
 
     Phase 0 is where the line first touches, at whichever end of the face.
     """

@@ -70,7 +70,7 @@ class Load:
 
 
 def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
-    """Return times [s] and values of a history.
+    """Return checked times [s] and values of a load or speed history.
 
     Raises ValueError unless they are finite, equal in number, and the times rise.
 

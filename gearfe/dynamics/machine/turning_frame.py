@@ -64,7 +64,7 @@ def frame_terms(dofs, mass, springs, spin, rotors=None):
 
 
 def _held_by(springs, name, plane, turn, bodies, spin):
-    """Matrix of the stiffness (`name` k) or damping (c) that the ground has in the plane. Both must be alike in x and y."""
+    """Return the matrix of ground stiffness (`name` k) or damping (c) in the plane, which must be equal in x and y."""
     held = [s for s in springs if len({bodies[i] for i in np.flatnonzero(s.row)}) == 1]
     out = sum((getattr(s, name) * np.outer(s.row * plane, s.row * plane) for s in held), np.zeros(turn.shape))
     uneven = np.abs(out @ turn - turn @ out).max(axis=1)

@@ -152,7 +152,7 @@ def _places(machine, case, names):
 
 
 def _check(machine, mesh, pair, direction):
-    """ValueError unless a mesh has the base radii of `pair`, its line of action along `direction` [rad], and no damage."""
+    """Raise ValueError unless a mesh has the base radii of `pair`, its line of action along `direction` [rad], and no damage."""
     turns, along, across = (
         [mesh.row[i] for i, dof in enumerate(machine.dofs) if dof.endswith(f".{axis}")] for axis in ("theta", *"xy")
     )
@@ -232,7 +232,7 @@ def _on_springs(machine, case):
 
 
 def _without_body(machine, curves, inner):
-    """Return `SetCurves.k` without the deflection of the ring's springs under the loads of its meshes, numbers `inner`."""
+    """Return `SetCurves.k` without the deflection of the ring's springs. `inner` are the numbers of the ring's meshes."""
     place = [machine.dofs.index(f"{BODY}.{axis}") for axis in AXES if f"{BODY}.{axis}" in machine.dofs]
     gives = 1 / ring_springs(curves.meta["case"])[[AXES.index(machine.dofs[i].split(".")[1]) for i in place]]
     rows = np.array([machine.meshes[number].row[place] for number in inner])

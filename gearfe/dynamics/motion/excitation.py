@@ -117,7 +117,7 @@ def _laid_out(meshes):
 
 
 def _twins(one, two):
-    """Whether two meshes have the same stiffness at all times, like both halves of a herringbone gear."""
+    """Return whether two meshes always have the same stiffness, as both halves of a herringbone gear do."""
     ahead = one.phase - two.phase
     ahead = ahead if one.changes else ahead - round(ahead)  # Whole cycles matter only with damaged teeth.
     if (one.frequency, len(one.changes)) != (two.frequency, len(two.changes)) or abs(ahead) > 1e-12:
@@ -138,7 +138,7 @@ def _knots(load, times):
 
 
 def changing(machine, flat):
-    """Which of the forces of meshes, friction rows and loads change, and the values of those that do not (0 for the others)."""
+    """Return which forces of meshes, friction rows and loads vary, and the values of the constant ones (0 for the others)."""
     count = np.diff(flat.knot_place)
     other = len(machine.meshes) + len(flat.rub)
     kept = np.concatenate([np.arange(other), other + np.flatnonzero(count > 1)]).astype(int)

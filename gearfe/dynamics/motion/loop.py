@@ -166,7 +166,7 @@ def _ended(end, new, y, add, at):
 
 @compiled
 def _less(apart, g):
-    """Return the forces at the end of a step less those of its last stage."""
+    """Return the forces at the end of a step minus those of its last stage."""
     f = apart.size
     for i in range(f):
         apart[i] = g[4 * f + i] - g[2 * f + i]
@@ -182,7 +182,7 @@ def _edge(edges, edge, t):
 
 @compiled
 def _of_part(flat, now, follows, start, h, low, high):
-    """Look up what acts in a part of a step, in the last three rows.
+    """Evaluate the excitation of a part of a step into the last three rows.
 
     `follows`: it starts where the part before ended.
     """
@@ -197,7 +197,7 @@ def _of_part(flat, now, follows, start, h, low, high):
 
 @kept
 def _run(given, z, clock, states, counts, acting):
-    """Take the steps, filling `states`, `counts` and `acting`. Returns how many were done while the state was finite.
+    """Integrate all steps into `states`, `counts` and `acting`. Return the number of steps with a finite state.
 
     Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic.
     """

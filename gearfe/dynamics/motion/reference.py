@@ -158,7 +158,7 @@ class _Run:
         return lambda t: self.compression(t, path(t))[i] - place
 
     def _change(self, t, y, hit):
-        """Change the flanks in touch of the meshes `hit`, and of those that would follow at once: halves of one gear do."""
+        """Change the touching flanks of the meshes `hit`, and of the halves of the same gear that follow at once."""
         self.events += 1
         if self.events > EVENTS:
             raise RuntimeError(

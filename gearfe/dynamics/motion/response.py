@@ -76,7 +76,7 @@ class Response:
         return replace(self, time=self.time[kept], states=self.states[kept], filtered=filtered, heard=heard)
 
     def with_heard(self) -> "Response":
-        """Return the same response with the signals of its sensors, which stay those of this record when it is cut."""
+        """Return the response with the signals of its sensors, which stay unchanged when the response is cut."""
         return replace(self, heard={name: self[f"sensor {name}"] for name in self.machine.sensors})
 
     def __repr__(self):
@@ -124,7 +124,7 @@ class Response:
 
     @property
     def springs(self) -> dict[str, Spring]:
-        """Springs of the machine whose name no other has, by name."""
+        """Return the springs of the machine with a unique name, by name."""
         names = [spring.name for spring in self.machine.springs]
         return {spring.name: spring for spring in self.machine.springs if names.count(spring.name) == 1}
 

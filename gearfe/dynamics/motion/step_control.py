@@ -70,7 +70,7 @@ def differences(one, two, machine):
 
 
 def deviation(one, two):
-    """Largest of the `differences` of displacements and mesh forces of two responses, and that of their accelerations."""
+    """Return the largest of the `differences` of displacements and mesh forces of two responses, and that of accelerations."""
     *moved, shaken = differences(seen(one), seen(two), two.machine)
     return max(moved), shaken
 
@@ -136,7 +136,7 @@ def stretch(machine, duration, begin=0.0):
 
 
 def wanted(lost):
-    """Largest error of a step that is taken, as a part of the range, where contact is lost or not."""
+    """Return the permitted error of a step relative to the range, which depends on loss of contact."""
     return WANTED_OPEN if lost else WANTED
 
 

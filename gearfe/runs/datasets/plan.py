@@ -169,7 +169,7 @@ def _check_scatter(plan):
 
 
 def _check_scenes(plan):
-    """Build the scene of every fault at every severity once, and see that the machine takes it."""
+    """Build the scene of every fault at every severity once, to check that its machine is valid."""
     if plan.tables["machine"].get("contact", "linear") != "linear":
         raise ValueError("[machine] contact = 'impact': a data set has linear contact; give a scene with contact = 'linear'")
     plan.scene_at({})

@@ -129,7 +129,7 @@ def solved(space: Space, materials: tuple[Material, Material], point: dict[str, 
 def held_back_error(
     surrogate: Surrogate, points: list[dict[str, float]], judged: list[dict[str, Any]]
 ) -> tuple[dict[str, float], Floats]:
-    """Differences of a surrogate from cases it was not fitted on: as `Surrogate.error` and `Surrogate.worst` have them."""
+    """Return errors of a surrogate on cases that were not fitted, as in `Surrogate.error` and `Surrogate.worst`."""
     worst = np.zeros(surrogate.worst.size)
     differences, means = [], []
     for point, case in zip(points, judged, strict=True):
@@ -165,7 +165,7 @@ def _told(point):
 
 
 def _regression(points, values, breaks):
-    """Return products of Legendre polynomials and their weights: those of `SETS` with the least leave-one-out error."""
+    """Return the products of Legendre polynomials of `SETS` with the least leave-one-out error, and their weights."""
     best = None
     for degree, power in SETS:
         powers = _products(points.shape[1], degree, power, BUSY * len(points))

@@ -49,7 +49,7 @@ def axes(file, vary, along):
 
 
 def also(file, where, value):
-    """Other keys that take the values of one, from ``also`` in its table."""
+    """Return the keys that have the same values, from ``also`` in the table of a key."""
     if not isinstance(value, dict) or "also" not in value:
         return []
     return checked(RUNS, "also", file, where, {"also": value["also"]})["also"]

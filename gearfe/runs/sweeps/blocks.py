@@ -139,7 +139,7 @@ def _tried(study, cases, built):
 
 
 def lost(block: Block) -> list[dict[str, Any]]:
-    """Rows of a block whose worker ended with it, each time it was tried."""
+    """Return error rows of a block whose worker ended at every attempt."""
     error = "the process that computed it ended: killed, or out of memory"
     return [_told(block, i) | {"status": LOST, "error": error} for i in range(len(block.cases))]
 

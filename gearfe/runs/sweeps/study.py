@@ -121,7 +121,7 @@ def _study(file, place, data):
 
 
 def _scene(file, place, scene, added):
-    """Name and tables of the scene with those that the study adds, tried as a whole."""
+    """Return name and tables of the scene with those of the study, after a check of the whole."""
     name, tables = tables_near(place, scene)
     for kind, extra in added.items():
         tables[kind] = tables.get(kind, {}) | extra if kind == "flank" else tables.get(kind, []) + extra

@@ -59,7 +59,7 @@ def harmonic_flexibility(orders, ratio, nu, state="plane strain"):
 
 
 def arc_tractions(r, half_angle):
-    """Return unit section forces of a tooth as forces on the arc ``+-half_angle`` of the circle it stands on.
+    """Return the tractions of unit section forces of a tooth on its root arc, ``+-half_angle`` of the circle.
 
     The stresses of a beam's rectangular section of half width ``h = r sin(half_angle)``, projected along the tooth onto the
     arc: parabolic shear ``3 (1 - x**2 / h**2) / (4 h)`` along x, uniform ``1 / (2 h)`` and linear ``3 x / (2 h**3)`` along y.

@@ -88,7 +88,7 @@ def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lo
 
 
 def _by_tooth(gear, tooth, damage, crack_model):
-    """Stations of the healthy teeth and of each damaged one, as (mask, `DamagedTooth`)."""
+    """Yield the contact positions of healthy teeth, then those of each damaged tooth, as (mask, `DamagedTooth`)."""
     damaged = {defect.tooth % gear.z for kind in damage for defect in kind}
     healthy = ~np.isin(tooth % gear.z, list(damaged))
     if healthy.any():
@@ -100,7 +100,7 @@ def _by_tooth(gear, tooth, damage, crack_model):
 
 
 def _edges(pair, order, *, damage, crack_model, root):
-    """Pinion rolls [mm] at which pairs with a damaged tooth are not smooth, by pair order."""
+    """Return, by tooth pair, the roll lengths of the pinion [mm] at which the compliance of a damaged tooth has kinks."""
     out = {}
     for number in order:
         pinion_rolls = []

@@ -72,7 +72,7 @@ def stations(case, phase, *, lost="hertz", edges=None):
     lag = max(band[2] for band in bands)
     order = contacts(pair, [phase.min() - lag, phase.max()], extended=False).order
     edges = edges(order) if edges and lag > 0 else {}
-    pitted = any(p.side == "loaded" for found in pits for p in found)
+    pitted = any(pit.side == "loaded" for pit in (*pits[0], *pits[1]))
     if lag == 0 and not pitted:  # Each pair on the path of contact has one station.
         return _on_path(pair, phase, flanks, bands)
     summed = lost == "summed"
@@ -103,7 +103,7 @@ def _on_path(pair, phase, flanks, bands):
 
 
 def _taken(pair, phase, order, pits, bands):
-    """Parts of the bands that pits take from the contact line of a pair at a phase, by number of phase, pair and band."""
+    """Return the parts of the bands that pits remove from the contact line of a pair, by phase, pair and band."""
     i, j, k = (index.ravel() for index in np.indices((phase.size, order.size, len(bands))))
     first, last, lag = np.array(bands).T
     place = phase[i] + order[j]
@@ -117,7 +117,7 @@ def _taken(pair, phase, order, pits, bands):
 
 
 def _summed(pair, order, pits, bands):
-    """Parts of the width of each band that the pits of a pair's two teeth take, summed: ``(pairs, bands)``."""
+    """Return the parts of the width of each band removed by the pits of both teeth, summed: ``(pairs, bands)``."""
     out = np.zeros((order.size, len(bands)))
     common = min(pair.gear_1.b, pair.gear_2.b)
     for gear, gear_pits, sense in ((pair.gear_1, pits[0], 1), (pair.gear_2, pits[1], -1)):

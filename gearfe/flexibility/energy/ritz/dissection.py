@@ -40,7 +40,7 @@ def dissect(sector):
 
 
 def _cut(members, nodes, users, along):
-    """Order of a set of triangles along the best of all directions, and how many of them go first."""
+    """Return the order of a set of triangles along the best direction, and the number of triangles before the cut."""
     count = along.shape[1]
     order = np.argsort(along, axis=1, kind="stable")
     rank = np.empty_like(order)

@@ -64,7 +64,7 @@ class SectionModel:
 
 
 def check_order(order):
-    """ValueError unless it is an order of polynomials that the triangles have."""
+    """Raise ValueError unless the triangles support this polynomial order."""
     if isinstance(order, bool) or not isinstance(order, Integral) or not 2 <= order <= 8:
         raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
 

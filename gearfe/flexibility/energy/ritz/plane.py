@@ -180,7 +180,7 @@ def _between():
 
 
 def _spline(gear, influence, other=None):
-    """Surface over the arcs of two flanks, that of the `other` tooth on a gear with its own tip."""
+    """Return the spline over the arcs of two flanks. The `other` tooth may have its own tip."""
     arcs, matrix = _knots(gear)
     return RectBivariateSpline(arcs, _knots(other or gear)[0], matrix @ influence[:PLACES, :PLACES] @ matrix.T)
 

@@ -1,4 +1,4 @@
-"""Stress intensity at the tip of a crack in a sector of polynomial triangles, as two more columns of its loads."""
+"""Stress intensity factors at a crack tip in the polynomial triangles of a sector, by two additional load vectors."""
 
 from dataclasses import dataclass
 
