@@ -19,8 +19,9 @@ from ..scene.load import Scene, scene_names
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import versions
 from ..stiffness.solve import Solve
+from ..strength.fields import rounded_up
 from ..strength.holed import root_error
-from ..strength.render import enlarged, render_stress, rounded_up
+from ..strength.render import enlarged, render_stress
 from . import figures
 from .figures import part_of_page
 from .findings import find

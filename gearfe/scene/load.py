@@ -33,8 +33,6 @@ from .toml_file import read_toml
 from .train import Train
 from .train_tables import train_of
 
-HEALTHY = "healthy"  # name of the case without damage
-
 
 @dataclass(frozen=True, slots=True)
 class ScenePair:
@@ -239,10 +237,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     run = dict(rows["machine"] or {})
     if run:
         run["bodies"] = {name: (float(body["mass_kg"]), float(body["inertia_kgm2"])) for name, body in run["bodies"].items()}
-    cases = {kind: parts.by_case(rows[kind]) for kind in parts.DAMAGE}
-    for kind, by_case in cases.items():
-        for name in {"", HEALTHY} & by_case.keys():
-            raise ValueError(f"{file} [{kind}] case = {name!r}: this names gears without damage; give another name")
+    cases = parts.cases_of(file, rows)
     kept, changed, own = assumed.split(file, rows["assumption"], rows["given"], rows | cases)
     title, source = rows["title"], rows["source"]
     if own:
