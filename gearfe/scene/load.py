@@ -265,6 +265,10 @@ def _with_backlash(pair: GearPair, wanted: float) -> GearPair:
             f"backlash_um = {1e3 * wanted:g}, but these gears have {1e3 * pair.backlash:.4g} um at a_mm = {pair.a:.6g}: give "
             "more, or leave it out"
         )
+    if more > pair.gear_1.m_n:
+        raise ValueError(
+            f"backlash_um = {1e3 * wanted:g}, but teeth of m_n_mm = {pair.gear_1.m_n:g} have less: give a smaller one"
+        )
     thinner = more * math.cos(pair.gear_1.beta) / (2 * math.cos(pair.gear_1.alpha_t))
     try:
         one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
@@ -283,6 +287,10 @@ def _pair(file, name, rows, gears, materials, forces):
         raise ValueError(f"{file} [pair.{name}]: missing key 'force_N' or 'torque_Nm'; expected a number in N or N m")
     used = materials[rows["gear"][names[0]]["material"]], materials[rows["gear"][names[1]]["material"]]
     with located(file, f"pair.{name}", row):
+        for key in ("m_n_mm", "alpha_n_deg", "beta_deg"):
+            one, two = (rows["gear"][gear][key] for gear in names)
+            if not math.isclose(abs(one), abs(two), rel_tol=1e-9, abs_tol=1e-9):
+                raise ValueError(f"{key} = {one:g} of {names[0]!r} and {two:g} of {names[1]!r}, but gears in mesh need the same")
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
         if row["backlash_um"] is not None:
             made = _with_backlash(made, 1e-3 * row["backlash_um"])
