@@ -97,8 +97,8 @@ class Scene:
             self._check("speed, torque or force", given, [self.train.speeds[motor], self.train.torques["motor"], *forces])
         if self.set is not None:
             outer, inner = (self.pair(name).pair for name in self.set.pairs)
-            gears = self.set.gears.sun_planet.gear_1, self.set.gears.sun_planet.gear_2, self.set.gears.planet_ring.gear_2
-            self._check("gear of the set", [outer.gear_1, outer.gear_2, inner.gear_2], gears)
+            one, two = self.set.gears.sun_planet, self.set.gears.planet_ring
+            self._check("gear of the set", [outer.gear_1, outer.gear_2, inner.gear_2], [one.gear_1, one.gear_2, two.gear_2])
 
     def _check(self, what, given, derived):
         for one, other in zip(given, derived, strict=True):
