@@ -161,10 +161,9 @@ def _cracks(contact, line, closing, shut):
 
     The flexibility of a crack of a given part of the thickness h goes by ``h**-2``; it is that of the whole tooth. A tooth turns
     about the tip of its crack by about the deflection u by the crack over the height of the tooth. By that part the lever arm of
-    the force differs from that of small displacements, and u goes with its square. The contact moves along the flank besides, which
-    changes the lever arm by the part that `sliding` adds, ``3/2 R t**2`` with the tilt t by the crack. `sliding` has no change of
-    the normal by displacements, so that this part is unsure, and what exceeds `MOST`. At the phases `shut`, faces touch, and only
-    the first is counted.
+    the force differs from that of small displacements, and u goes with its square. The contact also moves along the tilted flank.
+    With the tilt t by the crack, the approach changes by ``3/2 R t**2``, see `sliding`. That is unsure for large tilts, as is
+    what exceeds `MOST`. At the phases `shut`, faces of cracks touch, and only thin teeth count.
     """
     moved, points = np.maximum(contact.sliding * line**2 - MOST * closing[:, None], 0.0), contact.found
     out, stop = np.zeros(line.shape), 0
