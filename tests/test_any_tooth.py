@@ -21,7 +21,11 @@ CHANCE = random.Random(17)  # the same gears and teeth in every run of the tests
 PLACES = [(gear, CHANCE.randrange(1, z)) for gear, z in TEETH.items()]
 KIND = {  # table of a damage, what its headline begins with, and the least loss of stiffness at a phase
     "crack": ({"angle_deg": 60.0, "length_mm": 2.5}, "2.5 mm crack at 60 degrees", 0.02),
-    "chip": ({"angle_deg": 60.0, "depth_mm": 1.5}, "chip 1.5 mm deep at 60 degrees", 0.02),
+    "chip": (
+        {"angle_deg": 60.0, "depth_mm": 1.5, "radius_mm": 4.0},
+        "chip 1.5 mm deep at 60 degrees with a radius of 4 mm",
+        0.02,
+    ),
     "missing_tooth": ({}, "missing tooth", 0.3),
 }
 CHOICES = [(*place, kind, 0.0) for place in PLACES for kind in KIND]
@@ -108,10 +112,10 @@ def test_a_set_has_the_tooth_or_refuses():
     }
     given |= {"set": {"n_planets": 3}, "crack": [{"case": "x", "gear": "planet", "tooth": 4, "level": 0.3}]}
     given |= {"missing_tooth": [{"case": "x", "gear": "ring", "tooth": 2}, {"case": "x", "gear": "planet", "body": "planet2"}]}
-    given |= {"chip": [{"case": "x", "gear": "planet", "tooth": 7, "depth_mm": 0.5, "pair": "planet_ring"}]}
+    given |= {"chip": [{"case": "x", "gear": "planet", "tooth": 7, "depth_mm": 0.5, "radius_mm": 2.0, "pair": "planet_ring"}]}
     made = build_set(scene_of("set.toml", given), "x")
     assert made.damage == {
-        "planet1": (gf.Crack(level=0.3, tooth=4), gf.Chip(depth=0.5, tooth=7, side="unloaded")),
+        "planet1": (gf.Crack(level=0.3, tooth=4), gf.Chip(depth=0.5, tooth=7, side="unloaded", radius=2.0)),
         "planet2": (gf.MissingTooth(),),
         "ring": (gf.MissingTooth(tooth=2),),
     }

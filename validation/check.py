@@ -19,10 +19,10 @@ PAGES = (
     *("assumptions", "truth", "sample", "random_search", "three", "herringbone", "joint"),
     *MACHINES,
 )
-DAYS = 10  # within which every page has its turn
-LIMIT = 1e-4  # relative
-MOST = 5.0  # CPU s
-SECONDS = 75.0  # limit of the clock time
+DAYS = 10  # period in which every page is checked once [days]
+LIMIT = 1e-4  # largest relative difference
+MOST = 5.0  # limit per check [CPU s]
+SECONDS = 75.0  # limit of all checks [s of clock time]
 
 
 def pages_of(day):

@@ -11,7 +11,7 @@ from typing import Any
 from ..geometry.checks import shown
 from ..scene.schema import SPELLED, Key, scene_schema
 
-LONGEST = 200  # characters of a title
+LONGEST = 200  # longest title [characters]
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,8 +27,8 @@ from .workers import LIMIT, SLOW, Pool
 
 KINDS = {*LIMIT, "quick", "fine", "load", "toml", "python", "csv"}
 FILES = {"/": ("page.html", "text/html"), "/page.css": ("page.css", "text/css"), "/page.js": ("page.js", "text/javascript")}
-LANE = 40  # characters of the name of a page
-PORT, LARGEST_SCENE = 8033, 90_000  # characters, so that a request with it is below the guard's limit
+LANE = 40  # longest name of a page [characters]
+PORT, LARGEST_SCENE = 8033, 90_000  # longest scene text [characters]; its request stays below the guard's limit
 
 
 class Answer(Response):
@@ -79,7 +79,7 @@ def application(
         kind = request.path_params["kind"]
         try:
             body = json.loads(await request.body(), parse_constant=_no_number)
-        except ClientDisconnect:  # the client has left
+        except ClientDisconnect:  # The client closed the connection.
             return _refused("the request is incomplete", 400)
         except (json.JSONDecodeError, UnicodeDecodeError, RecursionError):
             return _refused("this is no JSON", 400)

@@ -31,12 +31,12 @@ from .state import CASE, SeveralError, read, tables_of, title_of
 
 QUICK, FINE, SOLID = 32, 64, 16  # phases per mesh cycle
 KEPT = 128 * 2**20  # memory of solved gears in one process [bytes]
-ALONG = {  # values of quantities along the width in a section
+ALONG = {  # quantities that a transverse section does not vary along the width
     "pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta_x": 0.0, "tilt_1": 0.0, "tilt_2": 0.0, "part": "all of it",
 }  # fmt: skip
 STRESS = (1000, 750)  # picture [px]
-SECONDS = 0.5  # of vibration
-SHOWN = 1500  # points of a plotted spectrum
+SECONDS = 0.5  # duration of the vibration record [s]
+SHOWN = 1500  # most points of a plotted spectrum
 UM = 1e6  # m to um
 
 
@@ -77,14 +77,14 @@ def _answer(state, method, phases, *, error):
                 "are not in this section: solve in three dimensions",
             )
         comparison, further = compared(scene, method, phases, error=error)
-    curve = comparison.reference
+    curve, alone = comparison.reference, bool(left_out or further)
     return {
-        "headline": "Transverse section alone: " * bool(left_out or further) + comparison.headline,
+        "headline": "Transverse section alone: " * alone + comparison.headline,
         "named": f"{title_of(state)}; {state['force']:g} N in the line of action, {state['b_1']:g} and {state['b_2']:g} mm wide",
         "definition": comparison.definition,
         "method": f"{method}: {phases} phases in a mesh cycle"
         + (", with estimated errors" if error else ", a first picture without estimates" if method == "ritz" else ""),
-        "section": bool(left_out or further),
+        "section": alone,
         "table": (comparison.loss_table() or comparison.table()).cells(),
         "curves": [*(_curve("healthy", entry) for entry in comparison.healthy.values()),
                    _curve(comparison.kind or "healthy", curve)],

@@ -21,21 +21,21 @@ SLOW = {
     "spectrum": 6.0,
     "report": 40.0,
     "csv": 2.0,
-}  # kinds that take seconds: initial estimates
-LIMIT = {"report": 300.0, "solid": 120.0, "stress": 120.0, "spectrum": 120.0}  # seconds after which a task is ended
+}  # initial duration estimates of slow tasks [s]
+LIMIT = {"report": 300.0, "solid": 120.0, "stress": 120.0, "spectrum": 120.0}  # time limits of slow tasks [s]
 QUICK_LIMIT = 20.0  # limit of all other tasks [s]
 MEMORY = 4 * 2**30  # memory limit of one process [bytes]
-MOST = 64  # tasks that wait
+MOST = 64  # largest number of waiting tasks
 STALE = {"stale": True}
-START = 40.0  # seconds that a new process may take until it is ready
+START = 40.0  # time limit for the start of a process [s]
 
 
 def _work(pipe: Connection, memory: int) -> None:
     """Run a solver process: answer one task after another until its pipe is closed."""
     import signal
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends this process
-    with contextlib.suppress(ImportError, ValueError, OSError):  # not on Windows; not above the limit of the system
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The server, not the terminal, ends this process.
+    with contextlib.suppress(ImportError, ValueError, OSError):  # Windows has no such limit, and the system's limit may be lower.
         import resource
 
         resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
@@ -54,7 +54,7 @@ class Worker:
     def __init__(self, context: Any, memory: int):
         self.pipe, other = context.Pipe()
         self.process = context.Process(target=_work, args=(other, memory), daemon=True, name="gearfe solver")
-        # starting takes about a second, during which the page loads
+        # The start takes about a second, while the page loads.
         self.starting = threading.Thread(target=self._start, args=(other,), daemon=True)
         self.starting.start()
         self.ready, self.ended = False, ""

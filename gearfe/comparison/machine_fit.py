@@ -23,10 +23,10 @@ from .settled import recorded
 
 PATH = ("path.frequency_Hz", "path.damping_ratio", "path.mass_kg")
 BAND = 0.4  # lines above this part of the sampling rate are not used
-APART = 4.0  # widths 1/T of a spectral line between two lines, so that a Hann window parts them
+APART = 4.0  # smallest distance of two lines in widths 1/T, which a Hann window resolves
 STARTS = 6  # starting points per parameter; the best two are refined
-SHORT = 4  # mesh cycles of the common period up to which the periodic motion is solved directly
-CLEAR = 3.0  # ratio of the summed lines to the noise that a fit requires
+SHORT = 4  # longest common period for a direct periodic solution [mesh cycles]
+CLEAR = 3.0  # least ratio of the summed lines to the noise that a fit requires
 OFF = 0.02  # relative speed difference within which another record speed is searched
 
 
@@ -115,7 +115,7 @@ class MachineFit:
         return signal, {"faults": [_label(one) for one in faulty.faults], "error": self.error}
 
     def _shift(self, machine):
-        """Time by which the machine is ahead so that its lines have the phases of the record [s]."""
+        """Return the time shift [s] with which the lines of the machine have the phases of the record."""
         ours = _lines(machine, self.channel, self.frequency) * _gain(_path(self.values), self.frequency)
         theirs = line_amplitudes(self.record, self.frequency)
         times = np.linspace(0, 1 / self.frequency[0], 20 * self.frequency.size + 1)[:-1]
@@ -157,8 +157,6 @@ def fit_machine(
     ValueError
         If a range or key is invalid, the record has another speed, or has fewer lines than there are keys.
     """
-    if not isinstance(record, Signal):
-        raise ValueError(f"record = {record!r}, but give a Signal, such as the result of gearfe.read_signal")
     low, high = _ranges(vary)
     file, tables = read_tables(scene)
     logs = low > 0
@@ -177,7 +175,7 @@ def fit_machine(
         fitted, values = changed(x)
         return np.abs(_lines(build_machine(fitted), channel, frequency) * _gain(_path(values), frequency))
 
-    def residuals(x: Floats) -> Floats:  # the mean of a noisy amplitude is larger than that without noise
+    def residuals(x: Floats) -> Floats:  # Noise increases the mean of a measured amplitude, so the residuals include it.
         return (measured - np.hypot(lines(x), noise)) / noise
 
     from scipy.optimize import least_squares
@@ -268,8 +266,13 @@ def _frequencies(machine, record, harmonics):
 
 def _lines(machine, channel, frequency):
     """Complex amplitudes of the lines of a machine, from its periodic motion, or from a simulation of long periods."""
+    sensor = machine.sensors.get(channel.removeprefix("sensor "))
+    if sensor is not None and not sensor.housing:
+        weights = sensor.weights or [1.0] * len(sensor.channels)
+        of_channels = zip(weights, sensor.channels, strict=True)
+        return sensor.gain(frequency) * sum(weight * _lines(machine, one, frequency) for weight, one in of_channels)
     period = common_period(machine)
-    if period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
+    if sensor is None and period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
         found = steady_state(machine, period=period).response
         return line_amplitudes(found.part(slice(None, -1)).signal(channel), frequency, np.ones)
     apart = np.diff(frequency, prepend=0.0).min()
@@ -278,7 +281,7 @@ def _lines(machine, channel, frequency):
 
 
 def _reach(jacobian, scale, free, whole):
-    """Half widths of 95 % confidence intervals. Undetermined directions have the whole range."""
+    """Return the half-widths of 95 % confidence intervals. Undetermined parameters have their whole range."""
     _, sizes, ways = np.linalg.svd(jacobian * whole, full_matrices=False)
     spread = 1 / np.maximum(sizes, 1e-12)
     quantile = float(stdtrit(free, 0.975)) if scale > 1 and free else 1.96

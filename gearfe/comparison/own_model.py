@@ -44,7 +44,7 @@ class PairModel:
             raise ValueError(f"PairModel({self.function!r}): give a function f(radius_1, radius_2) -> k [N/m]")
 
 
-# a function of the phase, or an object with a label and options
+# a function of the phase, or a model object with a label and options
 OneModel = Callable[[Floats], Floats] | PairModel | OwnFlexibility | ModelFile | StrPath
 OwnModel = OneModel | tuple[OneModel, OneModel]  # models of the damaged and of the healthy pair
 
@@ -102,7 +102,7 @@ def _in_file(path, name):
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
-    except Exception as error:  # a user's file may raise any error
+    except Exception as error:  # A user's file may raise any exception.
         raise ValueError(f"{path} failed with {type(error).__name__}: {error}") from error
     kinds = (PairModel, OwnFlexibility)
     has = [
@@ -184,7 +184,7 @@ def _total(name, model, pair, phase, width):
     if isinstance(model, ModelFile):
         return model.total(pair, phase) * (width * 1e-3 if model.per_width else 1.0)
     phase = phase % 1.0
-    phase[phase >= 1.0] = 0.0  # -1e-17 % 1.0 is 1.0
+    phase[phase >= 1.0] = 0.0  # -1e-17 % 1.0 is 1.0 in floating point.
     return _called(name, model, (phase,), "phase {:.6g}")
 
 
@@ -194,7 +194,7 @@ def _called(name, function, given, where):
     once = f"it is called once, with arrays of {n} values; numpy.vectorize(f) makes a function of single numbers fit"
     try:
         k = np.asarray(function(*given))
-    except Exception as error:  # a user's function may raise any error
+    except Exception as error:  # A user's function may raise any exception.
         raise ValueError(f"model {name!r} failed with {type(error).__name__}: {error} ({once})") from error
     if k.shape != (n,):
         raise ValueError(f"model {name!r} returned an array of shape {k.shape}, but give ({n},): one k for each value ({once})")

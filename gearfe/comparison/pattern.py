@@ -12,7 +12,7 @@ from ..geometry.aliases import Floats, StrPath
 from ..stiffness.pattern import contact_pattern
 from .losses import damage_phases
 
-PLACES = 400  # along the width
+PLACES = 400  # points along the width
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +103,6 @@ def face_load_distribution(contact: Contact3D) -> tuple[Floats, Floats]:
     edge = np.linspace(low.min(), high.max(), PLACES + 1)
     z = (edge[1:] + edge[:-1]) / 2
     over = [(low <= at) & (high > at) for at in z]
-    covered = np.array([mask.any() for mask in over])  # without the relief groove of a herringbone pair
+    covered = np.array([mask.any() for mask in over])  # The relief groove of a herringbone pair is excluded.
     load = np.array([float(line[mask].sum()) for mask in over]) / len(contact.cells)
     return z[covered], load[covered]

@@ -15,8 +15,8 @@ from ..dynamics.motion.step_control import default_step
 from .record_length import resolving_seconds
 from .settled import recorded
 
-DURATIONS = (1.0, 5.0)  # s, shortest and longest default record
-RANGE = 1e-4  # smaller lines, relative to the rms of a record, are lost in any recorder (80 dB; 16 bits have 96 dB)
+DURATIONS = (1.0, 5.0)  # shortest and longest default record [s]
+RANGE = 1e-4  # Smaller lines, relative to the RMS value, are below the dynamic range of recorders (80 dB; 16 bits have 96 dB).
 
 
 def responses(scene, case=None, *, duration=None, channel=None, method="fast", phases=64, loads=(1.0,), progress=None):
@@ -29,16 +29,12 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
     """
     check_run(DURATIONS[0] if duration is None else duration, method)
     if channel is not None:
-        machine = flat_machine(scene)
-        n = 2 * len(machine.dofs)
-        Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
-    cases = {name for pair in scene.pairs.values() for name in pair.damage}
-    if case is not None and case not in cases:
-        raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(sorted(cases)) or 'none'}")
+        check_channel(flat_machine(scene), channel)
+    scene.check_case(case)
     in_case = [one for pair in scene.pairs.values() for damages in pair.damage.get(case, {}).values() for one in damages]
     damage = [] if scene.machine.get("contact") == "impact" else in_case
     along = not all(hurt.through for hurt in damage)
-    curves = "ritz3d" if along else "auto"  # use one method for all compared cases
+    curves = "ritz3d" if along else "auto"  # One method must be used for all compared cases.
     names = ("healthy", *([case] if case else []))
     with part("", 0.0, 0.5):
         machines = {
@@ -55,6 +51,12 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
             name: recorded(machines[name], duration, rate, method=method, progress=progress)
             for name in steps(names, lambda name: f"motion, {name}")
         }
+
+
+def check_channel(machine, channel):
+    """Raise ValueError unless responses of a machine have this channel."""
+    n = 2 * len(machine.dofs)
+    Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
 
 
 def check_run(duration, method="fast"):

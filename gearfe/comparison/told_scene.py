@@ -162,7 +162,7 @@ def _train(scene: Scene) -> Iterator[str]:
 def _set(scene: Scene) -> Iterator[str]:
     """Return a description of the set of a scene."""
     if scene.set is not None:
-        from ..planetary_sets.of_scene import build_set  # only sets need it: 0.1 s
+        from ..planetary_sets.of_scene import build_set  # imported here, because only sets need it and it takes 0.1 s
         from .told_set import told_set
 
         yield f"set: {told_set(build_set(scene))}"

@@ -27,8 +27,8 @@ COLUMNS = (
     *(Column(f"load, {name}", "N") for name in ("least", "largest")),
 )
 
-MOST = 10_000  # limits of the number of positions and of cycles
-ENGAGED = 2  # mesh cycles in which a tooth passes its mesh
+MOST = 10_000  # largest number of positions, and of cycles
+ENGAGED = 2  # duration of the engagement of a tooth [mesh cycles]
 
 
 def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> Floats:
@@ -86,7 +86,7 @@ def set_table(curves: SetCurves) -> Table:
 
 
 def told_span(positions: Floats) -> str:
-    """Over which positions of `spread` the numbers of a table are taken, in words."""
+    """Describe the positions over which the values of a table are computed."""
     cycles = round(positions.size * (positions[1] - positions[0])) if positions.size > 1 else 1
     start = f" from position {positions[0]:.4g} on" if positions[0] else ""
     return f"over {positions.size} positions in {'a mesh cycle' if cycles == 1 else f'{cycles} mesh cycles'}{start}"

@@ -3,7 +3,6 @@
 import math
 import re
 from dataclasses import dataclass, replace
-from numbers import Real
 
 import numpy as np
 
@@ -19,12 +18,12 @@ from ..signal.spectral_lines import BINS, expected_lines, find_lines
 from .record_length import resolving_seconds, too_short
 from .simulated import RANGE, fault_lines
 
-NEAR = 50  # bins on either side that give the noise floor of a line
-# ratio of the median to the lower quartile of noise amplitudes (Rayleigh distribution)
+NEAR = 50  # half-width of the window for the noise floor [bins]
+# Ratio of the median to the lower quartile of noise amplitudes (Rayleigh distribution).
 QUARTILE = math.sqrt(math.log(2) / math.log(4 / 3))
-FLOOR = 5.0  # least ratio of a line to its noise floor; the largest of five noise bins reaches it once in millions of cases
-ROUNDING = 1e-9  # motions below this part of the largest motion are rounding errors
-PULSES = 2  # least number of fault harmonics in an envelope: tooth pulses have many, run-out and misplaced planets have one
+FLOOR = 5.0  # least ratio of a line to its noise floor; noise in five bins reaches it once in millions of cases
+ROUNDING = 1e-9  # Motions below this part of the largest motion are rounding errors.
+PULSES = 2  # least number of fault harmonics in an envelope; tooth pulses have many, run-out and planet position errors have one
 RISE = 2.0  # least ratio of a fault line to the same line of the healthy machine
 OF_GEARS = ("FM4", "NA4", "energy ratio")  # indicators by gear, of `gearfe.signal.gear_indicators`
 WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "shaft frequency", "f_carrier": "carrier frequency"}
@@ -236,9 +235,7 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
     of both is enough), and of the carrier; `others` are those of faulty teeth of further gears by name. Lines of the carrier that
     the spectrum cannot part from others are left out.
     """
-    for name, value in {"mesh": mesh, "fault": fault, "turning": turning, "carrier": carrier}.items():
-        if value is not None and not (isinstance(value, Real) and 0 < value < math.inf):
-            raise ValueError(f"{name} = {value!r} Hz, but a frequency is positive and finite")
+    _check_frequencies(mesh=mesh, fault=fault, turning=turning, carrier=carrier)
     spectra = {
         case: spectrum(replace(of_case, values=of_case.values - of_case.values.mean())) for case, of_case in signals.items()
     }
@@ -249,15 +246,27 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
         )
     lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
     for name, value in (others or {}).items():
-        beside = expected_lines(mesh, value, count=1, harmonics=2)
-        lines |= {line.replace("f_fault", f"f_{name}"): at for line, at in beside.items() if "f_fault" in line}
+        lines |= _fault_lines(mesh, name, value)
     lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
+    faulty = fault or turning
     placed = {case: find_lines(of_case, lines, between=True) for case, of_case in spectra.items()}
     amplitudes = {case: {name: line[1] for name, line in of_case.items()} for case, of_case in placed.items()}
-    frequencies = (mesh, fault or turning) if mesh and (fault or turning) else (None, None)
-    table = indicator_table(signals, *frequencies, healthy=next(iter(signals)))
+    known = (mesh, faulty) if mesh and faulty else (None, None)
+    table = indicator_table(signals, *known, healthy=next(iter(signals)))
     resolving = resolving_seconds(fault, turning, carrier)
-    return Analysis(channel, signals, fault or turning, lines, spectra, amplitudes, table, resolving)
+    return Analysis(channel, signals, faulty, lines, spectra, amplitudes, table, resolving)
+
+
+def _fault_lines(mesh, name, value):
+    """Frequencies of the lines of a further faulty tooth, by names with its gear's."""
+    beside = expected_lines(mesh, value, count=1, harmonics=2)
+    return {line.replace("f_fault", f"f_{name}"): at for line, at in beside.items() if "f_fault" in line}
+
+
+def _check_frequencies(**frequencies):
+    for name, value in frequencies.items():
+        if value is not None and not 0 < value < math.inf:
+            raise ValueError(f"{name} = {value!r} Hz, but a frequency is positive and finite")
 
 
 def _lines(mesh, fault, turning, carrier, resolution):

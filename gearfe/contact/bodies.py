@@ -67,6 +67,15 @@ def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility
     return Bodies(of(order, False), of(order - 1, True))
 
 
+def _check_cracks(case, gear, body, cracks, bands):
+    """Raise ValueError unless each crack is in a band, and each band has one crack of a tooth at most."""
+    for crack in cracks:
+        if not any(seen_damage(gear, [crack], body, band) for band in bands):
+            raise ValueError(f"crack open from z = {crack.width} mm: this is inside the relief groove of {case.groove:g} mm")
+    for band in bands:
+        check_single(body, seen_damage(gear, cracks, body, band))
+
+
 def bodies_of(case, bands, flexible, ahead=None):
     """Return ``[[(Flexibility3D, offset [mm]), ...], ...]`` of both gears in each band. Contact begins at the offset.
 
@@ -82,11 +91,7 @@ def bodies_of(case, bands, flexible, ahead=None):
     seen = seen_gears(pair, case.runs, case.groove)
     gears = list(zip((pair.gear_1, pair.gear_2), seen, case.materials, case.cracks, case.broken, shafts, strict=True))
     for gear, (body, _), _, own, _, _ in gears:
-        for crack in own:
-            if not any(seen_damage(gear, [crack], body, band) for band in bands):
-                raise ValueError(f"crack open from z = {crack.width} mm: this is inside the relief groove of {case.groove:g} mm")
-        for band in bands:
-            check_single(body, seen_damage(gear, own, body, band))
+        _check_cracks(case, gear, body, own, bands)
     wanted = [
         [
             ((body, material, seen_damage(gear, own + broken, body, band)), _as_seen(shaft, band), offset)
@@ -125,7 +130,7 @@ def between(cells, bodies):
 
 
 class _Line(NamedTuple):
-    """Cells `at` of one tooth in one phase, whose first cell is number `start` of all."""
+    """Cells `at` of one tooth in one phase. `start` is the number of its first cell."""
 
     phase: int
     tooth: int
@@ -170,7 +175,7 @@ def mirrors_of(cells, bodies):
             at, (body, offset) = cells.half == half, bodies[half][side]
             ends = [cells.depth[at] + offset + sign * cells.width[at] / 2 for sign in (-1, 1)]
             low[at], high[at] = (np.array(ends) if not far else body.gear.b - np.array(ends[::-1])) / math.cos(body.gear.beta_b)
-            weight, place = body.edge, (far, offset, body.gear.b)  # faces of equally wide gears are flush
+            weight, place = body.edge, (far, offset, body.gear.b)  # The end faces of gears with equal width are flush.
         faces[place] = (weight + faces.get(place, (0.0,))[0], low, high)
     return list(faces.values())
 

@@ -10,13 +10,13 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 
 from ..geometry.aliases import Floats
 from .joined_lines import FLOOR, JoinedLines
-from .pair_contact import OVERLAP
 from .sharing import share
+from .unknowns import OVERLAP
 
-MOST = 60  # steps at most; the second half of them solve exact contact problems
+MOST = 60  # limit of steps; the second half solve exact contact problems
 WIDTHS = 20  # iterations with updated contact widths; the relaxation factor is 0.5 in the second half
 SETTLED = 1e-7  # tolerance: change of a cell's load in the last iteration, relative to the whole load
-SLOW = 0.2  # a change of more than this part of the previous one makes a new factorisation necessary
+SLOW = 0.2  # A larger relative change requires a new factorisation.
 SLOPE = 1e-4  # relative step of the line load for the derivative of the local law
 
 

@@ -8,17 +8,17 @@ from numpy.typing import NDArray
 
 from ..geometry.aliases import Floats
 from ..geometry.mesh.outline import spaced
-from ..geometry.pair.broken import each_pair, touching_each
+from ..geometry.pair.broken import ToothPairs, each_pair, touching_each
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.modified import first_touch
 from .pieces import cut
 
 BESIDE = 0.25  # distance from an end face [m_n] within which edge contact matters
-END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
-GROWTH = 0.6  # increase of the cell length per unit length, away from the ends
+END = 0.25  # length of the cells at the ends of contact relative to the longest; the pressure rises there
+GROWTH = 0.6  # growth of the cell length with the distance from the ends
 BEYOND = 12  # minimum number of cells beyond the path of contact, where gaps open
 CARRYING = 20  # minimum number of loaded cells in a phase if gaps change along the width
-SETTLED = 0.7  # the search for the carrying part of a line ends when a step leaves at least this much of its length
+SETTLED = 0.7  # The search for the carrying part of a line ends when a step keeps at least this part of its length.
 TIMES = 12  # maximum number of steps of that search
 
 
@@ -71,7 +71,7 @@ class Cells:
         return out
 
 
-def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None, pair_of=None):
+def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None, pairs=None):
     """`Cells` of the `pieces` of some phases, and the number of the phase each belongs to ``(n,)``.
 
     Parameters
@@ -88,7 +88,7 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
         How many of these cells are taken for one: what k owes to their length.
     fine : dict of (int, int) to (float, float, float), optional
         By phase and piece: first depth, last depth, longest cell between them [mm].
-    pair_of : callable, optional
+    pairs : ToothPairs, optional
         As of `gearfe.contact.pieces.pieces_of`.
     """
     rows, number = [], []
@@ -101,19 +101,19 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
             z, nominal = first + math.copysign(1, last - first) * middle, piece.roll - slope * middle
             rows.append((middle, width, z, nominal))
             number.append((i, piece.half, piece.order, piece.corner, piece.floor, middle.size))
-    pair_of = pair_of or (lambda _: pair)
+    pairs = pairs or ToothPairs(pair)
     depth, width, z, nominal = (np.concatenate(values) for values in zip(*rows, strict=True))
     *named, count = (np.array(values) for values in zip(*number, strict=True))
     phase, half, order, corner, floor = (np.repeat(values, count) for values in named)
     roll_1, roll_2, gap = nominal.copy(), pair.mate_roll(nominal), np.zeros(z.size)
     at_corner, radius = (corner > 0) | _cut(pair, nominal), np.zeros(z.size)
     if at_corner.any():
-        met = touching_each(pair_of, order[at_corner], nominal[at_corner])
+        met = touching_each(pairs, order[at_corner], z[at_corner], nominal[at_corner])
         roll_1[at_corner], roll_2[at_corner], gap[at_corner], corner[at_corner] = met[:4]
     if flanks is not None:
-        met = each_pair(pair_of, order, lambda one, on: first_touch(one, flanks, nominal[on], order[on], gap[on], z[on]))
+        met = each_pair(pairs, order, z, lambda one, on: first_touch(one, flanks, nominal[on], order[on], gap[on], z[on]))
         roll_1, roll_2, gap, radius, corner = met.roll_1, met.roll_2, met.gap, met.radius, met.corner
-    gap = gap + floor * math.sqrt(1 + slope**2)  # pits are measured along the normal
+    gap = gap + floor * math.sqrt(1 + slope**2)  # Pit depths are measured along the normal.
     whole = Cells(half, order, z, width, depth, nominal, roll_1, roll_2, gap, corner, floor.astype(float), radius)
     kept = np.isfinite(gap)
     return (whole, phase) if kept.all() else (whole.some(kept), phase[kept])
@@ -142,7 +142,7 @@ def carrying(cells, phase, pieces, force, bed):
             continue
         order = at[np.argsort(cells.gap[at])]
         gap, width = cells.gap[order], np.cumsum(cells.width[order])
-        # approach if this number of cells carried load
+        # approach at which this number of cells would carry load
         pressed = (force / bed + np.cumsum(cells.gap[order] * cells.width[order])) / width
         deep = pressed[np.flatnonzero(pressed >= gap)[-1]]
         loaded = at[cells.gap[at] < deep]

@@ -9,8 +9,8 @@ from scipy.optimize import nnls
 
 from ..flexibility.hertz import half_width
 
-STEPS = 20  # steps of the active set before non-negative least squares are tried
-ROUNDING = 1e-12  # overlaps below this part of the largest distance are rounding errors
+STEPS = 20  # limit of active-set steps before non-negative least squares
+ROUNDING = 1e-12  # Overlaps below this part of the largest distance are rounding errors.
 
 
 def share(flexibility, gap, load, weight=None, start=None):

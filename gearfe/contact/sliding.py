@@ -10,7 +10,7 @@ from ..flexibility.plane import cracks_beyond
 from ..geometry.tooth.profile import arc_at, roll_at_arc
 from .thinned import UNSURE
 
-MOST = 0.05  # limit of the approach by sliding, relative to the deflection; larger strains are not small
+MOST = 0.05  # limit of the approach by sliding, relative to the deflection; larger values violate small strains
 STEP = 0.01  # step along the flank for the derivative of a flexibility [m_n]
 
 
@@ -115,7 +115,7 @@ def left_out(contact, line, closing, beyond, shut):
 
 
 def _changed(contact, radius, gap, closed, closing):
-    """Return the uncertainty of gaps off the path, see `left_out`: at most their closed part `closed` [mm]."""
+    """Return the change of gaps off the path by sliding [mm], see `left_out`. It is limited to their closed part `closed`."""
     u = math.tan(contact.pair.alpha_wt) * closing
     return np.minimum((np.sqrt(2 * radius * np.maximum(gap, 0.0)) * u + u**2 / 2) / radius, closed)
 
@@ -126,8 +126,8 @@ def off_path(contact, cells, load, radius, approach):
     It is zero where contact on the path carries. `load`, `radius` ``(n,)`` are those of the `Cells`.
     """
     on = np.flatnonzero(load > 0)
-    ends = {order: contact.pair_of(order).path for order in set(cells.order[on].tolist())}
-    start, end = np.array([ends[order] for order in cells.order[on].tolist()]).T
+    places = zip(cells.order[on].tolist(), contact.pairs.parts(cells.z[on]).tolist(), strict=True)
+    start, end = np.array([contact.pairs(*place).path for place in places]).T
     if ((cells.nominal[on] >= start) & (cells.nominal[on] <= end)).any():
         return 0.0
     gap = math.cos(contact.beta_b) * cells.gap[on]

@@ -28,8 +28,9 @@ from ..geometry.tooth.profile import fillet, flank, tangent_point
 from ..geometry.tooth.side import place
 
 FOOT = 16.67 / math.pi  # rotation of a root section of unit thickness under a unit moment, times E'
-POINTS = 200  # sections between root and tip circle
-UNSURE = 1 / 4  # error of the difference, from finite elements of thinned teeth (``tests/contact/test_thinned_flexibility.py``)
+POINTS = 200  # cross-sections between root and tip circle
+# relative error of the flexibility change, from finite elements of thinned teeth (``tests/contact/test_thinned_flexibility.py``)
+UNSURE = 1 / 4
 
 
 class Thinning:
@@ -82,7 +83,7 @@ class Thinning:
         return float(1 - left[0] / half[0])
 
     def _sections(self, tooth):
-        """Heights, half thicknesses and what is left of these, first at the foot, then from root to tip circle [mm]."""
+        """Return heights, half thicknesses and remaining half thicknesses [mm], at the foot, then from root to tip circle."""
         foot = float(fillet(self.gear, tangent_point(self.gear))[0])
         radius = np.append(foot, np.linspace(self.gear.r_f, self.gear.r_a, POINTS + 1))
         angle = place(self.gear, radius).angle

@@ -12,13 +12,13 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..core.files import check_path
+from ..core.file_readers import check_path
 from ..geometry.aliases import StrPath
 
-LARGEST = 50_000_000  # bytes of a model
+LARGEST = 50_000_000  # largest model file [bytes]
 MODELS = (".rexs", ".rexs.xml", ".rexsj", ".rexs.json", ".xml", ".json")
 ZIPPED = (".rexsz", ".zip")
-RENAMED = {  # ids of older versions by those of today
+RENAMED = {  # attribute ids of older REXS versions: present ids
     "tip_radius_factor": "tip_corner_radius_factor_reference_profile",
     "tip_radius": "tip_corner_radius_reference_profile",
     "load_duration_fraction": "operating_time_fraction",

@@ -12,7 +12,7 @@ from numpy.polynomial import legendre
 
 from .halfspace import between, graded, hat_distance, modes
 
-POINTS = 12  # Gauss points at least in each part of the distance to the mirror
+POINTS = 12  # least number of Gauss points in each part of the distance to the mirror image
 
 
 def edge_factor(material):
@@ -42,4 +42,4 @@ def mirrored_patches(knots, width, degree, stretch=1.0):
     distance = hat_distance(knots, np.zeros((n, n, q.size)), stretch * q).reshape(n * n, q.size)
     first = (distance @ overlap.reshape(q.size, -1)).reshape(n, n, degree + 1, degree + 1)
     sign = (-1.0) ** np.arange(degree + 1)
-    return (first * (1 + np.outer(sign, sign))).transpose(0, 2, 1, 3)  # the other face: the same with reversed z
+    return (first * (1 + np.outer(sign, sign))).transpose(0, 2, 1, 3)  # The other face has the same terms with reversed z.

@@ -7,7 +7,7 @@ by hat (`gearfe.contact.pair_contact`).
 import numpy as np
 from numpy.typing import NDArray
 
-SPAN = 2  # edges of the flank on either side of a hat's top; its kinks fall on ends of edges
+SPAN = 2  # element edges on either side of a hat function's peak; its kinks coincide with edge ends
 TIP_ZONE = 0.35  # arc below the tip corner [m_n] in which single hat functions can resolve a contact
 
 

@@ -1,7 +1,7 @@
 """`Flexibility`: elastic flexibility of a gear between its contacts, for all section methods."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,7 +13,7 @@ from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import arc_at
 
 NEAREST = 0.001  # offset of distances from a tip corner before taking the logarithm [m_n]
-TILT = 0.2  # tilt of two loads at each of four places, which give the deflection of a tooth across its normal [rad]
+TILT = 0.2  # tilt of the two loads at each of four places, which determine the deflection across the normal [rad]
 FURTHER = 1  # number of further teeth solved with damage, beyond those that can share load with a damaged one
 BELOW = 0.1  # distance of the third of these places from the tip [m_n]
 
@@ -43,6 +43,15 @@ def reached_teeth(gear: Gear, damage: Iterable[Any], neighbours: int) -> list[in
     """Numbers of the teeth that are solved with damage: `neighbours` and `FURTHER` to either side of a damaged tooth."""
     reach = neighbours + FURTHER
     return sorted({(one.tooth + k) % gear.z for one in damage for k in range(-reach, reach + 1)})
+
+
+def glued(
+    gear: Gear, teeth: Sequence[int], influence: Callable[[int, int], Floats], opening: Mapping[int, Floats], stiffness: Floats
+) -> tuple[dict[int, Floats], dict[tuple[int, int], Floats]]:
+    """Influence of loads with all cracks glued shut: of each tooth on itself, and on the teeth at most half a turn ahead."""
+    between = {(i, j): influence(i, j) - opening[i].T @ stiffness @ opening[j] for i in teeth for j in teeth}
+    ahead = {(i, j): one for (i, j), one in between.items() if i != j and (j - i) % gear.z <= gear.z // 2}
+    return {tooth: between[tooth, tooth] for tooth in teeth}, ahead
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -141,7 +150,7 @@ class Flexibility:
             part, values = slice(stop, stop := stop + roll.size), flexible.own.get(tooth % self.gear.z, flexible.own.get(0))
             here, ahead = rows[basis][0][part], rows[basis][1]
             smooth = here @ values @ here.T
-            if depth[part].any():  # in the fillet, the function is extrapolated linearly
+            if depth[part].any():  # In the fillet, the function is extrapolated linearly.
                 slope = np.outer(depth[part], ahead @ values @ here.T)
                 smooth = smooth + slope + slope.T
             out.append(smooth)
@@ -177,14 +186,14 @@ class Flexibility:
         arc = self.clipped(arc_at(self.gear, roll), teeth)
         out = np.zeros((*np.shape(roll), teeth.size))
         members = {tooth: teeth == tooth for tooth in sorted(set(teeth.tolist()))}
-        near: dict[Any, NDArray[np.bool_]] = {}  # contacts by their spline; equal teeth share a spline
+        near: dict[Any, NDArray[np.bool_]] = {}  # contacts by spline; equal teeth share a spline
         far: dict[Any, NDArray[np.bool_]] = {}
         for tooth, on in members.items():
             spline = self.near.get(tooth % z, whole.near.get(0))
             near[spline] = near.get(spline, False) | on
             for other, there in members.items():
                 spline = self.far.get((tooth % z, other % z), whole.far.get((0, other - tooth)))
-                if tooth < other and spline is not None:  # otherwise the teeth are too far apart to interact
+                if tooth < other and spline is not None:  # Otherwise the teeth are too far apart to interact.
                     far[spline] = far.get(spline, False) | on[:, None] & there
         for spline, on in near.items():
             (here,) = on.nonzero()
@@ -196,7 +205,7 @@ class Flexibility:
 
 
 def outermost(solved: Iterable[int], z: int) -> list[int]:
-    """Those of the `solved` teeth of a gear with `z` teeth that have a neighbour which was not solved."""
+    """Return the `solved` teeth of a gear with `z` teeth that have an unsolved neighbour."""
     teeth = set(solved)
     return [tooth for tooth in teeth if not {(tooth + 1) % z, (tooth - 1) % z} <= teeth]
 

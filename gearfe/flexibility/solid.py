@@ -21,8 +21,8 @@ from .halfspace import half_space, hat_points, modes, patch_kernel
 from .plane import outermost, reached_teeth
 from .solved import solved_gears
 
-PLACES = 8  # hats on each flank
-HAT = 0.4  # half their width [m_n]
+PLACES = 8  # number of hat functions on each flank
+HAT = 0.4  # half-width of the hat functions [m_n]
 # Least distance from the tip corner at which values are read [m_n]; chosen by the limit of plane strain, checked on a spur pair
 # against hexahedra.
 NEAREST = 0.01
@@ -85,7 +85,7 @@ class Flexibility3D:
         return (across[:, :, None] * along[:, None, :]).reshape(across.shape[0], -1)
 
     def between(self, first, second):
-        """B of a tooth, or between two teeth, or None if they are too far apart to have been solved."""
+        """Return the matrix B of a tooth, or between two teeth, or None if these are too far apart to interact."""
         z = self.gear.z
         whole = self if self.healthy is None else self.healthy
         if (second - first) % z == 0:
@@ -147,7 +147,7 @@ def parted(gear, material, degree, influence, unknowns, healthy=None, *, damage=
     unit area times `halfspace.modes`, modes innermost [mm/N mm]; `healthy` the `Flexibility3D` without `damage` if there is any.
     """
     edge = edge_factor(material) * half_space(material)
-    wanted = {(i, j): value for (i, j), value in influence.items() if i == 0 or healthy}  # healthy teeth are alike
+    wanted = {(i, j): value for (i, j), value in influence.items() if i == 0 or healthy}  # Healthy teeth are equal.
     near, tips = {}, {}
     for tooth in {i for i, _ in wanted}:
         end = loaded_side(gear, damage, tooth)

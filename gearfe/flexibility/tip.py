@@ -44,7 +44,7 @@ def tip_rows(grads: Floats, place: Floats, slope: Floats, area: Floats, material
 
 
 def face_factor(distance: Floats, q: Floats) -> Floats:
-    """Factor [1/sqrt(mm)] of a force on the faces at a `distance` [mm] behind the tip in the second integral.
+    """Return the stress intensity [1/sqrt(mm)] of a unit force on the crack faces at a `distance` [mm] behind the tip.
 
     ``sqrt(2 / (pi r)) q``: that of a crack in an infinite body where q is 1.
     """

@@ -11,7 +11,7 @@ from .of_scene import build_set, unlike_set
 from .rim_supports import RimSupports
 from .solve import planetary_stiffness
 
-POSITIONS = 32  # per mesh cycle
+POSITIONS = 32  # number of positions per mesh cycle
 
 
 class AddedCompliance(NamedTuple):

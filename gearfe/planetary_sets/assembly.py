@@ -108,7 +108,7 @@ class Set:
             for planet, one in enumerate(row):
                 at = slice(stop, stop := stop + one.contacts.gap.size)
                 slots = self._slots(one.contacts, inner)
-                # teeth, clockwise: sun j, planet C - j; planet -j', ring D - j'
+                # teeth, clockwise: sun j meets planet C - j; planet -j' meets ring D - j'
                 first = (self.stand.planet, self.stand.ring)[inner][planet]
                 teeth = slots[0] + one.first
                 out.append(_Block(one, inner, planet, at, ((-1 if inner else 1) * teeth, first - teeth), slots[1]))
@@ -128,7 +128,7 @@ class Set:
             ):
                 rows = carry(gear, roll) * turn[:, None]
                 both.append((on[:, :, None] * rows[:, None]).reshape(roll.size, -1))
-            self._spread[key] = orders, tuple(both), contacts  # keep a reference to `contacts`, so that its id is not reused
+            self._spread[key] = orders, tuple(both), contacts  # The reference to `contacts` prevents reuse of its id.
         return self._spread[key]
 
     def _between(self, a, b):

@@ -25,7 +25,7 @@ from ..geometry.damage.missing import missing_teeth
 from ..geometry.mesh.periodic_sector import periodic_sector
 from .whole_gear import PLACES, WholeGear, in_chain, sector_stiffness
 
-NEGLIGIBLE = 1e-9  # changes of a sector's stiffness below this part of the largest are left out
+NEGLIGIBLE = 1e-9  # Smaller changes of a sector's stiffness, relative to the largest, are omitted.
 
 
 class CrackedTooth(NamedTuple):

@@ -102,7 +102,7 @@ def placed(case, stand, curves, at):
         place = np.array([math.sin(angle), math.cos(angle)])
         along = np.array([math.cos(angle), -math.sin(angle)])
         error = case.errors[i][0] * place + case.errors[i][1] * along
-        # approach of the mesh with the ring, by the planet's rotation and shift
+        # approach of the ring mesh by rotation and translation of the planet
         closed = curves.force[1, at, i] / curves.k[1, at, i] * 1e3
         turned = closed + inner[:, i] @ error
         out.append((gears.planet, case.material[1], gears.a * place, planets[i], (-turned / gears.planet.r_b, error)))

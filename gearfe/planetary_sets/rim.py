@@ -27,7 +27,7 @@ from .pads import Pads, among, by_teeth, pads_on
 from .rim_supports import RimBed, RimSupports, check_support
 from .whole_gear import PLACES, WholeGear, between_teeth, motion
 
-SURE = 1e-9  # singular values below this part of the largest mean that the ring can move freely
+SURE = 1e-9  # A smaller singular value, relative to the largest, indicates a rigid-body motion of the ring.
 
 
 NONE_2, NONE_3 = np.zeros((0, 0)), np.zeros((0, 0, 0))  # empty arrays of a ring without pads
@@ -75,7 +75,7 @@ def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: floa
         return Rim(whole, teeth, pads, lug=between, across=across, turns=pads.turns, gives=gives)
     p, n = pads.compliance.shape[0], gear.z * PLACES
     scale = np.diag(between).mean()
-    unit = scale * np.array([1.0, 1.0, 1 / gear.held])[:, None]  # scaled, so that all entries of the system have one magnitude
+    unit = scale * np.array([1.0, 1.0, 1 / gear.held])[:, None]  # Scaling gives all entries of the system one magnitude.
     system = np.block([[between, (unit * pads.turns).T], [unit * pads.turns, np.zeros((3, 3))]])
     if np.linalg.svd(unit * pads.turns, compute_uv=False)[-1] < SURE * scale:
         raise ValueError("ring: it moves freely on these pads: give more pads, or support both directions")
@@ -106,7 +106,7 @@ def ring_faces(rim: Rim, support: "str | RimBed | RimSupports", teeth: tuple[Cra
         found = faces_of(whole, teeth, whole.loose_inverse())
         moved = np.einsum("zrp,zre->pe", rim.pads.close, found.edge, optimize=True)
         by_teeth, stiffness = found.by_teeth[..., :PLACES], found.stiffness
-        if rim.grip.size:  # pads that push and pull
+        if rim.grip.size:  # pads that transmit tension and pressure
             pulled = rim.grip[: moved.shape[0]] @ moved
             by_teeth = by_teeth + np.einsum("pe,pta->eta", moved, rim.reaction)
             stiffness = stiffness - moved.T @ pulled

@@ -27,9 +27,9 @@ from .findings import find
 from .template import page_maker, picture_data
 from .whole_set import set_section
 
-MARK = 10.0  # errors beyond it are emphasised [%]
+MARK = 10.0  # Larger errors are emphasised [%].
 PICTURE = (1120, 840)  # size of a picture of stress [px]
-LOADS = (0.25, 0.5, 1.0, 1.5)  # loads of a Harris map over that of the pair
+LOADS = (0.25, 0.5, 1.0, 1.5)  # loads of a Harris map relative to the load of the pair
 
 
 def report(

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
-SIDES = ((1, 2, 3, 0), (0, 3, 2, 1), (0, 1, 3, 2), (0, 2, 1, 3))  # corners of a tet's faces seen from outside, and the one inside
-DEEP = 2.2  # depth of the body below the root circle that is shown [m_n]
+# corners of the faces of a tetrahedron seen from outside, and the opposite corner
+SIDES = ((1, 2, 3, 0), (0, 3, 2, 1), (0, 1, 3, 2), (0, 2, 1, 3))
+DEEP = 2.2  # shown depth of the body below the root circle [m_n]
 
 
 def surface(cells, points):

@@ -21,8 +21,8 @@ from ..signal.spectrum import Spectrum
 from ..stiffness.provenance import versions
 from .template import embedded, page_maker
 
-UNSAFE = re.compile(r"[^\w.-]+")  # characters that names of files do not have
-HARMONICS = 4  # harmonics of a fault that are marked in the spectrum of the envelope
+UNSAFE = re.compile(r"[^\w.-]+")  # characters not allowed in file names
+HARMONICS = 4  # number of fault harmonics marked in the envelope spectrum
 
 
 class Part(NamedTuple):

@@ -17,16 +17,16 @@ class Cost:
     """Expected cost of a sweep or a data set."""
 
     text_of_cases: str
-    cases: int  # in all
-    blocks: int  # files they make
+    cases: int  # number of cases
+    blocks: int  # number of files
     seconds: float  # CPU time of all cases
-    workers: int  # processes that share it
+    workers: int  # number of processes
     memory: float  # memory of each process [bytes]: the peak of this one so far
-    disk: float  # the whole folder [bytes]
-    free: float  # there [bytes]
+    disk: float  # size of the whole folder [bytes]
+    free: float  # free disk space [bytes]
     tried: int  # number of sample cases
-    failed: int  # of these
-    error: str  # first error of the sample cases; empty if there is none
+    failed: int  # number of failed sample cases
+    error: str  # first error of a sample case; empty if there is none
 
     def text(self) -> str:
         """Lines for people."""

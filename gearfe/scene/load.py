@@ -9,8 +9,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..core.case import Case
-from ..core.files import check_path
+from ..core.case import Case, check_load
+from ..core.file_readers import check_path
 from ..core.material import Material
 from ..core.record import check_named
 from ..core.supports.shaft import Shaft
@@ -27,12 +27,13 @@ from .dotted_keys import find_key, set_values
 from .reading import Reading, located
 from .references import Reference, read_references
 from .schema import arguments, scene_schema
+from .sensor_file import with_frf
 from .set_table import SceneSet, set_of
 from .toml_file import read_toml
 from .train import Train
 from .train_tables import train_of
 
-HEALTHY = "healthy"  # the case without damage
+HEALTHY = "healthy"  # name of the case without damage
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +56,8 @@ class ScenePair:
 
     @property
     def damage(self) -> dict[str, dict[str, list[Damage]]]:
-        """Damage by case and side as `gearfe.mesh_stiffness` takes it, of one body on each side."""
-        return {case: {side: _of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
+        """Return the damage by case and side as an argument of `gearfe.mesh_stiffness`, of one body on each side."""
+        return {case: {side: parts.of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
 
     def case(self, name: str | None = None) -> Case:
         """Return the pair as a `Case` with a case of damage, or healthy if None. Raises ValueError for an unknown case."""
@@ -85,8 +86,9 @@ class Scene:
     machine: dict[str, Any] = field(default_factory=dict)
     references: tuple[Reference, ...] = ()
     changed: tuple[str, ...] = ()
-    set: SceneSet | None = None  # a whole planetary set, `gearfe.planetary_sets.of_scene.build_set` gives its case
-    train: Train | None = None  # shafts of a gearbox, their speeds and torques
+    set: SceneSet | None = None  # a whole planetary set, converted by `gearfe.planetary_sets.of_scene.build_set`
+    train: Train | None = None  # gearbox shafts with their speeds and torques
+    sensors: dict[str, dict[str, Any]] = field(default_factory=dict)  # checked rows by name
 
     def __post_init__(self) -> None:
         """Raise ValueError if speeds, torques, forces or gears that follow from the file are those of other values."""
@@ -110,8 +112,9 @@ class Scene:
 
     def __repr__(self) -> str:
         """Name, title, pairs and cases in one line."""
-        cases = sorted({case for pair in self.pairs.values() for case in pair.damage})
-        return f"<Scene {self.name}: {self.title}; pairs {', '.join(self.pairs)}; cases {', '.join(cases) or 'none'}>"
+        return (
+            f"<Scene {self.name}: {self.title}; pairs {', '.join(self.pairs)}; cases {', '.join(sorted(self.cases)) or 'none'}>"
+        )
 
     def _repr_html_(self) -> str:
         """Title and a table of the pairs, which notebooks display."""
@@ -153,6 +156,16 @@ class Scene:
         ValueError if there is no such pair or case.
         """
         return self.pair(pair).case(case)
+
+    @property
+    def cases(self) -> tuple[str, ...]:
+        """Names of the cases of damage of all pairs."""
+        return tuple(dict.fromkeys(name for pair in self.pairs.values() for name in pair.damage))
+
+    def check_case(self, case: str | None) -> None:
+        """Raise ValueError unless a pair has this case of damage, or it is None."""
+        if case is not None and case not in self.cases:
+            raise ValueError(f"scene {self.name} has no case {case!r}; it has {', '.join(sorted(self.cases)) or 'none'}")
 
 
 def scene_names() -> list[str]:
@@ -201,7 +214,7 @@ def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
         file = Path(name_or_path)
         if not file.is_file():
             raise ValueError(_no_scene(str(name_or_path)))
-    return file.name, read_toml(file)
+    return file.name, with_frf(file, read_toml(file))
 
 
 def scene_of(file: str, data: dict[str, Any]) -> Scene:
@@ -219,10 +232,14 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     train = train_of(file, rows, gears, materials)
     pairs = {name: _pair(file, name, rows, gears, materials, train.forces if train else {}) for name in rows["pair"]}
     made = set_of(file, rows, pairs)
+    for name in (name for name, row in rows["sensor"].items() if row["frf"] is not None):
+        raise ValueError(
+            f"{file} [sensor.{name}] frf: this file is read with a scene file only; give frf_Hz, frf_real and frf_imag"
+        )
     run = dict(rows["machine"] or {})
     if run:
         run["bodies"] = {name: (float(body["mass_kg"]), float(body["inertia_kgm2"])) for name, body in run["bodies"].items()}
-    cases = {kind: _by_case(rows[kind]) for kind in parts.DAMAGE}
+    cases = {kind: parts.by_case(rows[kind]) for kind in parts.DAMAGE}
     for kind, by_case in cases.items():
         for name in {"", HEALTHY} & by_case.keys():
             raise ValueError(f"{file} [{kind}] case = {name!r}: this names gears without damage; give another name")
@@ -233,6 +250,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     return Scene(
         file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(rows["later"]),
         machine=run, references=() if own else read_references(file, rows["reference"]), changed=changed, set=made, train=train,
+        sensors=rows["sensor"],
     )  # fmt: skip
 
 
@@ -253,7 +271,10 @@ def _with_backlash(pair: GearPair, wanted: float) -> GearPair:
             "more, or leave it out"
         )
     thinner = more * math.cos(pair.gear_1.beta) / (2 * math.cos(pair.gear_1.alpha_t))
-    one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
+    try:
+        one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
+    except ValueError as error:
+        raise ValueError(f"backlash_um = {1e3 * wanted:g}, but the thinner teeth are impossible: {error}") from error
     return GearPair(one, two, pair.a)
 
 
@@ -265,15 +286,17 @@ def _pair(file, name, rows, gears, materials, forces):
     force = row["force_N"] or (1e3 * torque / gears[names[0]].r_b if torque else forces.get(name))
     if force is None:
         raise ValueError(f"{file} [pair.{name}]: missing key 'force_N' or 'torque_Nm'; expected a number in N or N m")
+    used = materials[rows["gear"][names[0]]["material"]], materials[rows["gear"][names[1]]["material"]]
     with located(file, f"pair.{name}", row):
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
         if row["backlash_um"] is not None:
             made = _with_backlash(made, 1e-3 * row["backlash_um"])
+        check_load(made, force, used)
         misalignment = parts.misalignment_of(made, row)
     owned = parts.damage_of(file, rows, name, made)
     return ScenePair(
         made,
-        materials=tuple(materials[rows["gear"][gear]["material"]] for gear in names),
+        materials=used,
         force=float(force),
         face=row["face"],
         groove=float(row["groove_mm"]),
@@ -282,17 +305,3 @@ def _pair(file, name, rows, gears, materials, forces):
         misalignment=misalignment,
         supports=parts.supports_of(file, rows, name, materials),
     )
-
-
-def _of_one_body(owned):
-    """Damage of the body that is named first: a pair has one on each side."""
-    first = next(iter(owned))
-    return [one for owner, damage in owned.items() if owner.body == first.body for one in damage]
-
-
-def _by_case(rows):
-    """Rows of damage by case."""
-    out = {}
-    for row in rows:
-        out.setdefault(row["case"], []).append(row)
-    return out

@@ -8,7 +8,7 @@ from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
 from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import Crack
-from ..geometry.damage.kinds import Damage
+from ..geometry.damage.kinds import Damage, check_damage
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.damage.pit import pit_row
 from ..geometry.damage.spall import Spall
@@ -63,6 +63,7 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
             for side in sides(file, where, row, name, rows["pair"]):
                 with located(file, where, row):
                     made = make(row, pair, SIDES.index(side), rows["pair"][name])
+                    check_damage((pair.gear_1, pair.gear_2)[SIDES.index(side)], made)
                 if side != first:
                     turned = [replace(one, side="unloaded") for one in made if isinstance(one, (Crack, Chip))]
                     made = [*turned, *(one for one in made if isinstance(one, MissingTooth))]
@@ -101,7 +102,14 @@ def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
         )
     pitch = pitch if span is None else span / max(row["count"] - 1, 1)
     options = {"face": _face(made, pair), "groove": pair["groove_mm"], "both": row["both_halves"], "mirrored": row["mirrored"]}
-    return pit_line(made, which, row["along"], row["count"], pitch, middle=middle, **options, **numbers)
+    pits = pit_line(made, which, row["along"], row["count"], pitch, middle=middle, **options, **numbers)
+    heights, width = [pit.z for pit in pits], (made.gear_1, made.gear_2)[which].b
+    if min(heights) < 0 or max(heights) > width:
+        raise ValueError(
+            f"count = {row['count']}, middle_mm = {middle:g}, pitch_mm = {pitch or 0:g}, span_mm = {span or 0:g}: centres of the "
+            f"pits lie from {min(heights):.4g} to {max(heights):.4g} mm of a face of {width:g} mm; give a smaller pitch or fewer"
+        )
+    return pits
 
 
 def spall_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
@@ -206,3 +214,17 @@ def _flank(row, gear):
     flank = Flank(**fields)
     flank.on(gear)
     return flank
+
+
+def of_one_body(owned):
+    """Damage of the body that is named first: a pair has one on each side."""
+    first = next(iter(owned))
+    return [one for owner, damage in owned.items() if owner.body == first.body for one in damage]
+
+
+def by_case(rows):
+    """Rows of damage by case."""
+    out = {}
+    for row in rows:
+        out.setdefault(row["case"], []).append(row)
+    return out

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-NONE = 1e-9  # part of the motor's power that counts as none
+NONE = 1e-9  # smaller powers, relative to the motor's, count as zero
 
 
 class Link(NamedTuple):

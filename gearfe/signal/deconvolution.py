@@ -11,7 +11,7 @@ from ..geometry.aliases import Floats
 from .given import hertz
 from .series import Signal
 
-RIDGE = 1e-9  # power added to the signal, relative: keeps the normal equations regular at frequencies without power
+RIDGE = 1e-9  # relative power added to the signal, which keeps the normal equations regular at frequencies without power
 
 
 def deconvolve(

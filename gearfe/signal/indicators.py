@@ -25,7 +25,7 @@ SOURCES = {
     "SC (S0)": "sum(f E) / sum(E) from f_m - f_fault to f_m + f_fault, f frequency, E amplitude squared, S0 [Hz]",
     "SC (S1)": "sum(A f) / sum(f) over the same bins, A amplitude, f distance from the origin, S1 [unit of the signal]",
 }
-LOBES = 4  # bins between two lines whose lobes, with a Hann window, do not overlap
+LOBES = 4  # distance between two lines whose Hann window lobes do not overlap [bins]
 
 
 def of_values(values, name):

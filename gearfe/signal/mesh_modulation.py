@@ -10,7 +10,7 @@ from ..core.checks import whole
 from ..geometry.aliases import Floats
 from .given import samples
 
-EMPTY = 1e-9  # part of the average below which a mesh line is rounding
+EMPTY = 1e-9  # A smaller mesh line, relative to the average, is a rounding error.
 
 
 class Modulation(NamedTuple):

@@ -17,8 +17,8 @@ from .series import Signal
 from .spectrum import Spectrum, amplitudes
 
 MOST = 10**8  # limit of samples per revolution
-BYTES, SECONDS = 40.0, 1.2e-7  # memory and time for each sample, measured with 1e8 of them
-SLOWEST = 1 / 16  # limit of the speed relative to the mean: below it resampling by angle would multiply the samples
+BYTES, SECONDS = 40.0, 1.2e-7  # memory [bytes] and time [s] per sample, measured with 1e8 samples
+SLOWEST = 1 / 16  # lowest speed relative to the mean; below it, angular resampling would multiply the samples
 
 
 def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:

@@ -109,7 +109,7 @@ def analytic(signal, band=None):
     low, high = band_of(band, signal.rate, signal.name)
     n = signal.values.size
     frequency = fftfreq(n, 1 / signal.rate)
-    frequency[frequency < -signal.rate / 2 * (1 - 1e-12)] *= -1  # Nyquist's bin of an even n
+    frequency[frequency < -signal.rate / 2 * (1 - 1e-12)] *= -1  # The Nyquist bin of an even n has a negative frequency.
     twice = np.where((frequency > 0) & (frequency >= low) & (frequency <= high), 2.0, 0.0)
     if n % 2 == 0:
         twice[n // 2] /= 2

@@ -13,7 +13,7 @@ from .given import oscillation, window_values
 from .series import Signal
 from .spectrum import Spectrum
 
-FLOOR = 1e-12  # amplitudes below this part of the largest count as zero in logarithms
+FLOOR = 1e-12  # Smaller amplitudes, relative to the largest, count as zero in logarithms.
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,11 +9,12 @@ from .gear_indicators import SHARP, gear_indicators, has_mesh_line
 from .orders import mesh_coherence, residual_signal, synchronous_average
 from .series import Signal
 
-SIGMAS = 6.0  # standard deviations of the kurtosis of noise above 3; white noise exceeds it in less than 0.1 % of averages
-# Deviations of healthy teeth from each other exceed these in less than 1 % of gears, see tests/signal/test_false_alarms.py.
-RISE = 2.5  # times the FM4 of the healthy record, whose difference signal has the same variance
+# threshold of the kurtosis above 3, in standard deviations for noise; white noise exceeds it in under 0.1 % of averages
+SIGMAS = 6.0
+# Healthy gears exceed these limits in less than 1 % of cases, see tests/signal/test_false_alarms.py.
+RISE = 2.5  # limit of FM4 relative to the healthy record, whose difference signal has the same variance
 ALONE = 24.0  # limit of FM4 if there is no healthy record
-FEWEST = 4  # revolutions, two for each half of the record
+FEWEST = 4  # least number of revolutions, two for each half of the record
 
 
 class ToothVerdict(NamedTuple):
@@ -61,6 +62,20 @@ class ToothVerdict(NamedTuple):
         return f"{text}, but {halves}. An impulse that is not bound to the gear, or a short record, does this: record longer."
 
 
+def _largest(average, teeth):
+    """Angle of the largest value of the residual signal [rad]."""
+    return 2 * math.pi * int(np.argmax(np.abs(residual_signal(average, teeth, sidebands=1)))) / average.size
+
+
+def _of_healthy(healthy, average, teeth):
+    """Return FM4 of the healthy record, and the variance of its residual over that of an `average`, at most 1."""
+    if healthy is None:
+        return math.nan, 1.0
+    sound = synchronous_average(healthy)[0]
+    before, now = (float(np.var(residual_signal(one, teeth, sidebands=1))) for one in (sound, average))
+    return gear_indicators(sound, teeth)["FM4"], min(1.0, before / now) if now else 1.0
+
+
 def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> ToothVerdict:
     """Judge whether a gear has a local tooth fault, from the synchronous average of a record with the angle of its shaft.
 
@@ -95,20 +110,14 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
             f"{record.name}: its average is smeared, or is not of a gear of {teeth} teeth: give the angle of its shaft, the "
             "ratio of its speed to the tachometer's, or estimate the speed from the mesh lines"
         )
-    known, part = math.nan, 1.0
-    if healthy is not None:
-        sound = synchronous_average(healthy)[0]
-        known = gear_indicators(sound, teeth)["FM4"]
-        before, now = (float(np.var(residual_signal(one, teeth, sidebands=1))) for one in (sound, average))
-        part = min(1.0, before / now) if now else 1.0
+    known, part = _of_healthy(healthy, average, teeth)
     halves = _halves(record, average.size, revolutions)
     noise = 3 + SIGMAS * math.sqrt(24 / average.size)
     limit = max(noise, ALONE) if math.isnan(known) else noise + (RISE * known - 3) * part**2
     values = [gear_indicators(one, teeth)["FM4"] for one in (average, *halves)]
-    angles = [2 * math.pi * int(np.argmax(np.abs(residual_signal(one, teeth, sidebands=1)))) / one.size for one in halves]
+    angle, *angles = (_largest(one, teeth) for one in (average, *halves))
     apart = abs((angles[0] - angles[1] + math.pi) % (2 * math.pi) - math.pi)
     seen, both = values[0] > limit, min(values[1:]) > limit and apart < 2 * math.pi / teeth
-    angle = 2 * math.pi * int(np.argmax(np.abs(residual_signal(average, teeth, sidebands=1)))) / average.size
     level = "likely" if seen and both else "possible" if seen or (healthy is None and values[0] > noise) else "not seen"
     return ToothVerdict(level, values[0], limit, known, angle, apart, revolutions)
 

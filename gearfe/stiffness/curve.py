@@ -198,7 +198,7 @@ class StiffnessCurve:
 
     def _rows(self):
         if self.meta.get("face") in ("helical", "herringbone"):
-            return {}  # lines with different numbers of pairs have no zones
+            return {}  # Contact lines with different numbers of pairs have no zones.
         inside = (self.phase + 1e-9) % 1.0 <= self.meta["eps_alpha"] % 1.0 + 2e-9
         low = int(self.meta["eps_alpha"])
         names = {1: "single", 2: "double", 3: "triple"}

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from ..core.case import Case
 
 SPUR = ("spur",)
-FACES = ("spur", "helical", "herringbone")  # how teeth run
-WAYS = {  # functions that make the curves of each kind of method
+FACES = ("spur", "helical", "herringbone")  # types of teeth along the width
+WAYS = {  # by kind of method: function that computes its curves
     "section": "gearfe.stiffness.section_curves:section_curves",
     "sum": "gearfe.stiffness.section_curves:sum_curves",
     "solid": "gearfe.stiffness.wide_curves:solid_curves",
@@ -159,10 +159,10 @@ ROWS = (
     ),
 )  # fmt: skip
 METHODS = {row.name: row for row in ROWS}
-FORMER = {"published": "herringbone_article"}  # former names of methods
+FORMER = {"published": "herringbone_article"}  # former names of methods and their replacements
 NAMES = ("auto", *METHODS)
 SUMS = tuple(row.name for row in ROWS if row.kind == "sum")
-RING_FOUNDATIONS = {  # treatment of a ring's body by variants `foundation`
+RING_FOUNDATIONS = {  # by variant of `foundation`: treatment of the ring body
     "external": "has no foundation for a ring: the ring's body is left out",
     "none": "is computed without foundations",
     "printed": "has the printed foundation of the ring, by the formula of discs with h = 1",
@@ -172,7 +172,7 @@ RING_FOUNDATIONS = {  # treatment of a ring's body by variants `foundation`
 def current(name: Any) -> Any:
     """Return the present name of a method. A former name causes a DeprecationWarning. Other values are unchanged."""
     if isinstance(name, str) and name in FORMER:
-        from ..geometry.renamed import warn_renamed  # imported here, because it loads numpy, which the help does not need
+        from ..geometry.renamed import warn_renamed  # imported here, because it loads numpy, which the help texts do not need
 
         warn_renamed(f"method {name!r}", repr(FORMER[name]))
         return FORMER[name]

@@ -124,7 +124,7 @@ class OwnFlexibility:
 
 
 def _check(side: str, one: object) -> None:
-    """ValueError unless `one` is a function, a Flexibility, or the name of a method that has one."""
+    """Raise ValueError unless `one` is a function, a Flexibility, or the name of a method with a flexibility."""
     sections = having("name", "section")
     home = getattr(one, "__name__", None) if isinstance(one, ModuleType) else getattr(one, "__module__", None)
     for name in SUMS:
@@ -218,7 +218,7 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Flo
     """Return the result of a user's function. Raises ValueError unless it is real, finite, symmetric and of the shape."""
     try:
         returned = work()
-    except Exception as error:  # a user's function may raise any error
+    except Exception as error:  # A user's function may raise any exception.
         raise ValueError(f"{where}: it failed with {type(error).__name__}: {error}") from error
     if isinstance(returned, Components):
         raise ValueError(
@@ -227,7 +227,7 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Flo
         )
     try:
         values = np.asarray(returned)
-    except ValueError as error:  # rows of different lengths
+    except ValueError as error:  # The rows have different lengths.
         raise ValueError(f"{where}: its rows have different lengths; give a matrix of numbers [mm per N/mm]") from error
     if values.dtype.kind not in "fiu":
         raise ValueError(f"{where}: it gives values of type {values.dtype}, but give a matrix of real numbers [mm per N/mm]")

@@ -13,7 +13,7 @@ from .limits import check_count, check_range
 from .turns import check_length, cycles_in
 
 SPANS = ("cycle", "tooth", "revolution", "hunting")
-LONG = SPANS[2:]  # spans of many cycles
+LONG = SPANS[2:]  # spans of several cycles
 
 
 def check_phases(phases: Any) -> int | Floats:

@@ -9,7 +9,7 @@ from ..flexibility.section_contact import MARKS
 from .curve import joined
 
 LONGEST = {"revolution": "z of the pinion", "hunting": "the least common multiple of both numbers of teeth"}
-MOST = 2e7  # values of forces by phase and tooth pair that a curve may hold: 160 MB
+MOST = 2e7  # largest number of stored forces by phase and tooth pair (160 MB)
 
 
 def cycles_in(pair, span):

@@ -15,7 +15,7 @@ from .curve import StiffnessCurve
 from .estimate import MEAN, MODEL, fixed_phases
 from .provenance import provenance
 
-# resolutions of the layers for the error estimate of finite elements, against the curve's; the first that carries the patches
+# resolutions of the layers for the finite element error estimate, relative to the curve's; the first valid one is used
 COARSER = (0.7, 0.76, 0.83)
 LESS = 2  # reduction of the axial degree in that estimate
 # least order of convergence of finite elements in the edge length: layers are regular; the quads of a section are not, and from

@@ -71,7 +71,7 @@ def loaded_phase(case):
     order = case.first_tooth
     if order is None:
         return 0.0
-    if case.missing:  # the pair behind a missing tooth carries the whole load just before it leaves the path
+    if case.missing:  # The pair behind a missing tooth carries the whole load just before it leaves the path.
         return (case.pair.eps_alpha - 1) * 0.9 - order
     phases = -order + case.pair.eps_alpha * (np.arange(64) + 0.5) / 64
     curve = solve(replace(case, damage=None, supports=None), Solve("ritz", phases))
@@ -87,7 +87,7 @@ def stressed_gears(case, phase=0.0, refine=1.0):
     pair, materials = case.pair, case.materials
     if any(case.pits):
         raise ValueError(f"{why_wide([*case.pits[0], *case.pits[1]])}: a transverse section cannot show them")
-    curve = solve(replace(case, supports=None), Solve("ritz", [phase]))  # supports do not change load sharing of a section
+    curve = solve(replace(case, supports=None), Solve("ritz", [phase]))  # Supports do not change the load sharing of a section.
     candidates = contacts(pair, [phase])
     forces = dict(zip(curve.order.tolist(), curve.force[0] / curve.meta["width_mm"], strict=True))
     carrying = [(i, k) for i, k in enumerate(candidates.order.tolist()) if forces.get(k, 0.0) > 0]

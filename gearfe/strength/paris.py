@@ -8,7 +8,7 @@ import numpy as np
 from ..core.checks import number
 from ..geometry.aliases import Floats
 
-SMOOTH = 40  # parts of a step over which cycles are summed
+SMOOTH = 40  # number of parts of a step over which cycles are summed
 
 
 @dataclass(frozen=True, slots=True)

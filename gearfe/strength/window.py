@@ -8,12 +8,12 @@ import threading
 
 from ..core.memory import free_memory
 
-ADDRESSES = 0.8e9  # bytes that VTK and its software renderer map for a picture of 1400 x 1050 pixels, measured
+ADDRESSES = 0.8e9  # address space that VTK and its software renderer map for a picture of 1400 x 1050 pixels, measured [bytes]
 RENDERER_HELP = (
     "rendering needs pyvista and, without a screen, EGL or OSMesa: "
     "'pip install pyvista' and, on Debian, 'apt-get install libgl1 libegl1'"
 )
-_turn = threading.RLock()  # lock of the threads: pyvista is loaded in parts, and VTK's windows belong to the process
+_turn = threading.RLock()  # lock for threads: pyvista loads in parts, and VTK windows belong to the process
 OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRenderWindow"}
 
 
@@ -43,7 +43,7 @@ def plotting(**options):
         )
     with _turn:
         library = drawing_library()
-        with library.vtk_verbosity("off"):  # its messages contain control characters of terminals
+        with library.vtk_verbosity("off"):  # The messages of VTK contain terminal control characters.
             plotter = library.Plotter(off_screen=True, **options)
             try:
                 yield plotter

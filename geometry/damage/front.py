@@ -10,15 +10,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from .crack import SLACK, Crack, deepest, extremes, front
+from .crack import Crack
+from .crack_form import SLACK, deepest, extremes, front
 
-# Depths, in parts of the largest, down to which a mesh follows a front that runs out: the first at which it does not fold.
+# Least depths that a mesh resolves where the crack front runs out, relative to the largest depth. They are tried in order.
 LEAST = 0.1, 0.15, 0.2, 0.25
 # A front that runs out ends at this part of the least depth: then as much of int depth**2 dz is added before as is lost beyond,
 # if the front is straight there.
 END = 2 / 3
-STEEP = 3.0  # how many times deeper a front gets, at most, over the height of a layer of elements where it is shallowest
-SAMPLES = 801  # heights at which a front is looked at first
+STEEP = 3.0  # largest growth factor of the front's depth over one layer of elements
+SAMPLES = 801  # heights at which the front is sampled first
 
 
 def open_part(crack, b, z):
@@ -92,7 +93,7 @@ class Front:
 
     @property
     def ends(self):
-        """Heights at which the crack is said to end [mm]."""
+        """Return the stated end heights of the crack [mm]."""
         return self.crack.width or (0.0, self.width)
 
     def depth(self, z):
@@ -118,7 +119,7 @@ class Front:
         return end not in self.ends
 
     def steep(self):
-        """Heights at which it is `least` deep, and how far it is from there to `STEEP` times that: ``(z, z, distance)`` [mm]."""
+        """Return the heights with the depth `least`, those with `STEEP` times that depth, and their distances [mm]."""
         deeper = self.crossings(STEEP * self.least)
         return [(z, z, min(abs(z - other) for other in deeper)) for z in self.crossings(self.least) if deeper]
 

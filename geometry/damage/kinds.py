@@ -14,7 +14,8 @@ from typing import Any, get_args
 from ..checks import by_gear
 from ..tooth.gear import Gear
 from .chip import Chip
-from .crack import Crack
+from .crack import Crack, check_apart
+from .hollow import check_hollows
 from .missing import MissingTooth
 from .pit import Pit
 from .spall import Spall
@@ -67,13 +68,22 @@ def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     return weakens, removes
 
 
+def check_damage(gear: Gear, defects: Iterable[Damage]) -> None:
+    """Raise ValueError for damage that the gear cannot have: beyond its flank, face or sector, or two that meet."""
+    parts = parts_of(gear, defects)
+    weakens, removes = split(parts)
+    check_apart(gear, weakens)
+    check_broken(gear, parts)
+    check_hollows(gear, removes)
+
+
 def check_broken(gear, defects):
     """Raise ValueError for other damage of a broken tooth, invalid chips, and two missing teeth side by side."""
     broken = [defect for defect in defects if isinstance(defect, BROKEN)]
     gone = sorted({one.tooth % gear.z for one in broken if isinstance(one, MissingTooth)})
     for one in broken:
         if isinstance(one, Chip):
-            one.cut(gear)
+            one.outline(gear)
         for defect in defects:
             if defect != one and (defect.tooth - one.tooth) % gear.z == 0:
                 said = "is missing" if isinstance(one, MissingTooth) else "has a chip"

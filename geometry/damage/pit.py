@@ -14,8 +14,8 @@ from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
 from .hollow import crossing, in_circle, profile, warning_of
 
-MOST = 5000  # pits in a row
-LEAST, LONGEST = 1e-50, 1e50  # semi-axes [mm]: a pit larger than its flank takes all of it, however large
+MOST = 5000  # largest number of pits in a row
+LEAST, LONGEST = 1e-50, 1e50  # limits of the semi-axes [mm]; a pit larger than the flank removes the whole flank
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,8 @@ from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
 from .hollow import crossing, in_circle, profile, warning_of
 
-LEAST, LONGEST = 1e-6, 1e6  # sides [mm]
-QUARTER = 8  # parts of a rounded corner that is drawn
+LEAST, LONGEST = 1e-6, 1e6  # limits of the side lengths [mm]
+QUARTER = 8  # straight segments of a drawn rounded corner
 CORNERS = (1, 1), (-1, 1), (-1, -1), (1, -1)  # signs of the corners, counter-clockwise
 
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from ..damage.front import LEAST, Front, shallowest
 
-SPARE = 0.8  # a mesh must not fold at this part of the least depth that it follows
-REACH = 1.2, 0.8  # how far from the crack vertices move: in its lengths, and at least [m_n]
-STIFFER = 0.5  # stiffness of triangles by their area to minus this power: small ones keep their shape, large ones deform
-# How many times more triangles resist that a crack of no depth would turn over, and how often these are looked for.
+SPARE = 0.8  # The mesh must stay valid down to this multiple of the least resolved depth.
+REACH = 1.2, 0.8  # distance from the crack within which vertices move: in crack lengths, and at least [m_n]
+STIFFER = 0.5  # Stiffness of a triangle is its area to the power -0.5, so that small triangles keep their shape.
+# Stiffness factor of triangles that a crack of zero depth would invert, and number of searches for them.
 HARD, ROUNDS = 1000.0, 10
 
 

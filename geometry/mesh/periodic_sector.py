@@ -12,7 +12,7 @@ from ..tooth.profile import cartesian, lengths
 from .outline import Half, along, doubled, half, spaced, stations
 from .section_mesh import CRACK_EDGE, fill
 
-# longest edges in modules: flanks, fillets, root and tip, sides; on the held circle of a ring as many to a pitch as `RIM`
+# longest edges [m_n]: flanks, fillets, root and tip, sides; `RIM` is the number of edges per pitch on a ring's held circle
 FLANK, FILLET, COARSE, SIDE = 0.2, 0.12, 0.4, 0.4
 RIM = 24
 SIDES = ("loaded", "unloaded")  # right and left flank

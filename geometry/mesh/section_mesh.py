@@ -17,7 +17,7 @@ from ..tooth.profile import cartesian, fillet_length, lengths, root_curve, turne
 from .mesher import triangulate
 from .outline import along, held_circle, inside, outline
 
-CRACK_EDGE = 0.2  # edge length at a crack tip, in edge lengths of the fillet, and at most a fifth of its last straight part
+CRACK_EDGE = 0.2  # edge length at a crack tip relative to that of the fillet; at most a fifth of the crack's last straight part
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,8 @@ def crack_lines(gear, cracks, fillet_size):
         length = lengths(corners)[-1]
         marks[place] = start_arc(gear, crack), min(fillet_size, length / 4)
         tip = min(CRACK_EDGE * fillet_size, math.dist(corners[:, -2], corners[:, -1]) / 5)
-        if crack.turning and crack.level > 0.5:  # the crack approaches the centre line: refine the mesh as the ligament shrinks
+        # The crack approaches the centre-line, so the mesh is refined as the ligament shrinks.
+        if crack.turning and crack.level > 0.5:
             left = math.dist(corners[:, -1], turned(mirrored(gear, crack), 2 * math.pi * crack.tooth / gear.z))
             opposite = "unloaded" if crack.side == "loaded" else "loaded"
             marks.setdefault((crack.tooth % gear.z, opposite), (marks[place][0], min(fillet_size, left / 4)))
@@ -146,7 +147,7 @@ def _check_within(gear, crack, rim, start, line):
 
     a, b, p, q = rim[:, :, None], ends[:, :, None], at[:, None, :], to[:, None, :]
     cut = (turn(a, b, p) * turn(a, b, q) < 0) & (turn(p, q, a) * turn(p, q, b) < 0)
-    cut[[start - 1, start], 0] = False  # the edges meet the crack at its mouth
+    cut[[start - 1, start], 0] = False  # These edges touch the crack only at its mouth, so the crack does not cut them.
     if cut.any() or (inside(rim, line) == gear.internal).any():
         raise ValueError(
             f"crack from {crack.start!r} at {math.degrees(crack.angle):.3g} degrees on tooth {crack.tooth} of z = {gear.z} "

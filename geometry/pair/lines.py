@@ -129,7 +129,7 @@ def halves(pair, face, groove=0.0):
 
 
 def face_bands(pair, face="helical", groove=0.0):
-    """Return the bands of the face, as `Band`, of the `halves` of a pair.
+    """Return the bands of the face width in contact, one `Band` for each helical half of a pair.
 
     The pinion's beta is that of the half at z = 0, and the phase is counted at z = 0, for a herringbone pair at both outer ends:
     with beta > 0 the inner ends touch first, with beta < 0 the outer ones. `halves` describes the parameters. A helical pair of
@@ -253,7 +253,7 @@ def covered(pair, pits, order, rolls, z):
         if not gear_pits or not order.size:
             continue
         tooth, near, far, bottom, top = _limits(gear, gear_pits)
-        height = z + (gear.b - common) / 2  # gears of different width lie centred on each other
+        height = z + (gear.b - common) / 2  # Gears of different width are centred on each other.
         meets = (tooth - (1 - 2 * which) * order[:, None]) % gear.z == 0
         meets &= (rolls[which].min(axis=1)[:, None] <= far) & (rolls[which].max(axis=1)[:, None] >= near)
         meets &= (height.min(axis=1)[:, None] < top) & (height.max(axis=1)[:, None] > bottom)

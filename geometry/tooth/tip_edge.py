@@ -10,9 +10,9 @@ from ..aliases import Floats
 from .gear import Gear
 from .profile import cartesian, flank, flank_normal
 
-LARGEST = 0.3  # largest rounding or chamfer [m_n]: enough of the flank must be left
+LARGEST = 0.3  # largest rounding or chamfer [m_n], which leaves enough of the flank
 FROM_FLANK = math.pi / 4  # angle between a chamfer and the flank it cuts [rad]
-SOFT = -1e-9  # "kink" at the start of a rounding: no sudden bend, but a curvature so much larger that contact is resolved there
+SOFT = -1e-9  # The start of a rounding is marked as a kink without a bend: its larger curvature requires a fine contact mesh.
 
 
 class TipEdge:
@@ -51,7 +51,8 @@ class TipEdge:
             radius, up = math.hypot(*first), first @ cut
             if gear.outward * up <= 0 or up**2 < radius**2 - gear.r_a**2:
                 raise ValueError(f"tip_chamfer = {size:g} mm does not reach the tip circle of z = {gear.z}: give a smaller one")
-            across = (first[1] * cut[0] - first[0] * cut[1]) / up  # dtheta/dR of the cut, times R; the involute has -start / r_b
+            # dtheta/dR of the cut times R; the involute's value is -start / r_b
+            across = (first[1] * cut[0] - first[0] * cut[1]) / up
             self.kink = abs(gear.r_b * across + gear.outward * self.start) * self.start / radius**2
         left = float(self._angle(np.array([gear.roll_a]))[0])
         if left <= 0:
@@ -112,5 +113,5 @@ class TipEdge:
         return self.gear.outward * (roll - self.start) > 0
 
     def bend(self, roll: Floats) -> Floats:
-        """Curvature of the edge more than that of the involute it replaces [1/mm]."""
+        """Return the curvature of the tip edge minus that of the involute [1/mm]."""
         return (1 / self.rounding if self.rounding else 0.0) - self.gear.outward / roll

@@ -207,10 +207,18 @@ def impact():
     return scene(machine={"contact": "impact"}).machine
 
 
-@pytest.mark.parametrize(("gear", "tooth"), [("pinion", 6), ("wheel", 0)])
-def test_a_chipped_tip_shows_at_the_turns_of_its_gear(gear, tooth):
+@pytest.mark.parametrize(
+    ("gear", "tooth", "more"),
+    [
+        ("pinion", 6, {}),
+        ("wheel", 0, {}),
+        pytest.param("wheel", 5, {"width_mm": [0.0, 7.5], "radius_mm": 3.0}, marks=pytest.mark.slow),
+    ],
+)
+def test_a_chipped_tip_shows_at_the_turns_of_its_gear(gear, tooth, more):
     """Lines at the frequency of that gear around the mesh frequency, and none of the other gear."""
-    machine = gf.build_machine(scene(chip=[{"gear": gear, "tooth": tooth}]), "chipped", phases=32)
+    given = scene(chip=[{"gear": gear, "tooth": tooth} | more])
+    machine = gf.build_machine(given, "chipped", phases=32)
     other = {"pinion": "wheel", "wheel": "pinion"}[gear]
     own = amplitude(machine, MESH - TURNS[gear], MESH + TURNS[gear])
     assert own.min() > 0.5

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from gearboxes import BRANCHING, PLANETARY, TWO_STAGE
+from gearboxes import BRANCHING, PLANETARY, SPACE, TWO_STAGE
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
@@ -13,9 +13,10 @@ import gearfe as gf
 from gearfe.dynamics.machine.gearbox import gearbox
 from gearfe.dynamics.machine.of_scene import flat_machine
 from gearfe.scene.load import scene_of
+from gearfe.scene.train import thrusts_of
 
 Z, DENSITY, NU, E = np.array([0.0, 0.0, 1.0]), 7850.0, 0.3, 2.06e11
-TRAINS = {"two stages": TWO_STAGE, "planetary": PLANETARY, "branching": BRANCHING}
+TRAINS = {"two stages": TWO_STAGE, "planetary": PLANETARY, "branching": BRANCHING, "planets in space": SPACE}
 STIFFNESS = {"fast": 2.1e8, "slow": 3.3e8, "outer": 2.6e8, "inner": 4.1e8, "left": 1.7e8, "right": 2.9e8}
 
 
@@ -41,9 +42,10 @@ class Plain:
                 self.nodes[name, x] = len(self.nodes)
         planets = [f"planet{i + 1}" for stage in tables.get("stage", {}).values() for i in range(stage["n_planets"])]
         rotors = [name for name, end in self.ends() if "torsion_Nm_per_mrad" in end]
+        size = 6 if self.six else 1
+        n = len(self.nodes) * size
         for name in rotors + planets:
-            self.lone[name] = len(self.nodes) * (6 if self.six else 1) + len(self.lone)
-        n = len(self.nodes) * (6 if self.six else 1) + len(self.lone)
+            self.lone[name], n = n, n + (size if name in planets else 1)
         self.K, self.C, self.G, self.M, self.f = (np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n)), np.zeros(n), np.zeros(n))
         self.meshes = []
         self.speeds()
@@ -130,7 +132,7 @@ class Plain:
             for gear, x in zip(shaft["gears"], shaft["gears_at_mm"], strict=True):
                 self.put_mass(name, x, *self.disc(gear))
             if self.six:
-                axial = shaft.get("bearings_axial_N_per_um", [shaft["bearings_N_per_um"][0], 0.0])
+                axial = shaft.get("bearings_axial_N_per_um", [shaft["bearings_N_per_um"][0], 0.0, 0.0])
                 for j, x in enumerate(shaft["bearings_at_mm"]):
                     i = self.block(name, x)[:3]
                     held = np.array([shaft["bearings_N_per_um"][j]] * 2 + [axial[j]])
@@ -201,7 +203,7 @@ class Plain:
             self.meshes.append((name, name, g, rate))
 
     def planets(self):
-        for stage in self.t.get("stage", {}).values():
+        for stage in () if self.six else self.t.get("stage", {}).values():
             a, (sun, x) = 52e-3, self.home("sun")
             carrier = self.turn(stage["carrier"], stage["carrier_at_mm"])
             mass, polar, _ = self.disc("planet")
@@ -229,8 +231,40 @@ class Plain:
                         g[self.turn(sun, x)] += np.cross((a - lever) * e, n)[2]
                     self.meshes.append((f"{kind}{i + 1}", kind, g, rate))
 
+    def planets_in_space(self):
+        for stage in self.t.get("stage", {}).values() if self.six else ():
+            z, (sun, x) = {name: gear["z"] for name, gear in self.t["gear"].items()}, self.home("sun")
+            r, alpha = {gear: self.base(gear)[0] for gear in ("sun", "planet", "ring")}, self.base("sun")[1]
+            a, c, at = (r["sun"] + r["planet"]) / math.cos(alpha), stage["carrier"], stage["carrier_at_mm"]
+            mass, polar, across = self.disc("planet")
+            self.put_mass(c, at, stage["carrier_mass_kg"], stage["carrier_inertia_kgm2"], stage["carrier_inertia_kgm2"] / 2)
+            sense, turning = math.copysign(1.0, self.w[sun]), self.w[sun] - self.w[c]
+            beta_b = math.asin(math.sin(math.radians(self.t["gear"]["sun"]["beta_deg"])) * math.cos(math.radians(20.0)))
+            for i in range(stage["n_planets"]):
+                own = self.lone[f"planet{i + 1}"] + np.arange(6)
+                self.M[own] += [mass, mass, mass, across, across, polar]
+                self.spin(own, polar * (self.w[c] - turning * z["sun"] / z["planet"]))
+                psi = sense * 2 * math.pi * i / stage["n_planets"]
+                e = np.array([math.cos(psi), math.sin(psi), 0.0])
+                pins = [1e6 * stage["pin_N_per_um"]] * 2 + [1e6 * stage["pin_axial_N_per_um"]]
+                pins += [1e3 * stage["pin_tilt_Nm_per_mrad"]] * 2
+                for j, k in enumerate(pins):
+                    row = np.eye(self.M.size)[own[j]]
+                    row = row - (self.moved(c, at, np.eye(3)[j], a * e) if j < 3 else np.eye(self.M.size)[self.block(c, at)[j]])
+                    self.K += k * np.outer(row, row)
+                    self.C += 0.04 * math.sqrt(k * self.M[own[j]]) * np.outer(row, row)
+                for kind, way, tip in (("outer", sense, -1), ("inner", -sense, 1)):
+                    # the planet has the other hand than the sun, and it pushes where the sun is pushed
+                    n = way * math.cos(alpha) * np.cross(Z, e) + math.sin(alpha) * e - sense * math.tan(beta_b) * Z
+                    g, arm = np.zeros(self.M.size), tip * r["planet"] / math.cos(alpha) * e
+                    g[own] += tip * np.concatenate([n, np.cross(arm, n)])
+                    if kind == "outer":
+                        g += self.moved(sun, x, n, r["sun"] / math.cos(alpha) * e)
+                    rate = abs(turning) / (2 * math.pi) * z["sun"]
+                    self.meshes.append((f"{kind}{i + 1}", kind, g, rate))
+
     def build(self):
-        self.shafts(), self.joints(), self.parallel(), self.planets()
+        self.shafts(), self.joints(), self.parallel(), self.planets(), self.planets_in_space()
         return self
 
 
@@ -287,7 +321,7 @@ def test_natural_frequencies_are_those_of_plain_matrices(name):
     assert got[0] == 0
 
 
-@pytest.mark.parametrize("name", TRAINS)
+@pytest.mark.parametrize("name", [*list(TRAINS)[:3], pytest.param("planets in space", marks=pytest.mark.slow)])
 def test_response_is_that_of_the_plain_equations(name):
     made, machine, plain = pair_of(name)
     n, phases = plain.M.size, {mesh.name: mesh.phase for mesh in machine.meshes}
@@ -353,6 +387,49 @@ def test_shafts_in_six_directions_need_bearings(given):
     tables["shaft"]["three"] |= given
     with pytest.raises(ValueError, match=r"\[shaft.three\].*(bearings_N_per_um|no bearing locates)"):
         flat_machine(scene_of("own.toml", tables))
+
+
+@pytest.mark.parametrize(("table", "values", "message"), [
+    ("shaft.two", {"bearings_at_mm": [15.0], "bearings_N_per_um": [150.0], "bearings_Ns_per_mm": [0.3]}, "two bearings or more"),
+    ("stage.set", {"pin_tilt_Nm_per_mrad": 0.0}, "planet[1-4].tilt_. moves without deflection"),
+    ("stage.set", {"pin_N_per_um": None}, r"\[stage.set\]: dofs = 'six' needs pin_N_per_um"),
+])  # fmt: skip
+def test_bodies_in_six_directions_are_held(table, values, message):
+    tables = copy.deepcopy(SPACE if table.startswith("stage") else TWO_STAGE)
+    kind, name = table.split(".")
+    tables[kind][name] = {key: value for key, value in (tables[kind][name] | values).items() if value is not None}
+    with pytest.raises(ValueError, match=message):
+        flat_machine(scene_of("own.toml", tables))
+
+
+def test_stiff_pins_and_bearings_leave_the_torsional_train():
+    """With spur gears, the lowest frequencies: supports are 1e4 times stiffer than meshes."""
+    tables = copy.deepcopy(SPACE)
+    for row in tables["gear"].values():
+        row["beta_deg"] = 0.0
+    for shaft in tables["shaft"].values():
+        places = np.linspace(0.0, sum(shaft["lengths_mm"]), 12).tolist()
+        shaft |= {"bearings_at_mm": places, "bearings_N_per_um": [1e6] * 12, "bearings_Ns_per_mm": [0.0] * 12}
+    tables["stage"]["set"] |= {"pin_N_per_um": 1e6, "pin_tilt_Nm_per_mrad": 1e4}
+    flat = [tables | {"machine": tables["machine"] | {"dofs": dofs}} for dofs in ("torsion", "six")]
+    damage = {mesh: () for mesh in ("fast", *(f"{kind}{i}" for kind in ("outer", "inner") for i in range(1, 5)))}
+    torsion, six = (gearbox(scene_of("own.toml", one), STIFFNESS, damage) for one in flat)
+    want = gf.natural_frequencies(torsion)[0][1:4]
+    got = gf.natural_frequencies(six)[0]
+    assert_allclose([got[np.argmin(np.abs(got - f))] for f in want], want, rtol=2e-4)
+
+
+def test_axial_forces_of_planets_cancel_and_the_sun_has_its_thrust():
+    made, machine, _ = pair_of("planets in space")
+    flat = machine.with_meshes(stiffness=2e8)
+    rest = flat.rest()
+    axial = [spring.k * float(spring.row @ rest) for spring in flat.springs if spring.name.endswith("carrier z")]
+    sun = sum(spring.k * float(spring.row @ rest) for spring in flat.springs if spring.name.startswith("bearing three") and
+              spring.name.endswith(" z"))  # fmt: skip
+    thrust = thrusts_of(made.train, made.gears)["sun"]
+    assert len(axial) == 4
+    assert np.abs(axial).max() < 1e-3 * abs(thrust)
+    assert_allclose(sun, thrust, rtol=1e-6)
 
 
 def test_work_of_the_loads_is_stored_or_lost():

@@ -75,7 +75,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
         },
     ],
     "missing_tooth": [{"case": "missing", "gear": "sun", "tooth": 3}],
-    "chip": [{"case": "chipped", "gear": "sun", "tooth": 3, "pair": "stage", "depth_mm": 0.5, "angle_deg": 60.0}],
+    "chip": [{"case": "chipped", "gear": "sun", "tooth": 3, "pair": "stage", "depth_mm": 0.5, "radius_mm": 2.0}],
     "spall": [
         {
             "case": "spalled", "gear": "sun", "radius_mm": 20.8, "z_mm": 10.0, "sides_mm": [1.0, 4.0], "depth_mm": 0.2,
@@ -102,7 +102,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
         }
     ],
 }  # fmt: skip
-TRAIN = ("shaft", "bearing", "motor", "load", "coupling", "stage", "machine")  # tables of a gearbox
+TRAIN = ("shaft", "bearing", "motor", "load", "coupling", "stage", "machine", "sensor")  # tables of a gearbox
 WHOLE_GEARBOX = PLANETARY | {  # every key of these that stands in no other scene
     "shaft": {
         name: SHAFT | row | {
@@ -111,7 +111,16 @@ WHOLE_GEARBOX = PLANETARY | {  # every key of these that stands in no other scen
         }
         for name, row in PLANETARY["shaft"].items()
     },
+    "sensor": {
+        "box": {"channels": ["spring bearing one2 x"], "weights": [1.0],
+                "modes_Hz": [800.0], "modes_ratio": [0.05], "modes_kg": [4.0]},
+        "plate": {"channels": ["spring bearing one2 x"], "frf_Hz": [0.0, 1.0], "frf_real": [0.0, 1.0], "frf_imag": [0.0, 0.0],
+                  "frf_unit": "g"},
+        "ring": {"housing": "inner", "angle_deg": 30.0},
+    },
     "load": {"brake": end("out", at_mm=120.0, slope_Nms_per_rad=0.1), "pump": end("two", torque_Nm=5.0)},
+    "stage": {"set": PLANETARY["stage"]["set"] | {"carrier_mass_kg": 1.0, "pin_N_per_um": 100.0, "pin_axial_N_per_um": 10.0,
+                                                  "pin_tilt_Nm_per_mrad": 1.0}},
     "machine": PLANETARY["machine"] | {"dofs": "six", "density_kg_per_m3": 7800.0, "damping_per_stiffness_s": 1e-6},
 }  # fmt: skip
 ELSE = [
@@ -143,8 +152,8 @@ def replaced(path, value, whole=WHOLE_SCENE):
 
 
 def vocabulary():
-    """Every key of every table but those of a planetary set, and those that exclude another one of the whole scene."""
-    of_sets = ("set", "ring", "ring_support", "pin")
+    """Every key of every table but those of a planetary set, and the file of a sensor, whose columns replace it."""
+    of_sets = ("set", "ring", "ring_support", "pin", "frf")
     return {key for name, table in scene_schema().items() if name not in of_sets for key in table.keys} - {*of_sets}
 
 

@@ -1,4 +1,5 @@
 import math
+import re
 from importlib import resources
 
 import pytest
@@ -206,14 +207,15 @@ def near_beta():
 def test_built_in_scenes_state_what_their_assumptions_hold_for(name):
     scene = gf.load_scene(name)
     assert scene.changed == ()
-    assert scene.references or scene.train, "rigs state lines in the tests of gearboxes"
+    assert scene.references or scene.train, "the PHM 2009 page prints no result"
 
 
 def test_a_copy_with_other_gears_is_no_longer_the_article(tmp_path):
     """24/30/84 at 54 mm: the article's face width stays assumed, its centre distance and its printed results do not."""
     text = TEXT.replace("z = 21\n", "z = 24\n").replace("z = 31\n", "z = 30\n").replace("a_mm = 52.0", "a_mm = 54.0")
     file = tmp_path / "plan.toml"
-    file.write_text(text.replace("\nx = -0.4617", "\nx = 0.0"))
+    text = text.replace("\nx = -0.4617", "\nx = 0.0")
+    file.write_text(re.sub(r"radius_mm = 2[01]\.\d+", "radius_mm = 24.0", text))
     scene = gf.load_scene(file)
     assert scene.references == ()
     assert "changed" in scene.title

@@ -123,7 +123,7 @@ tooth_scale = [1.0, 1.1]
 wear_roll_mm = [8, 10, 12]
 wear_um = [0, 5, 0]
 """
-    with pytest.raises(ValueError, match=r"\[flank.a\]: tooth_scale has 2 values, but z = 24"):
+    with pytest.raises(ValueError, match=r"\[flank.a\]: tooth_scale = \(1\.0, 1\.1\): 2 values, but z = 24"):
         loaded(tmp_path, flank)
     found = loaded(tmp_path, flank.replace("tooth_scale = [1.0, 1.1]", "")).pair().flanks["pinion"]
     assert found == gf.Flank(tip_rounding=0.2, eccentricity=0.008, eccentric_tooth=2.5, wear=([8, 10, 12], [0, 0.005, 0]))

@@ -12,7 +12,8 @@ from ..shared.simulated import amplitude, machine, scene, spectrum
 
 NAME = "compound_planetary"
 LEVELS = {"10 %": "crack10", "30 %": "crack30", "50 %": "crack50", "70 %": "crack70", "80 %": "crack80"}
-BEAMS = {"root": "prism", "foundation": "none"}  # S2: Hertz, bending, shear and axial terms after Liang; no foundation
+# S2 has the Hertzian, bending, shear and axial terms of Liang, and no foundation.
+BEAMS = {"root": "prism", "foundation": "none"}
 PAIRS = {
     "s1_sun_planet": "sun_planet",
     "s1_ring_planet": "planet_ring_1",
@@ -85,7 +86,7 @@ def frequencies():
 def of_mesh_lines(one):
     """Part of a signal's power in mesh lines and their harmonics, over whole periods of all lines: else they leak aside."""
     mesh, (slow, quick) = frequencies()
-    step = quick - slow  # divides every line
+    step = quick - slow  # All line frequencies are multiples of this difference.
     count = round(one.rate * math.floor(one.values.size / one.rate * step + 1e-6) / step)
     whole = replace(one, values=one.values[:count])
     found, lines = spectrum(whole), {round(n * f, 6) for f in mesh for n in range(1, 141)}
@@ -102,7 +103,7 @@ def crack_step():
     from gearfe.geometry.damage.crack import crack_path
 
     sun = scene(NAME).gears["sun"]
-    half = sun.r_b * math.sin(sun.base_half_angle)  # the source's tooth below the base circle is a prism
+    half = sun.r_b * math.sin(sun.base_half_angle)  # The source models the tooth below the base circle as a prism.
     start, tip = crack_path(sun, gf.Crack(level=0.5)).T
     return {
         "from the foot of the article's tooth": 0.4 * half / math.sin(math.radians(45)),

@@ -14,13 +14,13 @@ from ..shared.kept_rows import kept, stored
 from ..shared.table_rows import read
 
 NAME = "joint"
-DECIDES = joint_inputs.DRAWS // 4  # draws by which the halves of an input must differ to be called what decides
+DECIDES = joint_inputs.DRAWS // 4  # An input is decisive if its lower and upper halves differ by at least this number of draws.
 HOW = f"""
-`python -m validation joint` makes this page and the sections of the four pages from `tables/joint.jsonl`: a row is one draw.
-The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, even in the logarithm of each input; ranges,
-statements and thresholds were fixed in a commit before the first run
-(`validation/shared/joint_inputs.py`). A number without a unit is a factor of what the scene or its machine assumes. Masses and
-curves of stiffness stay; channel and path are crossed with every draw. Whether a statement holds is decided as on its page.
+`python -m validation joint` writes this page and the sections of the four pages from `tables/joint.jsonl`, which has one row per
+draw. The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, uniform in the logarithm of each input. Ranges, statements
+and thresholds were fixed in a commit before the first run (`validation/shared/joint_inputs.py`). A number without a unit is a
+factor of the value that the scene or its machine assumes. Masses and stiffness curves are constant. Channel and path are
+combined with every draw. A statement is evaluated as on its page.
 
 The pages have these columns. 'gearfe' is yes if the statement holds with the assumed inputs. 'input' is the input with the
 strongest relation to the statement. Two numbers follow. They are the draws in which the statement holds, of
@@ -162,19 +162,21 @@ def answer():
     """Return the first sentence of the page."""
     every, none, some = np.sum([counts(name) for name in joint_inputs.RANGES], axis=0)
     return (
-        f"Of {every + none + some} statements of the articles that a simulation decides, each on the channel that its page "
-        f"judges, {every} hold in all joint draws of "
-        f"load, supports, damping, noise and what else is not printed, {none} in none; the "
-        f"other {some} hold or not by inputs that the articles leave out, so that neither verdict on them is evidence."
+        f"Simulations decide {every + none + some} statements of the articles, each on the channel of its page. {every} "
+        "hold in all "
+        f"joint draws of load, supports, damping, noise and other unprinted inputs, and {none} in none. The other {some} depend "
+        "on inputs that the articles omit, so that neither verdict on them is evidence."
     )
 
 
 def notes():
     """Lines: cases that are not counted, and the limits of the tables for single inputs."""
     return [
-        "Not counted are statements that an assumption of the scene sets. So few draws hardly tell which input decides: the four "
-        f"pages name the one whose larger and smaller half of draws differ most, from {DECIDES} draws on, and say how often "
-        "chance would name one were all inputs without effect (by chance 0.5: every second time)."
+        "Statements that an assumption of the scene sets are not counted. The number of draws is too small to identify "
+        "the decisive "
+        f"input. The four pages name the input whose upper and lower halves differ most, by at least {DECIDES} draws. "
+        "They also give "
+        "the probability that chance names an input if no input has an effect."
     ]
 
 
@@ -201,7 +203,7 @@ def tell():
     rows = [[f"[{name}.md]({name}.md)", sum(counts(name)), *counts(name)] for name in joint_inputs.RANGES]
     page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges())
     for name in joint_inputs.RANGES:
-        home("machines").write_page(name)  # the page takes its section from this module
+        home("machines").write_page(name)  # That page includes a section made by this module.
 
 
 def cheap():

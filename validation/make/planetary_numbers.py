@@ -11,7 +11,7 @@ from ..shared.simulated import by_name, scene
 
 NAME = "planetary_pitting"
 CASES = ("mild", "moderate", "severe")
-BINS = 61440 / 307200  # Hz, of the measured spectra
+BINS = 61440 / 307200  # [Hz] bin width of the measured spectra
 
 
 def stage():

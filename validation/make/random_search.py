@@ -7,7 +7,7 @@ from itertools import groupby
 import numpy as np
 
 import gearfe as gf
-from gearfe.geometry.damage.crack import STARTS
+from gearfe.geometry.damage.crack_form import STARTS
 
 from ..shared import kept_rows, page
 from ..shared.arbiter.large import large_k
@@ -16,14 +16,14 @@ from ..shared.places import TABLES
 from ..shared.table_rows import rows_of, write_table
 
 TRUTH, LARGE, TABLE = (TABLES / f"random_search{part}.csv" for part in ("_outlines", "_calculix", ""))
-FIRST, COUNT = 910_000, 330  # seeds from here on, pairs
+FIRST, COUNT = 910_000, 330  # first seed, number of pairs
 KINDS = ("closed", "rim", "deep", "bent", "several", "thin", "extreme", "ring")
 SIDES = "pinion", "wheel"
 STEEL = gf.Material(E=207e3, nu=0.3)
 INDEPENDENT = ("seed", "phase", "k_N_um_mm", "error_percent")
 FIELDS = ("seed", "kind", "pair", "load_N_mm", "phase", "deflection_um", "k_N_um_mm")
 FIELDS += ("off_percent", "estimate_percent", "outlines_percent")
-MESHES = {"refines": (0.7, 1.0)}  # CalculiX takes the second mesh and has its mesh error
+MESHES = {"refines": (0.7, 1.0)}  # CalculiX uses the second mesh, and the difference of both is its mesh error.
 
 
 def random_case(seed):
@@ -128,13 +128,13 @@ def beyond(rows):
 
 
 HOW = """
-Each kind stresses one assumption. The kind "closed" has cracks on the unloaded side, "thin" has teeth thinned by root relief, and
-"extreme" has extreme profile shifts. A seed draws the gears, the load and two phases. `ritz` has
-its defaults. The independent sections share with gearfe the definitions of gears, flanks, cracks and phases, and gmsh's
-triangulation.
-A phase is covered if the difference is at most the estimate of `ritz` plus the mesh error of the independent section. The
-independent sections neglect large displacements. CalculiX, which does not, presses their meshes where the difference is larger.
-The time at the foot leaves out CalculiX, which takes about a minute for a row.
+Each kind stresses one assumption: "closed" has cracks on the unloaded side, "thin" has teeth thinned by root relief, and
+"extreme" has extreme profile shifts. A seed determines the gears, the load and two phases. `ritz` has its defaults. The
+independent reference shares with gearfe the definitions of gears, flanks, cracks and phases, and gmsh's triangulation. A phase is
+covered if the difference is at most the estimate of `ritz` plus the mesh error of the reference.
+
+The reference neglects large displacements. Where the difference is larger, CalculiX solves the same meshes with large
+displacements. The time at the foot excludes CalculiX, which takes about a minute per row.
 """
 
 
@@ -168,8 +168,8 @@ def answer(rows):
     """Return the first sentences of the page."""
     pairs, out, left = ({row["seed"] for row in some} for some in (rows, beyond(rows), open_rows(rows)))
     return (
-        f"Of {len(pairs)} pairs, {len(pairs) - len(out)} lie within the estimates at both phases, and CalculiX finds "
-        f"{len(out) - len(left)} of the other {len(out)} within them. {len(left)} lie beyond. The median estimate is "
+        f"Of {len(pairs)} pairs, {len(pairs) - len(out)} are within the estimates at both phases. CalculiX confirms "
+        f"{len(out) - len(left)} of the other {len(out)}, and {len(left)} remain outside. The median estimate is "
         f"{_ratio(rows):.1f} times the median difference."
     )
 
@@ -206,7 +206,7 @@ def section(rows):
         *out,
         "",
         "The deflection of these pairs is 0.7 to 2 % of the module. The effect of large displacements grows with the load. "
-        "Of seed 910186 CalculiX differs from the outlines by -2.6 %, and by -0.7 % at a quarter of the load.",
+        "For seed 910186, CalculiX differs from the outlines by -2.6 %, and by -0.7 % at a quarter of the load.",
     ]
 
 

@@ -19,10 +19,11 @@ from ..shared.table_rows import rows_of, write_table
 
 CSV = TABLES / "truth.csv"
 CONTACT = TABLES / "calculix.csv"
-LINE_LOAD, PHASES, NEAR = 150.0, 12, 0.06  # N/mm; phases; cycles from the ends of double contact
-PENALTY = 500.0  # setting of `write_contact_inp`: pressure per overlap, in units of E per mm
+# line load [N/mm]; number of phases; distance from the ends of double contact [mesh cycles]
+LINE_LOAD, PHASES, NEAR = 150.0, 12, 0.06
+PENALTY = 500.0  # setting of `write_contact_inp`: pressure per overlap [E/mm]
 RING = "the source does not give its ring fillet; a sharper one (cutter of 40 teeth, tip radius 0.1) gives 17.17"
-REASONS = {  # rows outside their tolerance
+REASONS = {  # reasons for rows outside their tolerance
     ("stage_17_37_91", "f_m"): "the source multiplies its rounded carrier frequency, 2.1 Hz, by 91; 800 rpm give 190.99 Hz",
     ("healthy_ring", "27/72, min, fe"): RING,
     ("healthy_ring", "27/72, min, ritz"): RING,
@@ -69,7 +70,8 @@ def quick_rows(tables):
         case = f"mode {i % 6 + 1}, {'translational' if i > 5 else 'rotational'}"
         yield _row("natural_frequencies", case, theirs, ours, one["tolerance"])
     names = ("f_m", "sun fault", "planet fault", "carrier", "contact ratio sun-planet", "contact ratio planet-ring")
-    for table, digit in (("stage_17_37_91", 0.05), ("stage_21_31_84", 0.005)):  # frequencies have one or two decimals
+    # The source rounds frequencies to one or two decimals.
+    for table, digit in (("stage_17_37_91", 0.05), ("stage_21_31_84", 0.005)):
         one = tables[table]
         for i, (name, theirs, ours) in enumerate(zip(names, one["value"], reference.stage(table), strict=True)):
             yield _row(table, name, theirs, ours, *((digit * (1 + 1e-6), True) if i < 4 else (one["tolerance"], False)))
@@ -141,7 +143,7 @@ def contact_row(phase):
 
 
 def springs(phases):
-    """Approach added by the contact of CalculiX, relative: its pressure is `PENALTY` E times the overlap, not infinitely hard.
+    """Return the relative increase of the approach by the contact springs of CalculiX, `PENALTY` E times the overlap.
 
     Under Hertz's pressure a pair overlaps by ``8 p0 / (3 pi)`` over that stiffness, weighted by the work of the pressure; the
     pairs count by the load they carry. None where a corner carries: its pressure has no peak.
@@ -200,21 +202,21 @@ def text():
     good = sum(row.holds for row in rows)
     far, _ = contact_worst()
     answer = (
-        f"{good} of {len(rows)} values of others are found within the tolerance set beforehand, the rest have a stated "
-        "reason, and k of "
-        f"CalculiX in nonlinear contact within {far:.2f} % away from the ends of double contact."
+        f"{good} of {len(rows)} published or independent values agree within a tolerance that was set beforehand. The "
+        "others have a "
+        f"stated reason. k differs from nonlinear contact in CalculiX by at most {far:.2f} %, away from the ends of "
+        "double contact."
     )
     how = """
-    `python -m validation truth` computes gearfe's side of [tables/truth.csv](tables/truth.csv) and
-    [tables/calculix.csv](tables/calculix.csv), CalculiX's where it is installed; the values of others are in
-    `validation/sources/reference.toml`. Shared with others: the shapes of gears as they describe them; with CalculiX: the
-    meshes, which gearfe writes.
+    `python -m validation truth` computes gearfe's values in [tables/truth.csv](tables/truth.csv) and
+    [tables/calculix.csv](tables/calculix.csv), and those of CalculiX if it is installed. The published values are in
+    `validation/sources/reference.toml`. gearfe shares the shapes of the gears with all sources, and the meshes with CalculiX.
     """
     lines = [
         """
-        ## Values that others published or computed
+        ## Published and independently computed values
 
-        An empty table or tolerance is that of the row above. An empty verdict: within the tolerance.
+        An empty table or tolerance is that of the row above. An empty verdict means 'within the tolerance'.
 
         | table | case | theirs | gearfe | difference | tolerance | verdict |
         |---|---|---|---|---|---|---|
@@ -253,10 +255,10 @@ def _contact_text():
         f"""
         ## Nonlinear contact in CalculiX
 
-        Both gears of a pair {pair.gear_1.z}/{pair.gear_2.z} (m 2.5, x {pair.gear_1.x:g}/{pair.gear_2.x:g}, bores 12/20 mm,
-        {LINE_LOAD:g} N/mm), meshed anew for each phase with eight edges per Hertz half width, surface-to-surface contact of
-        all flanks (`gearfe.write_contact_inp`), both in the mean pose: each gear is turned by half of the approach that
-        `ritz` computes. Double contact begins at phase 0 and ends at {pair.eps_alpha % 1:.4f}.
+        CalculiX has both gears of a pair {pair.gear_1.z}/{pair.gear_2.z} (m 2.5, x {pair.gear_1.x:g}/{pair.gear_2.x:g},
+        bores 12/20 mm, {LINE_LOAD:g} N/mm). They are meshed for each phase with eight edges per Hertzian half-width. All flanks
+        have surface-to-surface contact (`gearfe.write_contact_inp`). Each gear is rotated by half of the approach of `ritz`
+        (mean pose). Double contact begins at phase 0 and ends at {pair.eps_alpha % 1:.4f}.
 
         | phase | gearfe, ritz [N/um] | CalculiX [N/um] | difference | less its springs | from double contact's ends [cycles] |
         |---|---|---|---|---|---|
@@ -268,18 +270,18 @@ def _contact_text():
         left = "" if added is None else f"{100 * (a / b - 1 - added):+.3f} %"
         lines.append(f"| {one:.4f} | {values} | {100 * (a / b - 1):+.3f} % | {left} | {away(pair, one):.3f} |")
     far, near = contact_worst()
-    told = "" if math.isnan(near) else f", {near:.3f} % nearer"
+    told = "" if math.isnan(near) else f", and {near:.3f} % nearer"
     lines += [
         "",
-        f"Largest difference {far:.3f} % at least {NEAR:g} cycles from an end of double contact (0.5 % asked for){told}.",
+        f"The largest difference is {far:.3f} % at least {NEAR:g} cycles from an end of double contact (limit: 0.5 %){told}.",
     ]
     part = [100 * one for one in soft if one is not None]
     lines += [
         f"""
-        Why CalculiX is softer everywhere: its contact is a bed of springs, {PENALTY:g} E per mm of overlap, which Hertz's
-        pressure presses in by 8 p0 / (3 pi) over that stiffness: {min(part):.3f} to {max(part):.3f} % of the approach.
-        Without it (fifth column) differences have both signs. Where a tip corner carries, its pressure has no peak, and the
-        column is empty.
+        CalculiX is softer at all phases because its contact consists of springs with {PENALTY:g} E per mm of overlap. The
+        Hertzian pressure p0 compresses them by 8 p0 / (3 pi) over this stiffness, which is {min(part):.3f} to {max(part):.3f} %
+        of the approach. The fifth column excludes this compression, and its differences have both signs. It is empty where a
+        tip corner carries load, because the pressure has no finite peak there.
         """,
     ]
     return lines

@@ -25,7 +25,7 @@ the transverse line of action, over the mesh cycle with the damaged tooth in the
 | pits | 3 | 7 | 7 | 14 |
 
 - FE: 20-node hexahedra of the whole gears (`fe3d`), with pits as lost contact. The ring pair has no estimate, because a coarser
-  mesh cannot carry the patches and a finer one exceeds 24 GB.
+  mesh cannot resolve the load patches and a finer one exceeds 24 GB.
 - Errors are relative to FE. Bold errors exceed 3 %.
 - `ritz3d` is the converged energy model. `herringbone_article` and `textbook` are closed forms in exact slices. For the ring,
   `herringbone_article` has S4's foundation, and `textbook` has none.
@@ -34,8 +34,8 @@ the transverse line of action, over the mesh cycle with the damaged tooth in the
 {errors}
 
 `ritz3d` is within {mean:.2f} % of FE in all ten means, {largest:.2f} % in all ten maxima and {phase:.2f} % at every phase. No
-constant of `ritz3d` is fitted to a gear. Most of the difference is due to the coarse section of the hexahedra. Its excess
-stiffness, by the energy model, is: {section}. The rest is due to the layers along the width. Smaller pairs with a ring, on finer
+constant of `ritz3d` is fitted to a gear. Most of the difference is due to the coarse section of the hexahedra. The energy
+model gives its excess stiffness: {section}. The rest is due to the layers along the width. Smaller pairs with a ring, on finer
 meshes, are within 0.25 % ([three.md](three.md)).
 
 `fe3d` and `ritz3d` share the contact lines, the half-space under each line and the loaded patches of the flanks. Both keep the
@@ -43,11 +43,11 @@ faces of a crack apart.
 
 ## Loss of stiffness by damage
 
-In percent: largest loss over the cycle, loss of the mean over the cycle, and loss of the damaged tooth's own pair.
+The table gives three losses in percent: largest loss over the cycle, loss of the mean, and loss of the damaged tooth's own pair.
 
 {drops}
 
-Effects of other values: [assumptions.md](assumptions.md), [herringbone_readings.md](herringbone_readings.md).
+[assumptions.md](assumptions.md) and [herringbone_readings.md](herringbone_readings.md) have the effects of other values.
 """
 PRINTED = """
 ## As printed, and after the stated corrections

@@ -11,7 +11,7 @@ from gearfe.core.files import written
 from .places import TABLES, digest
 
 BY, TIME = "made_by", "cpu_s"
-before = []  # CPU seconds of rows that an earlier run of the same sources computed
+before = []  # CPU seconds of rows stored by an earlier run of the same sources
 
 
 def cpu():

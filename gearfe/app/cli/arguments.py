@@ -7,9 +7,9 @@ import tomllib
 from importlib import resources
 
 from ...stiffness.methods import NAMES, described, having
-from . import exchange, filling, sets, shell, signals, tools, verbs
+from . import comparing, exchange, filling, sets, shell, signals, tools, verbs
 
-# words of the help texts; the suffixes are those of gearfe.core.files
+# Values inserted into help texts. The suffixes must equal those of gearfe.core.files.
 WORDS = {
     "methods": ", ".join(name for name in NAMES if name != "auto"),
     "estimating": having("error"),
@@ -58,12 +58,21 @@ def _nearest(word, names):
 
 
 TYPES = {"int": int, "float": float, "ratio": _ratio}
-MODULES = {"exchange": exchange, "filling": filling, "sets": sets, "signals": signals, "tools": tools, "verbs": verbs}
+MODULES = {
+    "comparing": comparing,
+    "exchange": exchange,
+    "filling": filling,
+    "sets": sets,
+    "signals": signals,
+    "tools": tools,
+    "verbs": verbs,
+}
 
 
 def main(argv=None):
     """Run the command line, and return the exit code."""
-    os.environ.setdefault("OMP_NUM_THREADS", "1")  # before numpy loads: on small matrices more threads wait for each other
+    # Set before numpy loads: for small matrices, additional threads only wait for each other.
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
     parser = _Parser(prog="gearfe", description="Compute gear mesh stiffness, transmission error and gearbox vibration.")
     parser.add_argument("--version", action=_Version, help="print the version and exit")
     known = parser.add_subparsers(dest="verb", required=True, metavar="VERB")

@@ -20,7 +20,8 @@ import warnings
 # replacements for terminals that have only ASCII
 SPELLED = {"±": "+-", "µ": "u", "·": "*", "°": "deg", "→": "->", "–": "-", "…": "..."}
 
-STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")  # controls, direction marks
+# control characters and direction marks
+STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
 
 def harmless(text):
@@ -52,7 +53,8 @@ def spelled(error):
 def tell(text):
     """Print a line to standard error, if there is one."""
     if sys.stderr is not None:
-        with contextlib.suppress(OSError, ValueError):  # the stream is closed or the disk is full: the message cannot be shown
+        # The stream is closed or the disk is full, so the message cannot be printed.
+        with contextlib.suppress(OSError, ValueError):
             print(harmless(f"gearfe: {text}"), file=sys.stderr, flush=True)
 
 
@@ -61,15 +63,15 @@ def as_options(error, options):
     text, names = str(error), "|".join(map(re.escape, options))
     if not names:
         return text
-    # the option that the message begins with; forces of Python are one force each
+    # The message begins with the name of the option. Each value of `--forces` is a single `force` in Python.
     text = re.sub(rf"^({names})(?= = )", lambda match: f"--{match[1].replace('_', '-')}", text)
     text = text.replace("force = ", "--forces = ", 1) if "forces" in options and text.startswith("force = ") else text
-    # names of the options --mesh and --fault of `gearfe signal`
+    # `mesh_frequency` and `fault_frequency` are the options --mesh and --fault of `gearfe signal`.
     text = re.sub(rf"\b({names})_frequency = ", lambda match: f"--{match[1]} ", text)
     return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda match: f"--{match[1]}", text)
 
 
-_ended: list[int] = []  # exit code of a termination; libraries in C++ turn the exception into a RuntimeError
+_ended: list[int] = []  # exit code after a signal, because C++ libraries convert the exception to a RuntimeError
 
 
 def _end_tidily(number, _):
@@ -78,25 +80,30 @@ def _end_tidily(number, _):
     raise SystemExit(128 + number)
 
 
-def run(work, options=()):
-    """Call `work`, a function without arguments, and return the exit code. `options`: names of the verb's options."""
-    with contextlib.suppress(ValueError):  # only the main thread can set signal handlers
+def _prepare():
+    """Let the process end tidily on SIGTERM, and print characters that a stream cannot encode as text."""
+    with contextlib.suppress(ValueError):  # Python sets signal handlers only in the main thread.
         signal.signal(signal.SIGTERM, _end_tidily)
     codecs.register_error("spelled", spelled)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="spelled")
+
+
+def run(work, options=()):
+    """Call `work`, a function without arguments, and return the exit code. `options`: names of the verb's options."""
+    _prepare()
     try:
         with warnings.catch_warnings(), contextlib.redirect_stdout(sys.stdout and Harmless(sys.stdout)):
             for kind in (UserWarning, FutureWarning):
                 warnings.simplefilter("always", kind)
             warnings.filterwarnings("always", ".*the old name leaves", DeprecationWarning)
             warnings.showwarning = lambda message, *_: tell(f"note: {as_options(message, options)}")
-            contextvars.copy_context().run(work)  # a failed verb leaves no listener of progress behind
+            contextvars.copy_context().run(work)  # A separate context removes the progress listeners of a failed verb.
             if sys.stdout is not None:
                 sys.stdout.flush()
     except KeyboardInterrupt:
-        # verbs that fill folders can be resumed
+        # These verbs fill folders and can be resumed.
         resumed = "; the same command goes on where it was" if "dry_run" in options else ""
         tell(f"interrupted; nothing half-written is left{resumed}")
         return 130

@@ -7,7 +7,7 @@ import numpy as np
 from ...geometry.aliases import Floats
 from .beam import beam_element, pieces_between
 
-RIGID = 1e7  # stiffness that counts as rigid, relative to the largest
+RIGID = 1e7  # stiffness that counts as rigid, relative to the largest stiffness
 MOTIONS = 6  # motions of a face: displacements x, y, z [mm], rotations about x, y, z [rad]
 
 
@@ -40,7 +40,8 @@ def stub_stiffness(shaft: Any, width: float) -> Floats:
     ends = [nearest(face) for face in faces]
     plane = _condensed(bend, [k for end in ends for k in (2 * end, 2 * end + 1)])
     out = np.zeros((2 * MOTIONS, 2 * MOTIONS))
-    for (across, about), sense in (((0, 4), 1), ((1, 3), -1)):  # the slope of x is a turn about y, that of y one about -x
+    # A slope of x is a rotation about y, and a slope of y a negative rotation about x.
+    for (across, about), sense in (((0, 4), 1), ((1, 3), -1)):
         at = np.array([across, about, MOTIONS + across, MOTIONS + about])
         signs = np.array([1, sense, 1, sense])
         out[np.ix_(at, at)] += signs[:, None] * plane * signs
@@ -53,7 +54,7 @@ def stub_stiffness(shaft: Any, width: float) -> Floats:
 def _condensed(stiffness, kept):
     """Stiffness of some unknowns, the others left to themselves."""
     rest = np.setdiff1d(np.arange(len(stiffness)), kept)
-    rest = rest[np.abs(stiffness[rest]).max(axis=1) > 0] if rest.size else rest  # unknowns inside the gear have no stiffness
+    rest = rest[np.abs(stiffness[rest]).max(axis=1) > 0] if rest.size else rest  # Unknowns inside the gear have no stiffness.
     cross = stiffness[np.ix_(rest, kept)]
     return stiffness[np.ix_(kept, kept)] - cross.T @ np.linalg.solve(stiffness[np.ix_(rest, rest)], cross)
 

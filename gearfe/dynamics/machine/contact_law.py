@@ -62,7 +62,7 @@ def law_of(power: float, full: float) -> Law:
 
 
 def parameters(meshes: Sequence[Any]) -> dict[str, NDArray[Any]]:
-    """Parameters of the contact of meshes by name, ``(m,)`` each, or 0 for laws that have none of that name.
+    """Return the contact parameters of the meshes by name, ``(m,)`` each, 0 for laws without this parameter.
 
     Besides those of the laws: `kind`, the row of `LAWS`; ``damping, damping_per_stiffness, backlash, film``; and `least`, 0 where
     flanks push and never pull, otherwise ``-inf``.
@@ -160,7 +160,7 @@ def friction_coefficient(slip, *, static, dynamic, v_static, v_dynamic):
 
 
 def _each(what, depth, rate, k, c, law):
-    """Force or slopes of each mesh by its own law."""
+    """Return force or slopes of each mesh by its own law."""
     kinds = set(law.kind.tolist()) or {0}
     if len(kinds) == 1:
         return getattr(LAWS[kinds.pop()], what)(depth, rate, k, c, law)

@@ -19,11 +19,12 @@ from ...core.record import settle
 from ...geometry.aliases import Floats
 from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.curve import StiffnessCurve, joined
-from ...stiffness.solve import PairOptions, Solve, solve, split_arguments
+from ...stiffness.mesh_stiffness import PairOptions, split_arguments
+from ...stiffness.solve import Solve, solve
 from .secant import Secant
 
-ROWS, COLUMNS = 1024, 64  # size of a law's table: rows in a mesh cycle, depths
-BETWEEN = 7  # further phases solved between two if the number of pairs in contact changes there at any load
+ROWS, COLUMNS = 1024, 64  # table size of a force law: phases per mesh cycle, deflections
+BETWEEN = 7  # additional phases solved between two phases if the number of pairs in contact changes between them at any load
 
 
 @dataclass(frozen=True, slots=True)

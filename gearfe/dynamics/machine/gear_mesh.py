@@ -26,7 +26,7 @@ from .phase_table import PhaseTable, table
 from .secant import Secant
 from .tooth_damage import ToothDamage
 
-NOWHERE = 1e-12  # [m] smaller shifts of a tooth are rounding errors
+NOWHERE = 1e-12  # Smaller shifts of a tooth are rounding errors [m].
 
 
 @renamed(beta="damping_per_stiffness")

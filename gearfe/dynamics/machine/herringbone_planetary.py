@@ -109,7 +109,7 @@ def herringbone_planetary(
     hurt = teeth_damaged(damage, meshed)
     for (name, fields), angle in zip(phases.items(), np.repeat(2 * math.pi * np.arange(n) / n, 2), strict=True):
         kind, bodies, _ = meshed[name]
-        # the flanks of a planet are parallel: axial forces of its two meshes are in balance
+        # The axial forces of a planet's two meshes balance, because its flanks are parallel.
         sense, height = (1, 0.0) if kind == "sun_planet" else (-1, apart)
         for half, hand in HALVES.items():
             one, two = (body if body == "ring" else f"{body}{half}" for body in bodies)

@@ -10,7 +10,7 @@ from ...core.case import Case
 from ...core.material import Material
 from ...geometry.aliases import Floats
 from ...geometry.pair.gear_pair import GearPair
-from ...stiffness.solve import PairOptions, split_arguments
+from ...stiffness.mesh_stiffness import PairOptions, split_arguments
 from .force_law import ForceLaw, law_of
 
 FIRST = 5, 32  # initial loads and phases of `converged_force_law`

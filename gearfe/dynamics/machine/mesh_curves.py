@@ -13,7 +13,7 @@ from ...stiffness.curve import StiffnessCurve
 from .force_law import ForceLaw
 from .phase_table import SMOOTH, PhaseTable, smooth_table, table
 
-FINE = 1024  # samples per cycle that curves on uneven phases are brought to
+FINE = 1024  # samples per cycle after resampling of curves with unequal phases
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ Curve = StiffnessCurve | Samples  # stiffness over the phase
 
 
 Stiffness = float | Floats | Curve | ForceLaw | PhaseTable  # types of stiffness that `GearMesh` accepts
-Change = tuple[float, float, PhaseTable]  # period [cycles], first cycle, and change over the phase from there
+Change = tuple[float, float, PhaseTable]  # period [mesh cycles], first cycle, and the change over the phase from that cycle on
 ALIKE = 1e-6  # tolerance of equal samples of two curves [mesh cycles, cells]
 
 
@@ -90,6 +90,6 @@ def cycle_table(stiffness: Stiffness) -> PhaseTable:
             values = np.interp(np.arange(FINE) / FINE, phase, values, period=1.0)
     if values.ndim != 1 or not values.size or not np.isfinite(values).all() or (values < 0).any():
         raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
-    if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # the curve has kinks where pairs enter
+    if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # The curve has kinks where pairs enter.
         return table(values, 0.0, 1.0 / values.size, periodic=True)
     return smooth_table(values)

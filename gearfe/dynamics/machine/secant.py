@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ...geometry.aliases import Floats
 
-TINY = 1e-30  # depth [m]: a mesh just touching
+TINY = 1e-30  # deflection of a mesh that just touches [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class Secant:
             sum(weight * self.k[i + near, column] for near, weight in zip((-1, 0, 1), weights, strict=True))
             for column in (j, j + 1)
         )
-        before = (1 - 1 / last) ** 2  # depth of the last column but one, over that of the last
+        before = (1 - 1 / last) ** 2  # deflection of the second last column over that of the last column
         slope = (right - left * before) / (1 - before)
         far, beyond = np.maximum(deep, self.deepest), at > last
         outside = slope + (right - slope) * self.deepest / far

@@ -22,7 +22,7 @@ RINGS = ("lumped", "body")
 BODY, AXES = "ring", ("x", "y", "theta")
 EVEN = 1e-6  # tolerance for equally spaced positions [mesh cycles]
 SAME = 1e-6  # relative tolerance of radii and directions
-PERFECT = 1e-12  # m: gaps below it are rounding
+PERFECT = 1e-12  # Smaller gaps are rounding errors [m].
 
 
 def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str, str] = NAMES) -> Machine:
@@ -67,8 +67,6 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
     action, rotate the ring by some per cent less than the row of a mesh gives. On very soft springs more than all deflections of
     the set would then be removed, which is an error.
     """
-    if not isinstance(machine, Machine) or not isinstance(curves, SetCurves):
-        raise ValueError(f"with_set({machine!r}, {curves!r}), but give a Machine and the result of planetary_stiffness")
     if ring == "in k":
         warn_renamed('ring = "in k"', '"lumped"')
         ring = "lumped"
@@ -154,7 +152,7 @@ def _places(machine, case, names):
 
 
 def _check(machine, mesh, pair, direction):
-    """ValueError unless a mesh has the base radii of `pair`, its line of action along `direction` [rad], and no damage."""
+    """Raise ValueError unless a mesh has the base radii of `pair`, its line of action along `direction` [rad], and no damage."""
     turns, along, across = (
         [mesh.row[i] for i, dof in enumerate(machine.dofs) if dof.endswith(f".{axis}")] for axis in ("theta", *"xy")
     )
@@ -234,7 +232,7 @@ def _on_springs(machine, case):
 
 
 def _without_body(machine, curves, inner):
-    """Return `SetCurves.k` without the deflection of the ring's springs under the loads of its meshes, numbers `inner`."""
+    """Return `SetCurves.k` without the deflection of the ring's springs. `inner` are the numbers of the ring's meshes."""
     place = [machine.dofs.index(f"{BODY}.{axis}") for axis in AXES if f"{BODY}.{axis}" in machine.dofs]
     gives = 1 / ring_springs(curves.meta["case"])[[AXES.index(machine.dofs[i].split(".")[1]) for i in place]]
     rows = np.array([machine.meshes[number].row[place] for number in inner])

@@ -11,13 +11,13 @@ from ..machine.force_law import ForceLaw
 from ..machine.mesh_curves import cycle_table
 from ..machine.phase_table import table
 
-LOOKS = 20_000  # times of a run at which its mesh forces are compared with the loads of their laws
+LOOKS = 20_000  # number of times at which mesh forces are compared with the loads of their laws
 # least number of samples of a stretch over which forces are averaged (at least one mesh cycle), and most stretches
 LEAST, PARTS = 40, 50
-OTHER = 0.1  # a mean force that differs by more than this part of a curve's load is reported
-IDLE = 1e-3  # meshes with a mean force below this part of that load count as unloaded
+OTHER = 0.1  # relative difference between mean force and the curve's load that is reported
+IDLE = 1e-3  # Meshes with a smaller mean force, relative to the curve's load, count as unloaded.
 FEWEST = 10  # least number of samples of a stiffness whose interpolation error is reported
-NEARLY = 0.01  # loads that change the stiffness by less than this part are within the range of a curve
+NEARLY = 0.01  # Loads that change the stiffness by less than this part are within the range of a curve.
 
 
 def compared(response):

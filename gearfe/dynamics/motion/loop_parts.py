@@ -23,11 +23,11 @@ def kept(function):
     """
     try:
         dispatcher = njit(cache=True, error_model="numpy")(function)
-    except RuntimeError:  # without a cache folder each process compiles
+    except RuntimeError:  # Without a cache folder each process compiles.
         return compiled(function)
     if dispatcher is function:
         return _not_compiled
-    dispatcher._cache._cache_file._source_stamp = _stamp()  # numba checks only the file of the function itself
+    dispatcher._cache._cache_file._source_stamp = _stamp()  # numba checks only the file of the function itself.
     return dispatcher
 
 
@@ -64,7 +64,7 @@ class _Announcer(event.TimingListener):
 
 @contextlib.contextmanager
 def announced(tell=None):
-    """In the block, `tell` gets a line if something has to be compiled.
+    """Report to `tell` if the block compiles something.
 
     By default it is a warning. Gives the `_Announcer`.
     """
@@ -185,7 +185,7 @@ def _errors(flat, now, row, turned, fast):
 
 @compiled
 def lookup(flat, now, first, last, origin, h, low, share):
-    """Fill in rows ``first <= i < last`` of `now`: what acts at the times ``origin + h (low + share (i - first))``.
+    """Fill the rows ``first <= i < last`` of `now` with the excitation at ``origin + h (low + share (i - first))``.
 
     A row holds the stiffnesses, errors and rates of the errors of the meshes, then the weights of the friction rows, then the
     loads, then, of machines with force laws, the places in the meshes' and damaged teeth's tables by `_row`, -1 where there is

@@ -8,8 +8,8 @@ import numpy as np
 
 from .hexahedron import face_shapes
 
-ACROSS, ALONG = 4, 8  # zones of a crack from mouth to tip, and along the width, at most
-NEAR_TIP = 0.1  # no contact is possible closer to a crack's tip than this part of its length
+ACROSS, ALONG = 4, 8  # largest number of contact zones of a crack: from mouth to tip, along the width
+NEAR_TIP = 0.1  # Within this part of its length from the tip, a crack has no contact zone.
 
 
 def zone_forces(mesh):
@@ -35,7 +35,7 @@ def _pressures(points, faces):
     """Nodal forces ``(8, 3, m)`` of unit pressure along the normals of faces [N], and their middles ``(3, m)``."""
     at, weight = np.polynomial.legendre.leggauss(3)
     x, y = (v.ravel() for v in np.meshgrid(at, at, indexing="ij"))
-    step, nodes = 1e-4, points[:, faces]  # step for the derivative of shape functions of second degree in x and y
+    step, nodes = 1e-4, points[:, faces]  # difference step, exact for shape functions of second degree in x and y
     first, second = (
         np.einsum("dnm,nq->dmq", nodes, (face_shapes(x + h, y + v) - face_shapes(x - h, y - v)) / (2 * step))
         for h, v in ((step, 0.0), (0.0, step))

@@ -13,7 +13,7 @@ from ...geometry.aliases import Floats
 from .solver import factor
 
 GAUSS_3 = (np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)]), np.array([5.0, 8.0, 5.0]) / 9)
-LEAF = 24  # triangles of a `Body` that `gearfe.flexibility.condense` puts together at a time, at least; at most twice as many
+LEAF = 24  # least number of triangles that `gearfe.flexibility.condense` joins in a first step; at most twice as many
 
 
 @BilinearForm

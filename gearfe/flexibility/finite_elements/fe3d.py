@@ -125,7 +125,7 @@ def patch_loads(mesh, patches, tooth):
     Both integrals are cut at the borders of the elements, that along the profile also at the knots of the hats.
     """
     gear, patches = mesh.gear, patches.of(tooth)
-    rising = gear.outward * mesh.section.roll[tooth % gear.z]  # a ring's roll length falls from root to tip
+    rising = gear.outward * mesh.section.roll[tooth % gear.z]  # The roll length of a ring gear decreases from root to tip.
     cuts = gear.outward * roll_at_arc(gear, np.unique(patches.knots))
     edge, x, at, across = points_between(rising, cuts, ROLL_POINTS)
     at = gear.outward * at

@@ -8,8 +8,8 @@ from .hexahedron import TWENTY, gauss, shapes
 from .tetrahedron import EDGES, INNER, OUTER
 
 LEFT = 0.05  # least Jacobian of a curved tetrahedron, relative to the straight one
-NEAR = 0.975  # position of the point near a hexahedron's corner, since quads with a straight angle there are no fault
-HALVINGS = 5  # number of halvings of the curvature before an edge becomes straight
+NEAR = 0.975  # position of the checked point near a corner of a hexahedron; quads with a straight angle at the corner are valid
+HALVINGS = 5  # number of halvings of an edge's curvature before the edge is made straight
 
 
 @keeping(2)

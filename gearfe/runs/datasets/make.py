@@ -131,7 +131,7 @@ def plan_dataset(plan: StrPath | Mapping[str, Any], folder: StrPath = ".", worke
     checked = read_plan(plan)
     every = conditions(checked)
     check_machine(checked)
-    made = rows_of(checked, every[-1])  # warm-up that loads modules, compiled loops and gears
+    made = rows_of(checked, every[-1])  # This first run loads modules, compiled loops and gears.
 
     def trial():
         return encoded(table_of(checked, rows_of(checked, every[-1]))), 1, []

@@ -16,9 +16,9 @@ from ...geometry.aliases import Floats
 from ...stiffness.curve import StiffnessCurve
 
 DEGREE = 8  # degree of the polynomial of a piece: curves of 21/31 pairs are then off by 0.005 % on average
-ROUND = 0.05  # part of the zone of more pairs at each of its ends that is a separate piece, since k bends there
+ROUND = 0.05  # End part of the zone with more pairs that has a separate polynomial, because k has a curved transition there.
 SHORTEST = 0.1  # shorter zones are not divided [mesh cycles]
-SEARCH = 8  # phases a round in the search for a break
+SEARCH = 8  # phases per iteration of the search for a break
 ROUNDS = 3
 LESS = "give less load or another contact ratio"
 

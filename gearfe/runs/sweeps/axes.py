@@ -10,7 +10,7 @@ from ...scene.schema import schema_of
 from . import samples
 
 RUNS = "gearfe.runs"
-MOST = 10**7  # limit of cases, whose values alone take gigabytes
+MOST = 10**7  # limit of cases; their values alone require gigabytes
 SPEC = {*schema_of(RUNS)["steps"].keys, *samples.SHAPES, "choice", "within"}
 
 
@@ -49,7 +49,7 @@ def axes(file, vary, along):
 
 
 def also(file, where, value):
-    """Other keys that take the values of one, from ``also`` in its table."""
+    """Return the keys that have the same values, from ``also`` in the table of a key."""
     if not isinstance(value, dict) or "also" not in value:
         return []
     return checked(RUNS, "also", file, where, {"also": value["also"]})["also"]

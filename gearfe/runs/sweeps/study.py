@@ -63,15 +63,15 @@ class Study:
     title: str
     kind: str
     pair: str
-    case: str  # "healthy" where there is no damage
+    case: str  # damage case, or "healthy"
     name: str  # name of the scene's file
-    tables: dict[str, Any]  # tables of the scene with those that the study adds
+    tables: dict[str, Any]  # tables of the scene and of the study
     options: dict[str, Any]  # options of the type of study with defaults
-    axes: tuple[dict[str, list], ...]  # each holds lists of the same length by key: one axis of the grid
-    sample: dict[str, Any]  # as ``[sample]``; empty: none
+    axes: tuple[dict[str, list], ...]  # axes of the grid: by key, lists of equal length
+    sample: dict[str, Any]  # table ``[sample]``; empty: none
     seed: int  # seed of the sample
-    block: int  # cases in a shard
-    keys: tuple[str, ...] = ()  # all that vary
+    block: int  # cases per shard
+    keys: tuple[str, ...] = ()  # all varied keys
 
     def content(self) -> dict[str, Any]:
         """All that decides the results, as JSON: two studies are the same if this is."""
@@ -121,7 +121,7 @@ def _study(file, place, data):
 
 
 def _scene(file, place, scene, added):
-    """Name and tables of the scene with those that the study adds, tried as a whole."""
+    """Return name and tables of the scene with those of the study, after a check of the whole."""
     name, tables = tables_near(place, scene)
     for kind, extra in added.items():
         tables[kind] = tables.get(kind, {}) | extra if kind == "flank" else tables.get(kind, []) + extra

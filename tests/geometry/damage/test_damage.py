@@ -322,7 +322,7 @@ def test_sections_refuse_cracks_of_part_of_the_width(method, options):
 
 
 def test_cracks_beyond_the_face_are_refused():
-    with pytest.raises(ValueError, match=r"open from z = 0\.5 to 1.5 mm, but the face ends at 1 mm"):
+    with pytest.raises(ValueError, match=r"width = \(0\.5, 1\.5\) mm: the crack opens beyond the face, which ends at 1 mm"):
         stiffness(PAIR, 127.0, STEEL, damage={"wheel": [gf.Crack(level=0.3, width=(0.5, 1.5))]})
     with pytest.raises(ValueError, match="only cracks through the whole width"):
         gf.stress_intensity(PAIR.gear_1, gf.Crack(level=0.3, width=(0.0, 0.5)), 18.5, 100.0, STEEL)

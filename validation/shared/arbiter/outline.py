@@ -184,7 +184,7 @@ class _Chamfer:
         angle, normal = float(outline.cut(self.start)), _normal(outline, self.start)
         self.first = self.start * np.array([math.sin(angle), math.cos(angle)])
         tangent = np.array([-normal[1], normal[0]])
-        tangent *= math.copysign(1.0, sign * (tangent @ self.first))  # towards the tip
+        tangent *= math.copysign(1.0, sign * (tangent @ self.first))  # The tangent points towards the tip.
         self.along = (tangent - normal) / math.sqrt(2)
         self.last = self._length(np.array(outline.r_a)).item()
 
@@ -223,7 +223,7 @@ def _cut(gear):
     margin = 0.02 * (rolls[1] - rolls[0])
     ends = (
         (rolls[0], rolls[1] + margin) if sign > 0 else (max(rolls[0] - margin, 0.0), rolls[1])
-    )  # beyond the tip, never the form point
+    )  # The point lies beyond the tip, never at the form point.
     roll = np.linspace(*ends, FLANK)
     flank = CubicSpline(roll, math.pi / gear.z - space.flank(np.hypot(roll, space.r_b)))
     return space, form, fillet, flank

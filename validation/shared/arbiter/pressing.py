@@ -22,10 +22,10 @@ from .side import Side
 from .touching import FirstTouch, Press, orders, stand, touching
 from .zones import WIDER, Contact, found, hats, placed
 
-SPRING = 0.065  # stiffness of a tooth pair by width over Young's modulus, to find which pairs may touch
-FIRST = 0.5  # refine of the first pass, which only says where pressures are
-OPEN = 1.3  # pairs count as possible up to so many times the approach
-STEPS = 300  # largest number of steps of the search for loaded hats
+SPRING = 0.065  # estimated stiffness of a tooth pair over width and Young's modulus, to find the pairs that may touch
+FIRST = 0.5  # refinement of the first pass, which only locates the pressure
+OPEN = 1.3  # Pairs with gaps up to this multiple of the approach may touch.
+STEPS = 300  # limit of steps in the search for loaded hat functions
 
 
 @dataclass
@@ -98,9 +98,9 @@ def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), missing=((
 @dataclass
 class _Answer:
     approach: float
-    pressed: list  # (zone, p, c, elastic shift) of all zones
-    forces: dict  # order: part of the load
-    edge: bool  # whether pressure reaches the end of a zone
+    pressed: list  # (zone, p, c, elastic shift) of each zone
+    forces: dict  # by tooth pair: share of the load
+    edge: bool  # True if pressure reaches the end of a zone
 
 
 class _Phase:
@@ -195,7 +195,8 @@ class _Phase:
                 x, y = points[0] + (gap * normals[0] if sense < 0 else 0), points[1] + (gap * normals[1] if sense < 0 else 0)
                 y = y - self.contact.press.centres[gear]
                 rate += sense * self.contact.press.rates[gear] * (y * normals[0] - x * normals[1])
-            moved = (zone.shift[1 - zone.own] - zone.shift[zone.own]) @ normals  # already part of the deformation
+            # This rigid motion is already part of the deformation.
+            moved = (zone.shift[1 - zone.own] - zone.shift[zone.own]) @ normals
             gaps.append(weight.T @ (gap + rate * self.approach - moved))
             rates.append(weight.T @ rate)
             heading = np.arctan2(*normals)
@@ -271,7 +272,7 @@ def complementary(matrix, gap, rate, load):
     RuntimeError
         If the set of pressed hats does not settle.
     """
-    scale = np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0)  # a hat that faces nothing has none
+    scale = np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0)  # Hats without an opposite surface have a zero diagonal.
     meets = rate > 0
     pressed = meets & (gap <= np.sort(gap[meets])[min(3, meets.sum() - 1)])
     for _ in range(STEPS):

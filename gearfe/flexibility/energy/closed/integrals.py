@@ -133,7 +133,7 @@ def _running(gear, curve, edges, found, pits):
     fitted = values @ chebvander(nodes, NODES - 1) * 2 / NODES
     fitted[..., 0] /= 2
     grown = chebint(fitted, lbnd=-1, scl=math.pi / 4, axis=-1)
-    before = np.cumsum(grown.sum(axis=-1), axis=1) - grown.sum(axis=-1)  # every Chebyshev polynomial is 1 at 1
+    before = np.cumsum(grown.sum(axis=-1), axis=1) - grown.sum(axis=-1)  # Every Chebyshev polynomial has the value 1 at 1.
 
     sign = np.sign(span.sum())
 

@@ -18,8 +18,8 @@ from numpy.polynomial import chebyshev
 from ....geometry.mesh.front import follow
 from ....geometry.mesh.triangle import jacobians
 
-DEPTHS = 7  # depths at which the section's matrices are computed; in proportion more if the depth falls below a quarter
-CHECKED = 6  # order at whose quadrature points the triangles are checked
+DEPTHS = 7  # depths of the section matrices; their number increases if the depth falls below a quarter
+CHECKED = 6  # polynomial order whose quadrature points are used to check the triangles
 
 
 def bent(gear, sector, number, crack):

@@ -6,9 +6,9 @@ import numpy as np
 
 from ....geometry.mesh.triangle import ENDS
 
-LEAF = 2  # triangles eliminated together first
-CUTS = 8  # directions in which sets of triangles are divided
-ON_EDGE, INSIDE = 2, 1  # nodes of cubic triangles
+LEAF = 2  # number of triangles eliminated together first
+CUTS = 8  # number of directions in which sets of triangles are divided
+ON_EDGE, INSIDE = 2, 1  # inner nodes of cubic triangles: per edge, per triangle
 
 
 def dissect(sector):
@@ -40,7 +40,7 @@ def dissect(sector):
 
 
 def _cut(members, nodes, users, along):
-    """Order of a set of triangles along the best of all directions, and how many of them go first."""
+    """Return the order of a set of triangles along the best direction, and the number of triangles before the cut."""
     count = along.shape[1]
     order = np.argsort(along, axis=1, kind="stable")
     rank = np.empty_like(order)

@@ -231,7 +231,7 @@ def _add(blocks, part, at, first):
 
 
 def places(body, ids, wanted):
-    """Places of the unknowns of `wanted` among those of `ids`."""
+    """Return the positions of the unknowns `wanted` in `ids`."""
     start = np.zeros(body.size.size, dtype=int)
     start[ids] = np.cumsum(body.size[ids]) - body.size[ids]
     size = body.size[wanted]

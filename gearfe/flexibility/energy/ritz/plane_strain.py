@@ -99,7 +99,8 @@ def plane_panel(model, sector, cubic=False, *, points=None, at=None, knots=None)
     every, stiffness, load, sides, held, chain = section_of(model, moved, knots, plane=True, cubic=cubic)
     apart, _ = face_forces(sector, chain, load.shape[0], model.order, at or model.order)
     load = np.concatenate([load, apart], axis=2)
-    nodes, local = int(every.max()) + 1, np.arange(3 * every.shape[0]).reshape(-1, 3)[:, :2].ravel()  # no axial component
+    # The axial component is absent in plane strain.
+    nodes, local = int(every.max()) + 1, np.arange(3 * every.shape[0]).reshape(-1, 3)[:, :2].ravel()
     at = (2 * every.T[:, :, None] + np.arange(2)).reshape(every.shape[1], -1)
     block = stiffness[0][:, local[:, None], local]
     rows, columns = np.broadcast_to(at[:, :, None], block.shape), np.broadcast_to(at[:, None], block.shape)

@@ -136,7 +136,7 @@ def _complete(model, damage, influence, opening, between, cache):
         missed = _missing_at_cracks(model, tuple(whole(crack) for crack in cracks), cache)
     else:
         return
-    even, root = np.arange(PLACES) * (degree + 1), math.sqrt(model.gear.b)  # the even mode is 1 / root
+    even, root = np.arange(PLACES) * (degree + 1), math.sqrt(model.gear.b)  # The constant mode has the value 1 / root.
     influence[np.ix_(even, even)] += missed[:PLACES]
     heights = len(opening) // (len(missed) - PLACES)
     opening[:, even] += np.repeat(missed[PLACES:], heights, axis=0) / root
