@@ -189,7 +189,8 @@ def _slope(flexible, roll, teeth):
     arc, step = arc_at(flexible.gear, roll), STEP * flexible.gear.m_n
     places = [flexible.clipped(arc + side, teeth) for side in (step, -step)]
     ahead, behind = (_by_crack(flexible, flexible.seam.at(place, (teeth % flexible.gear.z).tolist())) for place in places)
-    return (ahead - behind) / (places[0] - places[1])
+    apart = places[0] - places[1]
+    return np.divide(ahead - behind, apart, out=np.zeros_like(apart), where=apart > 0)
 
 
 def _cut_away(contact, line):
