@@ -147,7 +147,7 @@ def compare_cases(
     stored = read_curves(scene) if wide else {}
     asked = tuple(every if cases is None else cases)
     solid = wide and (reference == "fe3d" or stored.keys() >= {*asked})
-    first = "fe3d" if solid else REFERENCE_SOLID if wide else REFERENCE
+    first = REFERENCES[wide + solid]
     methods = (*dict.fromkeys([first, REFERENCE_SOLID if wide else "ritz"]), *SUMS)
     plan = {key: (case := scene.case(*key), damage_cycle(case) if stored else damage_phases(case, phases)) for key in asked}
     filed = plan.keys() & stored.keys() if solid else ()
@@ -242,9 +242,9 @@ def _methods(case, reference):
     if reference == REFERENCE and solid:
         raise ValueError(f"reference = {reference!r}, a transverse section, but {solid}: use 'ritz3d' or 'fe3d'")
     first, own = (REFERENCE_SOLID, (REFERENCE_SOLID, *SUMS)) if solid else (REFERENCE, (REFERENCE, *FORMULATIONS))
-    rows = [row for row in ROWS if row.name in own and (row.rings == "yes" or not ring)]
-    others = [row.name for row in rows if solid or row.cracks or not case.damaged]
-    methods = tuple(dict.fromkeys([reference or first, *others]))
+    hurt = case.damaged and not solid
+    rows = [row for row in ROWS if row.name in own and (row.cracks or not hurt) and (row.rings == "yes" or not ring)]
+    methods = tuple(dict.fromkeys([reference or first, *(row.name for row in rows)]))
     return methods, {row.name: why_not(row, case, solid) for row in ROWS if row.name not in methods}
 
 

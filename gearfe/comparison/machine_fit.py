@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.special import stdtrit
+from scipy.special import chdtri, stdtrit
 
 from ..core.table import Column, Table
 from ..dynamics.machine.of_scene import build_machine
@@ -27,6 +27,8 @@ APART = 4.0  # smallest distance of two lines in widths 1/T, which a Hann window
 STARTS = 6  # starting points per parameter; the best two are refined
 SHORT = 4  # longest common period for a direct periodic solution [mesh cycles]
 CLEAR = 3.0  # least ratio of the summed lines to the noise that a fit requires
+PARTS = 8  # equal parts of a record, whose lines are compared with those of its second half
+RARE = 1e-3  # probability with which noise alone makes a part differ
 OFF = 0.02  # relative speed difference within which another record speed is searched
 
 
@@ -50,6 +52,9 @@ class MachineFit:
         Lines [Hz], their amplitudes in the record and in the machine, and the standard deviation of the first.
     misfit : float
         Root mean square of (measured - fitted) / noise per degree of freedom; above 1 the model lacks something.
+    left_out : float
+        Beginning of the given record that is not used, because its lines differ from those of its second half [s]. `record` is
+        the rest.
     """
 
     scene: Scene
@@ -63,6 +68,7 @@ class MachineFit:
     fitted: Floats
     noise: Floats
     misfit: float
+    left_out: float = 0.0
 
     def __str__(self) -> str:
         rows = [[key, value, *self.intervals[key], "yes" if self.determined[key] else "no"] for key, value in self.values.items()]
@@ -72,8 +78,11 @@ class MachineFit:
 
     @property
     def summary(self) -> str:
-        """Quality of the fit in two sentences."""
-        return (
+        """Quality of the fit in sentences."""
+        start = (
+            f"The first {self.left_out:.3g} s are left out, because their lines differ from later ones. " if self.left_out else ""
+        )
+        return start + (
             f"The lines of machine and record differ by {100 * self.error:.1f} % (rms), {self.misfit:.2g} times the noise. "
             f"Intervals of 95 %{', widened by that factor' if self.misfit > 1 else ''}; 'no': the record leaves the range open."
         )
@@ -129,7 +138,9 @@ def fit_machine(
     """Fit values of a scene's machine to a healthy record at constant speed.
 
     The amplitudes of the mesh lines are compared. Least squares weigh each line by the noise of the record around it.
-    Intervals follow from the linearised model at the solution. If lines differ by more than their noise, intervals are widened.
+    Intervals follow from the linearised model at the solution, and include other solutions and starting points that explain the
+    record as well. If lines differ by more than their noise, intervals are widened.
+    A beginning whose lines differ from those of the second half, such as a start from rest, is left out.
 
     Parameters
     ----------
@@ -155,7 +166,8 @@ def fit_machine(
     Raises
     ------
     ValueError
-        If a range or key is invalid, the record has another speed, or has fewer lines than there are keys.
+        If a range or key is invalid, the record has another speed or still changes in its middle, or has fewer lines than there
+        are keys.
     """
     low, high = _ranges(vary)
     file, tables = read_tables(scene)
@@ -166,7 +178,9 @@ def fit_machine(
         return scene_of(file, set_values(tables, _entries(tables, values))), values
 
     ends = np.where(logs, np.log(np.where(logs, low, 1.0)), low), np.where(logs, np.log(np.where(logs, high, 1.0)), high)
-    frequency = _frequencies(build_machine(changed((ends[0] + ends[1]) / 2)[0]), record, harmonics)
+    middle, whole = build_machine(changed((ends[0] + ends[1]) / 2)[0]), record
+    record = _steady(whole, _frequencies(middle, whole, harmonics))
+    frequency = _frequencies(middle, record, harmonics)
     if frequency.size < low.size:
         raise ValueError(f"the record has {frequency.size} mesh lines below {BAND:g} of its rate, but {low.size} keys vary")
     measured, noise = np.abs(line_amplitudes(record, frequency)), noise_amplitudes(record, frequency)
@@ -182,19 +196,23 @@ def fit_machine(
     from scipy.stats import qmc
 
     starts = qmc.Halton(low.size, seed=seed).random(STARTS * low.size) * (ends[1] - ends[0]) + ends[0]
-    best = sorted(starts, key=lambda x: float(np.sum(residuals(x) ** 2)))[:2]
+    costs = np.array([float(np.sum(residuals(x) ** 2)) / 2 for x in starts])
     steps = {"diff_step": 1e-3, "x_scale": ends[1] - ends[0], "xtol": 1e-4, "ftol": 1e-6}
-    found = min((least_squares(residuals, x, bounds=ends, **steps) for x in best), key=lambda one: one.cost)
+    refined = [least_squares(residuals, x, bounds=ends, **steps) for x in starts[np.argsort(costs)[:2]]]
+    found = min(refined, key=lambda one: one.cost)
     free = frequency.size - low.size
     misfit = math.sqrt(2 * found.cost / free) if free else 1.0
-    reach = _reach(found.jac, max(misfit, 1.0), free, ends[1] - ends[0])
     fitted, values = changed(found.x)
-    bounds = [np.where(logs, np.exp(np.where(logs, end, 0.0)), end) for end in (found.x - reach, found.x + reach)]
+    alike = found.cost + chdtri(low.size, 0.05) / 2 * max(misfit, 1.0) ** 2  # points of no larger cost explain the record too
+    near = [(one.x, _reach(one.jac, max(misfit, 1.0), free, ends[1] - ends[0])) for one in refined if one.cost <= alike]
+    hull = np.array([*starts[costs <= alike], *(x - reach for x, reach in near), *(x + reach for x, reach in near)])
+    bounds = [np.where(logs, np.exp(np.where(logs, end, 0.0)), end) for end in (hull.min(axis=0), hull.max(axis=0))]
     inside = (bounds[0] > low) & (bounds[1] < high)
     intervals = zip(np.maximum(bounds[0], low).tolist(), np.minimum(bounds[1], high).tolist(), strict=True)
     return MachineFit(
         fitted, record, channel, values, dict(zip(vary, intervals, strict=True)),
         dict(zip(vary, inside.tolist(), strict=True)), frequency, measured, lines(found.x), noise, misfit,
+        whole.duration - record.duration,
     )  # fmt: skip
 
 
@@ -262,6 +280,31 @@ def _frequencies(machine, record, harmonics):
             "give the scene the speed of the record"
         )
     return lines
+
+
+def _steady(record, frequency):
+    """Return the record without the parts of its first half whose line amplitudes differ from those of its second half.
+
+    The differences are compared with the noise, or with the scatter of the parts of the second half if it is larger.
+    """
+    size = record.values.size // PARTS
+    parts = [record.part(i * size, (i + 1) * size) for i in range(PARTS)]
+    gaps = np.diff(frequency, prepend=0.0, append=math.inf)
+    clear = frequency[np.minimum(gaps[:-1], gaps[1:]) > APART / parts[0].duration]
+    if not clear.size:  # the parts are too short to separate lines
+        return record
+    sizes = np.abs([line_amplitudes(part, clear) for part in parts])
+    late = sizes[PARTS // 2 :]
+    noise = np.mean([noise_amplitudes(part, clear) for part in parts[PARTS // 2 :]], axis=0)
+    spread = np.maximum(noise, late.std(axis=0, ddof=1)) * math.sqrt(1 + 1 / len(late))
+    away = np.sum(((sizes[: PARTS // 2] - late.mean(axis=0)) / spread) ** 2, axis=1)
+    kept = 1 + max(np.flatnonzero(away > chdtri(clear.size, RARE)), default=-1)
+    if kept == PARTS // 2:
+        raise ValueError(
+            f"the mesh lines of the record still change after {kept * size / record.rate:.3g} s: give a longer record at "
+            "constant speed and load, without its start"
+        )
+    return record.part(kept * size, record.values.size) if kept else record
 
 
 def _lines(machine, channel, frequency):

@@ -109,6 +109,19 @@ class Analysis:
             "; ".join(risen.values()) or none
         )
 
+    def beside_verdict(self):
+        """Sentence on the fault lines of the envelope, next to a verdict from FM4.
+
+        The result is empty without a fault frequency.
+        """
+        if not self.fault:
+            return ""
+        risen = self._demodulated()[1]
+        lines = (
+            f"shows {len(risen)} lines of the fault: {'; '.join(risen.values())}. Judge by both" if risen else "shows no fault"
+        )
+        return f" The envelope {lines}."
+
     def _demodulated(self):
         """`Demodulated` of the last case, its significant lines in words, and whether a healthy case is compared."""
         healthy, *others = self.signals.values()

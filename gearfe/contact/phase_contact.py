@@ -58,7 +58,7 @@ class PhaseContact:
         self.hubs = hubs_of(case.held or ())
         self.pairs = ToothPairs(pair, broken)
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
-        self.floors = sorted({pit.depth for gear_pits in pits for pit in gear_pits if pit.side == "loaded"})
+        self.floors = sorted({pit.depth for pit in (*pits[0], *pits[1]) if pit.side == "loaded"})
         self.deepest = DEEPEST * pair.gear_1.m_n
         self.bands = bands_of(pair, case.runs, case.groove)
         self.width = sum(abs(last - first) for first, last in self.bands)

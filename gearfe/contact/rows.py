@@ -167,7 +167,7 @@ def hat_rows(contact, at, knots, kernels, host, tips):
     cuts = np.cumsum(count)[:-1]
     meets = np.split(np.isfinite(gap), cuts)
     parts = [row[:, on] for row, on in zip(np.split(values, cuts, axis=1), meets, strict=True)]
-    order = points.order[[column for _, column in at]]
+    order = points.order[np.array(at)[:, 1]]
     sides = enumerate(zip(contact.flexibility, (1, -1), strict=True))
     bodies = [flexible.within([part[k] for part in parts], (sign * order).tolist()) for k, (flexible, sign) in sides]
     made, alike = [None] * len(parts), {}

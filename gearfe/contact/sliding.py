@@ -126,8 +126,9 @@ def off_path(contact, cells, load, radius, approach):
     It is zero where contact on the path carries. `load`, `radius` ``(n,)`` are those of the `Cells`.
     """
     on = np.flatnonzero(load > 0)
-    places = zip(cells.order[on].tolist(), contact.pairs.parts(cells.z[on]).tolist(), strict=True)
-    start, end = np.array([contact.pairs(*place).path for place in places]).T
+    places = list(zip(cells.order[on].tolist(), contact.pairs.parts(cells.z[on]).tolist(), strict=True))
+    ends = {place: contact.pairs(*place).path for place in set(places)}
+    start, end = np.array([ends[place] for place in places]).T
     if ((cells.nominal[on] >= start) & (cells.nominal[on] <= end)).any():
         return 0.0
     gap = math.cos(contact.beta_b) * cells.gap[on]

@@ -172,7 +172,7 @@ def _solved(contact, phase, bodies):
     dofs = tuple(body.unknowns for body, _ in bodies(0)[0])
     carried = contact.solve(phase.tolist(), bodies)
     cells = tuple(loaded.cells for loaded in carried)
-    approach, tangent = np.array([loaded.approach for loaded in carried]), 1e3 * np.array([loaded.tangent for loaded in carried])
+    approach, tangent, unsure, off = np.array([(one.approach, one.tangent, one.unsure, one.off_path) for one in carried]).T
     orders = np.array(sorted({order for cell in cells for order in cell.order.tolist()}))
     load = np.zeros((phase.size, orders.size))
     for i, loaded in enumerate(cells):
@@ -184,7 +184,6 @@ def _solved(contact, phase, bodies):
     unloaded = least_gap(contact, cells)
     k = 1e3 * contact.force / (approach - unloaded)
     supports = None if contact.hubs is None else np.array([loaded.given for loaded in carried])
-    unsure = k * np.array([loaded.unsure for loaded in carried])
-    details = {"closed": closed, "fillet": fillet, "unloaded": unloaded, "k_tangent": tangent, "supports": supports}
-    details |= {"error": unsure, "off_path": k * np.array([loaded.off_path for loaded in carried])}
+    details = {"closed": closed, "fillet": fillet, "unloaded": unloaded, "k_tangent": 1e3 * tangent, "supports": supports}
+    details |= {"error": k * unsure, "off_path": k * off}
     return Contact3D(phase, k, approach, orders, load, cells, dofs, **details)

@@ -33,8 +33,6 @@ from .toml_file import read_toml
 from .train import Train
 from .train_tables import train_of
 
-HEALTHY = "healthy"  # name of the case without damage
-
 
 @dataclass(frozen=True, slots=True)
 class ScenePair:
@@ -99,8 +97,8 @@ class Scene:
             self._check("speed, torque or force", given, [self.train.speeds[motor], self.train.torques["motor"], *forces])
         if self.set is not None:
             outer, inner = (self.pair(name).pair for name in self.set.pairs)
-            gears = self.set.gears.sun_planet.gear_1, self.set.gears.sun_planet.gear_2, self.set.gears.planet_ring.gear_2
-            self._check("gear of the set", [outer.gear_1, outer.gear_2, inner.gear_2], gears)
+            one, two = self.set.gears.sun_planet, self.set.gears.planet_ring
+            self._check("gear of the set", [outer.gear_1, outer.gear_2, inner.gear_2], [one.gear_1, one.gear_2, two.gear_2])
 
     def _check(self, what, given, derived):
         for one, other in zip(given, derived, strict=True):
@@ -239,10 +237,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     run = dict(rows["machine"] or {})
     if run:
         run["bodies"] = {name: (float(body["mass_kg"]), float(body["inertia_kgm2"])) for name, body in run["bodies"].items()}
-    cases = {kind: parts.by_case(rows[kind]) for kind in parts.DAMAGE}
-    for kind, by_case in cases.items():
-        for name in {"", HEALTHY} & by_case.keys():
-            raise ValueError(f"{file} [{kind}] case = {name!r}: this names gears without damage; give another name")
+    cases = parts.cases_of(file, rows)
     kept, changed, own = assumed.split(file, rows["assumption"], rows["given"], rows | cases)
     title, source = rows["title"], rows["source"]
     if own:
@@ -270,6 +265,10 @@ def _with_backlash(pair: GearPair, wanted: float) -> GearPair:
             f"backlash_um = {1e3 * wanted:g}, but these gears have {1e3 * pair.backlash:.4g} um at a_mm = {pair.a:.6g}: give "
             "more, or leave it out"
         )
+    if more > pair.gear_1.m_n:
+        raise ValueError(
+            f"backlash_um = {1e3 * wanted:g}, but teeth of m_n_mm = {pair.gear_1.m_n:g} have less: give a smaller one"
+        )
     thinner = more * math.cos(pair.gear_1.beta) / (2 * math.cos(pair.gear_1.alpha_t))
     try:
         one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
@@ -288,6 +287,10 @@ def _pair(file, name, rows, gears, materials, forces):
         raise ValueError(f"{file} [pair.{name}]: missing key 'force_N' or 'torque_Nm'; expected a number in N or N m")
     used = materials[rows["gear"][names[0]]["material"]], materials[rows["gear"][names[1]]["material"]]
     with located(file, f"pair.{name}", row):
+        for key in ("m_n_mm", "alpha_n_deg", "beta_deg"):
+            one, two = (rows["gear"][gear][key] for gear in names)
+            if not math.isclose(abs(one), abs(two), rel_tol=1e-9, abs_tol=1e-9):
+                raise ValueError(f"{key} = {one:g} of {names[0]!r} and {two:g} of {names[1]!r}, but gears in mesh need the same")
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
         if row["backlash_um"] is not None:
             made = _with_backlash(made, 1e-3 * row["backlash_um"])

@@ -136,6 +136,7 @@ def _face(made, pair):
     return pair["face"] or ("helical" if made.gear_1.beta else "spur")
 
 
+HEALTHY = "healthy"  # name of the case without damage
 DAMAGE: dict[str, Callable[[Row, GearPair, int, Row], list[Damage]]] = {
     "crack": crack_of, "pits": pits_of, "spall": spall_of, "missing_tooth": missing_of, "chip": chip_of,
 }  # fmt: skip
@@ -222,9 +223,12 @@ def of_one_body(owned):
     return [one for owner, damage in owned.items() if owner.body == first.body for one in damage]
 
 
-def by_case(rows):
-    """Rows of damage by case."""
-    out = {}
-    for row in rows:
-        out.setdefault(row["case"], []).append(row)
-    return out
+def cases_of(file, rows):
+    """Rows of damage by kind and case. ValueError for a case with the name of healthy gears."""
+    cases: dict[str, dict[str, list[Row]]] = {kind: {} for kind in DAMAGE}
+    for kind, by_case in cases.items():
+        for row in rows[kind]:
+            if row["case"] in ("", HEALTHY):
+                raise ValueError(f"{file} [{kind}] case = {row['case']!r}: this names gears without damage; give another name")
+            by_case.setdefault(row["case"], []).append(row)
+    return cases

@@ -168,5 +168,5 @@ def located(file: str, where: str, row: Mapping[str, Any] | None = None) -> Iter
     try:
         yield
     except ValueError as error:
-        text = scene_schema()[re.split("[. ]", where)[0]].as_typed(row, str(error)) if row else str(error)
-        raise ValueError(f"{file} [{where}]: {text}") from error
+        table = scene_schema()[re.split("[. ]", where)[0]]
+        raise ValueError(f"{file} [{where}]: {table.explained(row, str(error)) if row else error}") from error

@@ -38,6 +38,8 @@ SPELLED = {"deg": "degrees", "Nm": "N m", "kgm2": "kg m2"}  # units in messages
 # pattern of a value with its unit in a message
 QUANTITY = r" = (?:[\[(][^\])]*[\])]|[-+\w.]+)(?: (?:N mm/rad|N/mm(?:\^3)?|rad/N|N m|mm|um|rad|MPa|N)\b)?"
 
+IN_MM = re.compile(r"[;:] amounts are in mm \(20 um are 0\.02\)")  # a hint for Python; keys of scenes state their unit
+
 
 @dataclass(frozen=True, slots=True)
 class Key:
@@ -136,9 +138,22 @@ class KeyTable:
             if (value := row.get(key.name)) is not None and key.python_name != key.name:
                 typed = f"{key.name} = {shown(value)}".replace("\\", r"\\")
                 text = re.sub(rf"\b{key.python_name}{QUANTITY}", typed, text)
+            text = re.sub(rf"\bgive {key.python_name}=None for\b", f"leave out {key.name} for", text)
             if "_" in key.python_name:
                 text = re.sub(rf"\b{key.python_name}\b(?! =)", key.name, text)
         return re.sub(r"([-\d.]+) to ([-\d.]+) rad\b", _in_degrees, text)
+
+    def explained(self, row: Mapping[str, Any], text: str) -> str:
+        """Return a message `as_typed`. If it names no number of the `row`, those that are not the defaults are added."""
+        text = IN_MM.sub("", self.as_typed(row, text))
+        numbers = {
+            key.name: row[key.name]
+            for key in self.keys.values()
+            if key.type in ("number", "integer", "numbers") and row.get(key.name) not in (None, key.default)
+        }
+        if any(re.search(rf"\b{name}\b", text) for name in numbers if name not in ("z", "x")):
+            return text
+        return f"{text} (given: {', '.join(f'{name} = {shown(value)}' for name, value in numbers.items())})" if numbers else text
 
     def _rules(self, row):
         """Yield the rules on combinations of keys that a row violates."""

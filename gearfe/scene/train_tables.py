@@ -96,7 +96,11 @@ def _shaft(file, name, row, rows, materials):
             raise ValueError(f"{file} [{where}] bores_mm = {row['bores_mm']}: give bores smaller than the diameters")
     places = sorted(row["gears_at_mm"])
     if min(np.diff(places), default=1.0) <= PART * made.length:
-        raise ValueError(f"{file} [{where}] gears_at_mm = {row['gears_at_mm']}: give each gear a different position")
+        raise ValueError(
+            f"{file} [{where}] gears_at_mm = {row['gears_at_mm']}, lengths_mm = {row['lengths_mm']}: give each gear a different "
+            "position"
+            "position"
+        )
     for at in places:
         _along(file, where, "gears_at_mm", at, made)
     return _held(file, where, row, rows, made) if row["bearings_at_mm"] is not None else made
@@ -121,7 +125,7 @@ def _on(file, where, key, name, at, shafts):
 
 def _along(file, where, key, at, shaft):
     if at is not None and not 0 <= at <= shaft.length * (1 + PART):
-        raise ValueError(f"{file} [{where}] {key} = {at:g}, but the shaft reaches from 0 to {shaft.length:g} mm")
+        raise ValueError(f"{file} [{where}] {key} = {at:g}, but by lengths_mm the shaft reaches from 0 to {shaft.length:g} mm")
 
 
 def _stage(file, name, rows, gears, homes, shafts):

@@ -17,6 +17,7 @@ from .series import Signal
 from .spectrum import Spectrum, amplitudes
 
 MOST = 10**8  # limit of samples per revolution
+FINEST, ALWAYS = 64, 2**22  # limit of samples relative to the record, and a number that is always allowed
 BYTES, SECONDS = 40.0, 1.2e-7  # memory [bytes] and time [s] per sample, measured with 1e8 samples
 SLOWEST = 1 / 16  # lowest speed relative to the mean; below it, angular resampling would multiply the samples
 
@@ -46,6 +47,11 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
     turns = math.floor(angle[-1] + 1 / count + 1e-9)
     if turns < 1 or angle.size < 6:
         raise ValueError(f"{signal.name} covers {angle[-1]:.3g} revolutions with {angle.size} samples; one revolution is needed")
+    if turns * count > max(FINEST * signal.values.size, ALWAYS):
+        raise ValueError(
+            f"samples_per_turn = {count}, but over {FINEST} times the samples of {signal.name} add nothing: give "
+            f"at most {FINEST * needed}"
+        )
     _check_size(turns * count, count)
     grid = np.minimum(np.arange(turns * count) / count, angle[-1])
     return make_interp_spline(angle, signal.values, k=5)(grid).reshape(turns, count)

@@ -50,7 +50,9 @@ class ToothVerdict(NamedTuple):
         text = f"tooth fault of the {teeth}-tooth gear: {self.level}; FM4 {self.FM4:.3g}{against}, limit {self.limit:.3g}"
         if self.level == "not seen":
             return (
-                f"{text}. A fault smaller than the noise of {self.revolutions} averaged revolutions is not seen: record longer."
+                f"{text}. This verdict rests on FM4 alone, the kurtosis of the average over {self.revolutions} revolutions. "
+                "Faults smaller than the deviations of healthy teeth or the noise stay below the limit. A longer record reduces "
+                "the noise only."
             )
         place = f", once per revolution, at {math.degrees(self.angle):.0f} degrees"
         if self.level == "likely":

@@ -153,3 +153,9 @@ def _loaded_gear(gear, material, loads, refine, cracks, broken):
         force = force + flank_load(mesh, tooth, pressure, np.array([0]), rolls[tooth].size - 1)
     moved = body.solve(force)[:, 0]
     return mesh, moved, body.stress(moved, inset=0.05 if cracks else 0.0)
+
+
+def rounded_up(value):
+    """Return the next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(s * power for s in (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if s * power >= value * (1 - 1e-9))

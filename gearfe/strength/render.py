@@ -16,7 +16,7 @@ from ..figures.contact_plot import plot_contact
 from ..flexibility.finite_elements.solver import plan
 from ..scene.load import ScenePair
 from ..stiffness.limits import check_section
-from .fields import MISES, loaded_phase, stressed_gears, write_vtu
+from .fields import MISES, loaded_phase, rounded_up, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, root_error, tooth_field
 from .window import drawing_library, plotting
 
@@ -207,12 +207,6 @@ def _lines(field, scale, kept=None, lift=0.0):
     pieces = field.lines if kept is None else field.lines[:, kept[field.lines].all(axis=0)]
     cells = np.hstack([np.full((pieces.shape[1], 1), 2), pieces.T]).ravel()
     return pyvista.PolyData((field.points + scale * field.moved).T + np.array([0, 0, lift]), lines=cells)
-
-
-def rounded_up(value):
-    """Return the next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return next(s * power for s in (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if s * power >= value * (1 - 1e-9))
 
 
 def _length_scale(plotter, size, up, view):

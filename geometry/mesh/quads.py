@@ -206,8 +206,8 @@ def _rim(gear, draft, size, teeth, damage, patches):
     for owner, side in halves:
         loaded = side == "loaded" and owner in teeth
         pieces = _pieces(gear, owner, side, size, teeth, damage, patches)
-        names = [piece[0] for piece in pieces]
-        below = 1 + names.index("flank") if "flank" in names else 1
+        # the piece after the flank, else piece 1
+        below = 1 + next((k for k, piece in enumerate(pieces) if piece[0] == "flank"), 0)
         sign = 1 if side == "loaded" else -1
         for k, (name, radius, angle, params) in list(enumerate(pieces))[::sign]:
             final = (owner, side, k) == (0, "unloaded", 0)
@@ -220,7 +220,7 @@ def _rim(gear, draft, size, teeth, damage, patches):
             if k == below and loaded:
                 fillets[owner] = draft.edges(added)[::-1, ::-1]
             if name == "fillet":
-                marks[owner, side] = last if sign > 0 else draft.lines[added[0] - 1][0]
+                marks[owner, side] = (draft.lines[added[0] - 1][0], last)[sign > 0]
     return lines, flanks, fillets, marks
 
 

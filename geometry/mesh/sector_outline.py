@@ -31,10 +31,7 @@ def outline_pieces(gear, size, cracks, broken=None, cuts=()):
     close = [(at := gear.held * (pitch - math.atan2(*tip)), at, 0.7 * abs(math.hypot(*tip) - gear.held)) for tip in tips]
     bottom = pitch - spaced(0.0, inner, min(inner, max(1.5 * thick, 0.1 * inner)), close, 1, GROWTH) / gear.held
     bottom[-1] = -pitch
-    for cut in cuts:
-        near = np.abs(bottom - cut) < CUT * pitch
-        near[[0, -1]] = False
-        bottom = np.sort(np.append(bottom[~near], cut))[::-1]
+    bottom = _with_cuts(bottom, cuts, CUT * pitch)
     out = [("left", side[::-1], lambda r: cartesian(r, -pitch))]
     ends = [("right", side, lambda r: cartesian(r, pitch)), ("held", bottom, lambda a: cartesian(gear.held, a))]
     if isinstance(broken, MissingTooth):
@@ -60,6 +57,15 @@ def outline_pieces(gear, size, cracks, broken=None, cuts=()):
             out.append(("flank", front[::-1], lambda r: _flank_points(gear, r, 1)))
             out += [(kind, params[::-1], place) for kind, params, place in part[::-1]]
     return out + ends
+
+
+def _with_cuts(angles, cuts, apart):
+    """Falling angles with those of `cuts`, without others closer to them than `apart` [rad]."""
+    for cut in cuts:
+        near = np.abs(angles - cut) < apart
+        near[[0, -1]] = False
+        angles = np.sort(np.append(angles[~near], cut))[::-1]
+    return angles
 
 
 def _broken_top(gear, size, chip):

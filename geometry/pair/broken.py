@@ -70,6 +70,8 @@ class ToothPairs:
     def along(self, order: int, band: tuple[float, float]) -> list[tuple[GearPair | None, float, float]]:
         """Return the different pairs along a band of the face width, each between two depths from the band's first end [mm]."""
         first, last = band
+        if self._heights.size == 2:
+            return [(self(order), 0.0, abs(last - first))]
         ends = np.unique(np.abs(np.clip(self._heights, min(band), max(band)) - first))
         sense = 1 if last > first else -1
         out: list[tuple[GearPair | None, float, float]] = []

@@ -177,9 +177,8 @@ def contact_lines(pair, phase, *, face="helical", groove=0.0):
     -------
     Lines
     """
-    bands = face_bands(pair, face, groove)
+    bands, (start, end) = face_bands(pair, face, groove), pair.path
     phase = np.atleast_1d(np.asarray(phase, dtype=float))
-    start, end = pair.path
     ahead = [band.slope * (side - band.origin) / pair.p_bt for band in bands for side in band[:2]]
     first = -1 - math.floor(phase.max() + max(ahead))
     last = math.ceil((end - start) / pair.p_bt - phase.min() - min(ahead))
@@ -216,8 +215,7 @@ def removed(lines, pits):
     -------
     Removed
     """
-    pair = lines.pair
-    i, j, k = np.nonzero(lines.high > lines.low)
+    pair, (i, j, k) = lines.pair, np.nonzero(lines.high > lines.low)
     z = np.stack([lines.low, lines.high], axis=-1)[i, j, k]
     roll_1 = lines.roll_0[i, j, k, None] + np.array([band.slope for band in lines.bands])[k, None] * z
     row, gear, first, last = covered(pair, pits, lines.order[j], (roll_1, pair.mate_roll(roll_1)), z)

@@ -2,7 +2,10 @@
 
 import copy
 import datetime
+import functools
 import math
+import operator
+import re
 import tomllib
 import warnings
 from functools import cache
@@ -259,3 +262,47 @@ def test_any_place_of_a_scene_given_as_anything(monkeypatch):
     assert before == (WHOLE_SCENE, WHOLE_GEARBOX), "what is read is not changed"
     assert min(told.values()) > 100, told
     assert not wrong, f"{len(wrong)}:\n" + "\n".join(wrong)
+
+
+NUMBERED = sorted({"gear", "pair", "flank", "support", "crack", "pits", "spall", "chip", *TRAIN})
+TYPED = (1e20, 1e4, 300.0, 40, 1e-5, -7.0)
+
+
+def numbers_of(whole, tables):
+    """Paths to the numbers of these tables of a whole scene."""
+    return [
+        path
+        for path in places(whole)
+        if path[0] in tables and type(functools.reduce(operator.getitem, path, whole)) in (int, float)
+    ]
+
+
+def named_keys(text, key):
+    """Keys that a message states as typed: this `key`, and those of the table where it does not fit."""
+    where = re.search(r"\[(\w+)", text)[1]
+    keys = {key, *scene_schema()[where].keys} - ({"z", "x"} - {key})
+    return {one for one in keys if re.search(rf"(?<![\w.]){one}(?![\w.])", text)}
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.slow
+@pytest.mark.parametrize("table", NUMBERED)
+def test_messages_on_numbers_name_the_key_as_typed(table):
+    """The key that was changed, or the key of the table where it does not fit (a bore that a smaller module has no room for)."""
+    whole = WHOLE_SCENE if table in WHOLE_SCENE else WHOLE_GEARBOX
+    attempts = [(path, value, replaced(path, value, whole)) for path in numbers_of(whole, (table,)) for value in TYPED]
+    for path, instead in ALSO:
+        for value in TYPED if path[0] == table else ():
+            given = [value, value, 2 * value, 2 * value] if path[-1] == "path_mm" else value
+            attempts.append((path, given, without(replaced(path, given), instead)))
+    wrong, refused = [], 0
+    for path, value, tables in attempts:
+        key = next(part for part in reversed(path) if isinstance(part, str))
+        try:
+            scene_of("whole.toml", tables)
+        except ValueError as error:
+            refused += 1
+            if not named_keys(str(error), key) or "np.float" in str(error):
+                wrong.append(f"{path} = {value}: {error}")
+    assert refused, table
+    assert not wrong, "\n".join(wrong)

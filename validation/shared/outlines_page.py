@@ -62,7 +62,7 @@ def write():
     """Write the page."""
     parts, answers = [INTRODUCTION], []
     for method in METHODS:
-        rows = [(row, found) for row, found in beside(method)]
+        rows = list(beside(method))
         refused = sorted({f"{row['pair']}: {found['refused']}" for row, found in rows if "refused" in found})
         rows = [(row, found) for row, found in rows if "refused" not in found]
         off = np.array([abs(found["difference"]) for _, found in rows])

@@ -71,7 +71,7 @@ def as_options(error, options):
     return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda match: f"--{match[1]}", text)
 
 
-_ended: list[int] = []  # exit code after a signal, because C++ libraries convert the exception to a RuntimeError
+_ended: list[int] = []  # exit code after a signal, because libraries convert or drop the exception
 
 
 def _end_tidily(number, _):
@@ -107,22 +107,27 @@ def run(work, options=()):
         resumed = "; the same command goes on where it was" if "dry_run" in options else ""
         tell(f"interrupted; nothing half-written is left{resumed}")
         return 130
-    except (ValueError, RuntimeError) as error:
-        if _ended:
-            return _ended.pop()
+    except Exception as error:
+        if not _ended:
+            return _told(error, options)
+    return _ended.pop() if _ended else 0
+
+
+def _told(error, options):
+    """Print the line of an error and return the exit code. Raise the error again if it is of no known kind."""
+    if isinstance(error, (ValueError, RuntimeError)):
         tell(as_options(error, options))
-        return 1
-    except MemoryError as error:
+    elif isinstance(error, MemoryError):
         tell(f"not enough memory{f': {error}' if str(error) else ''}; a smaller --refine or fewer --phases need less")
-        return 1
-    except OSError as error:
+    elif isinstance(error, OSError):
         _forget_output()
         if error.errno == errno.EPIPE:
             return 141
         place = f" {error.filename}" if error.filename else ""
         tell(f"cannot read or write{place}: {error.strerror or error}")
-        return 1
-    return 0
+    else:
+        raise error
+    return 1
 
 
 def _forget_output():

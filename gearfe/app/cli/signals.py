@@ -39,7 +39,7 @@ def signal(arguments):
         named, large = _named_lines(list(analysed.spectra.values())[-1], arguments)
         tables[named] = large
         print(f"\n{named}\n\n{large}")
-    verdict, extra = _of_gear(signals, arguments, tables) if arguments.teeth is not None else ("", {})
+    verdict, extra = _of_gear(signals, arguments, tables, analysed) if arguments.teeth is not None else ("", {})
     if arguments.output:
         from ...reports.workbench import signal_workbench
 
@@ -76,7 +76,7 @@ def _named_lines(spectrum, arguments):
     return named + more, large
 
 
-def _of_gear(signals, arguments, tables):
+def _of_gear(signals, arguments, tables, analysed):
     """Print indicators of a gear and the verdict on it, and add the tables.
 
     Returns the verdict and simulated records.
@@ -103,7 +103,8 @@ def _of_gear(signals, arguments, tables):
             healthy, *others = records.values()
             try:
                 verdict = tooth_verdict(others[-1] if others else healthy, arguments.teeth, healthy if others else None)
-                said.append(f"{told[2:]}: " * bool(told) + verdict.told(arguments.teeth))
+                beside = analysed.beside_verdict() if verdict.level == "not seen" and not told else ""
+                said.append(f"{told[2:]}: " * bool(told) + verdict.told(arguments.teeth) + beside)
             except ValueError as error:
                 print(f"\nno verdict: {error}")
     print("", *said, sep="\n")

@@ -1,6 +1,6 @@
 """
-Who carries how much
-====================
+Load sharing of a cracked tooth
+===============================
 
 Load shares of the pairs of teeth over one mesh cycle, healthy and with a crack in the pinion.
 """

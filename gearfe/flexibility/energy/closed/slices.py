@@ -72,7 +72,7 @@ def stations(case, phase, *, lost="hertz", edges=None):
     lag = max(band[2] for band in bands)
     order = contacts(pair, [phase.min() - lag, phase.max()], extended=False).order
     edges = edges(order) if edges and lag > 0 else {}
-    pitted = any(p.side == "loaded" for found in pits for p in found)
+    pitted = any(pit.side == "loaded" for pit in (*pits[0], *pits[1]))
     if lag == 0 and not pitted:  # Each pair on the path of contact has one station.
         return _on_path(pair, phase, flanks, bands)
     summed = lost == "summed"
