@@ -279,14 +279,15 @@ class PhaseContact:
         """Reduction of the approach by sliding [mm], normal to the flanks, and the relative uncertainty of the remainder.
 
         `closing` is the approach beyond the first touch [mm]. What sliding saves at corners is in their law, but for cracks. With
-        `closed` faces it is left out.
+        `closed` faces it is left out. What large displacements of open cracks change is unsure, too.
         """
         slide, share = slid(cells, bodies, load, self._radius(cells)), load / load.sum()
         alike = (cells.half[:, None] == cells.half) & (cells.order[:, None] == cells.order)
-        open_, healthy = share * np.minimum(slide, MOST * closing)
+        open_, healthy = share * np.minimum(slide[:2], MOST * closing)
         saved = np.minimum(open_, share * MOST * closing * (alike @ share))
         smooth = (cells.corner == 0) & (self._ends(cells) < 0)
-        unsure = np.where(smooth, healthy if closed else open_ - saved, np.abs(open_ - healthy))
+        unsure = np.where(smooth, healthy if closed else share * slide[0] - saved, np.abs(open_ - healthy))
+        unsure += 0.0 if closed else share * slide[2]
         return 0.0 if closed else float(saved[smooth].sum()), float(unsure.sum() / closing)
 
     def _radius(self, cells):

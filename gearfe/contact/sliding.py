@@ -52,10 +52,10 @@ def _alone(contact, start, moved, stiffness):
 
 
 def slid(cells, bodies, load, radius):
-    """Return the approach of cells of contact lines by sliding, at right angles to the flanks ``(2, n)`` [mm].
+    """Return the approach of cells of contact lines by sliding, at right angles to the flanks ``(3, n)`` [mm].
 
     Each tooth pair slides by its own loads. With the tilt t of the flanks the approach is ``3/2 R t**2``. The first row is for
-    open cracks, the second for none.
+    open cracks, the second for none, the third for the tilt by cracks alone (see `_cracks`).
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def slid(cells, bodies, load, radius):
             kernels = [one.between(sense * order, sense * order) for one in (body, body.healthy or body)]
             fields = np.array(kernels) @ (load[on] @ body.basis(roll, z, sense * order))
             tilt[:, on] += sense * fields @ (ahead - behind).T / (2 * step)
-    return 1.5 * radius * tilt**2
+    return 1.5 * radius * np.vstack([tilt, tilt[0] - tilt[1]]) ** 2
 
 
 def bounded(contact, line_load, phases=slice(None), stiffness=None):
@@ -105,7 +105,7 @@ def left_out(contact, line, closing, beyond, shut):
     points, (start, end) = contact.found, contact.path
     off = (line > 0) & ((points.nominal < start) | (points.nominal > end))
     softer = _cut_away(contact, line) + UNSURE * np.abs(contact.thinner) * line
-    softer = softer + _cracks_beyond(contact, line) + _cracks(contact, line, shut)
+    softer = softer + _cracks_beyond(contact, line) + _cracks(contact, line, closing, shut)
     if not (off.any() or softer.any()):
         return np.zeros(closing.size)
     closed = closing[:, None] - beyond
@@ -157,23 +157,41 @@ def _cracks_beyond(contact, line):
     return out
 
 
-def _cracks(contact, line, shut):
-    """Uncertain deflection ``(phases, pairs)`` [mm] by cracks in thin teeth and at large displacements.
+def _cracks(contact, line, closing, shut):
+    """Uncertain deflection ``(phases, pairs)`` [mm] by cracks in thin teeth, at large displacements and beyond `MOST`.
 
     The flexibility of a crack of a given part of the thickness h goes by ``h**-2``; it is that of the whole tooth. A tooth turns
     about the tip of its crack by about the deflection u by the crack over the height of the tooth. By that part the lever arm of
-    the force differs from that of small displacements, and u goes with its square. At the phases `shut`, faces of cracks touch.
+    the force differs from that of small displacements, and u goes with its square. The contact also moves along the tilted flank.
+    With the tilt t by the crack, the approach changes by ``3/2 R t**2``, see `sliding`. That is unsure for large tilts, as is
+    what exceeds `MOST`. At the phases `shut`, faces of cracks touch, and only thin teeth count.
     """
-    out, stop, order = np.zeros(line.shape), 0, contact.found.order
-    for flexible, teeth, thin in zip_longest(contact.flexibility, (order, -order), contact.thinning):
+    moved, points = np.maximum(contact.sliding * line**2 - MOST * closing[:, None], 0.0), contact.found
+    out, stop = np.zeros(line.shape), 0
+    of_gears = zip((points.roll_1, points.roll_2), (points.order, -points.order), strict=True)
+    for flexible, (roll, teeth), thin in zip_longest(contact.flexibility, of_gears, contact.thinning):
         if flexible.seam is not None:
             faces = slice(stop, stop := stop + flexible.seam.influence.shape[0])
-            opening = contact.opening[..., faces]
             lost = np.array([thin.lost(tooth) for tooth in teeth.tolist()] if thin else 0.0)
-            by_crack = np.einsum("pcf,fg,pcg->pc", opening, flexible.seam.stiffness, opening) * line
-            turn = np.where(shut[:, None], 0.0, by_crack / abs(flexible.gear.r_a - flexible.gear.r_f))
-            out += ((1 - lost) ** -2 - 1 + 2 * turn) * by_crack
-    return out
+            by_crack = _by_crack(flexible, contact.opening[..., faces]) * line
+            out += ((1 - lost) ** -2 - 1) * by_crack
+            moved += 2 * by_crack**2 / abs(flexible.gear.r_a - flexible.gear.r_f)
+            moved += 1.5 * contact.radius * (line * _slope(flexible, roll, teeth) / 2) ** 2
+    return out + np.where(shut[:, None] | (line <= 0), 0.0, moved)
+
+
+def _by_crack(flexible, opening):
+    """Flexibility ``(phases, pairs)`` [mm per N/mm] by open cracks, from their opening under unit loads."""
+    return np.einsum("pcf,fg,pcg->pc", opening, flexible.seam.stiffness, opening)
+
+
+def _slope(flexible, roll, teeth):
+    """Change of `_by_crack` per length of flank ``(phases, pairs)``, between places a step to either side."""
+    arc, step = arc_at(flexible.gear, roll), STEP * flexible.gear.m_n
+    places = [flexible.clipped(arc + side, teeth) for side in (step, -step)]
+    ahead, behind = (_by_crack(flexible, flexible.seam.at(place, (teeth % flexible.gear.z).tolist())) for place in places)
+    apart = places[0] - places[1]
+    return np.divide(ahead - behind, apart, out=np.zeros_like(apart), where=apart > 0)
 
 
 def _cut_away(contact, line):

@@ -123,7 +123,7 @@ CHANGES = [  # what is changed in the tables of two stages, and what is said of 
     ({"pair": {"slow": {"gear_1": "d", "gear_2": "c"}}}, r"\[pair.slow\]: gear_1 must drive, but power flows from 'c' to 'd'"),
     ({"shaft": {"two": {"gears": ["b", "a"]}}}, r"\[shaft.two\] gears: 'a' is on \[shaft.one\] already"),
     ({"shaft": {"two": {"gears_at_mm": [60.0, 60.0]}}}, r"give each gear a different position"),
-    ({"shaft": {"two": {"gears_at_mm": [60.0, 190.0]}}}, r"gears_at_mm = 190, but by lengths_mm the shaft reaches from 0 to 180 mm"),
+    ({"shaft": {"two": {"gears_at_mm": [60.0, 190.0]}}}, r"gears_at_mm = 190, but by lengths_mm the shaft reaches from 0 to 180"),
     ({"shaft": {"two": {"bearings": ["x", "x"]}}}, r"\[shaft.two\] bearings = 'x': no such bearing"),
     ({"motor": {"shaft": "four"}}, r"\[motor\] shaft = 'four': no such shaft"),
     ({"load": {"brake": {"torque_Nm": 3.0}}}, r"0 loads without torque_Nm"),

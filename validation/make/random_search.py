@@ -207,6 +207,11 @@ def section(rows):
         "",
         "The deflection of these pairs is 0.7 to 2 % of the module. The effect of large displacements grows with the load. "
         "For seed 910186, CalculiX differs from the outlines by -2.6 %, and by -0.7 % at a quarter of the load.",
+        "",
+        "Twelve fresh seeds from 930001 on have deep open cracks and deflections of at least 0.35 % of the module. CalculiX "
+        "found ten of them within the estimates. Seed 930043 differed by -6.8 %, and its estimate was 5.0 %. Its contact slides "
+        "by more than the limit of 5 % of the deflection. The estimate contains the excess since, and covers this seed. "
+        "For seed 930059 the outlines had left out the second tooth pair, so that it was not judged.",
     ]
 
 

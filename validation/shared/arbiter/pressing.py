@@ -132,11 +132,18 @@ class _Phase:
         def shares(gap):
             return max(self.spring * (self.approach - gap), 0.02 * self.load)
 
+        return self._found(limit, shares, refine)
+
+    def _found(self, limit, shares, refine, known=()):
         zones = []
         for order, gap in zip(self.order, self.touch.gap, strict=True):
-            if gap < limit:
+            if gap < limit and int(order) not in known:
                 zones += found(self.contact, *self._pair(order), int(order), self.number, limit, shares, self.modulus, refine)
         return zones
+
+    def _missed(self, known, refine):
+        """Zones of pairs that the approach of the last answer closes, which teeth with deep cracks were too soft to foresee."""
+        return self._found(self.approach, lambda gap: max(self.spring * (self.approach - gap), 0.02 * self.load), refine, known)
 
     def again(self, answer, refine):
         """Zones as wide as the pressures of an answer ask for; those of one tooth pair that meet become one."""
@@ -162,7 +169,7 @@ class _Phase:
                     break
             else:
                 windows.append(window)
-        zones = []
+        zones = self._missed({zone.order for zone, *_ in windows}, refine)
         for zone, low, high, middle, force, shift in windows:
             half = (high - low) / 2
             stands, _ = self._pair(zone.order)
