@@ -33,6 +33,7 @@ def cases():
         "rounded, corner in contact": (gf.Chip(depth=1.0, radius=2.0), 1.45, 0.5),
         "rounded, flank in contact": (gf.Chip(depth=1.0, radius=2.0), 1.3, 0.5),
         "half the width, beyond the corner": (half, 1.5, 0.5),
+        "half the width, corner in contact": (half, 1.4, 0.55),
     }
 
 

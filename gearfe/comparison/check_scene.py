@@ -1,6 +1,7 @@
 """Checks of `gearfe check`. Every case, set and machine of a scene is built, but nothing is solved."""
 
 from ..dynamics.machine.of_scene import flat_machine
+from ..geometry.damage.hollow import check_hollows
 from ..planetary_sets.of_scene import build_set
 from ..scene.load import Scene
 from ..scene.reading import located
@@ -26,6 +27,8 @@ def check_scene(scene: Scene) -> list[str]:
             with located(f"{scene.name}.toml", f"pair.{name}, {case or 'healthy'}"):
                 built = pair.case(case)
                 Solve().chosen(built)[0].refuses(built, Solve())
+                for gear, hollows in zip((pair.pair.gear_1, pair.pair.gear_2), built.pits, strict=True):
+                    check_hollows(gear, hollows)
     for name in scene.sensors if scene.machine else ():
         with located(f"{scene.name}.toml", f"sensor.{name}"):
             check_channel(flat_machine(scene), f"sensor {name}")

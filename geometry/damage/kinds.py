@@ -15,7 +15,6 @@ from ..checks import by_gear
 from ..tooth.gear import Gear
 from .chip import Chip
 from .crack import Crack, check_apart
-from .hollow import check_hollows
 from .missing import MissingTooth
 from .pit import Pit
 from .spall import Spall
@@ -69,12 +68,10 @@ def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
 
 
 def check_damage(gear: Gear, defects: Iterable[Damage]) -> None:
-    """Raise ValueError for damage that the gear cannot have: beyond its flank, face or sector, or two that meet."""
+    """Raise ValueError for cracks and broken teeth that the gear cannot have, or that meet. `check_hollows` does it for pits."""
     parts = parts_of(gear, defects)
-    weakens, removes = split(parts)
-    check_apart(gear, weakens)
+    check_apart(gear, split(parts)[0])
     check_broken(gear, parts)
-    check_hollows(gear, removes)
 
 
 def check_broken(gear, defects):

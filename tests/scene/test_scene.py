@@ -1,5 +1,4 @@
 import math
-import re
 from importlib import resources
 
 import pytest
@@ -214,8 +213,7 @@ def test_a_copy_with_other_gears_is_no_longer_the_article(tmp_path):
     """24/30/84 at 54 mm: the article's face width stays assumed, its centre distance and its printed results do not."""
     text = TEXT.replace("z = 21\n", "z = 24\n").replace("z = 31\n", "z = 30\n").replace("a_mm = 52.0", "a_mm = 54.0")
     file = tmp_path / "plan.toml"
-    text = text.replace("\nx = -0.4617", "\nx = 0.0")
-    file.write_text(re.sub(r"radius_mm = 2[01]\.\d+", "radius_mm = 24.0", text))
+    file.write_text(text.replace("\nx = -0.4617", "\nx = 0.0"))
     scene = gf.load_scene(file)
     assert scene.references == ()
     assert "changed" in scene.title

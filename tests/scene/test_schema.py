@@ -243,7 +243,7 @@ def test_check_refuses_what_other_verbs_refuse(tmp_path, capsys):
     """A spall deeper than half the tooth, a machine whose pairs are missing or that has no such contact."""
     new = gf.new_scene(tmp_path / "my.toml").read_text(encoding="utf-8")
     checked = refused(tmp_path, capsys, new + SPALL, "check")
-    assert "[spall 1]: spall of depth_mm = 2.0, but half the tooth of the 31-tooth gear" in checked
+    assert "[pair.stage, deep]: spall of depth = 2 mm, but half the tooth of the 31-tooth gear" in checked
     assert "half the tooth of the 31-tooth gear" in refused(
         tmp_path, capsys, new + SPALL, "stiffness", "--case", "deep", "--phases", "1"
     )
