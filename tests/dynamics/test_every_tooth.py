@@ -133,7 +133,10 @@ def test_slow_motion_is_the_loaded_transmission_error(name):
 
 @pytest.mark.slow
 def test_another_integrator_with_contact_solved_for_the_teeth_that_meet():
-    """DOP853 with k of every phase of 143 cycles of 11/13 teeth, cracked on both gears; default step: 1e-4 of the range."""
+    """DOP853 with k of every phase of 143 cycles of 11/13 teeth, cracked on both gears; default step: 1e-4 of the range.
+
+    Both sides have the same phases: the interpolation between them is not checked here.
+    """
     case = small_pair(damage={"pinion": [gf.Crack(level=0.4, tooth=4)], "wheel": [gf.Crack(level=0.3, tooth=9)]})
     phases, frequency, mass = 256, 900.0, 0.15
     machine = one_mass(case, phases, mass=mass, frequency=frequency, zeta=0.03)

@@ -163,8 +163,9 @@ def picture(growth, chosen, rows, chance):
 HOW = f"""
 `python -m validation growth_detection` computes the page. The pair has 21 and 31 teeth of module 2 mm, 20 mm width and a load
 of 2000 N. The crack starts at the 30-degree tangent at 45 degrees. Each revolution is one cycle of Paris's law with
-da/dN = 5.21e-13 dK^3 (mm, MPa sqrt(mm)) and a threshold of 63 (BS 7910:2013, steel in air). The loads are those of the healthy
-pair. Vibration is that of one mass of 0.2 kg on the mesh, at a shaft frequency of 50 Hz. The damping ratio is 0.07.
+da/dN = 5.21e-13 dK^3 (mm, MPa sqrt(mm)) and a threshold of 63 (BS 7910:2013, steel in air). These constants are quoted, not
+checked against a copy of the standard. The loads are those of the healthy pair. Vibration is that of one mass of 0.2 kg on the
+mesh, at a shaft frequency of 50 Hz. The damping ratio is 0.07.
 
 The {GEARS} healthy gears have pitch deviations with a standard deviation of {1e6 * PITCH:g} um. The sensor noise is
 {NOISES[0]:g} or {NOISES[1]:g} m/s^2, averaged over {TURNS} revolutions. The load differs by {100 * LOAD:g} % between two

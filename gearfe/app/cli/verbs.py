@@ -222,7 +222,9 @@ def dynamics(arguments):
     print(f"  natural frequencies [Hz]: {_rounded(tuple(natural_frequencies(made)[0][:12]))} ...")
     for case, one in found.items():
         stats = one.stats
-        doubt = f", error about {100 * stats['error']:.2g} % of the range" if "error" in stats else ""
+        doubt = f", integration error about {100 * stats['error']:.2g} % of the range" if "error" in stats else ""
+        if "error_phases" in stats:
+            doubt += f", k between its phases within {100 * stats['error_phases']:.2g} % of its spread"
         print(f"  {case}: {len(made.dofs)} degrees of freedom, {stats['seconds']:.2f} s by {stats['method']}{doubt}")
         left = f"free vibrations at {stats['free']:.1g} of their start"
         for line in stats.get("loads", ()):
