@@ -27,7 +27,9 @@ KIND = {  # table of a damage, what its headline begins with, and the least loss
         0.02,
     ),
     "missing_tooth": ({}, "missing tooth", 0.3),
+    "pits": ({"count": 2, "axes_mm": [0.8, 5.0], "depth_mm": 0.4, "middle_mm": 7.5, "pitch_mm": 7.0}, "2 pits", 0.02),
 }
+PITCH_RADIUS = {"pinion": 25.5, "wheel": 57.0}  # mm
 CHOICES = [(*place, kind, 0.0) for place in PLACES for kind in KIND]
 CHOICES += [(*CHANCE.choice(PLACES), kind, 12.0) for kind in KIND]  # helical
 
@@ -43,6 +45,7 @@ def options_of(method):
 
 def tables(gear, tooth, kind="crack", beta=0.0):
     """A pair with damage of one tooth."""
+    radius = {"radius_mm": PITCH_RADIUS[gear]} if kind == "pits" else {}
     rack = {name: RACK | {"beta_deg": sign * beta} for name, sign in (("pinion", 1), ("wheel", -1))}
     return {
         "title": "pair",
@@ -51,14 +54,14 @@ def tables(gear, tooth, kind="crack", beta=0.0):
         "gear": {"pinion": rack["pinion"] | {"z": 17, "r_bore_mm": 10.9}, "wheel": rack["wheel"] | {"z": 38, "r_bore_mm": 26.6}},
         "pair": {"stage": {"gear_1": "pinion", "gear_2": "wheel", "force_N": 1669.3}},
         "machine": {"model": "helical_pair", "speed_rpm": 2400.0, "torque_Nm": 40.0, "backlash_um": 300.0},
-        kind: [{"case": "cracked", "gear": gear, "tooth": tooth} | KIND[kind][0]],
+        kind: [{"case": "cracked", "gear": gear, "tooth": tooth} | KIND[kind][0] | radius],
     }
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("gear", "tooth", "kind", "beta"), CHOICES)
 def test_every_kind_of_result_shows_a_tooth_by_chance(gear, tooth, kind, beta):
-    scene, method = scene_of("pair.toml", tables(gear, tooth, kind, beta)), "ritz3d" if beta else "ritz"
+    scene, method = scene_of("pair.toml", tables(gear, tooth, kind, beta)), "ritz3d" if beta or kind == "pits" else "ritz"
     case, (_, words, least) = scene.case(case="cracked"), KIND[kind]
     how = gf.Solve(method, 8, "tooth")
     hurt = gf.solve(case, how)
@@ -86,7 +89,7 @@ def test_every_kind_of_result_shows_a_tooth_by_chance(gear, tooth, kind, beta):
 
 
 @pytest.mark.parametrize(("gear", "tooth", "kind", "beta"), [
-    pytest.param(*choice, marks=pytest.mark.slow if choice[3] else ()) for choice in CHOICES
+    pytest.param(*choice, marks=pytest.mark.slow if choice[3] or choice[2] == "pits" else ()) for choice in CHOICES
 ])  # fmt: skip
 def test_verbs_print_a_tooth_by_chance(tmp_path, capsys, gear, tooth, kind, beta):
     from gearfe.scene.toml_file import toml
