@@ -149,16 +149,7 @@ class _Phase:
         """Zones as wide as the pressures of an answer ask for; those of one tooth pair that meet become one."""
         windows = []
         for zone, p, _, shift in answer.pressed:
-            density = p / np.gradient(zone.s)
-            on = np.flatnonzero(density > 1e-3 * density.max()) if p.max() > 0 else []
-            if len(on):
-                low, high = zone.s[max(on[0] - 1, 0)], zone.s[min(on[-1] + 1, p.size - 1)]
-                low = low if on[0] > 0 else low - (high - low)
-                high = high if on[-1] < p.size - 1 else high + (high - low)
-                margin = (WIDER - 1.2) * (high - low) / 2
-                window = [zone, low - margin, high + margin, float(zone.s[np.argmax(density)]), float(p.sum()), shift]
-            else:
-                window = [zone, zone.s[0], zone.s[-1], zone.middle, 0.0, shift]
+            window = _window(zone, p, shift)
             for other in windows:
                 same = (other[0].order, other[0].own) == (zone.order, zone.own)
                 if same and other[1] < window[2] and window[1] < other[2]:
@@ -290,3 +281,16 @@ def complementary(matrix, gap, rate, load):
         value = p - opening / scale
         pressed = np.where(pressed, p >= 0, value > 0) if not (pulls.any() and cuts.any() and size > 400) else pressed & ~pulls
     raise RuntimeError("the contact does not settle: the set of pressed places goes round in circles")
+
+
+def _window(zone, p, shift):
+    """Zone with its loaded part and a margin: zone, ends, place of the largest pressure, force and shift."""
+    density = p / np.gradient(zone.s)
+    on = np.flatnonzero(density > 1e-3 * density.max()) if p.max() > 0 else []
+    if not len(on):
+        return [zone, zone.s[0], zone.s[-1], zone.middle, 0.0, shift]
+    low, high = zone.s[max(on[0] - 1, 0)], zone.s[min(on[-1] + 1, p.size - 1)]
+    low = low if on[0] > 0 else low - (high - low)
+    high = high if on[-1] < p.size - 1 else high + (high - low)
+    margin = (WIDER - 1.2) * (high - low) / 2
+    return [zone, low - margin, high + margin, float(zone.s[np.argmax(density)]), float(p.sum()), shift]
