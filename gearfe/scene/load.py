@@ -257,26 +257,6 @@ def _gear(x_E: float | None = None, **given: Any) -> Gear:
     return replace(gear, E_sn=gear.outward * (x_E - gear.x) * 2 * gear.m_n * math.tan(gear.alpha_n))
 
 
-def _with_backlash(pair: GearPair, wanted: float) -> GearPair:
-    """Return the pair with a backlash along the line of action [mm]: both gears are thinner by the same normal thickness."""
-    more = wanted - pair.backlash
-    if more < -1e-6 * pair.gear_1.m_n:
-        raise ValueError(
-            f"backlash_um = {1e3 * wanted:g}, but these gears have {1e3 * pair.backlash:.4g} um at a_mm = {pair.a:.6g}: give "
-            "more, or leave it out"
-        )
-    if more > pair.gear_1.m_n:
-        raise ValueError(
-            f"backlash_um = {1e3 * wanted:g}, but teeth of m_n_mm = {pair.gear_1.m_n:g} have less: give a smaller one"
-        )
-    thinner = more * math.cos(pair.gear_1.beta) / (2 * math.cos(pair.gear_1.alpha_t))
-    try:
-        one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
-    except ValueError as error:
-        raise ValueError(f"backlash_um = {1e3 * wanted:g}, but the thinner teeth are impossible: {error}") from error
-    return GearPair(one, two, pair.a)
-
-
 def _pair(file, name, rows, gears, materials, forces):
     """Return the `ScenePair` of the checked tables of a scene. `forces` are those of the pairs of a gearbox [N]."""
     row = rows["pair"][name]
@@ -293,7 +273,7 @@ def _pair(file, name, rows, gears, materials, forces):
                 raise ValueError(f"{key} = {one:g} of {names[0]!r} and {two:g} of {names[1]!r}, but gears in mesh need the same")
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
         if row["backlash_um"] is not None:
-            made = _with_backlash(made, 1e-3 * row["backlash_um"])
+            made = parts.with_backlash(made, 1e-3 * row["backlash_um"])
         check_load(made, force, used)
         misalignment = parts.misalignment_of(made, row)
     owned = parts.damage_of(file, rows, name, made)

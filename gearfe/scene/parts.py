@@ -1,5 +1,6 @@
 """Damage, flanks, misalignment and supports of a gear pair, from the checked rows of a scene."""
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -140,6 +141,26 @@ HEALTHY = "healthy"  # name of the case without damage
 DAMAGE: dict[str, Callable[[Row, GearPair, int, Row], list[Damage]]] = {
     "crack": crack_of, "pits": pits_of, "spall": spall_of, "missing_tooth": missing_of, "chip": chip_of,
 }  # fmt: skip
+
+
+def with_backlash(pair: GearPair, wanted: float) -> GearPair:
+    """Return the pair with a backlash along the line of action [mm]: both gears are thinner by the same normal thickness."""
+    more = wanted - pair.backlash
+    if more < -1e-6 * pair.gear_1.m_n:
+        raise ValueError(
+            f"backlash_um = {1e3 * wanted:g}, but these gears have {1e3 * pair.backlash:.4g} um at a_mm = {pair.a:.6g}: give "
+            "more, or leave it out"
+        )
+    if more > pair.gear_1.m_n:
+        raise ValueError(
+            f"backlash_um = {1e3 * wanted:g}, but teeth of m_n_mm = {pair.gear_1.m_n:g} have less: give a smaller one"
+        )
+    thinner = more * math.cos(pair.gear_1.beta) / (2 * math.cos(pair.gear_1.alpha_t))
+    try:
+        one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
+    except ValueError as error:
+        raise ValueError(f"backlash_um = {1e3 * wanted:g}, but the thinner teeth are impossible: {error}") from error
+    return GearPair(one, two, pair.a)
 
 
 def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[str, Flank]:
