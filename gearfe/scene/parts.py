@@ -51,8 +51,9 @@ Owned = dict[Owner, list[Damage]]
 def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict[str, Owned]]:
     """Damage of the pair `name` by case, side and owner.
 
-    It lies on the flank that is loaded in its `pair`, by default the first pair of its gear. In a pair that loads the other flank
-    a crack lies on the unloaded side, and pits and spalls are in no contact. So does a chip. A missing tooth is missing in both.
+    The damage is on the flank that is loaded in its `pair`, by default the first pair of its gear. In a pair that loads the
+    other flank, a crack or a chip is on the unloaded side, and pits and spalls have no contact. A missing tooth is missing in
+    both.
     """
     out: dict[str, dict[str, Owned]] = {}
     for kind, make in DAMAGE.items():
@@ -94,7 +95,7 @@ def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     numbers = arguments("pits", row, "radius_mm", "axes_mm", "depth_mm", "tooth", "angle_deg")
     if first is not None:
         if row["along"] != "axis":
-            raise ValueError("first_mm and last_mm are of pits along the axis: for others give middle_mm")
+            raise ValueError("first_mm and last_mm apply to pits along the axis only: for others give middle_mm")
         pits = pit_row(row["count"], first, first if last is None else last, **numbers)
         return [*pits, *_other_half(row, pits, made, which, pair)]
     if row["count"] > 1 and pitch is None and span is None:
@@ -200,7 +201,7 @@ def _placed(file: str, rows: Row, name: str, kinds: tuple[str, ...], out: dict[s
         for side in sides(file, where, row, name, rows["pair"]):
             if side in out:
                 raise ValueError(
-                    f"{file} [{where}]: gear {row['gear']!r} has {' or '.join(kinds)} in pair {name!r}; give each its pair"
+                    f"{file} [{where}]: gear {row['gear']!r} has {' or '.join(kinds)} in pair {name!r}; give each of them a pair"
                 )
             yield where, row, side
 

@@ -79,7 +79,9 @@ def root_stress_of_contact(
         raise ValueError("a herringbone pair: root stress is that of one body; give the contact of one half as a helical pair")
     loaded = np.flatnonzero((cells.order == order) & (cells.load > 0))
     if not loaded.size:
-        raise ValueError(f"order = {order}: this tooth pair is unloaded at that phase; {sorted(set(cells.order.tolist()))} may")
+        raise ValueError(
+            f"order = {order}: this tooth pair is unloaded at that phase; give one of {sorted(set(cells.order.tolist()))}"
+        )
     number = 0 if gear == "pinion" else 1
     body, offset = seen_gears(pair, "helical", 0.0)[number]
     loaded = loaded[np.argsort(cells.depth[loaded])]
@@ -92,7 +94,7 @@ def root_stress_of_contact(
 
 
 def _check_own(gear, z, rolls):
-    """ValueError if lines at heights `z` and roll lengths `rolls` [mm] are not on the flank of the gear: of another pair."""
+    """Raise ValueError if lines at heights `z` and roll lengths `rolls` [mm] are off the flank, as those of another pair."""
     (low, high), slack = sorted((gear.roll_f, gear.roll_a)), 1e-6 * gear.m_n
     if rolls.min() < low - slack or rolls.max() > high + slack or z.min() < 0 or z.max() > gear.b:
         raise ValueError(

@@ -38,7 +38,7 @@ def gmsh_session():
                 "libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libxfixes3 libxrender1 libgomp1'"
             ) from error
         if gmsh.isInitialized():
-            raise RuntimeError("this program has gmsh open, which has one session for all: call gmsh.finalize() before gearfe")
+            raise RuntimeError("this program has gmsh open, which allows one session only: call gmsh.finalize() before gearfe")
         with _handlers_kept():
             gmsh.initialize(readConfigFiles=False, interruptible=False)  # A user's options file would change the mesh.
         try:

@@ -177,7 +177,7 @@ def test_machines_and_sets_that_do_not_fit_are_refused():
         ((other, found, "lumped"), "has another direction than in the set"),
         ((hurt, found, "lumped"), "has damage besides"),
         ((machine(gf.PlanetaryCase(smaller, FORCE, given.material)), found, "lumped"), "base radii"),
-        ((made, gf.planetary_stiffness(case(ring=lugs), 1, cycles=14), "body"), "no springs of a body"),
+        ((made, gf.planetary_stiffness(case(ring=lugs), 1, cycles=14), "body"), "not linear springs of a body"),
         ((gf.with_set(made, found, ring="lumped"), found, "lumped"), "has no body 'ring'"),
     ):
         with pytest.raises(ValueError, match=message):

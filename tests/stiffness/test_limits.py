@@ -56,7 +56,7 @@ def test_a_curve_is_a_function_of_the_phase(pair, steel):
     )
     assert_allclose(tooth(tooth.phase), tooth.k)
     for wrong in (5.0, -1.0):
-        with pytest.raises(ValueError, match="goes round no cycle"):
+        with pytest.raises(ValueError, match="no whole mesh cycle"):
             tooth(wrong)
 
 

@@ -36,15 +36,17 @@ def compare(arguments):
 
 
 def _results(scene, printed, arguments):
-    """`Comparison` of a pair, or of several cases, which the arguments ask for."""
+    """Compute the `Comparison` of the pair, or of the damage cases, that the arguments select."""
     from ...comparison.compare import compare, compare_cases
 
     one = arguments.pair or arguments.case or arguments.model or arguments.plot
     several = arguments.all_cases or (printed and not one)
     if several and one:
-        raise ValueError("--all-cases is every pair in every case: leave out --pair, --case, --model and --plot")
+        raise ValueError("--all-cases compares every pair in every case: leave out --pair, --case, --model and --plot")
     if several and arguments.reference not in (None, "fe3d"):
-        raise ValueError(f"--reference {arguments.reference} with --all-cases: only fe3d can be asked for")
+        raise ValueError(
+            f"--reference {arguments.reference} with --all-cases: all cases are compared with fe3d only: use --reference fe3d"
+        )
     options = {"phases": arguments.phases, "reference": arguments.reference}
     with working("finite elements and energy methods"):
         if several:
@@ -55,7 +57,7 @@ def _results(scene, printed, arguments):
 
 
 def _print_losses(scene, result):
-    """Print the answer of a comparison, what it compares, and the losses of each damaged tooth."""
+    """Print the headline of a comparison, the definition of its zones, and the stiffness losses of each damaged tooth."""
     from ...comparison.told_scene import told_supports
 
     meta, several = result.reference.meta, len(result.asked) > 1

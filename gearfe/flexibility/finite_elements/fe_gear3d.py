@@ -92,7 +92,10 @@ class MeshedGear:
         return mesh_patches(gear, patches, cracks=cracks, broken=broken, **options), patches
 
     def plan(self):
-        """`finite_elements.solver.SolveCost` of its `solid_flexibility`, refused if it does not fit; costs its mesh alone."""
+        """Return the `finite_elements.solver.SolveCost` of its `solid_flexibility`.
+
+        Only the mesh is computed for this. RuntimeError if the system does not fit into memory.
+        """
         mesh, patches = self.meshed()
         columns = zone_forces(mesh).shape[1]
         if self.shaft is not None:
@@ -138,7 +141,7 @@ def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
 
 
 def _resolved(whole, material, own, degree, cache):
-    """Highest degree that the layers carry: `degree`, or up to `LOST` less. `own` is the influence on one flank."""
+    """Return the highest degree that the layers resolve: `degree`, or up to `LOST` less. `own` is the influence on one flank."""
     gear = whole.gear
     for kept in range(degree, degree - LOST - 1, -1):
         at = np.flatnonzero(np.arange(len(own)) % (degree + 1) <= kept)
@@ -148,5 +151,6 @@ def _resolved(whole, material, own, degree, cache):
             return kept
     raise RuntimeError(
         f"z = {gear.z}, b = {gear.b:g} mm, refine = {whole.refine:g}: the mesh is too coarse for patches of degree {kept} along "
-        f"the width, one of them moves only {100 * least:.2g} % of what a half-space does: raise refine, or lower the degree"
+        f"the width, one of which has only {100 * least:.2g} % of the deflection of a half-space: raise refine, or lower "
+        "the degree"
     )
