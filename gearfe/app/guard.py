@@ -48,7 +48,8 @@ class Limits:
 class Guard:
     """ASGI middleware: rejects requests that do not come from the page itself, and adds the headers of `SAFE`.
 
-    `hosts` are the values of ``Host`` that are answered: any other name that leads here is an attack by DNS.
+    `hosts` are the accepted values of the ``Host`` header. Requests under any other name are rejected, because they can be a
+    DNS rebinding attack.
     """
 
     def __init__(self, app: Any, hosts: tuple[str, ...], limits: Limits | None = None):

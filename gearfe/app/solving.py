@@ -46,7 +46,7 @@ def scene_from(state: dict[str, Any]) -> Scene:
 
 
 def compared(scene: Scene, method: str, phases: int, *, error: bool) -> tuple[Comparison, tuple[str, ...]]:
-    """Return the comparison of a scene's pair with and without damage by one method, and the neglected parts."""
+    """Compare a scene's pair with and without damage by one method. Also return the parts of the case that it neglects."""
     chosen = scene.pair()
     case, _, left_out = fitted(method, chosen.case(CASE if chosen.damage else None))
     return beside_health(case, Solve(method, phases, error=error)), left_out
@@ -230,9 +230,9 @@ TASKS = {
 
 
 def begin() -> None:
-    """Make a new solver process ready: little memory for solved gears, no disk.
+    """Prepare a new solver process: a small memory for solved gears and no disk cache.
 
-    One pair loads what methods load late.
+    One pair is solved to import the modules that methods import only when they are used.
     """
     PROCESS.most = KEPT
     os.environ["GEARFE_CACHE"] = ""  # do not store the many intermediate gears of a moving slider

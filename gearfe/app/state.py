@@ -21,7 +21,7 @@ CLOSE = 1e-9  # relative tolerance of equal numbers, because torques are compute
 
 
 class SeveralError(ValueError):
-    """A scene is more than one pair in one case. `choices` are its cases by pair, ``""`` being healthy."""
+    """The scene contains more than one pair or case. `choices` are its cases by pair, ``""`` for healthy gears."""
 
     def __init__(self, text: str, choices: dict[str, list[str]]):
         super().__init__(text)
@@ -34,7 +34,7 @@ def title_of(state: dict[str, Any]) -> str:
 
 
 def _typed(state):
-    """Values of the fields that count, by dotted key."""
+    """Return the values of the fields that are part of the scene of the state, by dotted key."""
     counted = [field for field in FIELDS if field.places and field.counts(state)]
     return {place: field.typed(state[field.name]) for field in counted for place in field.places}
 
@@ -104,7 +104,7 @@ def _assumptions(entries, starts):
 
 
 def _differences(name, stated, page):
-    """Yield a note on the hand of the helix if it differs. ValueError for another value that the page has otherwise."""
+    """Yield a note if the hand of the helix differs. Raise ValueError for any other value that differs from the page."""
     for place in sorted({**stated, **page}, key=lambda place: stated.get(place) is None):
         given, ours = (one.get(place, key_at(place).default) for one in (stated, page))
         if place == "gear.wheel.beta_deg" and given and _same(given, -ours):
@@ -136,7 +136,7 @@ def _runs(tables):
 
 
 def _values(name: str, tables: dict[str, Any], pair: str, case: str | None) -> tuple[dict[str, Any], list[tuple[str, str]]]:
-    """Return values of one pair in one case of a scene by the dotted keys of the page, and (old, new) beginnings of keys."""
+    """Return the values of one pair in one case by the page's dotted keys, and (old, new) prefixes of the keys."""
     given = trimmed(tables, pair, case) | ({"machine": tables["machine"]} if _runs(tables) else {})
     rows = Reading(name, scene_schema()).row("scene", "top level", given)
     sides = {rows["pair"][pair][key]: side for key, side in zip(("gear_1", "gear_2"), SIDES, strict=True)}
@@ -160,7 +160,7 @@ def _values(name: str, tables: dict[str, Any], pair: str, case: str | None) -> t
 
 
 def _damage_heads(name, rows, sides, case):
-    """Beginnings of keys (old, new) and the row of each damage."""
+    """Return the key prefixes (old, new) and the table row of each damage."""
     for kind in DAMAGE:
         if len(rows[kind]) > 1:
             raise ValueError(f"{name}: {len(rows[kind])} tables [[{kind}]] in one case; the page has fields for one")
@@ -178,7 +178,7 @@ def _same(one, other):
 
 
 def _fields(tables, values, torque):
-    """Return the fields from values by dotted key. Other values are found when `read` compares."""
+    """Return the fields of the page from values by dotted key. `read` detects values without a field by comparison."""
     out = START | {"source": tables["source"]}
     bore = {"gear.wheel.r_bore_mm": values["gear.wheel.r_bore_mm"] or values["gear.wheel.r_rim_mm"]}
     for field in FIELDS:

@@ -158,8 +158,8 @@ def compare_cases(
 def beside_health(case: Case, how: Solve, pair: str = "pair", *, returns: Mapping[int, str] | None = None) -> Comparison:
     """Compare a damaged pair with its healthy state by one method. A healthy pair gives its curve alone.
 
-    Of a damaged pair a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth. `returns` is as
-    of `told_teeth`.
+    For a damaged pair, a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth.
+    `told_teeth` describes `returns`.
     """
     key = (pair, kind_of(case.damage) if case.damaged else None)
     (plan, cycles), (row, why) = _beside(key, case, how.phases, returns), how.chosen(case)
@@ -170,7 +170,7 @@ def beside_health(case: Case, how: Solve, pair: str = "pair", *, returns: Mappin
 
 
 def _beside(key, case, phases, returns=None):
-    """Cases and phases by key, with those of the healthy pair, and the phases of the zones of each damaged tooth."""
+    """Return cases and phases by key, healthy pairs included, and the phases of the zones of each damaged tooth."""
     cycles = {}
     if case.damaged and np.ndim(phases) == 0:
         count = check_count(phases)
@@ -187,9 +187,9 @@ def damage_cycle(chosen: Case | ScenePair) -> NDArray:
 
 
 def _on_file(case, phase, k, tooth, estimate, seconds):
-    """Curve of finite elements on file (`read_curves`) and its seconds.
+    """Return a stored curve of finite elements (`read_curves`) and its computing time [s].
 
-    Of the tooth pairs the damaged one alone is known.
+    The file contains the stiffness of the damaged tooth pair only, so the forces of the other pairs are unknown.
     """
     deflection, nothing = case.forces[0] / k, np.full((k.size, 1), np.nan)
     meta = {"method": "fe3d", "force_N": case.forces[0], "face": case.runs, "eps_alpha": case.pair.eps_alpha}
@@ -249,9 +249,9 @@ def _methods(case, reference):
 
 
 def why_not(row: Method, case: Case, solid: str) -> str:
-    """Return why a comparison has no column of a method.
+    """Return why a comparison has no column for a method.
 
-    `solid` is the reason for three dimensions, if there is one.
+    `solid` is the reason why three dimensions are required, if there is one.
     """
     pair = case.pair
     if pair.gear_2.internal and row.rings != "yes" and row.rings not in RING_FOUNDATIONS:

@@ -244,9 +244,9 @@ class Comparison:
         return f"<p>{escape(self.headline)}</p>{self.table().html()}"
 
     def loss_table(self, zones: Collection[str] | None = None) -> Table | None:
-        """`Table` by zone of the reference [N/um] healthy and damaged, and the loss by each method.
+        """Return a `Table` by zone of the reference stiffness [N/um], healthy and damaged, and of the loss by each method.
 
-        The last row is the phase at which it takes most. None without damage.
+        The last row is at the phase of the largest loss. The result is None without damage.
         """
         first, *others = self.losses() or [""]
         lost, share = Column("", "%", "{:.1f}"), lambda row: 100 * row.loss

@@ -60,7 +60,7 @@ def engaged_phases(case: Case, phases: int) -> NDArray:
 
 
 def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
-    """Damage by number of the tooth pair that it is in, and by side. Tooth k of both gears is in pair k."""
+    """Return the damage by number of the tooth pair and by side. Tooth k of either gear belongs to pair k."""
     out: dict[int, dict[str, list[Damage]]] = {}
     for side, found in (case.damage or {}).items():
         for hurt in found:
@@ -118,8 +118,9 @@ def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:
 def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: Solve) -> dict[str, float]:
     """Estimated discretisation error of the losses by zone: their change with a coarser solve of both gears.
 
-    It is the coarser solve that an estimate of k looks at; empty if it would be too coarse. Of finite elements in three
-    dimensions, which take minutes, and of broken teeth the relative errors of both stiffnesses are added: a much wider bound.
+    The coarser solve is that of the error estimate of k. The result is empty if it would be too coarse. Three-dimensional
+    finite elements take minutes, so the relative errors of both stiffnesses are added instead. This bound is much wider. It is
+    also used for broken teeth.
     """
     losses, method = loss(healthy, hurt), str(how.method)
     if method == "fe3d" or (any(case.broken) and healthy.error is not None and hurt.error is not None):

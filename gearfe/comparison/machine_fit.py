@@ -257,7 +257,7 @@ def _through(signal, path):
 
 
 def _gain(path, frequency):
-    """Acceleration of the mode under a unit force."""
+    """Return the complex acceleration per unit force of the mode of a transfer path, or ones without a path."""
     if path is None:
         return np.ones(frequency.size)
     ratio = frequency / path[0]

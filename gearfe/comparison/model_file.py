@@ -53,9 +53,10 @@ class ModelFile:
     def total(self, pair: GearPair, phase: ArrayLike) -> Floats:
         """Return the mesh stiffness of the file at mesh phases: [N/m], or [N/m per m] if `per_width`.
 
-        It is linear between rows, but not across the phases at which a pair enters or leaves. There the nearest row on the same
-        side counts. Rows of one mesh cycle are repeated. More rows count at their own phases, as the engagement of a damaged
-        tooth needs it. ValueError if the rows do not cover what is asked, or are more than `COARSEST` apart.
+        Values between rows are interpolated linearly, but not across the phases at which a pair enters or leaves: there the
+        nearest row on the same side is used. Rows of one mesh cycle are repeated. Rows of several cycles are used at their own
+        phases, as required for the engagement of a damaged tooth. ValueError if the rows do not cover the requested phases, or
+        are more than `COARSEST` apart.
         """
         cycle = 2 * math.pi / pair.gear_1.z if self.abscissa == "angle" else 1.0
         asked, x, k = np.asarray(phase, dtype=float), self.x / cycle, self.k
@@ -76,7 +77,7 @@ class ModelFile:
         return self._between(rows, k, asked, pair.eps_alpha % 1.0)
 
     def _between(self, rows, k, asked, leaves):
-        """Stiffness at phases between rows of the same pairs in contact."""
+        """Interpolate the stiffness between rows that have the same pairs in contact."""
         out, order = np.empty(asked.shape), np.argsort(rows)
         at, of_row = asked + EXACT, rows[order] + SNAP
         zone, zone_of_row = (2 * np.floor(x) + (x % 1.0 > leaves + 2 * slack) for x, slack in ((at, EXACT), (of_row, SNAP)))
@@ -117,7 +118,8 @@ class ModelFile:
     def single(self, pair: GearPair, radius: ArrayLike) -> Floats:
         """Stiffness of one tooth pair in contact at `radius` on the pinion [mm], interpolated linearly. Units as in `total`.
 
-        ValueError if the rows do not cover the path of contact or are more than `COARSEST` of it apart.
+        ValueError if the rows do not cover the path of contact, or if two neighbours are more than `COARSEST` of its length
+        apart.
         """
         low, high = np.hypot(pair.gear_1.r_b, pair.path)
         if self.x[0] > low + 1e-3 or self.x[-1] < high - 1e-3:
@@ -234,7 +236,7 @@ def _header_comment(path, comments, first):
 
 
 def _numbers(path, rows):
-    """Both columns, checked."""
+    """Convert the rows to two columns, and check them."""
     table = []
     for line, cells in rows:
         if len(cells) != 2 or not all(map(_is_number, cells)):

@@ -63,7 +63,7 @@ def pattern_of(case: Case, phases: int = 24) -> Pattern:
 
 
 def render_pattern(case: Case, path: StrPath, *, title: str = "") -> Pattern:
-    """Picture of a case's contact pattern (`gearfe.plot_contact`). Returns the result of `pattern_of`."""
+    """Draw the contact pattern of a case (`gearfe.plot_contact`), and return the result of `pattern_of`."""
     pattern = pattern_of(case)
     plot_contact(case.pair, pattern.contact, None, path, case.pits[0], title)
     return pattern

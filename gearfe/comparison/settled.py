@@ -15,14 +15,15 @@ LONGEST = 20.0  # longest discarded start [s]
 
 
 def recorded(machine, duration, rate, *, method="fast", start=0.0, progress=None):
-    """`Response` of a machine from when the free vibrations that its start sets off have died out.
+    """Simulate a machine, and return the `Response` after the free vibrations of its start have decayed.
 
-    The time left out, by the fast path, is that in which the least damped mode falls to `FREE`, meshes at their mean stiffness.
-    The run begins before and ends after what is kept: its filter and the transfer paths of its sensors need that time.
-    ``stats["settled"]`` is the time left out [s], ``stats["free"]`` what is left of that mode: above `FREE` where it would take
-    longer than `LONGEST`, or for ever.
+    The omitted time is that in which the least damped mode decays to `FREE`, with mean mesh stiffnesses. The fast integrator
+    computes it. The run begins before and ends after the returned samples, because its filter and the transfer paths of its
+    sensors need that time. ``stats["settled"]`` is the omitted time [s], and ``stats["free"]`` the remaining part of that
+    mode. It is above `FREE` if the decay takes longer than `LONGEST`, or if nothing is damped.
 
-    `duration` [s] and `rate` [Hz] are those of what is kept; at `start` [s] the machine starts: where its damaged tooth is then.
+    `duration` [s] and `rate` [Hz] describe the returned samples. The machine starts at the time `start` [s], which decides
+    where its damaged tooth is.
     """
     decay, margin = slowest_decay(machine), REACH / rate
     need = -math.log(FREE) / decay if decay else math.inf

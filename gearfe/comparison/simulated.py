@@ -68,7 +68,7 @@ def check_run(duration, method="fast"):
 
 
 def fault_lines(machine):
-    """Stage of the first faulty gear (without one the last stage), and fault, shaft and carrier frequency [Hz] or None."""
+    """Return the stage of the first faulty gear (default: the last), and its fault, shaft and carrier frequency [Hz] or None."""
     if not machine.stages:
         raise ValueError("the machine has no stages, so that its spectral lines are unknown: give stages=(Stage(...),)")
     main = machine.faults[0] if machine.faults else None
@@ -82,8 +82,8 @@ def fault_lines(machine):
 def simulated_gear(scene, case, gear, duration=None):
     """Return the mesh force of a gear of a scene as `Signal` by case, with the angle of the gear's shaft.
 
-    The cases are healthy and `case`. White noise of `RANGE` of the rms is added, as any recorder has it: without noise the
-    difference signal of a healthy gear is an error of interpolation.
+    The cases are healthy and `case`. White noise of `RANGE` of the rms is added, as in any recorder. Without noise the
+    difference signal of a healthy gear would contain only interpolation errors.
     """
     lines, found = gear_lines(scene, gear), responses(scene, case, duration=duration)
     mesh = next(one for one in next(iter(found.values())).machine.meshes if abs(abs(one.frequency) / lines.mesh - 1) < 1e-6)

@@ -15,10 +15,11 @@ COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU time per curv
 
 
 def compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None, left_out=None):
-    """`Comparison` of cases at their phases (`plan`, by key), the first of the `methods` being the reference.
+    """Return the `Comparison` of cases at their phases (`plan`, by key). The first of the `methods` is the reference.
 
-    `how` is a `Solve` without method and phases; `fresh`: what is `asked` is timed without gears that are solved already, and
-    estimates of errors come after it; `known` are curves and their seconds.
+    `how` is a `Solve` without method and phases. With `fresh`, the curves of the keys in `asked` are timed without stored
+    solutions of gears, and error estimates are computed afterwards. `known` are available curves with their computing times
+    [s].
     """
     solved, seconds, left_out, known, reference = {}, {}, left_out or {}, known or {}, methods[0]
     work, cost = _work(plan, asked if fresh else (), methods, known)
@@ -51,14 +52,14 @@ def _told(key, between=" "):
 
 
 def _one_method(how, method, reference, fresh, again):
-    """`Solve` of a method. Estimates of errors come after the timed curves, except those of `fe3d`."""
+    """Return the `Solve` of a method. Error estimates are computed after the timed curves, except those of `fe3d`."""
     if method != reference:
         return replace(how, method=method, error=False, refine=1.0 if fresh else how.refine)
     return replace(how, method=method, error=how.error and (again or not fresh or method == "fe3d"))
 
 
 def _work(plan, timed, methods, known):
-    """Return key, method, whether the curve is repeated for the table, and relative cost of each curve of a comparison."""
+    """Return key, method, whether the curve is a repetition for the error estimate, and relative cost of each curve."""
     work = [(key, method, False) for key in plan for method in methods] + [(key, methods[0], True) for key in timed]
     return work, [0.0 if (*key, name) in known else COST.get(name, 0.3) * (1 + again) for key, name, again in work]
 

@@ -94,9 +94,9 @@ class Analysis:
         return "\n\n".join(filter(None, (f"lines not shown, below {least}: {', '.join(hidden)}", self.too_short)))
 
     def envelope(self):
-        """`Demodulated` of the last case at the fault frequency, and in a sentence the lines that stand out of its envelope.
+        """Return the `Demodulated` of the last case at the fault frequency, and a sentence on the lines of its envelope.
 
-        They are told if `PULSES` of them do.
+        The sentence lists the lines if at least `PULSES` of them are significant.
         """
         demodulated, risen, compared = self._demodulated()
         low, high = demodulated.kurtogram.band
@@ -143,7 +143,7 @@ class Analysis:
 
 
 def in_words(line):
-    """Name of a line as it is read.
+    """Spell out the name of a spectral line.
 
     >>> in_words("2 f_m - f_fault")
     '2 x mesh frequency - fault frequency'
@@ -179,8 +179,8 @@ def _risen(found: Demodulated, name, before):
 def analysis(found, channel=None):
     """`Analysis` of a channel of `responses`, by default the force of the first mesh of the driven stage.
 
-    The lines looked for are those of the gears that have teeth that differ, and the stage is that of the first of them. Of
-    ``"healthy"`` alone, with teeth all alike, there are none.
+    The lines are those of gears with deviating teeth. The stage is that of the first such gear. The case ``"healthy"`` alone,
+    with equal teeth, has no such lines.
     """
     first, faults = next(iter(found.values())), list(found.values())[-1].machine.faults
     gears, main = {one.gear: one for one in reversed(faults)}, faults[0] if faults else None
@@ -219,7 +219,7 @@ def _check_moving(response, channel):
 
 
 def _mesh_of(machine, stage):
-    """Mesh of the name of a stage, else the first one of its frequency."""
+    """Return the mesh with the name of a stage, or else the first mesh with the frequency of the stage."""
     alike = [one for one in machine.meshes if abs(abs(one.frequency) - stage.mesh) < 1e-6 * stage.mesh]
     return next((one for one in alike if one.name == stage.name), alike[0])
 
@@ -242,11 +242,12 @@ def gears_table(found):
 
 
 def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="signal", others=None):
-    """`Analysis` of signals by case, computed or measured, the first the healthy one.
+    """Compute the `Analysis` of simulated or measured signals by case. The first case is the healthy one.
 
-    Frequencies [Hz] are those of the mesh, of the faulty tooth, of the gear that has it against the carrier (lines ``f_r``; one
-    of both is enough), and of the carrier; `others` are those of faulty teeth of further gears by name. Lines of the carrier that
-    the spectrum cannot part from others are left out.
+    All frequencies are in Hz. `mesh` is the mesh frequency, `fault` that of the faulty tooth, `turning` the rotational
+    frequency of its gear relative to the carrier (lines ``f_r``; one of both is sufficient), and `carrier` that of the
+    carrier. `others` holds the fault frequencies of further gears by name. Carrier lines that the spectrum cannot resolve are
+    omitted.
     """
     _check_frequencies(mesh=mesh, fault=fault, turning=turning, carrier=carrier)
     spectra = {
@@ -283,9 +284,10 @@ def _check_frequencies(**frequencies):
 
 
 def _lines(mesh, fault, turning, carrier, resolution):
-    """Frequencies of lines by name [Hz]: of the fault, of the turning gear and of the carrier.
+    """Return the frequencies of lines by name [Hz]: fault, rotation of the gear, and carrier.
 
-    The fault has two harmonics, and two sidebands at two mesh harmonics; the turning gear one of each, or two without a fault.
+    The fault has two harmonics, and two sidebands at each of two mesh harmonics. The rotation has one harmonic and one
+    sideband, or two of each if there is no fault frequency.
     """
     lines = expected_lines(mesh, fault, count=2, harmonics=2)
     if turning is not None:

@@ -52,7 +52,8 @@ class Bodies(NamedTuple):
 def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility3d):
     """`Bodies` by `energy.ritz.solid`. The coarser solution has a lower section order (by 1) and lower axial degrees.
 
-    (By 2 at any degree would cover ever less of the error of wide gears.) `solve` is called like `flexibility3d`.
+    Lowering the axial degree by 2 at any degree would cover a decreasing part of the error of wide gears. `solve` is called
+    like `flexibility3d`.
     """
 
     def of(order, less):
@@ -109,7 +110,7 @@ def _as_seen(shaft, band):
 
 
 def between(cells, bodies):
-    """Approach ``(n, n)`` per unit normal force on each of the `Cells` of each phase, half-space left out [mm/N].
+    """Compute the approach ``(n, n)`` of the `Cells` of each phase per unit normal force on each, without half-space [mm/N].
 
     `bodies` are those of `bodies_of`.
     """
@@ -130,7 +131,7 @@ def between(cells, bodies):
 
 
 class _Line(NamedTuple):
-    """Cells `at` of one tooth in one phase. `start` is the number of its first cell."""
+    """Cells of one tooth in one phase, as the slice `at` of all cells. `start` is the number of the phase's first cell."""
 
     phase: int
     tooth: int
@@ -139,7 +140,7 @@ class _Line(NamedTuple):
 
     @property
     def own(self):
-        """The cells as numbered in their phase."""
+        """The same slice, counted from the first cell of the phase."""
         return slice(self.at.start - self.start, self.at.stop - self.start)
 
 
@@ -164,9 +165,10 @@ def _add(out, body, rows, lines):
 
 
 def mirrors_of(cells, bodies):
-    """End faces of both bodies: weight of the loads mirrored there [mm**2/N], ends of the cells from there along the lines [mm].
+    """Return the end faces of both bodies: weight of the mirrored loads [mm**2/N], and distances of the cells [mm].
 
-    As ``[(float, (n,), (n,)), ...]``, nearer ends first.
+    The result is ``[(weight, near ends (n,), far ends (n,)), ...]``. The distances are those of the ends of the cells from the
+    end face, along the lines.
     """
     faces = {}
     for side, far in ((False, False), (False, True), (True, False), (True, True)):

@@ -13,9 +13,9 @@ class Carried(NamedTuple):
     """Load distribution of one mesh position under one force: `Cells`, approach [mm] and tangent stiffness [N/mm].
 
     Approach and stiffness are in the transverse section. `closed` is true if crack faces are in contact. The approach contains
-    the deflection of the supports of the hubs: `given` is its mean weighted with the loads, `least` its smallest value of all
-    cells [mm]. `unsure` is the part of the approach by which contacts at corners may slide.
-    `sliding.off_path` describes `off_path`.
+    the deflection of the supports of the hubs. `given` is its mean, weighted with the loads, and `least` its smallest value
+    over all cells [mm]. `unsure` is the part of the approach by which contacts at corners may slide. `sliding.off_path`
+    describes `off_path`.
     """
 
     cells: Cells

@@ -120,10 +120,10 @@ class SharedLines:
         return new, approach, np.where(active, new > 0, distances < -slack)
 
     def _free(self, p, load, active, before):
-        """Return forces of the active cells of a problem and their common approach, whatever their signs.
+        """Solve for the forces of the active cells of a problem and their common approach. Forces may have either sign.
 
-        Those of the last step are corrected with a factor that is known, of the same cells with other strips: it differs little.
-        Without them, or if other cells are active, a new factor is made.
+        The last forces are corrected iteratively with a stored Cholesky factor, which belongs to the same cells with slightly
+        different strip widths. A new factor is computed if there are no last forces, or if other cells are active.
         """
         lines, known = self.joined, self._factors[p]
         total, gap, weight = lines.totals[p], lines.gaps[p], lines.weights[p]
@@ -149,10 +149,10 @@ class SharedLines:
         return at, factor, dpotrs(factor, self.joined.weights[p][at])[0]
 
     def _tangents(self, forces, load, x, local):
-        """Stiffness of each problem to a little more load, its active set kept [N/mm].
+        """Return the tangent stiffness of each problem, its active set kept [N/mm].
 
-        With T the flexibility of what pushes, and the strips' distances x following forces and load, the forces P of a further
-        approach d solve the linearisation of what was solved::
+        T is the flexibility of the active cells. The strip distances x follow the forces and the load. The change dP of the
+        forces by a further approach dd solves the linearised equations::
 
             (T + d(T P)/dx dx/dP) dP + d(T P)/dx dx/dload dload = dd,    sum(dP) = dload
         """

@@ -26,13 +26,14 @@ TIMES = 12  # maximum number of steps of that search
 class Cells:
     """Parts of contact lines, usually of one phase, that may carry load, as arrays of n.
 
-    `half` 0, or 1 for the second half of a herringbone pair; `order` of the tooth pair (as in
-    `geometry.pair.contacts.Contacts`); `z` their middles along the width from the end at z = 0 [mm], `width` their extent along
-    it [mm]; `depth` the distance from the end that touches first [mm]; `nominal` the abscissa on the line of action [mm],
-    `roll_1`, `roll_2` roll lengths where they touch [mm], `gap` the unloaded distance in the transverse section [mm]; `corner` as
-    of `geometry.pair.contacts.Contacts`; `load` force at right angles to the flanks [N]; `pressure` largest of Hertz's [MPa], nan
-    at a corner; `floor` how deep the pits above the cell are [mm], 0 outside of pits (it is in `gap`); `radius` relative radius
-    of curvature in the transverse section [mm] where flanks are modified, otherwise 0: that of the involutes.
+    `half` is 0, or 1 for the second half of a herringbone pair. `order` is the number of the tooth pair (as in
+    `geometry.pair.contacts.Contacts`). `z` is the height of a cell's middle from the end z = 0 [mm], and `width` its extent
+    along the face width [mm]. `depth` is the distance from the end that touches first [mm]. `nominal` is the abscissa on the
+    line of action [mm], and `roll_1`, `roll_2` are the roll lengths of the contact [mm]. `gap` is the unloaded distance in the
+    transverse section [mm]. `geometry.pair.contacts.Contacts` describes `corner`. `floor` is the depth of the pits above the
+    cell [mm], which is contained in `gap`; 0 outside of pits. `radius` is the relative radius of curvature in the transverse
+    section [mm] if flanks are modified, and 0 for involutes. `load` is the force normal to the flanks [N]. `pressure` is the
+    largest Hertzian pressure [MPa], nan at a corner.
     """
 
     half: NDArray[np.int64]
@@ -129,11 +130,11 @@ def _cut(pair, nominal):
 
 
 def carrying(cells, phase, pieces, force, bed):
-    """`fine` of `cells_of` for lines on which only a few cells carry, by their gaps on a bed of springs.
+    """Return `fine` of `cells_of` for lines on which only a few cells carry load, from their gaps on an elastic foundation.
 
-    Lead crowning presses a few hundredths of the width together under a light load: cells that are longer than that would keep
-    the gap of their middles for ever, however light the load. `cells` and `phase` are as `cells_of` gives them; the cells of
-    a phase carry the `force` together [N], on a `bed` of both teeth's stiffness per width [N/mm**2].
+    With helix crowning, a light load presses only a few hundredths of the width together. Longer cells would keep the gap of
+    their middles at any light load. `cells` and `phase` are results of `cells_of`. The cells of a phase carry the `force`
+    together [N]. The foundation `bed` is the stiffness of both teeth per width [N/mm**2].
     """
     out = {}
     for i, group in enumerate(pieces):

@@ -111,7 +111,7 @@ def _chipped(pair, chips):
 
 
 def in_fillet(pair, roll_1, roll_2):
-    """Whether a tip touches the mate's fillet, by places of both gears."""
+    """Return whether a tip touches the mate's fillet, at roll lengths of both gears."""
     return on_fillet(pair.gear_1, roll_1) | on_fillet(pair.gear_2, roll_2)
 
 
@@ -207,6 +207,6 @@ def pressed(rows, loads):
 
 
 def _read(gear, material, chip, roll, cache):
-    """Return the plane's S(s, s) ``(n,)`` [mm per N/mm] at roll lengths, as the polynomials of `ritz3d` represent it."""
+    """Return S(s, s) of the plane model ``(n,)`` [mm per N/mm] at roll lengths, as the polynomials of `ritz3d` represent it."""
     rows = carry(end_of(gear, chip), roll)
     return np.einsum("ni,ij,nj->n", rows, plane_hats(gear, material, chip, cache=cache), rows)

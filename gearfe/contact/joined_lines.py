@@ -153,7 +153,7 @@ class JoinedLines:
         self.flat[forth] = self.flat[back] = influence
 
     def smoother(self, load):
-        """Sparse matrix from the cells' forces to mean line loads over some half widths, within their lines and floors."""
+        """Return a sparse matrix that averages forces to line loads over several half widths, within a line and a pit floor."""
         reach = SMOOTH * half_width(load / self.length, self.mean_radius, self.modulus)[self.problem]
         middle = (self.start + self.stop) / 2
         long = np.maximum.reduceat(self.stop, self.first) - self.start[self.first]
@@ -183,7 +183,9 @@ class JoinedLines:
         return np.minimum(wide, self.widest)
 
     def change(self, forces, x):
-        """Sparse change ``(n, n)`` of the approach of each cell with the strip's distance x of each."""
+        """Return the sparse derivative ``(n, n)`` of the approach of each cell by ln(x), with x the strip distance of each
+        cell.
+        """
         cells = self.cells(forces)
         i, j = self.near[:2]
         slope = self.kernel * pair_slope((self.start, self.stop), i, j, x)
@@ -197,7 +199,7 @@ class JoinedLines:
 
 
 def _runs(line, floor):
-    """Numbers of the parts with one line and floor, equal for equal ones ``(n,)``."""
+    """Return a number for each cell ``(n,)`` that is equal for the cells of one line and one pit floor."""
     if not floor.any():
         return line
     return np.unique(np.array([line, floor]), axis=1, return_inverse=True)[1].ravel()

@@ -125,9 +125,9 @@ def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):
 
 
 def _straight(mesh, phases, column):
-    """Return the deflection of both teeth along their involutes' normals ``(phases,)`` [mm per N/mm], as cells of a line have it.
+    """Compute the deflection of both teeth along their involute normals ``(phases,)`` [mm per N/mm], as for cells of a line.
 
-    The plane's own matrix turns them to the modified flank's normal, which jumps at a kink.
+    The matrix of the plane model rotates them to the modified flank's normal, which jumps at a kink.
     """
     points, out = mesh.found, 0.0
     for flexible, roll, sense in zip(mesh.flexibility, (points.roll_1, points.roll_2), (1, -1), strict=True):

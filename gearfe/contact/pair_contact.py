@@ -109,10 +109,12 @@ class PairContact:
         return self.contacts_at(wanted, rows, tilt), rows
 
     def _solved(self, sets, line_load, smooth, phases):
-        """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch.
+        """Solve the contact problems `sets`: line loads and pressures by pair, approach, tangent, and closed faces and
+        fillets.
 
-        `phases` are their numbers. `smooth` are the line loads if all were single contacts: hats start in touch up to the gap
-        at the ends of Hertz's contact under these, which is the same for any radius.
+        `phases` are the phase numbers of the sets. `smooth` are the line loads if all contacts were single. Hats are initially
+        in contact up to the gap at the ends of the Hertzian contact under these loads, which is the same for any radius. The
+        last two results are the numbers of the sets in which crack faces touch, and in which a tip touches a fillet.
         """
         names = ("flexibility", "gap", "coefficient", "radius", "column", "tilt")
         flexibility, gap, coefficient, radius, column, tilt = (stacked([contacts[name] for contacts in sets]) for name in names)

@@ -111,9 +111,9 @@ class PhaseContact:
         return [carried for part in steps(parts, weights=[len(part) for part in parts]) for carried in self._part(part, bodies)]
 
     def _part(self, phases, bodies):
-        """`solve` of phases that are solved at once.
+        """Return the result of `solve` for phases that are solved at once.
 
-        How far cells reach depends on their own phase alone, so that k does.
+        The extent of the cells depends on their own phase only, so that k does not depend on the other phases.
         """
         done = [None] * len(phases)
         reaches, closings, open_ = np.full(len(phases), self.least + self.reach), np.zeros(len(phases)), list(range(len(phases)))
@@ -174,7 +174,7 @@ class PhaseContact:
         return float(half_width(self.sized / length, self.radius, self.modulus))
 
     def _close(self, pieces, sizes):
-        """`cells_of` the pieces, shorter where flanks that change along the width let a few cells alone carry."""
+        """Return `cells_of` the pieces, with shorter cells where only a few cells carry because flanks change along the width."""
         arguments = self.pair, pieces, self.bands, math.tan(self.beta_b), sizes, self.flanks
         fine = {}
         if self.flanks is not None and any(form.wide for form in self.flanks):
@@ -278,8 +278,9 @@ class PhaseContact:
     def _slid(self, cells, bodies, load, closing, closed):
         """Reduction of the approach by sliding [mm], normal to the flanks, and the relative uncertainty of the remainder.
 
-        `closing` is the approach beyond the first touch [mm]. What sliding saves at corners is in their law, but for cracks. With
-        `closed` faces it is left out. What large displacements of open cracks change is unsure, too.
+        `closing` is the approach beyond the first touch [mm]. The law of corners already contains sliding there, except
+        sliding by cracks. Sliding is neglected where crack faces are `closed`. Large displacements of open cracks add to the
+        uncertainty.
         """
         slide, share = slid(cells, bodies, load, self._radius(cells)), load / load.sum()
         alike = (cells.half[:, None] == cells.half) & (cells.order[:, None] == cells.order)

@@ -123,7 +123,7 @@ def _limits(pair, reach):
 
 
 def _along(roll, slope, width, limits, ends, slack):
-    """Corner, depths and whether a line rises at both, of its parts within the `ends` of a part of the width."""
+    """Yield the parts of a line within `ends` of the width: corner, two depths, and whether the pressure rises at each end."""
     limits, rising = limits
     for corner, *part in _parts(roll, slope, width, limits, slack):
         low, high = np.clip(part, *ends).tolist()
@@ -151,7 +151,7 @@ def _by_depth(pits, closing):
 
 
 def _on_floors(piece, above, width):
-    """Parts of a piece under pits `above` (gear, depth, first, last). The deepest pits of both gears are added."""
+    """Divide a piece under pits `above` (gear, depth, first, last). The depths of the deepest pit of each gear are added."""
     edges = np.unique(np.clip([piece.first, piece.last, *(at for pit in above for at in pit[2:])], piece.first, piece.last))
     edges = edges[np.concatenate([[True], np.diff(edges) > 1e-6 * width])]
     edges[-1] = piece.last

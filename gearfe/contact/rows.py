@@ -88,7 +88,7 @@ def _side_of(offsets, length):
 
 
 def _tops(marks, ends, offsets):
-    """Tops of the hats along rising `marks` [mm], and a zone further where those are no `ends` of contact."""
+    """Return the tops of the hats along rising `marks` [mm]. They extend by one zone beyond a mark that is no end of contact."""
     out = [marks[0] - offsets[:0:-1]] if not ends[0] else []
     out.append(marks[:1])
     for low, high in zip(marks[:-1], marks[1:], strict=True):
@@ -133,7 +133,7 @@ def _host(one):
 
 
 def _on_side(contact, wanted, host):
-    """Rows along the side of one gear."""
+    """Return the rows of hats on the side of gear `host`."""
     knots = [_placed(contact, request, host) for request in wanted]
     at = [(request.phase, request.column) for request in wanted]
     kernels = [_standing(contact, request, host)[1] if _alone(request) else None for request in wanted]
@@ -198,9 +198,9 @@ def _fields(contact, tooth, values, kernel, smooth, reach, size):
 
 
 def _between(knots, kernel, on):
-    """`gearfe.flexibility.hertz.hat_logarithm` of those knots that are `on`.
+    """Compute `gearfe.flexibility.hertz.hat_logarithm` between the knots selected by the mask `on`.
 
-    `kernel` is that of all, if it is known.
+    `kernel` is the result for all knots, if it is known.
     """
     if kernel is None:
         return hat_logarithm(knots[:, on], knots[:, on])

@@ -15,13 +15,15 @@ STEP = 0.01  # step along the flank for the derivative of a flexibility [m_n]
 
 
 def sliding(contact, phases=slice(None), stiffness=None):
-    """How contacts move under load to where they yield less ``(phases, pairs)`` [mm per (N/mm)**2].
+    """Compute the approach by sliding of the contacts, per square of the line load ``(phases, pairs)`` [mm per (N/mm)**2].
 
-    At some of the `phases` of a `PairContact`, with the `stiffness` ``(faces, faces)`` of its crack faces; default: all open.
+    `contact` is a `PairContact`, of which some `phases` are computed. `stiffness` ``(faces, faces)`` is that of its crack
+    faces (default: all open).
 
-    Under a line load P the flanks tilt by ``P S' / 2``, half the change of the pair's flexibility S along them; the contact moves
-    by ``x = -R P S' / 2`` to where they are parallel again, and comes closer by ``P S' x + x**2 / 2 R = -3/8 R (P S')**2``. That
-    counts where flanks nearly conform: 0.5 % of ring pairs under a heavy load. At the ends of flanks it is left out.
+    Under a line load P the flanks tilt by ``P S' / 2``. S' is the change of the pair's flexibility along them. The contact
+    moves by ``x = -R P S' / 2`` to the place where they are parallel again. The gears approach by ``-(P S' x + x**2 / 2 R) =
+    3/8 R (P S')**2``. This matters where flanks nearly conform: 0.5 % for ring pairs under a heavy load. It is neglected at
+    the ends of flanks.
     """
     points, step = contact.found, STEP * contact.pair.gear_1.m_n
     rolls = points.roll_1[phases], points.roll_2[phases]
@@ -94,13 +96,14 @@ def bounded(contact, line_load, phases=slice(None), stiffness=None):
 def left_out(contact, line, closing, beyond, shut):
     """Uncertain part of the approach ``(phases,)``, caused by tangential motion of bent teeth and by chamfers.
 
-    A tooth's tip bends across its centre-line, so that a part tan(alpha_wt) of the approach is movement u along the flanks. On
-    the path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where
-    the flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
+    The tip of a tooth deflects perpendicular to its centre-line. A part tan(alpha_wt) of the approach is therefore a motion u
+    along the flanks, which has no effect on the path of contact. Off the path, let R be the relative radius of curvature, g
+    the gap, and ``s = sqrt(2 R g)`` the distance from where the flanks would meet. The gap changes by about ``(s u + u**2 / 2)
+    / R``. The effect is largest near base circles, where R is small.
 
-    Of line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``; `closing` ``(phases,)`` is how far the
-    load moves the gears [mm]. What cracks add far away, in thin teeth, or by large displacements is unsure, too. At the phases
-    `shut` faces of cracks touch.
+    The arguments are line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``. `closing`
+    ``(phases,)`` is the approach under load [mm]. Crack faces touch at the phases `shut`. Cracks on teeth beyond those solved,
+    in thin teeth, or with large displacements add to the uncertainty.
     """
     points, (start, end) = contact.found, contact.path
     off = (line > 0) & ((points.nominal < start) | (points.nominal > end))
@@ -160,11 +163,12 @@ def _cracks_beyond(contact, line):
 def _cracks(contact, line, closing, shut):
     """Uncertain deflection ``(phases, pairs)`` [mm] by cracks in thin teeth, at large displacements and beyond `MOST`.
 
-    The flexibility of a crack of a given part of the thickness h goes by ``h**-2``; it is that of the whole tooth. A tooth turns
-    about the tip of its crack by about the deflection u by the crack over the height of the tooth. By that part the lever arm of
-    the force differs from that of small displacements, and u goes with its square. The contact also moves along the tilted flank.
-    With the tilt t by the crack, the approach changes by ``3/2 R t**2``, see `sliding`. That is unsure for large tilts, as is
-    what exceeds `MOST`. At the phases `shut`, faces of cracks touch, and only thin teeth count.
+    The flexibility by a crack is proportional to ``h**-2``, with h the thickness of the tooth. The solved flexibility is that
+    of the tooth without modifications. A tooth rotates about the tip of its crack by about u over the height of the tooth,
+    where u is the deflection by the crack. The lever arm of the force changes by that ratio, and u with its square. The
+    contact also moves along the tilted flank. With the tilt t by the crack, the approach changes by ``3/2 R t**2``, see
+    `sliding`. This is uncertain for large tilts, as is the part beyond `MOST`. At the phases `shut`, faces of cracks touch,
+    and only thin teeth count.
     """
     moved, points = np.maximum(contact.sliding * line**2 - MOST * closing[:, None], 0.0), contact.found
     out, stop = np.zeros(line.shape), 0

@@ -67,9 +67,9 @@ class Thinning:
         return out
 
     def _loads(self, roll):
-        """Heights of unit loads, and M = moment - lever y, V and N under them.
+        """Return heights of unit loads, and the terms of their section forces: M = moment - lever y, lever, V and N.
 
-        Loads in the fillet stand at the form point.
+        Loads in the fillet are placed at the form point.
         """
         at = np.clip(roll, *sorted((self.form.low, self.form.high)))
         radius, angle = flank(self.gear, at)
@@ -106,7 +106,7 @@ class Thinning:
 
 
 def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple[list[Thinning], Floats]:
-    """`Thinning` of both gears, none without flanks, and what pairs yield more at `points`, a `Contacts` [mm per N/mm]."""
+    """Return the `Thinning` of both gears (None without flanks), and the added flexibility of pairs at `points` [mm per N/mm]."""
     gears = [Thinning(form, material, state) for form, material in zip(flanks or (), materials, strict=False)]
     rolls = points.roll_1, points.roll_2
     return gears, sum(

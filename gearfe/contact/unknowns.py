@@ -11,7 +11,7 @@ OVERLAP = 1e-3  # Smaller overlaps of crack faces, relative to the largest openi
 
 
 def overlaps(opening):
-    """Whether crack faces overlap, by the last axis."""
+    """Return whether crack faces overlap. The last axis of `opening` is the faces."""
     return opening.min(axis=-1) < -OVERLAP * np.abs(opening).max(axis=-1)
 
 

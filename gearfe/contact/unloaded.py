@@ -13,7 +13,7 @@ FINE, ROUNDS = 9, 2  # sample points along the cell with the least gap; number o
 def least_gap(contact, found):
     """Approach at which the gears of a `PhaseContact` first touch ``(phases,)`` [mm]: the least gap of the `Cells` of each.
 
-    How deep pits are is part of it only where flanks are modified.
+    The depth of pits is included only where flanks are modified.
     """
     cos = math.cos(contact.beta_b)
     gaps = [cells.gap - (cells.floor / cos if contact.flanks is None else 0.0) for cells in found]

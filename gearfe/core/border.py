@@ -84,9 +84,10 @@ def _own_message(function, args, options, kind):
 
 
 def _settled(name, rule, default, value, infinite):
-    """Argument to be passed on.
+    """Check an argument, and return the value to be passed on.
 
-    The default is valid whatever its annotation. Records decide whether they may be `infinite`.
+    The default is accepted whatever its annotation. Infinite numbers are rejected unless `infinite` is true or the default is
+    infinite.
     """
     if value is default:
         return value

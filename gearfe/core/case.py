@@ -112,7 +112,7 @@ class Case:
     held: tuple[Support | Shaft | None, ...] | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Check everything, and keep it as solvers read it."""
+        """Check all fields, and convert them to the form that solvers require."""
         pair = self.pair
         if not isinstance(pair, GearPair):
             raise ValueError(f"pair = {pair!r}, but give a GearPair")
@@ -141,7 +141,7 @@ class Case:
     def as_dict(self) -> dict[str, Any]:
         """Return the given values by name, as arguments of `gearfe.mesh_stiffness`.
 
-        Pair, force, material, face and groove always are among them, of all else what differs from the default.
+        Pair, force, material, face and groove are always included. Other values are included if they differ from the default.
         """
         given = {item.name: (getattr(self, item.name), item.default) for item in GIVEN}
         return {name: value for name, (value, default) in given.items() if name in FIRST or value != default}
@@ -163,7 +163,7 @@ class Case:
 
     @property
     def healthy(self) -> Self:
-        """The same without damage."""
+        """The same case without damage."""
         return replace(self, damage=None)
 
     @property

@@ -81,9 +81,9 @@ def new_file(path):
 def check_output(path, kind):
     """Raise ValueError if `path` is not writable. Call it before work begins.
 
-    A file is made in the folder and taken away again, so that nothing is left to chance; what stands at `path` is not touched.
-    `kind` is what will be written, as `FORMATS` names it (``curve``, ``picture``...). ValueError if the name is empty, a folder,
-    or has a suffix that holds no such content; if its folder is not there or not writable.
+    A new file is created in the folder and removed again. An existing file at `path` is not changed. `kind` is the content, by
+    its name in `FORMATS` (``curve``, ``picture``...). ValueError if the name is empty or a folder, if its suffix is not one
+    for this content, or if the folder is missing or not writable.
     """
     if isinstance(path, (str, os.PathLike)) and not str(path):
         raise ValueError(f"an empty file name for a {kind}: give one that ends in {', '.join(suffixes(kind))}")
@@ -104,7 +104,7 @@ def suffixes(kind, *, reading=False):
 def suffix_of(path, kind, *, reading=False):
     """Suffix of `path` in small letters.
 
-    ValueError if no such file holds what `kind` says; the message lists those that do.
+    ValueError if files of this suffix do not hold content of this `kind`. The message lists the permitted suffixes.
     """
     known = suffixes(kind, reading=reading)
     if not isinstance(path, (str, os.PathLike)):

@@ -192,7 +192,7 @@ def _numbers(kind, content, shape, dtype) -> NDArray[Any]:
 
 
 def _joined(real, imaginary):
-    """Complex numbers of their two parts."""
+    """Combine real and imaginary parts to complex numbers."""
     out = real.astype(complex)
     out.imag = imaginary
     return out
@@ -223,7 +223,7 @@ def _rows(text, shape):
 
 
 def _old(data):
-    """Variables of a MAT 4 file, whose reader in scipy is not compiled."""
+    """Read the variables of a MAT 4 file by scipy, whose reader of this version is not compiled."""
     from scipy.io import loadmat
 
     try:

@@ -104,7 +104,7 @@ class Power:
         return [self._root(gear) for mesh in meshes for gear in mesh.gears]
 
     def _column(self, mesh, rows):
-        """Torques on the bodies of a force of 1 N in a mesh [N mm]."""
+        """Return the torques on the bodies per force of 1 N in a mesh [N mm]."""
         column = np.zeros(len(rows))
         for gear, radius in zip(mesh.gears, mesh.radii, strict=True):
             column[rows[self._root(gear)]] += mesh.planets * radius

@@ -176,7 +176,7 @@ class GearUnit:
         return row
 
     def _stage_torque(self, name):
-        """Torque of the driving gear that the data of a stage state [N m], or None if they do not."""
+        """Return the torque of the driving gear that the file states for a stage [N m], or None if it states none."""
         one, _, stage = self.pairs[name]
         for data in self.model.related("stage_gear_data", "stage", stage.id, "stage_gear_data"):
             if self.gears[one] in self.model.related("stage_gear_data", "stage_gear_data", data.id, "gear"):

@@ -89,8 +89,8 @@ def _halved(centre, leaf):
 def _numbered(dofs, part, n, stays, held, height):
     """Return the new numbers of the unknowns (n if held), the first set that contains each, and the ascending elimination order.
 
-    An unknown goes with the smallest set of sets, 2**level of them, that holds all its elements: its turn is the level, then
-    the place of that set on the level.
+    The sets of elements form a binary tree. An unknown belongs to the smallest node of the tree that contains all its
+    elements. Its position in the order is the level of that node, then the number of the node on this level.
     """
     first, last = np.full(n, part.max(initial=0) + 1), np.zeros(n, dtype=np.int64)
     part_of = np.broadcast_to(part[:, None], dofs.shape)
@@ -108,7 +108,7 @@ def _numbered(dofs, part, n, stays, held, height):
 
 
 def _put_together(local, numbers, loads, n, place):
-    """Return the front of a few elements and the loads ``(unknown, load, force)`` on them."""
+    """Assemble the matrix of a few elements: the front of its unknowns, with the loads ``(unknown, load, force)`` on them."""
     at, column, force = loads
     present = np.zeros(place.size, dtype=bool)
     present[numbers], present[column], present[n] = True, True, False

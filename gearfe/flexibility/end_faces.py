@@ -18,9 +18,9 @@ POINTS = 12  # least number of Gauss points in each part of the distance to the 
 def edge_factor(material):
     """Weight psi of the mirrored loads, ``2 / (1 - nu**2) - 1``.
 
-    A line load up to the end face has there half the half-space's logarithm from itself and psi times as much from its mirror
-    image; together they are that of plane stress, ``1 / (1 - nu**2)`` times that of plane strain. Without Poisson's ratio psi is
-    1 and the mirror exact: such a line strains no section along the width.
+    At the end face, a line load that reaches it has half the half-space logarithm of its own and psi times as much from its
+    mirror image. Together they are that of plane stress, ``1 / (1 - nu**2)`` times that of plane strain. For a Poisson's ratio
+    of 0, psi is 1 and the mirror image is exact, because a line load then causes no strain along the width.
     """
     return 2 / (1 - material.nu**2) - 1
 

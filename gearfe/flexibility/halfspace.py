@@ -48,8 +48,8 @@ def hat_points(knots, count):
 def hat_distance(knots, shift, c):
     """Mean of ``1 / R`` over pairs of hats of unit area, ``R**2 = (s - s' + shift)**2 + c**2``.
 
-    A hat has three point masses as second derivative: the double integral is nine values of `fourth_integral`; where c is
-    large against the hats these would cancel, and Gauss points do.
+    The second derivative of a hat is three point masses. The double integral is therefore a sum of nine values of
+    `fourth_integral`. If c is large compared with the hats, these values would cancel, and Gauss points are used.
 
     Of hats on `knots` ``(3, n)``, for `shift` ``(n, n, t)`` and c > 0 ``(t,)`` [mm]: ``(n, n, t)`` [1/mm].
     """

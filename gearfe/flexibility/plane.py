@@ -19,9 +19,12 @@ BELOW = 0.1  # distance of the third of these places from the tip [m_n]
 
 
 def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike) -> Floats:
-    """How a tooth yields across its normal, from the smooth flexibility under loads tilted by `TILT` either way.
+    """Return the smooth flexibility of a tooth across its normal, from that under loads tilted by `TILT` to either side.
 
-    With f = cos(d) n + sin(d) t a load yields ``S_nn cos(d)**2 + S_nt sin(2 d) + S_tt sin(d)**2`` along itself.
+    Under a force along f = cos(d) n + sin(d) t, the deflection along f is ``S_nn cos(d)**2 + S_nt sin(2 d) + S_tt sin(d)**2``.
+    `arc` ``(4,)`` [mm] is at the foot of the flank, half-way, `BELOW` the tip and at the tip. The arguments are flexibilities
+    there [mm per N/mm] under loads along the involute's `normal` n, tilted towards t (`ahead`) and away from it (`back`). The
+    result ``(3, 4)`` is arcs, S_nt and S_tt.
 
     At `arc` ``(4,)``, at the foot of the flank, half-way, `BELOW` the tip and at the tip [mm], under loads along the involute's
     `normal` n, and tilted towards t (`ahead`) and away from it (`back`) [mm per N/mm]: arcs, S_nt and S_tt ``(3, 4)``.
@@ -48,7 +51,10 @@ def reached_teeth(gear: Gear, damage: Iterable[Any], neighbours: int) -> list[in
 def glued(
     gear: Gear, teeth: Sequence[int], influence: Callable[[int, int], Floats], opening: Mapping[int, Floats], stiffness: Floats
 ) -> tuple[dict[int, Floats], dict[tuple[int, int], Floats]]:
-    """Influence of loads with all cracks glued shut: of each tooth on itself, and on the teeth at most half a turn ahead."""
+    """Return the influence of loads with all cracks closed.
+
+    It is that of each tooth on itself and on the teeth up to half a revolution ahead.
+    """
     between = {(i, j): influence(i, j) - opening[i].T @ stiffness @ opening[j] for i in teeth for j in teeth}
     ahead = {(i, j): one for (i, j), one in between.items() if i != j and (j - i) % gear.z <= gear.z // 2}
     return {tooth: between[tooth, tooth] for tooth in teeth}, ahead
@@ -56,7 +62,7 @@ def glued(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SeamFaces:
-    """The faces of all cracks of a gear, pair of facing nodes by pair.
+    """Faces of all cracks of a gear as pairs of facing nodes.
 
     The flexibility of a cracked gear between loads is that with every crack glued shut, which the splines of `Flexibility`
     hold, plus ``opening' stiffness opening``: so it stays positive definite however deep the crack, and its faces can be kept
@@ -230,7 +236,7 @@ def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.b
 def singly(flexible: Any, rolls: Sequence[Floats], teeth: Sequence[int]) -> list[Floats]:
     """Return `Flexibility.within` of a gear that is known at single places: S between two places is the mean of both.
 
-    It is the value half-way if S is straight over a contact.
+    If S is linear over a contact, this is the value at the middle.
     """
     diagonals = (flexible.matrix(roll[:, None], [tooth])[:, 0, 0] for roll, tooth in zip(rolls, teeth, strict=True))
     return [(values[:, None] + values) / 2 for values in diagonals]

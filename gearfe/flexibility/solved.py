@@ -98,7 +98,7 @@ class SolvedGears:
         return len(self._kept)
 
     def clear(self) -> None:
-        """Forget all of them."""
+        """Remove all stored results."""
         with self._lock:
             self._kept.clear()
             self.size = 0

@@ -35,12 +35,12 @@ class BodyTables(NamedTuple):
 class Position(NamedTuple):
     """Solution at one position: line loads [N/mm], lengths [mm] along the line of action.
 
-    `loads`, `closing`, `rim` and `gap` ``(2, planets)`` are those of the meshes with the sun and with the ring: load, approach
-    beyond the first touch, the part of it by the ring's support, and the unloaded gap by flanks and position errors of pins.
-    `turn` is the rotation of the sun, `orbit` (x, y) the motion of its axis [mm]. `pairs` are (inner, planet, number of the pair
-    beyond the newest, pinion's tooth, line load). `on_ring` ``(z, PLACES)`` are the loads on the ring, `lugs` those of its lugs,
-    `whole` ``(3,)`` the motion of a ring on lugs, `opened` ``(e,)`` the openings of its cracks. `shut` is true if faces of a
-    crack touch.
+    `loads`, `closing`, `rim` and `gap` ``(2, planets)`` belong to the meshes with the sun and with the ring: load, approach
+    beyond the first touch, its part by the ring's support, and the unloaded gap by flanks and pin position errors. `turn` is
+    the rotation of the sun, `orbit` (x, y) the motion of its axis [mm]. `pairs` are (inner, planet, number of the pair after
+    the newest, pinion's tooth, line load). `on_ring` ``(z, PLACES)`` are the loads on the ring, and `lugs` those on its lugs.
+    `whole` ``(3,)`` is the rigid motion of a ring on lugs, and `opened` ``(e,)`` are the openings of its cracks. `shut` is
+    true if crack faces touch.
     """
 
     loads: Floats

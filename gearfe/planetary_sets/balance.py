@@ -55,8 +55,8 @@ class Problem(NamedTuple):
 def balance(problem: Problem) -> tuple[Floats, Floats]:
     """Solve for the forces ``(n,)`` [N/mm] and motions of a `Problem`.
 
-    Contacts that would pull are left out and those that would overlap are taken in, all at once; where that does not settle, one
-    at a time. RuntimeError if no forces that only push are in balance, or none were found.
+    In each iteration all contacts with tension are removed and all overlapping ones are added. If that does not converge, one
+    contact is changed at a time. RuntimeError if no equilibrium without tension exists, or none was found.
     """
     unit = np.abs(problem.load).max()
     active = _likely(problem, unit)

@@ -46,7 +46,7 @@ def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
 
 
 def meshed(case, gear, rolls, fillet, near, far, pad, cracks=()):
-    """`Section` of a gear by its edge lengths [mm] (`pad`: at the ends of a ring's pads), and its held nodes."""
+    """Mesh a gear with these edge lengths [mm] (`pad`: at the ends of a ring's pads). Return its `Section` and its held nodes."""
     pads = gear.internal and case.ring != "held"
     marks = case.ring.ends(gear) if pads else ()
     section = both_flanks(gear, rolls, fillet_size=fillet, size=near, far_size=far, marks=marks, mark_size=pad, cracks=cracks)

@@ -23,10 +23,10 @@ SPREAD = 3  # half-width of the hat function that distributes a traction on the 
 class Pads:
     """Tractions of pads on the rim, p of them by pad, direction and polynomial.
 
-    `load` ``(z, r, p)`` are their nodal forces, spread over some edges; `close` is the same on the edges under the pad only.
-    `turns` ``(3, p)`` are their forces along x and y and their clockwise torque [mm]. `compliance` ``(p, p)`` is added to the
-    flexibility of the rim's mesh under them [mm per N/mm], for springs and near each pad. `WholeGear.loose_inverse` describes
-    `moved`, the edge's displacements by harmonic.
+    `load` ``(z, r, p)`` are their nodal forces, distributed over several edges. `close` is the same on the edges under the pad
+    only. `turns` ``(3, p)`` are their forces along x and y and their clockwise torque [mm]. `compliance` ``(p, p)`` is added
+    to the flexibility of the rim's mesh under them [mm per N/mm]. It contains springs and the local deflection near each pad.
+    `WholeGear.loose_inverse` describes `moved`, the displacements of the edge by harmonic.
     """
 
     load: Floats
@@ -96,8 +96,9 @@ def _nodal(angle, which, step, count):
 def _sharper(whole, width, tops, edge, weight):
     """Return the motion of a pad by its tractions minus that by hats ``(2, 2, terms, terms)`` [mm per N/mm].
 
-    Both differ only near by, where the rim is a half-plane. On it tractions ``T_n(s) / (pi sqrt(1 - s**2))`` move the surface
-    along themselves by c ``ln(4 / width)`` (n = 0) or ``c T_n(s) / n``, and across by the jump of Flamant's field.
+    The two differ only near the pad, where the rim is a half-plane. On a half-plane, tractions ``T_n(s) / (pi sqrt(1 -
+    s**2))`` move the surface along themselves by c ``ln(4 / width)`` (n = 0) or ``c T_n(s) / n``, and across themselves by the
+    jump of Flamant's field.
     """
     terms, material = weight.shape[1], whole.material
     knots = tops + SPREAD * edge * np.array([[-1], [0], [1]])

@@ -36,11 +36,12 @@ NONE_2, NONE_3 = np.zeros((0, 0)), np.zeros((0, 0, 0))  # empty arrays of a ring
 class Rim(NamedTuple):
     """Flexibility of a ring's teeth with its support, per mm of width (z teeth, `PLACES` loads on each right flank).
 
-    `more` ``(z, PLACES, z, PLACES)`` is added to the flexibility with the rim held. With p tractions of pads, `reaction` ``(p, z,
-    PLACES)`` are these per load. `moves` ``(3, z, PLACES)`` are motions of the whole ring per load: along x, along y [mm],
-    clockwise rotation [rad]. Unilateral lugs (l of them) are separate contacts: `lug` ``(l, l)`` and `across` ``(l, z, PLACES)``
-    are their flexibility, `turns` ``(3, l)`` and `gives` ``(3, z, PLACES)`` the effect of motions of the whole ring on them and
-    on the loads. `grip` ``(p + 3, p)`` are tractions of pads and motions of the ring by unit displacements of the pads.
+    `more` ``(z, PLACES, z, PLACES)`` is added to the flexibility with the rim held. For p tractions of pads, `reaction` ``(p,
+    z, PLACES)`` are the tractions per load. `moves` ``(3, z, PLACES)`` are rigid motions of the ring per load: along x, along
+    y [mm], clockwise rotation [rad]. The l unilateral lugs are separate contacts. `lug` ``(l, l)`` and `across` ``(l, z,
+    PLACES)`` are their flexibilities. `turns` ``(3, l)`` and `gives` ``(3, z, PLACES)`` are the displacements of lugs and
+    loads by rigid motions of the ring. `grip` ``(p + 3, p)`` are the tractions of the pads and the motions of the ring by unit
+    displacements of the pads.
     """
 
     whole: WholeGear

@@ -104,7 +104,7 @@ def _check_cost(refine):
 
 
 def _check_small(case, found):
-    """ValueError if a mesh, a pin or the sun moves by more than `REFUSE` modules, beyond small displacements."""
+    """Raise ValueError if a mesh, a pin or the sun is displaced by more than `REFUSE` modules (no small displacements)."""
     closed = np.divide(found.force, found.k, out=np.zeros_like(found.k), where=found.k > 0) - found.rim
     ways = {
         "a mesh closes": 1e3 * closed.max(),
@@ -147,7 +147,7 @@ def _positions(positions, cycles):
 def _position(of: Set, meshes: Meshes, i: int) -> Position:
     """Solve one position: pressures at corners and kinks for the nominal load first, then for the load of each mesh.
 
-    Further pairs that may touch under the deflection of the teeth are added. RuntimeError if this does not settle.
+    Further pairs that may touch under the deflection of the teeth are added. RuntimeError if this does not converge.
     """
     nominal, reach = of.case.force / of.case.width, np.zeros((2, of.case.planets))
     loads = np.full(reach.shape, nominal)

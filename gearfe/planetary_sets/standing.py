@@ -31,8 +31,8 @@ FITS = 1e-6  # largest position error of a planet [pitches] at which the set can
 class Standing:
     """Phases ``(positions, planets)`` of tooth 0 of sun (`outer`) and planet (`inner`) in their meshes.
 
-    `planet` and `ring` ``(planets,)`` are C_i and D_i of the module: planet tooth of the sun's tooth 0, ring tooth of the
-    planet's tooth 0.
+    `planet` and `ring` ``(planets,)`` are C_i and D_i of the module. C_i is the planet tooth that meets tooth 0 of the sun,
+    and D_i the ring tooth that meets tooth 0 of the planet.
     """
 
     outer: Floats

@@ -40,9 +40,12 @@ NULL = 1e-9  # Smaller eigenvalues, relative to the largest, belong to rigid-bod
 class WholeGear:
     """Block-circulant system of a gear, by harmonic k = 0 ... z // 2 (h of them), per mm of width.
 
-    Loads are unit line loads into the right flank of a tooth (the loaded one in the gear's frame, `PLACES` of them from root to
-    tip), then into the left one. The held edge has r unknowns per sector, radial and tangential (clockwise) by node: those of its
-    left corner first, clockwise, without the right corner.
+    Loads are unit line loads on the right flank of a tooth (the loaded one in the gear's frame, `PLACES` of them from root to
+    tip), then on the left one. The held edge has r unknowns per sector: radial and tangential (clockwise) displacements of its
+    nodes. They begin at the left corner and run clockwise, without the right corner. `stiffness` ``(h, n, n)`` is complex,
+    with the unknowns of the held edge first. `push` ``(h, n, 2 PLACES)`` are the loads on the tooth of sector 0. `bed` ``(h,
+    r, r)`` is the mass matrix of the held edge [mm], which converts tractions to forces. `angle` ``(r / 2,)`` are the angles
+    of the held nodes of sector 0, clockwise from its tooth's centre-line [rad].
 
     `stiffness` ``(h, n, n)`` is complex, with the unknowns of the held edge first. `push` ``(h, n, 2 PLACES)`` are the loads on
     the tooth of sector 0. `bed` ``(h, r, r)`` is the mass matrix of the held edge [mm]: forces of unit tractions spread as

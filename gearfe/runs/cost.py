@@ -29,7 +29,7 @@ class Cost:
     error: str  # first error of a sample case; empty if there is none
 
     def text(self) -> str:
-        """Lines for people."""
+        """Return the cost as lines of text."""
         out = [
             self.text_of_cases,
             f"time: about {_time(self.seconds)} of processor, {_time(self.seconds / self.workers)} with {self.workers} processes",
@@ -45,9 +45,9 @@ class Cost:
 def estimated(
     text: str, cases: int, blocks: int, trial: Callable[[], tuple[bytes, int, list[str]]], folder: object, workers: int | None
 ) -> Cost:
-    """Estimate the `Cost` of `cases`. `trial` computes some and returns their file, number and errors.
+    """Estimate the `Cost` of `cases`. ``trial`` computes some of them, and returns their file, number and errors.
 
-    `folder` is where they would be written.
+    `folder` is the output folder.
     """
     started = time.process_time()
     content, tried, wrong = trial()

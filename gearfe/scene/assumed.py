@@ -22,12 +22,13 @@ OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # words that 
 
 
 def split(file, assumptions, given, tables):
-    """Return the valid assumptions, and the changes that make the others invalid.
+    """Return the valid assumptions, the changed values, and whether a value of the source was changed.
 
-    Of checked ``[[assumption]]`` tables, the values `given` by the source by dotted key, and the scene's `tables` with their
-    defaults filled in: ``what``, ``why`` and ``depends`` of those that hold; one text for each value that is no longer the
-    source's or the assumed one; and whether a value that the source gives was changed: the scene is not its machine any more.
-    ValueError if a key names no value of the scene.
+    The arguments are the checked ``[[assumption]]`` tables, the values `given` by the source by dotted key, and the scene's
+    `tables` with defaults. The first result has ``what``, ``why`` and ``depends`` of each valid assumption. The second is a
+    text for each value that differs from that of the source or from the assumed one. The third is True if a value of the
+    source was changed, so that the scene is no longer the machine of the source. ValueError if a key names no value of the
+    scene.
     """
     kept, changed = [], {}
     for i, assumption in enumerate(assumptions):

@@ -89,7 +89,7 @@ class Scene:
     sensors: dict[str, dict[str, Any]] = field(default_factory=dict)  # checked rows by name
 
     def __post_init__(self) -> None:
-        """Raise ValueError if speeds, torques, forces or gears that follow from the file are those of other values."""
+        """Raise ValueError if speeds, torques, forces or gears are inconsistent with the values that follow from the file."""
         if self.train is not None:
             motor, machine = self.train.ends["motor"]["shaft"], self.machine
             given = [machine["speed_rpm"] * math.pi / 30, machine["torque_Nm"], *(one.force for one in self.pairs.values())]

@@ -157,7 +157,7 @@ def _assumed(pinion, wheel, held):
 
 
 def _numbers(pair, force):
-    """Numbers for the examples of the schema that suit a pair under a force [N]."""
+    """Return numbers for the examples of the schema that suit a pair under a force [N]."""
     gear, b = pair.gear_1, min(pair.gear_1.b, pair.gear_2.b)
     length = 0.25 * (gear.roll_a - gear.roll_f)
     roll = gear.roll_a - length
@@ -173,7 +173,7 @@ def _numbers(pair, force):
 
 @contextlib.contextmanager
 def _of_torque(torque):
-    """Messages on the force begin with the torque that was given."""
+    """Context in which messages on the force begin with the torque that was given."""
     try:
         yield
     except ValueError as error:

@@ -51,8 +51,9 @@ Owned = dict[Owner, list[Damage]]
 def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict[str, Owned]]:
     """Damage of the pair `name` by case, side and owner.
 
-    It lies on the flank that is loaded in its `pair`, by default the first pair of its gear. In a pair that loads the other flank
-    a crack lies on the unloaded side, and pits and spalls are in no contact. So does a chip. A missing tooth is missing in both.
+    The damage is on the flank that is loaded in its `pair`, by default the first pair of its gear. In a pair that loads the
+    other flank, a crack or a chip is on the unloaded side, and pits and spalls have no contact. A missing tooth is missing in
+    both.
     """
     out: dict[str, dict[str, Owned]] = {}
     for kind, make in DAMAGE.items():

@@ -42,9 +42,9 @@ class PrintedRow(NamedTuple):
 def judge(reference, found, run=""):
     """Rows of a `Reference`.
 
-    A row with a corrected value is judged by that alone: a value that its own row calls wrong cannot be reproduced. `found` are
-    our values by case, or by (case, pair) where the row names a pair; None where there is none (a measured value). `run` names
-    the simulation behind them.
+    A row with a corrected value is judged by the corrected value only, because a value that is known to be wrong cannot be
+    reproduced. `found` are our values by case, or by (case, pair) where the row names a pair. None means that there is no
+    computed value, as for measurements. `run` names the simulation behind them.
     """
     ours = [_of(found, row) for row in reference.rows]
     ordered = reference.trend and _ordered([row.target for row in reference.rows], ours)

@@ -60,7 +60,7 @@ def window_values(window: Any, n: int) -> Floats:
 
 
 def oscillation(values: Floats, told: str) -> Floats:
-    """Values without their mean. Raises ValueError, with the text `told`, if they are constant."""
+    """Return the values without their mean. Raise ValueError with the text `told` if they are constant."""
     x = values - values.mean()
     if not np.abs(x).max() > 1e-12 * np.abs(values).max():
         raise ValueError(told)

@@ -31,8 +31,8 @@ LOBES = 4  # distance between two lines whose Hann window lobes do not overlap [
 def of_values(values, name):
     """Compute the indicators of the samples ``(n,)`` of a signal called `name` by the names of `SOURCES` (with formulae).
 
-    The crest factor as S4 prints it, with the mean in the rms only, is no measure of shape: S4's healthy sun moves from -7.21 to
-    -10.77 um, which makes it about 0.2, and a fault that moves the mean changes it.
+    The crest factor as printed in S4 contains the mean in the rms value only. It is therefore no measure of shape. S4's
+    healthy sun moves from -7.21 to -10.77 um, which makes the factor about 0.2. A fault that changes the mean changes it too.
     """
     y, spread = values - np.mean(values), float(np.std(values))
     if not spread > 1e-12 * np.abs(values).max():

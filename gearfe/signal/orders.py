@@ -25,10 +25,10 @@ SLOWEST = 1 / 16  # lowest speed relative to the mean; below it, angular resampl
 def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
     """Values at equal steps of the shaft's angle, one row per revolution: ``(turns, samples_per_turn)``.
 
-    Interpolated by splines of degree 5, whose amplitude at frequency f is off by ``(f / (rate - f))**6``: 2e-6 at a tenth of
-    the rate, 1e-3 at a quarter, 7 % at 1/2.56. By default a row has as many samples as a turn where the shaft is slowest, so that
-    no frequency is folded back. ValueError without a shaft (`angle` or `shaft_frequency`), with less than one turn, a speed near
-    zero, or too few samples per turn.
+    The values are interpolated by splines of degree 5. Their relative amplitude error at frequency f is ``(f / (rate -
+    f))**6``: 2e-6 at a tenth of the rate, 1e-3 at a quarter, 7 % at 1/2.56. By default a row has as many samples as the
+    revolution at the lowest speed, to avoid aliasing. ValueError without a shaft (`angle` or `shaft_frequency`), for less than
+    one revolution, for a speed near zero, or for too few samples per revolution.
     """
     angle = signal.shaft_angle / (2 * math.pi)
     angle = angle - angle[0]

@@ -152,7 +152,7 @@ def labview_file(path: StrPath, lines: list[str]) -> Found:
 
 
 def _entry(segment, key, column):
-    """Entry of a column in a line of the header. It is empty if the line is too short."""
+    """Return the entry of a column in a line of the header, or an empty text if the line is too short."""
     values = segment.get(key, [])
     return values[column] if column < len(values) else ""
 

@@ -103,8 +103,8 @@ def power_spectral_density(
 def analytic(signal, band=None):
     """Analytic signal (complex, shape (n,)) without the mean, restricted to `band` = (low, high) [Hz] if given.
 
-    The band is cut between bins of the discrete Fourier transform, as `scipy.signal.envelope` does: exact for a record that
-    closes; any other rings at its ends, for about ``1 / (high - low)``.
+    The band is cut between bins of the discrete Fourier transform, as in `scipy.signal.envelope`. This is exact for a periodic
+    record. Other records have transients at both ends, which last about ``1 / (high - low)``.
     """
     low, high = band_of(band, signal.rate, signal.name)
     n = signal.values.size

@@ -127,9 +127,10 @@ def named(cell: str) -> tuple[str, str]:
 
 
 def _way(rows, given):
-    """`Way` of reading by which most rows are numbers. Among equals, the first that fits the column names.
+    """Return the `Way` of reading by which most rows are numbers. Among equals, the first that fits the column names.
 
-    Thousands are parted only if more rows are numbers then, or none fits otherwise. None if no row is numbers.
+    Thousands separators are assumed only if more rows are numbers with them, or if no other format fits. The result is None if
+    no row is numbers.
     """
     best, most, looked = None, (0, False), rows[-LOOKED:]
     for way in _ways():

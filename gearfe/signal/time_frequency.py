@@ -39,7 +39,7 @@ class Spectrogram:
 
 
 def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[Any, ...] = "hann") -> Spectrogram:
-    """Compute amplitude spectra of frames that overlap by three quarters.
+    """Compute the amplitude spectra of overlapping frames (short-time Fourier transform, 75 % overlap).
 
     Parameters
     ----------

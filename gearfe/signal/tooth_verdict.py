@@ -65,12 +65,12 @@ class ToothVerdict(NamedTuple):
 
 
 def _largest(average, teeth):
-    """Angle of the largest value of the residual signal [rad]."""
+    """Return the shaft angle at which the residual signal of an average has its largest magnitude [rad]."""
     return 2 * math.pi * int(np.argmax(np.abs(residual_signal(average, teeth, sidebands=1)))) / average.size
 
 
 def _of_healthy(healthy, average, teeth):
-    """Return FM4 of the healthy record, and the variance of its residual over that of an `average`, at most 1."""
+    """Return FM4 of the healthy record, and the ratio of its residual variance to that of an `average`, at most 1."""
     if healthy is None:
         return math.nan, 1.0
     sound = synchronous_average(healthy)[0]
@@ -125,7 +125,7 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
 
 
 def _halves(record, count, revolutions):
-    """Averages of both halves of the whole revolutions of a record."""
+    """Return the synchronous averages of the first and the second half of the revolutions of a record."""
     turned = (record.shaft_angle - record.shaft_angle[0]) / (2 * math.pi)
     middle = int(np.searchsorted(turned, revolutions // 2))
     return [synchronous_average(part, count)[0] for part in (record[: middle + 1], record[middle:])]

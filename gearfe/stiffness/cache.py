@@ -36,9 +36,9 @@ def folder():
 def solved_gear(gear, material, cracks=(), *, cache=True, **options):
     """Return the flexibility of a gear's section by finite elements, from the cache if possible.
 
-    `gearfe.flexibility.solved.solved_gears` describes `cache`; False solves again and stores nothing. The disk is only used with
-    the results of this process. `options` are those of `finite_elements.fe.damaged_flexibility`: broken, neighbours, state,
-    refine, teeth.
+    `gearfe.flexibility.solved.solved_gears` describes `cache`. With False the gear is solved again and nothing is stored.
+    Files are used only together with the stored results of this process. `options` are those of
+    `finite_elements.fe.damaged_flexibility`: broken, neighbours, state, refine, teeth.
     """
     kept = solved_gears(cache)
 
@@ -153,5 +153,5 @@ def sources():
 
 
 def clear():
-    """Forget everything solved in this process (files stay)."""
+    """Remove all results stored in this process. Files are kept."""
     PROCESS.clear()

@@ -120,8 +120,8 @@ class StiffnessCurve:
     def __call__(self, phase: ArrayLike) -> NDArray:
         """Return the secant stiffness [N/m] at phases of any shape, interpolated linearly, for dynamic models.
 
-        Phases that go round a mesh cycle are continued periodically. Those of a damaged tooth's engagement (``span="tooth"``) are
-        not: what comes before and after it is another tooth, and a ValueError says that the curve has no value there.
+        Phases that cover whole mesh cycles are continued periodically. The phases of a damaged tooth's engagement
+        (``span="tooth"``) are not, because another tooth is in mesh before and after them. There, a ValueError is raised.
         """
         phases = np.asarray(phase)
         if phases.dtype.kind not in "iuf" or not np.isfinite(phases).all():
@@ -180,7 +180,7 @@ class StiffnessCurve:
     def zones(self) -> dict[str, float]:
         """Return the mean stiffness [N/m] by zone: ``single``, ``double`` (or more pairs), ``mean``, ``max``.
 
-        A zone none of the phases falls into is left out, and so are those of helical teeth.
+        Zones that contain none of the phases are omitted. Helical teeth have no zones ``single`` and ``double``.
         """
         out = {name: float(self.k[rows].mean()) for name, rows in self._rows().items()}
         return out | {"mean": float(self.k.mean()), "max": float(self.k.max())}
@@ -188,7 +188,7 @@ class StiffnessCurve:
     def zone_errors(self) -> dict[str, float]:
         """Relative error estimates of `zones`, of a mean that of the mean.
 
-        The result is empty if none was asked for.
+        The error of a mean is that of the mean value. The result is empty if no estimate was requested.
         """
         if self.error is None:
             return {}

@@ -74,7 +74,7 @@ def estimate(phase, periodic, k, coarse, finer, *, energy):
 
 
 def other_solves(refine, order=None):
-    """Options of the coarser solve and of that with finer hats. The energy model has an `order`."""
+    """Return the options of the coarser solve and of the one with finer hats. `order` applies to the energy model."""
     coarse = (
         {"refine": COARSER["fe"] * refine} if order is None else {"refine": COARSER["ritz"] * refine, "order": max(order - 1, 2)}
     )

@@ -118,7 +118,7 @@ class OwnFlexibility:
         return self.pinion, self.wheel
 
     def told(self) -> dict[str, Any]:
-        """Entries of `meta`: the names of both gears' models, and what their values hold."""
+        """Entries of `meta`: the names of both gears' models, and the contents of their flexibilities."""
         names = [gear if isinstance(gear, str) else getattr(gear, "__name__", type(gear).__name__) for gear in self.gears]
         return {"flexibility": names, "given": self.given}
 

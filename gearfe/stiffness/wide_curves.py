@@ -93,7 +93,7 @@ def _curve(found, meta, case):
 def _doubt(case, phase, found, options, brute):
     """Estimated error of k at `phase` [N/m], see `solid_curves`, and the part of the resolution it is estimated with.
 
-    `brute`: how finite elements are solved; None of the energy model.
+    `brute` are the options of finite elements (a `Solve`), or None for the energy model.
     """
     healthy = not (case.damaged or any(form.differs for form in case.forms or ()))
     fixed = fixed_phases(phase, healthy)

@@ -233,9 +233,10 @@ def _moved(nodes, cells, material, held, loads):
 def _pressure(sector, nodes, number, lines, spread):
     """Nodal forces ``(3 n,)`` [N] of contact lines on the flanks of a sector, x, y, z of every node together.
 
-    On each line the pressure is its line load times a hat of `spread` [mm] along the profile, at small triangles of the flank; it
-    is scaled to the load of the line, so that nothing is lost where a hat leaves the flank or meets a pit. A line that meets the
-    middle of none of these triangles, as a short one at a corner of the flank, is a force at the nearest of them.
+    On each line the pressure is its line load times a hat of `spread` [mm] along the profile, evaluated at small triangles of
+    the flank. It is scaled to the load of the line, so that no load is lost where a hat leaves the flank or meets a pit. A
+    line that contains the middle of none of these triangles, such as a short one at a corner of the flank, is a force at the
+    nearest triangle.
     """
     gear, rate = sector.gear, sector.gear.twist_rate
     force = np.zeros((nodes.shape[1], 3))

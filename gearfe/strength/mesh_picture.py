@@ -96,7 +96,7 @@ def _camera(parts, close_up):
 
 
 def _into_pits(part, faces):
-    """Return the direction of view into pits over the next tooth: out of the flank, and away from the held edge."""
+    """Return the viewing direction into the pits over the next tooth: outwards from the flank, away from the held edge."""
     edges = np.sort(np.hstack([faces[[0, 1]], faces[[1, 2]], faces[[0, 2]]]), axis=0)
     sides, count = np.unique(edges, axis=1, return_counts=True)
     middle = part.points[:, np.unique(faces)].mean(axis=1)
@@ -108,7 +108,7 @@ def _into_pits(part, faces):
 
 
 def _at_crack(points):
-    """Camera on the end of a crack's faces that spans more of the section: the end face, and the fillet along the mouth."""
+    """Return the camera of a crack: on the end face where its faces are longer, with the fillet along its mouth in view."""
     upper = points[2] > (points[2].min() + points[2].max()) / 2
     above, below = (np.linalg.norm(np.ptp(points[:2, half], axis=1)) for half in (upper, ~upper))
     side, length = (1.0 if above >= 0.999 * below else -1.0), np.ptp(points[2])

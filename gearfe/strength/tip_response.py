@@ -83,7 +83,7 @@ def ritz_response(gear, material, crack, teeth, refine, held=None):
 
 
 def _held_parts(gear, held, tooth):
-    """Angles [rad] that divide the held edge of the sector of a `tooth`, and which parts between them are held (None: all)."""
+    """Return the angles [rad] that divide the held edge of the sector of a `tooth`, and which parts are held (None: all)."""
     pitch = math.pi / gear.z
     if held is None:
         return (), None
@@ -94,7 +94,7 @@ def _held_parts(gear, held, tooth):
 
 
 def _fixed(made, cuts, on):
-    """Which edges of the held edge of a sector are held; None if all are."""
+    """Return a mask of the held edges along the held boundary of a sector, or None if all are held."""
     if on is None:
         return None
     angle = np.arctan2(*made.points[:, made.held])
@@ -156,5 +156,5 @@ def _partly_held(mesh, arcs):
 
 
 def _on_arcs(angle, arcs):
-    """Which angles [rad] lie on one of the `arcs` [rad]."""
+    """Return a mask of the angles [rad] that lie on one of the `arcs` [rad]."""
     return np.any([(angle - start) % (2 * math.pi) <= stop - start for start, stop in arcs], axis=0)

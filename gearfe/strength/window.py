@@ -34,7 +34,7 @@ def drawing_library():
 
 @contextlib.contextmanager
 def plotting(**options):
-    """Return a plotter without a screen, closed in any case. Other threads wait."""
+    """Context of a plotter that needs no display. The plotter is closed at the end, and other threads wait until then."""
     free = free_memory()
     if free < ADDRESSES:
         raise RuntimeError(
@@ -52,15 +52,15 @@ def plotting(**options):
 
 
 def renderer_name():
-    """Name of the window that pictures would be drawn in. Nothing is opened."""
+    """Return the name of the window in which pictures would be drawn, without opening it."""
     drawing_library()
     return os.environ.get("VTK_DEFAULT_OPENGL_WINDOW", "the display's" if os.environ.get("DISPLAY") else "the system's")
 
 
 def choose_window():
-    """Without a display, pick the offscreen window this machine can open: VTK itself ends the process if there is none.
+    """Choose an offscreen window that this computer can open, if there is no display. Without one VTK ends the process.
 
-    RuntimeError if there is neither.
+    RuntimeError if neither EGL nor OSMesa can be loaded.
     """
     if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("VTK_DEFAULT_OPENGL_WINDOW"):
         return

@@ -18,7 +18,7 @@ WORDS = {
 
 
 def _ratio(text):
-    """Ratio of speeds, ``0.305`` or ``29/95``."""
+    """Convert a speed ratio such as ``0.305`` or ``29/95`` to a float."""
     from fractions import Fraction
 
     try:
@@ -92,7 +92,7 @@ def main(argv=None):
 
 
 def _refuse_nothing(parser, arguments):
-    """Refuse ``--force=--``, of which argparse of older Pythons makes an empty list."""
+    """Reject an empty list of values, which argparse of older Pythons returns for ``--force=--``."""
     for action in parser._actions:
         value = getattr(arguments, action.dest, None)
         if action.nargs is None and value != action.default and (value == [] or value == [[]]):
@@ -125,7 +125,7 @@ class _Version(argparse.Action):
 
 
 def _add_verb(known, name, table, shared):
-    """Add a verb of ``verbs.toml``. `shared` are the groups of options that several verbs have."""
+    """Add a verb of ``verbs.toml`` to the parser. `shared` holds the groups of options that several verbs have."""
     text, form = table["text"], {}
     if table.get("methods"):
         form = {"formatter_class": argparse.RawDescriptionHelpFormatter, "epilog": f"methods:\n{described()}"}

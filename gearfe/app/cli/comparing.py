@@ -36,7 +36,7 @@ def compare(arguments):
 
 
 def _results(scene, printed, arguments):
-    """`Comparison` of a pair, or of several cases, which the arguments ask for."""
+    """Compute the `Comparison` of the pair, or of the damage cases, that the arguments select."""
     from ...comparison.compare import compare, compare_cases
 
     one = arguments.pair or arguments.case or arguments.model or arguments.plot
@@ -55,7 +55,7 @@ def _results(scene, printed, arguments):
 
 
 def _print_losses(scene, result):
-    """Print the answer of a comparison, what it compares, and the losses of each damaged tooth."""
+    """Print the headline of a comparison, the definition of its zones, and the stiffness losses of each damaged tooth."""
     from ...comparison.told_scene import told_supports
 
     meta, several = result.reference.meta, len(result.asked) > 1

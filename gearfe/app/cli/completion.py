@@ -50,7 +50,7 @@ def _choices(verb, parser):
 
 
 def script(shell, verbs):
-    """Completion script for `shell`, ``bash`` or ``zsh``, of argparse's parsers by verb."""
+    """Return the completion script for `shell`, ``bash`` or ``zsh``, from the argparse parsers of the verbs."""
     folder = resources.files("gearfe.scene.scenes")
     scenes = sorted(place.name.removesuffix(".toml") for place in folder.iterdir() if place.name.endswith(".toml"))
     options, choices, with_scene = [], [], []

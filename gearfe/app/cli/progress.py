@@ -11,7 +11,7 @@ INTERVAL = 30.0  # interval between progress lines if the output is not a termin
 
 
 def _log(text, interval=INTERVAL):
-    """Return a listener that prints at most a line per interval: what is done, elapsed and remaining time."""
+    """Return a listener that prints at most one line per `interval`: completed part, elapsed and remaining time."""
     started = last = time.monotonic()
 
     def step(what, done):

@@ -44,7 +44,7 @@ class Harmless:
 
 
 def spelled(error):
-    """Replace characters that an output cannot show by a spelling, or by a question mark."""
+    """Replace characters that the output cannot encode by an ASCII spelling or a question mark (codec error handler)."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     return "".join(SPELLED.get(letter, "?") for letter in error.object[error.start : error.end]), error.end
@@ -59,7 +59,7 @@ def tell(text):
 
 
 def as_options(error, options):
-    """Return the text of an error or a warning with arguments of Python, ``unit=``, as `options` of the verb, ``--unit``."""
+    """Return the message of an error or a warning, with Python arguments such as ``unit=`` as `options` such as ``--unit``."""
     text, names = str(error), "|".join(map(re.escape, options))
     if not names:
         return text
@@ -81,7 +81,7 @@ def _end_tidily(number, _):
 
 
 def _prepare():
-    """Let the process end tidily on SIGTERM, and print characters that a stream cannot encode as text."""
+    """Clean up on SIGTERM, and print characters that a stream cannot encode by an ASCII spelling."""
     with contextlib.suppress(ValueError):  # Python sets signal handlers only in the main thread.
         signal.signal(signal.SIGTERM, _end_tidily)
     codecs.register_error("spelled", spelled)

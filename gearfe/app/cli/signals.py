@@ -63,7 +63,7 @@ def _check(arguments):
 
 
 def _named_lines(spectrum, arguments):
-    """Title and table of the largest lines of a spectrum by their names in the scene. All are written to the output."""
+    """Return title and table of the largest lines of a spectrum, named by the scene. The output file contains all lines."""
     from ...comparison.named_lines import named_table
     from ...scene.load import load_scene
 

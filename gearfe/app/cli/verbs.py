@@ -76,7 +76,7 @@ def stiffness(arguments):
 
 
 def _in_set(scene, name, curve):
-    """Words on the stiffness of a pair in its set. Empty without a set, and for closed forms, which need no mesh."""
+    """Describe the stiffness of a pair in its planetary set. The result is empty without a set and for closed forms."""
     from ...stiffness.methods import METHODS
 
     if scene.set is None or not METHODS[curve.meta["method"]].converged:

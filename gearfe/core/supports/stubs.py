@@ -12,11 +12,11 @@ MOTIONS = 6  # motions of a face: displacements x, y, z [mm], rotations about x,
 
 
 def stub_stiffness(shaft: Any, width: float) -> Floats:
-    """Return forces and moments of the stubs on both end faces of the gear, by the faces' motions.
+    """Return the stiffness ``(12, 12)`` of the shaft stubs: forces and moments on both end faces of the gear per motion.
 
-    A stub that reaches no bearing moves along freely; one that ends at its face, likewise. The shaft's first bearing holds it
-    along the axis, its `torque` about it; `width` is that of the gear [mm]. Shape (12, 12): six motions of the face z = 0,
-    then of z = b.
+    The rows and columns are six motions of the face z = 0, then of the face z = b. A stub that reaches no bearing moves
+    freely. A shaft that ends at a face has no stub there. The first bearing of the shaft holds it along the axis, its `torque`
+    about the axis. `width` is that of the gear [mm].
     """
     faces = (shaft.gear - width / 2, shaft.gear + width / 2)
     nodes, pieces = pieces_between(shaft.segments, [*shaft.bearings, shaft.torque, *faces])

@@ -36,7 +36,7 @@ HOMES = {  # by pair of the scene: bodies that have the damaged teeth unless the
 
 
 def scene_compound(scene, case, **options):
-    """Machine of a scene: the stiffness curves of its pairs."""
+    """Build the machine of a scene with the stiffness curves of its pairs."""
     pairs, n = scene_pairs(scene), scene.machine["n_planets"]
     meshes = {name: mesh.of._replace(pair=SCENE_PAIRS[mesh.of.pair]) for name, mesh in compound_table(pairs, n).items()}
 

@@ -26,10 +26,11 @@ def engaged(pair, phase):
 
 
 def impact_cycle(pair, materials, *, lost=None):
-    """Coefficient of ``F = K delta**1.5`` over a cycle: the sum over the pairs in touch of ``4/3 sqrt(R) E*`` [N/m^1.5].
+    """Return the coefficient of ``F = K delta**1.5`` over a cycle: sum of ``4/3 sqrt(R) E*`` of all pairs [N/m^1.5].
 
-    All pairs are pressed together by the same depth, each with the radius of curvature R at its contact. With `lost`, the part of
-    its contact line that tooth 0 lacks as a function of its phase: over its whole engagement, as a damaged tooth's curve.
+    All pairs have the same deflection, each with the radius of curvature R at its contact. `lost` is the part of its contact
+    line that the damaged tooth 0 has lost, as a function of its phase. With `lost`, the result is over the whole engagement of
+    tooth 0.
     """
     # Phases are offset by half a step, because engagements end at whole steps.
     phase = _steps(pair.eps_alpha, lost) + 0.5 / COUNT

@@ -195,7 +195,7 @@ class GearMesh:
 
     @property
     def openings(self) -> tuple[tuple[float, float, float], ...]:
-        """Its errors, and its gap as a constant one."""
+        """The errors of the mesh as sinusoids, with its gap as a constant one."""
         return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
 
     def k(self, t: ArrayLike) -> Floats:

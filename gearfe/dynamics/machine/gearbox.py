@@ -37,7 +37,7 @@ DOFS = {"torsion": "theta", "six": SPACE}
 
 
 def scene_gearbox(scene, case, **options):
-    """Machine of a scene with a `Train`: the stiffness curves of its pairs."""
+    """Build the machine of a scene with a `Train`, with the stiffness curves of its pairs."""
     train = scene.train
     homes = {name: (one, two) for name, (one, two, _) in train.pairs.items()}
     meshes = {name: Meshed(name, bodies) for name, bodies in homes.items()}
@@ -151,7 +151,7 @@ def _held(train, chains, name):
 
 
 def _stations(scene, chains):
-    """`Body` of each station: shaft, gears, rotors that are held rigidly, and carriers."""
+    """Return the `Body` of each station: parts of shafts, with their gears, rigidly coupled rotors and carriers."""
     train, run, out = scene.train, scene.machine, []
     more = [(_held(train, chains, n), (0.0, e["inertia_kgm2"], 0.0)) for n, e in train.ends.items() if not _elastic(e)]
     more += [(chains[stage.carrier].at(stage.at), carrier_lump(scene, stage)) for stage in train.stages.values()]
@@ -241,7 +241,7 @@ def _parallel(scene, layout, stiffness, damage):
 
 
 def _stages(scene):
-    """`Stage` of each pair and planetary stage, from the last one of the flow of power to that of the motor."""
+    """Return the `Stage` of each pair and planetary stage, against the flow of power: the stage of the motor is the last."""
     train, out = scene.train, []
     for link in train.links:
         turns = [abs(train.speeds[shaft]) / (2 * math.pi) for shaft in (link.one, link.two)]

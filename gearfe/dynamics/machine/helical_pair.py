@@ -23,7 +23,7 @@ SHAFT = 1e4  # assumed torsional stiffness of the motor shaft [N m/rad]
 
 
 def scene_pair(scene, case, **options):
-    """Machine of a scene with linear contact: the stiffness curves of its pair."""
+    """Build the machine of a scene with linear contact, with the stiffness curves of its pair."""
     name, pair = next(iter(scene.pairs)), scene.pair().pair
 
     def build(healthy, damage, **drive):

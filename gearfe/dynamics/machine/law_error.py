@@ -88,7 +88,7 @@ def converged_force_law(
     force: float | None = None,
     **options: Unpack[PairOptions],
 ) -> ForceLaw:
-    """Force law between two loads, solved under as many loads and at as many phases as its own error estimate asks for.
+    """Compute a force law between two loads, with as many loads and phases as its own error estimate requires.
 
     Twice as many of what is worse than asked for, loads or phases, until the root mean squares of `law_error` are within
     `error`. Those are the errors of half as many: the law itself is two to five times better. With the default, accelerations of

@@ -104,7 +104,7 @@ def _shafts(scene):
 def _stages(machine: Machine, alone: bool) -> Iterator[Line]:
     """Return the lines of the stages.
 
-    `alone`: the machine has no shafts, so that gears of pairs have shaft frequencies.
+    If `alone`, the machine has no shafts. The lines of pairs then include the shaft frequencies of their gears.
     """
     for stage in machine.stages:
         part, z = f"stage {stage.name}", round(stage.mesh / stage.turning)

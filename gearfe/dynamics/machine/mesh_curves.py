@@ -41,7 +41,7 @@ ALIKE = 1e-6  # tolerance of equal samples of two curves [mesh cycles, cells]
 
 
 def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[PhaseTable, Any], Any] = PhaseTable.__call__) -> Any:
-    """Sum of all changes at running phases, or of another `value` of their tables."""
+    """Sum all changes at unwrapped phases. By default the values of their tables are summed, otherwise those of `value`."""
     running: Floats = np.asarray(phase, dtype=float)
     out = np.zeros(running.shape)
     for z, first, change in changes:
@@ -53,13 +53,13 @@ def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[PhaseT
 
 
 def tooth_phase_of(running, z, first, start):
-    """Phases from `start` on of an event that returns every z mesh cycles, starting at the running phase `first`."""
+    """Return phases relative to an event, counted from `start`. It recurs every z mesh cycles from phase `first` on."""
     on = running - first - start
     return on - z * np.floor(on / z) + start
 
 
 def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> Floats | None:
-    """Coefficients ``(count, 4)`` of the summed changes in cells from a running phase on, or None if their cells differ."""
+    """Return coefficients ``(count, 4)`` of the sum of changes in cells from a phase on, or None if cells differ."""
     out = np.zeros((count, 4))
     for z, first, change in changes:
         place = (start - first - change.start) / change.width

@@ -16,7 +16,7 @@ def with_errors(
     runout: Mapping[str, tuple[float, float, float]] | None = None,
     place: Mapping[str, tuple[float, float]] | None = None,
 ) -> Machine:
-    """Return the machine with errors in every mesh, the three kinds that the article on the herringbone stage lists.
+    """Return the machine with profile errors, run-out and misplaced bodies in its meshes, as in the herringbone article.
 
     A shift s of a body's teeth closes a mesh by ``row s`` with the translations of the mesh's row, so that ``e = -row s``.
 

@@ -68,9 +68,10 @@ class Secant:
         return self.deepest * np.linspace(0.0, 1.0, self.k.shape[1]) ** 2
 
     def less(self, healthy: "Secant", others: Iterable[tuple[float, float, "Secant"]] = ()) -> "Secant":
-        """Its difference from a `healthy` cycle, with two rows of zeros beyond either end.
+        """Return the difference of this law from a `healthy` cycle, with two rows of zeros before and after it.
 
-        `others` are changes that it includes: cycles until each returns, and where its phase 0 lies.
+        `others` are changes that it contains as well: the cycles after which each recurs, the position of its phase 0, and its
+        table.
         """
         phase = self.start + self.width * np.arange(len(self.k))
         change = self.k - healthy((phase % 1.0)[:, None], self.depths)[0]

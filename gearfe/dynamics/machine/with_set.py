@@ -119,7 +119,10 @@ def with_added(machine: Machine, added: AddedCompliance) -> Machine:
 
 
 def _cycles(curves):
-    """Mesh cycles that positions last, equally spaced over whole cycles, and enough of them."""
+    """Return the number of mesh cycles that the positions cover.
+
+    ValueError unless the positions are equally spaced over whole periods of the set.
+    """
     at = curves.position
     step = np.ptp(at) / max(at.size - 1, 1)
     cycles = round(at.size * step)

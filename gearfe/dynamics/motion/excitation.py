@@ -11,15 +11,16 @@ from ..machine.contact_law import depth
 class Flat(NamedTuple):
     """The tables of a machine as arrays for compiled functions.
 
-    `cells` holds the coefficients of all `machine.phase_table.PhaseTable` one after the other. Records are `cycle` (of each
-    mesh), `change` (of each damaged tooth), `shift` (of each tooth off its place) and `rub` (of each friction row). Their fields
-    are `mesh`, cycles until it returns (`period`), the first of them, `start` and `width` of the table, `place` and number
-    (`size`) of its cells. Records of the sinusoids of all errors are `error`: `mesh`, `amplitude`, angular frequency `omega`,
-    phase `angle`. Of each load: where its knots start and end.
-    `twin` is the first mesh whose stiffness is always that of a mesh. `pace` are the knots of `machine.speed.Speed`, none
-    at a constant speed.
-    `secant` holds the tables of all force laws one after the other; `shape` is, of each mesh and then of each damaged tooth,
-    the place, rows and columns of its table and one over its depth [1/m], no rows where it has no law.
+    - `cells` are the cubic coefficients of all `machine.phase_table.PhaseTable` in sequence.
+    - `cycle` (of each mesh), `change` (of each damaged tooth), `shift` (of each tooth with a position error) and `rub` (of
+      each friction row) are records. Their fields are `mesh`, the cycles until they recur (`period`), the first of them,
+      `start` and `width` of the table, and the position (`place`) and number (`size`) of its cells.
+    - `error` has a record for each sinusoid of the errors: `mesh`, `amplitude`, angular frequency `omega` and phase `angle`.
+    - `knots` are the times and values of all loads, and `knot_place` the first and last of each load.
+    - `twin` is, for each mesh, the first mesh that always has the same stiffness.
+    - `pace` are the knots of `machine.speed.Speed`, none at constant speed.
+    - `secant` are the tables of all force laws in sequence. `shape` has for each mesh, then for each damaged tooth, the
+      position, rows and columns of its table and the reciprocal of its depth [1/m]. Without a law there are no rows.
     """
 
     cells: np.ndarray

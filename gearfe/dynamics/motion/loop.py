@@ -105,7 +105,7 @@ def _largest(out, none, W, level, apart, size):
 
 @compiled
 def _turned(apart, now, row, laws, scale):
-    """Return the deviation of stiffnesses from straight lines in a step times the forces, and the largest force."""
+    """Write the curvature of stiffnesses in a step times the forces into `apart`. Return the largest force (or `scale`)."""
     for i in range(apart.size):
         apart[i] = 0.0
     for i in range(laws.size):
@@ -159,7 +159,7 @@ def _aligned(at, whole, level):
 
 @compiled
 def _ended(end, new, y, add, at):
-    """Return the inputs of the forces at the end of a step: the loads in y are of the stage before, in `new` of the end."""
+    """Write the inputs of the forces at the end of a step into `end`. The loads of the last stage are replaced by new ones."""
     for i in range(end.size):
         end[i] = new[new.size - end.size + i] + y[end.size + i] - add[at + end.size + i]
 

@@ -124,7 +124,7 @@ def plan(machine, h, x=None, adapt=False):
 
 
 def _told(P, end, k, c):
-    """Mesh forces of the linear part from forces at the end of a step, which add ``end @ f`` to z there."""
+    """Return the mesh forces of the linear part that forces at the end of a step cause, which add ``end @ f`` to z."""
     x, m = P @ end, len(k)
     return x[:m] * k[:, None] + (x[m:] * c[:, None] if len(P) > m else 0.0)
 

@@ -86,7 +86,7 @@ class _Run:
         return self.scale * np.concatenate([u[self.n :], a])
 
     def between(self, low, high, y, inside):
-        """State at `high`, and the states at the times `inside`, where no load bends."""
+        """Integrate between two times without kinks of loads. Return the state at `high`, and the states at `inside`."""
         states = []
         while low < high:
             solver = getattr(scipy.integrate, self.method)(self.rate, low, y, high, **self.options)
@@ -158,7 +158,7 @@ class _Run:
         return lambda t: self.compression(t, path(t))[i] - place
 
     def _change(self, t, y, hit):
-        """Change the touching flanks of the meshes `hit`, and of the halves of the same gear that follow at once."""
+        """Change the flanks in contact of the meshes `hit`, and of the other half of the same gear if it follows at once."""
         self.events += 1
         if self.events > EVENTS:
             raise RuntimeError(

@@ -167,8 +167,8 @@ class Response:
     def signal(self, name: str, turning: float | None = None) -> Signal:
         """Channel `name` as a `gearfe.Signal`.
 
-        With `turning`, the turns per second of a shaft at the machine's nominal speed [Hz], it has the angle of that shaft, so
-        that `gearfe.order_spectrum` and the synchronous average follow a speed that changes.
+        `turning` is the rotational frequency of a shaft at the machine's nominal speed [Hz]. With it, the signal has the angle
+        of that shaft, so that `gearfe.order_spectrum` and the synchronous average are valid at variable speed.
         """
         angle = None if turning is None else 2 * np.pi * turning * self.machine.turned(self.time)
         return Signal(self[name], 1 / float(self.time[1] - self.time[0]), self.unit(name), name, angle)

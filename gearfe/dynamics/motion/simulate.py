@@ -201,7 +201,7 @@ def _reference(machine, duration, count, state, method, rtol, start, filtered):
 
 
 class _Runs:
-    """Runs of the fast path that keep the same times: `count` intervals of output, each of some steps."""
+    """Runs of the fast integrator with the same output times: `count` intervals, each of one or more steps."""
 
     def __init__(self, machine, duration, count, state, own, start, filtered, progress):
         self.machine, self.duration, self.count, self.state = machine, duration, count, state
@@ -219,14 +219,14 @@ class _Runs:
         return math.prod(stages(every)) if self.filtered else every
 
     def __call__(self, every, state=None, adapt=False):
-        """Run of `steps` of `every` for each output."""
+        """Integrate with ``steps(every)`` steps per output interval, and return the response."""
         state = self.state if state is None else state
         counts, every = stages(every) if self.filtered else (), self.steps(every)
         options = {"every": every, "start": self.start, "adapt": adapt, "counts": counts}
         return fixed_steps(self.machine, self.duration, every * self.count, state, **options)
 
     def given(self, every, error):
-        """Run of steps that the caller chose, with their estimate unless `error` is False."""
+        """Integrate with the step that the caller chose. Estimate its error, unless `error` is False."""
         started, every = time.perf_counter(), self.steps(every)
         if every * self.count > MANY:
             span = self.duration * TRIED / (every * self.count)

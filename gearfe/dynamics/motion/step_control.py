@@ -116,7 +116,8 @@ def longest_seen(machine, start, duration):
 def stretch(machine, duration, begin=0.0):
     """Start and length [s] of the stretch of a run from time `begin` on, on which its error is estimated.
 
-    `CYCLES` mesh cycles, with the worst damaged tooth among them; of a speed that changes: where it is fastest.
+    It lasts `CYCLES` mesh cycles, which contain the engagement of the worst damaged tooth. At variable speed it is where the
+    speed is largest.
     """
     rates = [abs(m.frequency) for m in machine.meshes if m.frequency]
     if not rates:
@@ -230,9 +231,9 @@ def is_rough(machine):
 def estimate(machine, h, length, places, *, adapt=False, tried=False):
     """Largest `Estimate` of the step `h` over stretches of `length` seconds, which start at the times and states in `places`.
 
-    Where local halving rules, the error is small or large by where the steps happen to lie, and a shorter one can be the worse:
-    the run is then compared with a third of the step, and so is that of half the step; of a step that is `tried` not if half of
-    it alone says that it is too long.
+    With local halving of steps, the error also depends on where the steps happen to lie, and a shorter step can be worse. Two
+    runs, with the step and with half of it, are then both compared with a third run with a third of the step. A step that is
+    `tried` needs no third run if the difference of the first two is already too large.
     """
     count, x, rough = length / h * (1 - 1e-12), machine.working(), adapt and is_rough(machine)
     every = max(1, int(count / SAMPLES))

@@ -37,7 +37,7 @@ def stages(every):
 
 
 def thinned(pieces, counts):
-    """Channels filtered and thinned by one filter after the other.
+    """Filter and decimate channels by a sequence of filters, one after the other.
 
     Linear-phase filters without delay. Nothing is known before the first and after the last row: a row i from an end is filtered
     by what lies i rows on either side of it, which lets the same amplitudes pass and more of what lies above; the first and the
@@ -87,7 +87,7 @@ def _matrix(count, reach, passed):
 
 
 def _filtered(pieces, count, reach, passed):
-    """One filter: every `count`-th row, in pieces."""
+    """Apply one filter, and return every `count`-th row, in pieces."""
     # `at` is the next output row; `whole` rows are on each side of it, or all there are
     waiting, at, whole = None, 0, reach * count
 

@@ -15,7 +15,8 @@ NEAR_TIP = 0.1  # Within this part of its length from the tip, a crack has no co
 def zone_forces(mesh):
     """Nodal forces ``(3 nodes, k)`` of unit resultant [N] that push apart the faces of each zone of all cracks.
 
-    Of a `gearfe.geometry.mesh.solid.Solid`, node by node x, y, z; zones without a face are left out.
+    The forces are those of the cracks of a `gearfe.geometry.mesh.solid.Solid`, with x, y, z of each node in sequence. Zones
+    without a face are omitted.
     """
     out, count = [], mesh.points.shape[1]
     for body in (name for name in mesh.faces if name.startswith("crack ") and name.endswith(" body")):
@@ -64,14 +65,14 @@ def _places(mesh, number, faces, heights):
 
 
 def _to_tooth(mesh, face, normal):
-    """1 if the normal of a face on the tooth's side points into the tooth, -1 otherwise."""
+    """Return 1 if the normal of a face on the side of the tooth points into the tooth, otherwise -1."""
     (cell,) = np.flatnonzero(np.isin(mesh.cells, face).sum(axis=0) == face.size)
     inside = mesh.points[:, mesh.cells[:, cell]].mean(axis=1) - mesh.points[:, face].mean(axis=1)
     return 1.0 if inside @ normal > 0 else -1.0
 
 
 def _apart(count, faces, forces):
-    """Return a column ``(3 count,)`` that pushes the body's side against `forces`, the tooth's along them, of unit size."""
+    """Return a column ``(3 count,)`` of unit size: `forces` on the tooth's side of a crack, and opposite ones on the other."""
     out = np.zeros((count, 3))
     forces = forces.transpose(0, 2, 1) / np.linalg.norm(forces.sum(axis=(0, 2)))
     for side, sign in zip(faces, (-1.0, 1.0), strict=True):

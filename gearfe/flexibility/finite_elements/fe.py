@@ -227,7 +227,7 @@ def damaged_flexibility(
 
 
 def _shortened(mesh, tooth, on):
-    """Last roll, ends and `basis` of the flank of a chipped tooth with hats `on`."""
+    """Return the last roll length, the ends and the `basis` of the flank of a chipped tooth with hats `on`."""
     return float(mesh.roll[tooth][-1]), (on.arc[0], on.arc[-1]), basis(on)
 
 
@@ -254,8 +254,8 @@ def basis(on):
 def own_tooth(on, influence, coefficient):
     """Return the spline S(s, s) of one tooth, and S(s, s') between its hats, from their influence matrix.
 
-    S(s, s) comes from hats twice as wide (see the module). At both ends of the flank these have no room. There it is the value of
-    the single hat plus the difference between both at the next wide one.
+    S(s, s) is computed from hats twice as wide (see the module). At both ends of the flank there is no room for them. There
+    the value of the single hat is used, plus the difference of both at the nearest wide hat.
     """
     smooth = influence - coefficient * hat_logarithm(on.knots, on.knots)
     arc, wide, single = on.arc[:-1], wider(on.knots[:, :-1]), np.diag(smooth)[:-1]  # The corner's hat function is excluded.

@@ -92,7 +92,10 @@ class MeshedGear:
         return mesh_patches(gear, patches, cracks=cracks, broken=broken, **options), patches
 
     def plan(self):
-        """`finite_elements.solver.SolveCost` of its `solid_flexibility`, refused if it does not fit; costs its mesh alone."""
+        """Return the `finite_elements.solver.SolveCost` of its `solid_flexibility`.
+
+        Only the mesh is computed for this. RuntimeError if the system does not fit into memory.
+        """
         mesh, patches = self.meshed()
         columns = zone_forces(mesh).shape[1]
         if self.shaft is not None:
@@ -138,7 +141,7 @@ def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
 
 
 def _resolved(whole, material, own, degree, cache):
-    """Highest degree that the layers carry: `degree`, or up to `LOST` less. `own` is the influence on one flank."""
+    """Return the highest degree that the layers resolve: `degree`, or up to `LOST` less. `own` is the influence on one flank."""
     gear = whole.gear
     for kept in range(degree, degree - LOST - 1, -1):
         at = np.flatnonzero(np.arange(len(own)) % (degree + 1) <= kept)

@@ -82,7 +82,7 @@ class Plan:
     tables: dict[str, Any]
 
     def content(self) -> dict[str, Any]:
-        """All that decides the data, as JSON: two data sets are the same if this is."""
+        """All values that determine the data, as JSON. Two data sets are equal if these values are equal."""
         return json.loads(json.dumps({name: getattr(self, name) for name in self.__slots__}))
 
     def scene_at(self, values: Mapping[str, Any], fault: Mapping[str, Any] | None = None, severity: float = 0.0) -> Scene:

@@ -146,7 +146,7 @@ def encoded(table: "pyarrow.Table") -> bytes:
 def write_shard(folder: StrPath, name: str, content: bytes) -> None:
     """Put an `encoded` table into a folder. One of the same name is replaced.
 
-    ValueError if it cannot be written; all other shards stay as they are.
+    ValueError if it cannot be written. All other shards are unchanged in this case.
     """
     durable(Path(folder) / f"{name}{SUFFIX}", content)
 

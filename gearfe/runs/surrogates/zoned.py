@@ -30,8 +30,9 @@ _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, DEGREE))
 def breaks_of(eps_alpha: float, solve: Solve, *, cracked: bool) -> Floats:
     """Rising phases ``(m,)`` between which k is smooth, both ends included. `solve` gives the curve at phases.
 
-    Over a cycle, or, of `cracked` gears, over the engagement of tooth 0, from the middle of the zone of fewer pairs before it to
-    that behind. ValueError if a zone is too short to be told from its neighbours, without load or with it.
+    For healthy gears they cover a cycle. For `cracked` gears they cover the engagement of tooth 0, from the middle of the zone
+    with fewer pairs before it to the middle of the one after it. ValueError if a zone, with or without load, is too short to
+    be separated from its neighbours.
     """
     low = math.floor(eps_alpha)
     more = eps_alpha - low

@@ -116,7 +116,7 @@ def checked_sample(file, given):
 
 
 def _check_correlated(file, sample):
-    """Raise ValueError unless each correlation is of two keys that have a distribution, and said once."""
+    """Raise ValueError unless each correlation is between two keys that have a distribution, and is given only once."""
     known, seen = [key for key, spec in sample["of"].items() if "choice" not in spec], set()
     for entry in sample["correlated"]:
         pair = frozenset(entry["between"])

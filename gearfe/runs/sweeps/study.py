@@ -74,7 +74,7 @@ class Study:
     keys: tuple[str, ...] = ()  # all varied keys
 
     def content(self) -> dict[str, Any]:
-        """All that decides the results, as JSON: two studies are the same if this is."""
+        """All values that determine the results, as JSON. Two studies are equal if these values are equal."""
         names = ("kind", "pair", "case", "tables", "options", "axes", "sample", "seed", "block")
         return json.loads(json.dumps({name: getattr(self, name) for name in names}, default=str))
 
@@ -138,7 +138,7 @@ def _check_names(file, tables, pair, case):
 
 
 def inputs_of(grid: Iterable[Mapping[str, Any]], sample: Mapping[str, Any]) -> tuple[str, ...]:
-    """Keys that vary, of the axes of a grid and of a sample, with those that take the value of another."""
+    """Return the keys that vary in a grid and a sample, with the keys that take the values of another key."""
     drawn = [key for name, spec in sample.get("of", {}).items() for key in (name, *spec.get("also", []))]
     return (*(key for axis in grid for key in axis), *drawn)
 
@@ -151,9 +151,9 @@ def count_of(grid: Iterable[Mapping[str, Any]], sample: Mapping[str, Any]) -> in
 
 
 def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:
-    """All n cases of a study: their values by key, and numbers ``(n,)`` of their combination and of their draw of the sample.
+    """Return the values of all n cases of a study by key, and the numbers ``(n,)`` of their combination and of their draw.
 
-    Each draw meets each combination.
+    Each draw of the sample is combined with each combination of the grid.
     """
     drawn = _drawn(study)
     sizes, count = [len(next(iter(axis.values()))) for axis in study.axes], len(next(iter(drawn.values()), [0]))

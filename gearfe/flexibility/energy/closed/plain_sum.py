@@ -135,7 +135,8 @@ def _depth(gear, roll):
 def _solver(at, count, teeth, law):
     """`solve` of `plain_sum`: a fixed point of the closing.
 
-    The contact depends on the load only by a logarithm or F**0.1.
+    A fixed-point iteration finds the approach. It converges fast, because the contact depends on the load only by a logarithm
+    or F**0.1.
     """
 
     def total(values):

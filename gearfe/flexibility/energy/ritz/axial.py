@@ -28,11 +28,13 @@ FRONT = 8  # additional Gauss points where the section varies along the crack fr
 class Axial:
     """Functions along the width, and sets of them.
 
-    `mass`, `mixed`, `slope` (n, n): integrals of f f', f df' and df df'. `sets` are index arrays: the first the modes over
-    the whole width, then for each crack those of its opening, of forces that push its faces apart, of the nodes near it, and of
-    those that move with its front, then the modes up to degree 0, 1, ... . `points` of each crack are heights [mm] where its
-    faces may touch, and `at` the values (points, functions of the force) there. `z`, `weight` [mm] (q,) integrate over the
-    width; `value`, `rise` (q, n) are the functions and their slopes at `z`.
+    - `mass`, `mixed` and `slope` ``(n, n)`` are integrals of f f', f df' and df df'.
+    - `sets` are index arrays. The first is the modes over the whole width. Then follow, for each crack, the modes of its
+      opening, those of the forces that push its faces apart, those of the nodes near it, and those that move with its front.
+      The last sets are the modes up to degree 0, 1, ... .
+    - `points` are, for each crack, the heights [mm] at which its faces may touch. `at` are the values of the functions of the
+      force there (points, functions).
+    - `z` and `weight` [mm] (q,) integrate over the width. `value` and `rise` (q, n) are the functions and their slopes at `z`.
     """
 
     mass: np.ndarray
@@ -104,7 +106,7 @@ class _Columns:
 
 
 def _over_bands(columns, every, degrees, fine, z, width):
-    """Numbers by band of the openings, of the pushing forces and of the short cubics; of None those over the whole width."""
+    """Return, by band, the numbers of openings, pushing forces and short cubics. None has the functions over the whole width."""
     opening, pushing, short = {None: every}, {None: every[: PUSHING + 1]}, {None: every[:0]}
     for band, order in degrees.items():
         opening[band], short[band] = columns.add(*_open(z, band, order, width)), every[:0]
@@ -117,7 +119,7 @@ def _over_bands(columns, every, degrees, fine, z, width):
 
 
 def _fine(bands, width, m_n, parts, fronts):
-    """Places of the short cubics by band and its end inside the gear (0 or 1)."""
+    """Return the positions of the short cubics by band and by its end inside the gear (0 or 1)."""
     shallow = {
         end for front, where in zip(fronts, parts, strict=True) if front for end in np.ravel(where or ()) if front.runs_out(end)
     }
@@ -162,7 +164,7 @@ def _open(z, band, degree, width):
 def _steps(band, k, width, m_n, shallow):
     """Places about one end of a band, between which the short cubics change [mm]: closer together towards the end.
 
-    They are as close as a ligament beyond is narrow, unless the crack is `shallow` there.
+    The narrower the ligament beyond the end, the closer they are, unless the crack is `shallow` there.
     """
     end, inwards = band[k], 1 - 2 * k
     # Short cubics of both ends that met would represent a cubic over the whole band, which is already an opening function.
@@ -199,7 +201,8 @@ def _short(z, places, end, inwards):
 def _depth(z, weight, front, whole, rise):
     """Return a crack's depth times the first `MOVED` polynomials and slopes ``(n, k)``, minus their part in polynomials.
 
-    What is smooth in space is not smooth at points that move with the front by f(z): it goes like ``a(z) + f(z) b(z)``.
+    A field that is smooth in space is not smooth at points that move with the front by f(z). It varies like ``a(z) + f(z)
+    b(z)``.
     """
     value, slope = front.depth(z)
     few, steep = whole[:, :MOVED], rise[:, :MOVED]

@@ -19,8 +19,9 @@ SAME = 1e-6  # Distances with a smaller difference share one degree [m_n].
 def degrees(gear, sector, numbers, sides, degree, order):
     """Degree along the width of every node ``(n,)``, even and at most `degree`.
 
-    A node has the degree of its place in the section; the two sides get the same, whatever is in the sector. `numbers` ``(k, m)``
-    are all nodes of the triangles, `sides` those of both sides, left ones first, `order` is that in the section.
+    The degree of a node depends on its position in the section. Both sides have the same degrees, whatever is in the sector.
+    `numbers` ``(k, m)`` are all nodes of the triangles. `sides` are those of both sides, left ones first. `order` is the
+    polynomial order in the section.
     """
     width = gear.b
     place = np.einsum("cn,dcm->dnm", table(order).nodes, sector.points[:, sector.triangles])

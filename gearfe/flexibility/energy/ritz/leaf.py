@@ -47,9 +47,9 @@ def _by_component(plane):
 
 
 def _seamed(body, raw, nodes):
-    """Matrix ``(raw, nodes)`` from means and distances of facing nodes to the nodes themselves.
+    """Return the matrix ``(raw, nodes)`` from means and differences of facing nodes to the nodes themselves.
 
-    Others are themselves.
+    Other nodes are unchanged.
     """
     out = (raw[:, None] == nodes).astype(float)
     for left, right in body.seams:

@@ -34,10 +34,11 @@ GROUP = 10  # least number of triangles eliminated together; at most twice as ma
 class Panel:
     """A sector reduced to its two sides (polar components, from the held edge to the root, left side first; m unknowns).
 
-    `stiffness` (m, m); for n loads on the flank `push` (m, n) their forces on the sides, `own` (n, n) the displacement at load
-    i with the sides held under load j, the half-plane's logarithm taken out; for k facing pairs of crack nodes `open_push`
-    (m, k), `open_own` (k, n) their opening under the loads and `open_open` (k, k) under unit forces that push them apart. With
-    `intensity` of `panel` K_I and K_II follow the pairs; their own block is empty of meaning.
+    `stiffness` is (m, m). For n loads on the flank, `push` (m, n) are their forces on the sides, and `own` (n, n) is the
+    displacement at load i under load j with the sides held, without the logarithm of the half-plane. For k facing pairs of
+    crack nodes, `open_push` (m, k) are the forces on the sides, `open_own` (k, n) is the opening under the loads, and
+    `open_open` (k, k) is that under unit forces that push the pairs apart. With `intensity` of `panel`, K_I and K_II follow
+    the pairs. Their own block has no meaning.
     """
 
     stiffness: np.ndarray
@@ -193,7 +194,7 @@ def _frames(gear, roll, tilt=0.0):
 
 
 def _held_nodes(fixed, order):
-    """Which nodes along the held edge belong to an edge that is held."""
+    """Return a mask of the nodes along the held edge that belong to an edge that is held."""
     on = np.append(np.repeat(fixed, order), False)
     on[1:] |= np.repeat(fixed, order)
     return on
@@ -231,9 +232,9 @@ def _apart(sector, chain, first):
 
 
 def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
-    """Return forces of the singular fields' tractions, reads of the flank, and the reads of the fields ``(n, n)``.
+    """Return the forces of the singular fields' tractions, the rows that read the flank, and the fields there ``(n, n)``.
 
-    Forces and reads are unknowns, columns (loads 0 to n, then reads) and values.
+    Forces and reading rows are given as unknowns, columns (loads 0 to n, then reading rows) and values.
     """
     n = roll.size
     if n == 0:

@@ -163,7 +163,7 @@ def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
 
 
 def _near(gear, sector, numbers, face, bands, bend):
-    """Numbers of the nodes of triangles with a vertex closer than `CLOSE` to a crack, or than it is deep where it runs out."""
+    """Return the nodes of triangles near a crack: a vertex is closer than `CLOSE`, or than its depth where the crack runs out."""
     points, reach = sector.points, CLOSE * gear.m_n
     if bend:
         shift, front = bend
