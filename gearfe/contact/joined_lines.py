@@ -183,7 +183,7 @@ class JoinedLines:
         return np.minimum(wide, self.widest)
 
     def change(self, forces, x):
-        """Return the sparse derivative ``(n, n)`` of the approach of each cell by ln(x), x the strip distance of each cell."""
+        """Return the sparse derivative ``(n, n)`` of the approach of each cell by ln(x), with its strip distance x."""
         cells = self.cells(forces)
         i, j = self.near[:2]
         slope = self.kernel * pair_slope((self.start, self.stop), i, j, x)

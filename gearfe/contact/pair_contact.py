@@ -109,7 +109,7 @@ class PairContact:
         return self.contacts_at(wanted, rows, tilt), rows
 
     def _solved(self, sets, line_load, smooth, phases):
-        """Solve the contact problems `sets`: line loads and pressures by pair, approach, tangent, closed faces, and fillets.
+        """Solve contact problems: line loads and pressures by pair, approach, tangent, closed faces and fillets.
 
         `phases` are the phase numbers of the sets. `smooth` are the line loads if all contacts were single. Hats are initially
         in contact up to the gap at the ends of the Hertzian contact under these loads, which is the same for any radius. The

@@ -49,7 +49,7 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
     most, limit = _pressure(curve), DENTED * contact_modulus(materials)
     if most > limit:
         warnings.warn(
-            f"under {force:g} N the contact pressure is {most:.4g} MPa, at which the flanks yield (from about {limit:.3g} MPa); k "
+            f"under {force:g} N the contact pressure is {most:.4g} MPa, which yields the flanks (above {limit:.3g} MPa); k "
             "is that of linear elasticity",
             stacklevel=4,
         )

@@ -25,7 +25,7 @@ NAMES = [kind.__name__ for kind in get_args(Damage)]
 
 
 def are(given: object, kind: type | UnionType = Damage) -> bool:
-    """Whether it is a list or tuple of damage, or of one `kind` of it."""
+    """Return whether the argument is a list or tuple of damage, or of one `kind` of damage."""
     return isinstance(given, (list, tuple)) and all(isinstance(defect, kind) for defect in given)
 
 

@@ -125,7 +125,7 @@ def further():
 
 @cache
 def _moved(**changes):
-    """Healthy sun's mean place, range along x and line at f_m [um] with errors of the scene changed."""
+    """Return the healthy sun's mean position, range along x and line at f_m [um] with one assumed error changed at a time."""
     own = scene(NAME)
     made = machine(NAME).with_meshes(error=(), backlash=1e-6 * own.machine["backlash_um"])
     table = own.machine | changes
