@@ -124,10 +124,10 @@ def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, s
 
 
 def filled(sector, *, teeth=3):
-    """Return the same mesh with its pits filled: the difference shows the effect of the holes without that of the mesh.
+    """Return the same mesh with its pits filled, for a comparison without discretisation effects.
 
-    The difference of both meshes is the effect of the pits without discretisation effects. The flanks are complete and no tet
-    is in a pit. The faces ``pits`` are the parts of the flank above the pits. `holed_sector` describes `teeth`.
+    The flanks are complete and no tet is in a pit. The faces ``pits`` are the parts of the flank above the pits.
+    `holed_sector` describes `teeth`.
     """
     plug = np.full_like(sector.plug, -1)
     flat = turned(sector.points, -sector.gear.twist_rate * sector.points[2])

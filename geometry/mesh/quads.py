@@ -207,7 +207,7 @@ def _rim(gear, draft, size, teeth, damage, patches):
     for owner, side in halves:
         loaded = side == "loaded" and owner in teeth
         pieces = _pieces(gear, owner, side, size, teeth, damage, patches)
-        # the piece after the flank, else piece 1
+        # number of the piece that follows the flank; 1 without a flank
         below = 1 + next((k for k, piece in enumerate(pieces) if piece[0] == "flank"), 0)
         sign = 1 if side == "loaded" else -1
         for k, (name, radius, angle, params) in list(enumerate(pieces))[::sign]:

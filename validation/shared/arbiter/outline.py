@@ -25,8 +25,8 @@ KNOWN = re.compile(
 class Outline:
     """The loaded side of the teeth of `gear`, with what `flank` (a `gearfe.Flank` or None) removes there.
 
-    `pieces` are (low, high, place): `place` gives radius and angle at parameters between `low` and `high`, ordered from root to
-    tip. `half(radius)` is the angle of fillet, flank and tip edge at radii, the same curves seen the other way.
+    `pieces` are (low, high, place). The function `place` returns radius and angle at parameters between `low` and `high`,
+    ordered from root to tip. `half(radius)` is the inverse: the angle of fillet, flank and tip edge at given radii.
     """
 
     def __init__(self, gear, flank=None):
