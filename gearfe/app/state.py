@@ -163,7 +163,7 @@ def _damage_heads(name, rows, sides, case):
     """Return the key prefixes (old, new) and the table row of each damage."""
     for kind in DAMAGE:
         if len(rows[kind]) > 1:
-            raise ValueError(f"{name}: {len(rows[kind])} tables [[{kind}]] in one case; the page has fields for one")
+            raise ValueError(f"{name}: {len(rows[kind])} tables [[{kind}]] in one case; the page has fields for one of them only")
         for row in rows[kind]:
             if kind == "pits" and row["last_mm"] is None:
                 row["last_mm"] = row["first_mm"]

@@ -11,8 +11,9 @@ from scipy.special import chdtri, stdtrit
 from ..core.table import Column, Table
 from ..dynamics.machine.of_scene import build_machine
 from ..dynamics.machine.stages import Fault
+from ..dynamics.motion.heard import gain
 from ..dynamics.motion.steady import common_period, steady_state
-from ..dynamics.motion.transfer_path import through_frf
+from ..dynamics.motion.transfer_path import gain_of_modes, through_frf
 from ..geometry.aliases import Floats
 from ..scene.dotted_keys import find_key, set_values
 from ..scene.load import Scene, read_tables, scene_of
@@ -117,15 +118,15 @@ class MachineFit:
             If the scene has no such case.
         """
         healthy, faulty = (build_machine(self.scene, one) for one in (None, case))
-        shift, rate, path = self._shift(healthy), self.record.rate, _path(self.values)
+        shift, rate, modes = self._shift(healthy), self.record.rate, _modes(self.values)
         runs = (recorded(one, self.record.duration, rate, start=shift) for one in (healthy, faulty))
-        before, after = (_through(one.signal(self.channel), path).values[: self.record.values.size] for one in runs)
+        before, after = (_through(one.signal(self.channel), modes).values[: self.record.values.size] for one in runs)
         signal = replace(self.record, values=self.record.values + after - before, name=f"{self.record.name}, {case}")
         return signal, {"faults": [_label(one) for one in faulty.faults], "error": self.error}
 
     def _shift(self, machine):
         """Return the time shift [s] with which the lines of the machine have the phases of the record."""
-        ours = _lines(machine, self.channel, self.frequency) * _gain(_path(self.values), self.frequency)
+        ours = _lines(machine, self.channel, self.frequency) * gain_of_modes(self.frequency, _modes(self.values))
         theirs = line_amplitudes(self.record, self.frequency)
         times = np.linspace(0, 1 / self.frequency[0], 20 * self.frequency.size + 1)[:-1]
         match = np.exp(2j * math.pi * np.outer(times, self.frequency)) @ (ours * theirs.conj())
@@ -187,7 +188,7 @@ def fit_machine(
 
     def lines(x: Floats) -> Floats:
         fitted, values = changed(x)
-        return np.abs(_lines(build_machine(fitted), channel, frequency) * _gain(_path(values), frequency))
+        return np.abs(_lines(build_machine(fitted), channel, frequency) * gain_of_modes(frequency, _modes(values)))
 
     def residuals(x: Floats) -> Floats:  # Noise increases the mean of a measured amplitude, so the residuals include it.
         return (measured - np.hypot(lines(x), noise)) / noise
@@ -245,23 +246,16 @@ def _entries(tables, values):
     return out
 
 
-def _path(values):
-    return tuple(values[key] for key in PATH) if PATH[0] in values else None
+def _modes(values):
+    """Return the modes of the transfer path, one or none."""
+    return [tuple(values[key] for key in PATH)] if PATH[0] in values else []
 
 
-def _through(signal, path):
-    if path is None:
+def _through(signal, modes):
+    if not modes:
         return signal
     lines = np.fft.rfftfreq(signal.values.size, 1 / signal.rate)
-    return through_frf(signal, lines, _gain(path, lines))
-
-
-def _gain(path, frequency):
-    """Return the complex acceleration per unit force of the mode of a transfer path, or ones without a path."""
-    if path is None:
-        return np.ones(frequency.size)
-    ratio = frequency / path[0]
-    return -(ratio**2) / (1 - ratio**2 + 2j * path[1] * ratio) / path[2]
+    return through_frf(signal, lines, gain_of_modes(lines, modes))
 
 
 def _frequencies(machine, record, harmonics):
@@ -313,7 +307,7 @@ def _lines(machine, channel, frequency):
     if sensor is not None and not sensor.housing:
         weights = sensor.weights or [1.0] * len(sensor.channels)
         of_channels = zip(weights, sensor.channels, strict=True)
-        return sensor.gain(frequency) * sum(weight * _lines(machine, one, frequency) for weight, one in of_channels)
+        return gain(sensor, frequency) * sum(weight * _lines(machine, one, frequency) for weight, one in of_channels)
     period = common_period(machine)
     if sensor is None and period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
         found = steady_state(machine, period=period).response

@@ -9,6 +9,8 @@ import numpy as np
 from ..core.steps import part, steps
 from ..dynamics.machine.lines import gear_lines
 from ..dynamics.machine.of_scene import build_machine, flat_machine
+from ..dynamics.motion import run_checks
+from ..dynamics.motion.propagator import cycle_rate
 from ..dynamics.motion.reference import SOLVERS
 from ..dynamics.motion.response import Response
 from ..dynamics.motion.step_control import default_step
@@ -31,6 +33,8 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
     if channel is not None:
         check_channel(flat_machine(scene), channel)
     scene.check_case(case)
+    if duration is not None:
+        check_length(scene, duration)
     in_case = [one for pair in scene.pairs.values() for damages in pair.damage.get(case, {}).values() for one in damages]
     damage = [] if scene.machine.get("contact") == "impact" else in_case
     along = not all(hurt.through for hurt in damage)
@@ -65,6 +69,17 @@ def check_run(duration, method="fast"):
         raise ValueError(f"duration = {duration!r} s, but it must be positive and finite")
     if method != "fast" and method not in SOLVERS:
         raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
+
+
+def check_length(scene, duration):
+    """Raise ValueError for a record of `duration` [s] that no step or memory permits, before curves are computed for it.
+
+    The steps counted resolve the mesh cycles alone, so that a record that fits is never rejected.
+    """
+    machine = flat_machine(scene)
+    rate = max(cycle_rate(machine), 1 / duration)
+    run_checks.check_run(machine, duration, "fast", rate, None, None, 0.0, 1)
+    run_checks.check_memory(machine, duration, duration * rate, True)
 
 
 def fault_lines(machine):

@@ -213,8 +213,8 @@ def _check_moving(response, channel):
     if own < ROUNDING * largest:
         unit = response.unit(channel)
         raise ValueError(
-            f"channel = {channel!r} has an rms of {own:.2g} {unit}, which is rounding: others of its kind have up to "
-            f"{largest:.2g} {unit}; give a channel that moves"
+            f"channel = {channel!r} has an rms of {own:.2g} {unit}, which is rounding error: other channels of this kind have up "
+            f"to {largest:.2g} {unit}; give a channel that moves"
         )
 
 

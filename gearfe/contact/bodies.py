@@ -39,9 +39,10 @@ def seen_damage(gear, damage, seen, band):
 class Bodies(NamedTuple):
     """Solver of the elastic bodies of gears: the energy model (`energy_bodies`), finite elements, or a user's model.
 
-    `flexible`: ``flexible(gear, material, damage, neighbours=n, **shaft)`` gives a `Flexibility3D`; `coarser`, optional: the same
-    with a coarser discretisation, for an estimate of its error; `ahead`, optional: ``ahead(wanted, neighbours=n)`` gets what
-    `flexible` will be called with, ``[(arguments, shaft), ...]``, before the first call.
+    - ``flexible(gear, material, damage, neighbours=n, **shaft)`` returns a `Flexibility3D`.
+    - `coarser` (optional) is the same function with a coarser discretisation, for an error estimate.
+    - ``ahead(wanted, neighbours=n)`` (optional) is called first, with the arguments of all later calls of `flexible`:
+      ``[(arguments, shaft), ...]``.
     """
 
     flexible: Callable[..., Any]

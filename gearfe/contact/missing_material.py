@@ -26,9 +26,10 @@ APART = 1e-9  # gap relative to the cell width beyond which a recess lies betwee
 
 
 def missing_material(case: Any, found: Any) -> Floats:
-    """Return the estimated excess of k of a `Contact3D` whose recesses remove no material ``(phases,)`` [N/m].
+    """Return the estimated error of k of a `Contact3D` whose pits remove no material from its bodies ``(phases,)`` [N/m].
 
-    By virtual work under the solved loads. Load redistribution would reduce it.
+    The modelled teeth are too stiff. The error follows from virtual work under the solved loads. It is an upper estimate,
+    because the loads would be redistributed.
     """
     out = np.zeros(found.k.size)
     for pits, material, sense in zip(case.pits, case.materials, (1, -1), strict=True):

@@ -75,7 +75,8 @@ def slid(cells, bodies, load, radius):
             gear, z = body.gear, cells.depth[on] + offset
             arc, step = arc_at(gear, roll), STEP * gear.m_n
             ahead, behind = (body.basis(roll_at_arc(gear, arc + side * step), z, sense * order) for side in (1, -1))
-            kernels = [one.between(sense * order, sense * order) for one in (body, body.healthy or body)]
+            whole = body if body.seam is None else body.healthy  # chips and missing teeth have no open faces
+            kernels = [one.between(sense * order, sense * order) for one in (body, whole)]
             fields = np.array(kernels) @ (load[on] @ body.basis(roll, z, sense * order))
             tilt[:, on] += sense * fields @ (ahead - behind).T / (2 * step)
     return 1.5 * radius * np.vstack([tilt, tilt[0] - tilt[1]]) ** 2

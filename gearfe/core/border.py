@@ -92,7 +92,7 @@ def _settled(name, rule, default, value, infinite):
     if value is default:
         return value
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
-        raise ValueError(f"{name} has masked values: give numbers without holes")
+        raise ValueError(f"{name} has masked values: give numbers without masked entries")
     if rule is None:
         return value
     out = rule.settled(name, value)

@@ -5,7 +5,7 @@ import os
 from pathlib import Path
 
 GROUP = "/sys/fs/cgroup"  # control group of this process: version 2, then version 1
-CONTROL_GROUP = (  # files with limit, use [bytes] and details, and the name of cached files in the last
+CONTROL_GROUP = (  # files with the limit, the use and details [bytes], and the entry for cached files in the details
     (f"{GROUP}/memory.max", f"{GROUP}/memory.current", f"{GROUP}/memory.stat", "inactive_file"),
     (f"{GROUP}/memory/memory.limit_in_bytes", f"{GROUP}/memory/memory.usage_in_bytes", f"{GROUP}/memory/memory.stat",
      "total_inactive_file"),

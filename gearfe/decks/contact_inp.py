@@ -130,7 +130,9 @@ def write_contact_inp(
         return write_contact_section(path, case, phase, approach, how)
     if case.face == "herringbone" or (case.face == "spur") == bool(case.pair.gear_1.beta):
         beta = case.pair.gear_1.beta
-        raise ValueError(f"face = {case.face!r} of gears with beta = {beta:g} rad: give 'spur' or 'helical' as they are")
+        raise ValueError(
+            f"face = {case.face!r}, but the gears have beta = {beta:g} rad: give 'spur' for beta = 0, else 'helical'"
+        )
     if how.pits != "cut" and not any(case.pits):
         raise ValueError(f"pits = {how.pits!r}, but there is no pit in damage: give pits, which the mesh follows")
     return write_contact_solid(path, case, phase, approach, how)

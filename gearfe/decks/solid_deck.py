@@ -115,7 +115,7 @@ def placed(part: DeckBody, points: Floats, *, mirrored: bool = False) -> DeckBod
 
 
 def sides_of(cells, faces):
-    """(element, side) of outer faces, both from 0: ``(2, k)`` for the faces ``(corners, k)``."""
+    """Return element and side of outer faces ``(2, k)``, both counted from 0, for the faces ``(corners, k)``."""
     corners = np.array(FACES[len(cells)])
     sides = np.sort(cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1), axis=0)
     outer = np.sort(faces, axis=0)

@@ -132,7 +132,7 @@ def _text(path):
     except UnicodeDecodeError as error:
         raise ValueError(f"{path}: not a REXS model: {error}; REXS files are UTF-8") from error
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise ValueError(f"{path}: not a REXS model: it declares a document type, which REXS has not")
+        raise ValueError(f"{path}: not a REXS model: it declares a document type, which REXS does not allow")
     return path, text
 
 
@@ -181,7 +181,7 @@ def _plain(text):
 
 def _decoded(text, code):
     if code not in CODES:
-        raise ValueError(f"an array has the code {code!r}, but there are {', '.join(CODES)}")
+        raise ValueError(f"an array has the code {code!r}, but it must be one of {', '.join(CODES)}")
     return np.frombuffer(base64.b64decode(text or "", validate=False), CODES[code]).tolist()
 
 

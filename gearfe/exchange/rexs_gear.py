@@ -68,7 +68,9 @@ class GearReader:
 
     def _needed(self, gear, name, value, attribute):
         if value is None:
-            raise ValueError(f"gear {name!r} (component {gear.id}): {attribute} is missing, or in a unit that REXS has not")
+            raise ValueError(
+                f"gear {name!r} (component {gear.id}): {attribute} is missing, or in a unit that REXS does not define"
+            )
         return value
 
     def tools(self, gear: Component) -> list[Component]:

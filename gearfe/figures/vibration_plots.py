@@ -179,7 +179,7 @@ def plot_phase(
     """
     if portrait[0].shape != portrait[1].shape:
         raise ValueError(
-            f"portrait: {portrait[0].size} displacements and {portrait[1].size} velocities, but give as many of both"
+            f"portrait: {portrait[0].size} displacements and {portrait[1].size} velocities, but give the same number of both"
         )
     figure, axes = blank((5, 4))
     axes.plot(*portrait, linewidth=0.4, color=COLOURS[0])

@@ -42,7 +42,9 @@ def _entries(what, value, kind, single):
     for entry in (value,) if single else value:
         if not isinstance(entry, kind):
             nouns = " nor a ".join(one.__name__ for one in get_args(kind) or (kind,))
-            raise ValueError(f"{what}: {entry!r} is no {nouns}; a section allows no other type")
+            raise ValueError(
+                f"{what}: {entry!r} is no {nouns}; a planetary set is solved in a section, which allows no other type"
+            )
     return value if single else tuple(value)
 
 

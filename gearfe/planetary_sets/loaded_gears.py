@@ -24,7 +24,9 @@ def check_meshable(case: PlanetaryCase) -> None:
     """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, modified flanks, broken teeth."""
     rigid = isinstance(case.ring, RimSupports) and math.isinf(case.ring.radial) and math.isinf(case.ring.tangential)
     if not (case.ring == "held" or rigid):
-        raise ValueError("the ring is neither held nor on rigid pads, and is not meshed so: give a case with one of these")
+        raise ValueError(
+            "the ring is neither held nor on rigid pads, so that it cannot be meshed: give a case with one of these supports"
+        )
     if case.flanks or any(isinstance(one, BROKEN) for own in case.damage.values() for one in own):
         raise ValueError("modified flanks and broken teeth of a set are not meshed: give a case without them")
 

@@ -5,7 +5,7 @@ import time
 from dataclasses import dataclass, field
 
 from ..comparison.compare import compare
-from ..comparison.simulated import check_run, responses
+from ..comparison.simulated import check_length, check_run, responses
 from ..comparison.vibration import Analysis, analysis
 from ..core.steps import part, steps
 from ..core.threads import own_warnings
@@ -56,6 +56,8 @@ def find(scene, case=None, *, duration=0.2, phases=64):
         check_run(duration)
     scene = load_scene(scene) if not hasattr(scene, "pairs") else scene
     scene.check_case(case)
+    if scene.machine and duration:
+        check_length(scene, duration)
     findings = Findings(scene, case or next(iter(scene.cases), None))
     compared = [(name, None) for name in scene.pairs]
     compared += [(name, findings.case) for name, pair in scene.pairs.items() if findings.case in pair.damage]

@@ -67,7 +67,7 @@ def batch(
     work = work or mesh_stiffness
     every = list(cases)
     if not every:
-        raise ValueError("cases: give a list of one Case or dict at least")
+        raise ValueError("cases: give a list of at least one Case or dict")
     if getattr(multiprocessing.current_process(), "_inheriting", False):
         sys.exit(1)  # A worker imported an unguarded script, and the parent process prints the remedy.
     workers = count_of(workers, every)

@@ -95,7 +95,7 @@ def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     numbers = arguments("pits", row, "radius_mm", "axes_mm", "depth_mm", "tooth", "angle_deg")
     if first is not None:
         if row["along"] != "axis":
-            raise ValueError("first_mm and last_mm are of pits along the axis: for others give middle_mm")
+            raise ValueError("first_mm and last_mm apply to pits along the axis only: for others give middle_mm")
         pits = pit_row(row["count"], first, first if last is None else last, **numbers)
         return [*pits, *_other_half(row, pits, made, which, pair)]
     if row["count"] > 1 and pitch is None and span is None:
@@ -157,10 +157,7 @@ def with_backlash(pair: GearPair, wanted: float) -> GearPair:
             f"backlash_um = {1e3 * wanted:g}, but teeth of m_n_mm = {pair.gear_1.m_n:g} have less: give a smaller one"
         )
     thinner = more * math.cos(pair.gear_1.beta) / (2 * math.cos(pair.gear_1.alpha_t))
-    try:
-        one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
-    except ValueError as error:
-        raise ValueError(f"backlash_um = {1e3 * wanted:g}, but the thinner teeth are impossible: {error}") from error
+    one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
     return GearPair(one, two, pair.a)
 
 
@@ -201,7 +198,7 @@ def _placed(file: str, rows: Row, name: str, kinds: tuple[str, ...], out: dict[s
         for side in sides(file, where, row, name, rows["pair"]):
             if side in out:
                 raise ValueError(
-                    f"{file} [{where}]: gear {row['gear']!r} has {' or '.join(kinds)} in pair {name!r}; give each its pair"
+                    f"{file} [{where}]: gear {row['gear']!r} has {' or '.join(kinds)} in pair {name!r}; give each of them a pair"
                 )
             yield where, row, side
 

@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+from ..core.file_readers import read_text
 from ..geometry.checks import shown
 
 
@@ -22,8 +23,8 @@ def with_frf(file: Any, tables: dict[str, Any]) -> dict[str, Any]:
 def _read(file, name, row):
     path, where = Path(file).parent / row["frf"], f"{file.name} [sensor.{name}] frf = {shown(row['frf'])}"
     try:
-        lines = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
-    except (OSError, ValueError, csv.Error) as error:
+        lines = list(csv.reader(read_text(path)))
+    except (ValueError, csv.Error) as error:
         raise ValueError(f"{where}: not readable as a table: {error}") from error
     columns = [line for line in map(_numbers, lines) if line]
     if len(columns) < 2 or any(len(line) != 3 for line in columns):

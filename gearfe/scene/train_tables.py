@@ -99,7 +99,6 @@ def _shaft(file, name, row, rows, materials):
         raise ValueError(
             f"{file} [{where}] gears_at_mm = {row['gears_at_mm']}, lengths_mm = {row['lengths_mm']}: give each gear a different "
             "position"
-            "position"
         )
     for at in places:
         _along(file, where, "gears_at_mm", at, made)

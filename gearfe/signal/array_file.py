@@ -73,8 +73,8 @@ def _hdf_values(item):
     ValueError if it is read from other files, or announces more values than the bytes stored can hold.
     """
     if item.external or item.is_virtual:
-        kind = "in other files" if item.external else "put together from datasets, maybe of other files"
-        raise ValueError(f"the values of {item.name!r} stand {kind}, which are not read: copy them into this one")
+        kind = "in other files" if item.external else "a virtual dataset of other datasets"
+        raise ValueError(f"the values of {item.name!r} are {kind}, which are not read: copy them into this file")
     stored = item.id.get_storage_size()
     if item.nbytes > MOST_PACKED * (stored + 1024):
         raise ValueError(f"{item.name!r} states {item.nbytes} bytes, but only {stored} are stored")

@@ -63,7 +63,9 @@ def deconvolve(
         period = round(signal.rate / frequency)
         apart = [m * period for m in range(whole("shifts", shifts, 1) + 1)]
         if period < 2:
-            raise ValueError(f"frequency = {frequency} Hz, but {signal.name} at {signal.rate:g} Hz has no two samples a period")
+            raise ValueError(
+                f"frequency = {frequency} Hz, but {signal.name} at {signal.rate:g} Hz has fewer than two samples per period"
+            )
     if x.size < 2 * (length + apart[-1]):
         raise ValueError(
             f"{signal.name} has {x.size} samples, but a filter of {length} taps over {apart[-1]} samples needs twice as many: "

@@ -90,7 +90,7 @@ def gear_indicators(
     amplitude = 2 / x.size * np.abs(rfft(x))
     mesh = amplitude[teeth::teeth].sum()
     if not mesh > EMPTY * np.abs(x).max():
-        raise ValueError(f"the average has no mesh line of {teeth} teeth: is it over a turn of that gear?")
+        raise ValueError(f"the average has no mesh line of {teeth} teeth: give the average over one revolution of that gear")
     if not has_mesh_line(amplitude, teeth):
         warnings.warn(
             f"the average has no line at {teeth} orders or their harmonics (FM0 {np.ptp(x) / mesh:.3g}), so its indicators do "

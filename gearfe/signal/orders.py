@@ -41,9 +41,11 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
     needed = math.ceil(1 / step.min() - 1e-6)
     count = needed if samples_per_turn is None else whole("samples_per_turn", samples_per_turn, 1)
     if count > MOST:
-        raise ValueError(f"{signal.name}: {count} samples per turn, but {MOST} is the most that makes sense: give fewer")
+        raise ValueError(f"{signal.name}: {count} samples per turn, but at most {MOST} are allowed: give fewer")
     if count < needed:
-        raise ValueError(f"samples_per_turn = {count}, but {signal.name} has {needed} where it is slowest: give at least that")
+        raise ValueError(
+            f"samples_per_turn = {count}, but {signal.name} has {needed} per turn at its lowest speed: give at least {needed}"
+        )
     turns = math.floor(angle[-1] + 1 / count + 1e-9)
     if turns < 1 or angle.size < 6:
         raise ValueError(f"{signal.name} covers {angle[-1]:.3g} revolutions with {angle.size} samples; one revolution is needed")
@@ -133,7 +135,7 @@ def synchronous_average(signal: Signal, samples_per_turn: int | None = None, *, 
     turns = by_turn(signal, samples_per_turn)
     periods = turns.shape[0] // whole("turns_per_period", turns_per_period, 1)
     if periods < 1:
-        raise ValueError(f"turns_per_period = {turns_per_period}, but {signal.name} has {turns.shape[0]} whole turns")
+        raise ValueError(f"turns_per_period = {turns_per_period}, but {signal.name} has {turns.shape[0]} whole revolutions")
     rows = turns[: periods * turns_per_period].reshape(periods, -1)
     return rows.mean(axis=0), periods
 

@@ -29,8 +29,7 @@ def _reading(path: StrPath, kind: str, begins: bytes = b"", ends: bytes = b"") -
             if file.read(len(begins)) != begins or (ends and file.read().split()[-1:] != [ends]):
                 raise ValueError(f"it does not {f'end with {ends.decode()}' if ends else f'begin with {begins.decode()}'}")
         yield
-    # pyuff raises `Exception`; scipy and npTDMS raise any type, for example NameError for a missing chunk.
-    except Exception as error:
+    except Exception as error:  # pyuff raises `Exception`; scipy and npTDMS raise any type, such as NameError.
         if isinstance(error, OSError) and error.strerror:
             raise ValueError(f"cannot read {path}: {error.strerror}") from error
         reason = " ".join(str(error).split()) or type(error).__name__

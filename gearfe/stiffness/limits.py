@@ -21,7 +21,7 @@ def check_count(phases: Any) -> int:
     if not is_number(phases) or not math.isfinite(phases) or phases != int(phases) or phases < 1:
         raise ValueError(f"phases = {phases!r}, but give a number of phases >= 1, or an array of phases")
     if phases > MOST_PHASES:
-        raise ValueError(f"phases = {phases:g}, but give at most {MOST_PHASES}: a few hundred show it")
+        raise ValueError(f"phases = {phases:g}, but give at most {MOST_PHASES}: a few hundred are sufficient")
     return int(phases)
 
 

@@ -269,9 +269,9 @@ def _overlaps(first, second, size):
 
 
 def _solved(curve, case, how, n, samples, position):
-    """Curve of the samples ``start <= i < stop``, phase 0 at mesh cycle `position`.
+    """Return the curve of the samples ``start <= i < stop``. Its phase 0 is at mesh cycle `position`.
 
-    Few mesh cycles are solved at once; of many the forces by pair are left out.
+    Curves of many mesh cycles are solved in parts. They do not contain the forces of the tooth pairs.
     """
     bounds = [*range(*samples, AT_ONCE * n), samples[1]]
     spans = zip(bounds[:-1], bounds[1:], strict=True)

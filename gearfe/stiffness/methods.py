@@ -108,7 +108,7 @@ class Method:
     def curves(self, case: "Case", how: Any, phase: "NDArray") -> list[Any]:
         """Stiffness curves of a `Case`, one for each of its loads, at phases ``(n,)`` of the mean pose.
 
-        In `how`, a `Solve`, what its defaults stand for is filled in.
+        `how` is a `Solve` without open defaults: method, order and resolution are stated.
         """
         return _loaded(WAYS[self.kind])(self, case, how, phase)
 
@@ -152,7 +152,7 @@ ROWS = (
         variants=True, flanks=True, crack_models=("constant", "straight", "parabola"),
     ),
     Method(
-        "herringbone_article", "closed form: the beams of the article, as printed and corrected, plain sum of tooth pairs", "sum",
+        "herringbone_article", "closed form: beams of article S4, misprints corrected; plain sum of tooth pairs", "sum",
         "gearfe.flexibility.energy.closed.herringbone_article", "milliseconds", cracks="through", pits=True,
         rings="printed", faces=FACES,
         variants=True, flanks=True, crack_models=("constant",),

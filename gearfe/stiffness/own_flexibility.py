@@ -222,7 +222,7 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Flo
         raise ValueError(f"{where}: it failed with {type(error).__name__}: {error}") from error
     if isinstance(returned, Components):
         raise ValueError(
-            f"{where}: it gives Components of a tooth, but no matrix; teeth that do not move each other have numpy.diag "
+            f"{where}: it returned Components of a single tooth, but give a matrix; for uncoupled teeth it is numpy.diag "
             "of their `total`"
         )
     try:
@@ -230,15 +230,15 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Flo
     except ValueError as error:  # The rows have different lengths.
         raise ValueError(f"{where}: its rows have different lengths; give a matrix of numbers [mm per N/mm]") from error
     if values.dtype.kind not in "fiu":
-        raise ValueError(f"{where}: it gives values of type {values.dtype}, but give a matrix of real numbers [mm per N/mm]")
+        raise ValueError(f"{where}: it returned values of type {values.dtype}, but give a matrix of real numbers [mm per N/mm]")
     if values.shape != shape:
         raise ValueError(
-            f"{where}: it gives an array of shape {values.shape}, but give {shape}: displacement of contact i under a "
+            f"{where}: it returned an array of shape {values.shape}, but give {shape}: displacement of contact i under a "
             "unit load at contact j (numpy.diag is that of uncoupled teeth)"
         )
     values = values.astype(float)
     if not np.isfinite(values).all():
-        raise ValueError(f"{where}: it gives values that are not finite")
+        raise ValueError(f"{where}: it returned values that are not finite")
     if np.abs(values - np.swapaxes(values, -1, -2)).max() > SAME * np.abs(values).max():
         raise ValueError(f"{where}: its matrix is not symmetric, but contact i moves j as j moves i (Maxwell, Betti)")
     return values

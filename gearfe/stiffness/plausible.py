@@ -49,8 +49,8 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
     most, limit = _pressure(curve), DENTED * contact_modulus(materials)
     if most > limit:
         warnings.warn(
-            f"under {force:g} N the flanks press with {most:.4g} MPa, which dents them (about {limit:.3g} MPa do); k is that of "
-            "linear elasticity",
+            f"under {force:g} N the contact pressure of {most:.4g} MPa exceeds about {limit:.3g} MPa, at which the flanks yield; "
+            "k is that of linear elasticity",
             stacklevel=4,
         )
 

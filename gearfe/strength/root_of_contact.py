@@ -76,10 +76,12 @@ def root_stress_of_contact(
         raise ValueError(f"index = {index!r}, but the contact has {len(contact.cells)} phases")
     cells = contact.cells[index]
     if (cells.half != 0).any():
-        raise ValueError("a herringbone pair: root stress is that of one body; give the contact of one half as a helical pair")
+        raise ValueError("a herringbone pair: the root stress is computed for one half; give its contact as a helical pair")
     loaded = np.flatnonzero((cells.order == order) & (cells.load > 0))
     if not loaded.size:
-        raise ValueError(f"order = {order}: this tooth pair is unloaded at that phase; {sorted(set(cells.order.tolist()))} may")
+        raise ValueError(
+            f"order = {order}: this pair is unloaded at that phase; give a loaded one of {sorted(set(cells.order.tolist()))}"
+        )
     number = 0 if gear == "pinion" else 1
     body, offset = seen_gears(pair, "helical", 0.0)[number]
     loaded = loaded[np.argsort(cells.depth[loaded])]

@@ -92,7 +92,7 @@ class Chip:
 
     @property
     def through(self) -> bool:
-        """Whether it is the same in every transverse section."""
+        """Whether the chip is the same in every transverse section."""
         return self.width is None
 
     def recesses(self, gear: Gear) -> "tuple[Chip | Spall, ...]":
@@ -127,9 +127,10 @@ class Chip:
         )
 
     def cut(self, gear: Gear) -> tuple[float, str, float]:
-        """Roll length of the corner [mm] and end of the cut: an angle [rad] on the tip, or a roll length on a flank.
+        """Return the roll length of the corner [mm] and the end of the cut: an angle on the tip [rad], or a roll length.
 
-        Angles are positive towards the flank of the corner. ValueError if there is no such cut.
+        The roll length is that of the other flank, if the cut ends there. Angles are positive towards the flank of the corner.
+        ValueError if there is no such cut.
         """
         radius = gear.r_a - gear.outward * self.depth
         roll = math.sqrt(max(radius**2 - gear.r_b**2, 0.0))

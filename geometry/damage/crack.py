@@ -124,11 +124,11 @@ class Crack:
         return self.turning and self.level is not None and self.level > 0.5
 
     def outline(self, gear: Gear) -> Floats:
-        """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth: `crack_path`."""
+        """Return the crack as a line ``(2, n)`` [mm] in the transverse section, in the frame of its tooth (`crack_path`)."""
         return crack_path(gear, self)
 
     def _description(self, gear: Gear) -> str:
-        """Its size and angle in words."""
+        """Describe the size and the angle of the crack in words."""
         angle = f"at {math.degrees(self.angle):.3g} degrees"
         if self.path is not None:
             return f"{path_length(gear, self):.3g} mm crack along a path of {len(self.path)} part{'s' * (len(self.path) > 1)}"

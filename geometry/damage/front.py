@@ -84,7 +84,7 @@ def crack_in_band(crack, b, first, last):
 class Front:
     """Front of a crack followed by a mesh.
 
-    `width` is that of the face [mm], `least` the least depth followed, in the deepest.
+    `width` is the face width [mm]. `least` is the smallest depth that the mesh follows, relative to the largest depth.
     """
 
     crack: Crack
@@ -97,7 +97,7 @@ class Front:
         return self.crack.width or (0.0, self.width)
 
     def depth(self, z):
-        """Depth at heights `z` [mm] in the deepest, at least `least`, and its slope [1/mm]."""
+        """Return the depth at heights `z` [mm] relative to the largest depth, at least `least`, and its slope [1/mm]."""
         part, slope = front(self.crack, self.width, z)
         top = deepest(self.crack)
         deep = part > self.least * top
@@ -108,7 +108,7 @@ class Front:
         return (*self.ends, *self.crossings(self.least))
 
     def open(self):
-        """Parts of the width where the crack is open: ``((low, high), ...)`` [mm]."""
+        """Return the intervals of the width in which the crack is open: ``((low, high), ...)`` [mm]."""
         places = [self.ends[0], *self.crossings(END * self.least), self.ends[1]]
         middles = (np.array(places[1:]) + places[:-1]) / 2
         deep = front(self.crack, self.width, middles)[0] > END * self.least * deepest(self.crack)

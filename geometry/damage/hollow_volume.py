@@ -31,9 +31,9 @@ def hollow_frame(gear, one):
 def removed_volume(gear, hollows):
     """Volume [mm**3] the hollows take from the body, what several take counted once.
 
-    The tooth near its flank is filled by the involutes parallel to it: a place is arc s, distance t below the flank and height
-    z, and ``dV = (1 - t / roll) ds dt dz`` (on a ring ``1 + t / roll``). Along t a hollow is an interval, because its
-    outline is convex; over s and z the lengths are summed on a fine grid.
+    The tooth near its flank is described by involutes parallel to the flank: arc s, distance t below the flank and height z,
+    with ``dV = (1 - t / roll) ds dt dz`` (``1 + t / roll`` for a ring). Along t a hollow is an interval, because its outline
+    is convex. The lengths are summed over a fine grid of s and z.
     """
     return sum(_taken(gear, hollow, hollows[:k]) for k, hollow in enumerate(hollows))
 
@@ -53,7 +53,7 @@ def _taken(gear, one, before):
 
 
 def _places(low, high, kinks):
-    """Places [mm] from `low` to `high` at which a function with kinks is summed up, and their weights [mm]."""
+    """Return places [mm] from `low` to `high` and weights [mm] to integrate a function with kinks numerically."""
     ends = np.unique(np.clip([low, *kinks, high], low, high))
     count = -(-GRID // (ends.size - 1))
     steps = np.repeat(np.diff(ends) / count, count)

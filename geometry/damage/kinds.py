@@ -25,7 +25,7 @@ NAMES = [kind.__name__ for kind in get_args(Damage)]
 
 
 def are(given: object, kind: type | UnionType = Damage) -> bool:
-    """Whether it is a list or tuple of damage, or of one `kind` of it."""
+    """Return whether the argument is a list or tuple of damage, or of one `kind` of damage."""
     return isinstance(given, (list, tuple)) and all(isinstance(defect, kind) for defect in given)
 
 
@@ -87,7 +87,9 @@ def check_broken(gear, defects):
                 raise ValueError(f"tooth {one.tooth} of z = {gear.z} {said} and has a {defect._nouns[0]}: give one of them")
     for tooth in gone:
         if (tooth + 1) % gear.z in gone:
-            raise ValueError(f"teeth {tooth} and {tooth + 1} of z = {gear.z} are missing: of neighbours only one may be missing")
+            raise ValueError(
+                f"teeth {tooth} and {tooth + 1} of z = {gear.z} are missing: only one of two adjacent teeth may be missing"
+            )
 
 
 def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> str:

@@ -106,7 +106,7 @@ def _tip(gear, side, chip):
 
 
 def _half(gear, side, mark, chip=None):
-    """Curves of half a tooth clockwise: kind, radii and angles of its points, whether the crack's end is at its lower end."""
+    """Return curves of half a tooth clockwise: kind, radii and angles, and whether the crack's mouth is at the lower end."""
     sign = 1 if side == "loaded" else -1
     # Points equidistant in roll length: equidistant in arc, the spline would deviate from the involute near the base circle.
     rolls = np.linspace(gear.roll_a if chip is None else chip.end_roll(gear, side), gear.roll_f, 17)
@@ -161,7 +161,7 @@ def fine(gear, crack, size, teeth):
 
 
 def tool(gear, hollow, squeeze):
-    """Outline above the flank and push of the cylinder that cuts a hollow, where the width is squeezed."""
+    """Return the outline above the flank and the extrusion of the cylinder that cuts a hollow, with the width scaled."""
     centre, axes, push, _ = hollow_frame(gear, hollow)
     roll = math.sqrt(hollow.radius**2 - gear.r_b**2)
     above = (0.2 + (max(hollow.axes) ** 2 / roll if gear.internal else 0.0) / hollow.depth) * push

@@ -124,9 +124,10 @@ def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, s
 
 
 def filled(sector, *, teeth=3):
-    """Return the same mesh with its pits filled: the difference shows the effect of the holes without that of the mesh.
+    """Return the same mesh with its pits filled, for a comparison without discretisation effects.
 
-    Its flanks are whole, and no tet is in a pit; its faces ``pits`` are the flank above them. `teeth` is that of `holed_sector`.
+    The flanks are complete and no tet is in a pit. The faces ``pits`` are the parts of the flank above the pits.
+    `holed_sector` describes `teeth`.
     """
     plug = np.full_like(sector.plug, -1)
     flat = turned(sector.points, -sector.gear.twist_rate * sector.points[2])

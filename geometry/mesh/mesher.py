@@ -38,7 +38,7 @@ def gmsh_session():
                 "libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libxfixes3 libxrender1 libgomp1'"
             ) from error
         if gmsh.isInitialized():
-            raise RuntimeError("this program has gmsh open, which has one session for all: call gmsh.finalize() before gearfe")
+            raise RuntimeError("this program has gmsh open, which allows one session only: call gmsh.finalize() before gearfe")
         with _handlers_kept():
             gmsh.initialize(readConfigFiles=False, interruptible=False)  # A user's options file would change the mesh.
         try:
@@ -73,7 +73,7 @@ def _handlers_kept():
 
 
 def _begin_anew():
-    """In the child of a process that was forked: the thread that was meshing is not in it, its session is."""
+    """Close the gmsh session in a forked child process, which has a copy of the session but not the thread that used it."""
     global _turn
     if _turn.locked() and "gmsh" in sys.modules and sys.modules["gmsh"].isInitialized():
         sys.modules["gmsh"].finalize()
@@ -144,7 +144,7 @@ def _places(mesh, tags, middles):
 
 
 def quadrangulate(points, lines, surfaces, algorithm):
-    """Mesh quads between given nodes: every line keeps its three nodes, and gmsh adds inner nodes.
+    """Mesh quads between given nodes. Every line keeps its three nodes, and gmsh adds inner nodes.
 
     `algorithm` is that of gmsh's triangles before they are joined. Raises RuntimeError if triangles remain.
 

@@ -33,9 +33,9 @@ class Half:
 def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1, growth=GROWTH):
     """Roll lengths [mm] of flank vertices, from the form point to the tip.
 
-    The arc between them is about `spacing` [mm], graded down to `tip` and `low` towards the two ends, where the
-    flexibility changes fast, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle]; away from
-    those it grows by `growth` per length. The number of intervals is a multiple of `span`.
+    The arc between them is about `spacing` [mm]. It is graded down to `tip` and `low` towards the two ends, where the
+    flexibility changes rapidly, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle]. With
+    the distance from these it grows by `growth` per length. The number of intervals is a multiple of `span`.
     """
     start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
     fine = [*patches, (stop, stop, tip or spacing), (start, start, low or spacing)]
@@ -70,7 +70,7 @@ def doubled(values):
 
 
 def half(gear, roll, fillet_size, size, *, mark=None, top=None):
-    """Half a tooth with flank vertices at `roll`. `mark` is an arc of `root_curve` and the edge length there [mm].
+    """Return half a tooth with flank vertices at `roll`. `mark` is an arc of `root_curve` and the edge length there [mm].
 
     `top` are the pieces of `gearfe.geometry.damage.chip.Chip.top`, without a chip the tip circle.
     """

@@ -42,8 +42,9 @@ class PeriodicSector:
 def periodic_sector(gear, cracks=(), *, missing=False, refine=1.0):
     """Mesh one pitch sector of a gear. The factor `refine` divides the edge lengths.
 
-    `cracks` ``(Crack, ...)`` are those of its tooth, whatever tooth they name; one to a side at most. The sides and the held edge
-    of the sector are the same with and without them. A `missing` tooth leaves the root circle and no flanks.
+    `cracks` ``(Crack, ...)`` belong to its tooth, whatever their tooth number. Each side has at most one. The sides and the
+    held edge of the sector do not depend on them. The sector of a `missing` tooth has the root circle and no flanks.
+    ValueError if a crack is too short, leaves the sector, or shares its side with another.
 
     ValueError if a crack is too short, leaves the sector, or shares its side with another.
     """

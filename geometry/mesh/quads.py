@@ -30,8 +30,9 @@ ATTEMPTS = tuple((finer, algorithm) for own in ((5, 6), (8,)) for finer in (1.0,
 class Cut:
     """The line that parts a cracked tooth from the body: `edges` (3, n) start, middle, end from a mouth on.
 
-    `crack` (n,) is the number of the crack each edge belongs to, -1 on the part that stays closed; `depth` (n,) the distance of
-    the edge's middle from that crack's mouth along the crack [mm].
+    `edges` (3, n) are start, middle and end of its edges from a mouth on. `crack` (n,) is the number of the crack of each
+    edge, -1 on the part that stays closed. `depth` (n,) is the distance of the edge's middle from the mouth of its crack,
+    along the crack [mm].
     """
 
     edges: np.ndarray
@@ -154,7 +155,7 @@ def _attempt(gear, teeth, damage, patches, size, algorithm):
 
 
 class _Draft:
-    """Nodes and three-node lines of the outline, and the exact middles of their halves."""
+    """Outline under construction: nodes, lines of three nodes, and the exact middles of the two halves of each line."""
 
     def __init__(self):
         self.points, self.lines, self.middles = [], [], {}
@@ -206,7 +207,7 @@ def _rim(gear, draft, size, teeth, damage, patches):
     for owner, side in halves:
         loaded = side == "loaded" and owner in teeth
         pieces = _pieces(gear, owner, side, size, teeth, damage, patches)
-        # the piece after the flank, else piece 1
+        # number of the piece that follows the flank; 1 without a flank
         below = 1 + next((k for k, piece in enumerate(pieces) if piece[0] == "flank"), 0)
         sign = 1 if side == "loaded" else -1
         for k, (name, radius, angle, params) in list(enumerate(pieces))[::sign]:

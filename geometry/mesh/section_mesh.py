@@ -24,7 +24,8 @@ CRACK_EDGE = 0.2  # edge length at a crack tip relative to that of the fillet; a
 class Seam:
     """The two faces of a crack: node numbers ``(2, n)`` (left, right) of vertices and edge middles from mouth to tip.
 
-    The last column is the tip, twice the same node; the one before is the middle of the tip's edges, at a quarter.
+    The last column is the tip, with the same node twice. The column before it is the quarter-point node of the edge at the
+    tip.
     """
 
     faces: np.ndarray
@@ -198,7 +199,7 @@ def fill(rim, held, chains=(), *, ring=False):
 
 
 def _quarter(mesh, nodes, tip):
-    """Move the middles of all edges at `tip` to a quarter: displacements there go with the root of the distance."""
+    """Move the middles of all edges at `tip` to the quarter point: displacements there vary with the root of the distance."""
     edges = np.flatnonzero((mesh.facets == tip).any(axis=0))
     far = mesh.facets[:, edges].sum(axis=0) - tip
     nodes[:, mesh.nvertices + edges] = 0.25 * nodes[:, far] + 0.75 * nodes[:, [tip]]

@@ -42,7 +42,7 @@ def write_step(path: StrPath, gear: Gear) -> float:
 
 @contextlib.contextmanager
 def _quiet():
-    """OpenCASCADE prints statistics of a STEP file to the terminal: nothing of it."""
+    """Context that suppresses the statistics of a STEP file, which OpenCASCADE prints to the terminal."""
     sys.stdout.flush()
     kept, nothing = os.dup(1), os.open(os.devnull, os.O_WRONLY)
     try:

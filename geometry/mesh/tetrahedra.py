@@ -10,7 +10,7 @@ GROWTH = 0.5  # growth of the edge length with the distance from fine places
 
 
 class UnmeshedError(RuntimeError):
-    """Gmsh made no tets of a solid with these edge lengths. With others it may."""
+    """Gmsh could not mesh a solid in tets with these edge lengths. Other lengths may succeed."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -84,7 +84,7 @@ class ToothPairs:
 def each_pair(pairs: ToothPairs, order: NDArray, z: NDArray, found_of: Callable[[Any, Any], Touch]) -> Touch:
     """Return the `Touch` of each tooth pair of `order` ``(n,)`` at the heights `z` [mm], with the tips of that pair.
 
-    ``found_of(pair, on)`` solves the sections `on`, an index or a mask, with the tips of `pair`.
+    ``found_of(pair, on)`` solves the sections that `on` selects (an index or a mask), with the tips of `pair`.
     """
     part = pairs.parts(z)
     (first, *others) = sorted(set(zip(order.tolist(), part.tolist(), strict=True)))

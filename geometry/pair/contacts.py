@@ -90,10 +90,11 @@ class Touch(NamedTuple):
 
 
 class Met(NamedTuple):
-    """Contact of points with the other side: approach `gap` and place `roll` there [mm].
+    """First contact of points with the other side: approach `gap`, and roll length `roll` of the place there [mm].
 
-    `arm` and `met_arm` are the distances of the contact normal from the centres of the point's own gear and the other, in their
-    base radii. `out` and `met_out` are the parts of a unit force that point away from these centres, on the gear it acts on.
+    `arm` and `met_arm` are the distances of the contact normal from the centres of the point's own gear and of the other gear,
+    divided by their base radii. `out` and `met_out` are the components of a unit contact force away from these centres, each
+    on its own gear.
     """
 
     gap: Floats

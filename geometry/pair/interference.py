@@ -17,8 +17,9 @@ def outline(gear, count=60):
 def overlap(pair, nominals):
     """Deepest cut [mm] of either outline into the other, contact flanks included, at some places of the contact.
 
-    Points of the teeth of one gear around the pitch point are looked up in the half thickness of the other's teeth; both
-    ways. Without backlash the cut is zero up to rounding. Catches tips in fillets and, for rings, tips in tips.
+    Points of the teeth of one gear near the pitch point are compared with the half thickness of the other gear's teeth, and
+    vice versa. Without backlash the cut is zero within rounding. The test detects tips in fillets and, for rings, tips in
+    tips.
     """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
     outlines, turned = [outline(gear) for gear in gears], np.array(pair.turn(np.asarray(nominals)))

@@ -136,7 +136,7 @@ def _radius(pair, forms, roll_1, roll_2, there):
 
 
 def _inside(pair, forms, nominal, order, start):
-    """Touching points on the flanks, their corners left out: rolls of both gears and gaps ``(n,)``, inf where there is none."""
+    """Return touching points on the flanks without their corners: rolls of both gears and gaps ``(n,)``, inf without contact."""
     pinion = pair.gear_1
     amounts = [form.removed(form.before_edge(np.linspace(form.low, form.high, 65))[None, :]) for form in forms]
     range_ = sum(np.ptp(values, axis=-1) for values in amounts)
@@ -180,8 +180,9 @@ def _inside(pair, forms, nominal, order, start):
 def _exact(pair, forms, nominal, order, near):
     """Return rolls of both gears and gaps of touching points, from arcs, rolls and gaps `near` them.
 
-    The search leaves 1e-6 mm of the place: nothing for the gap of smooth flanks but its last digits, which a parabola through
-    three places gives, and 1e-9 mm at a ridge, which is looked at itself: close to a steep one the search may have met nothing.
+    The search locates the point within 1e-6 mm. For smooth flanks this affects only the last digits of the gap, which a
+    parabola through three places restores. At a ridge the error is 1e-9 mm. Ridges are therefore evaluated separately, because
+    the search may find no contact next to a steep one.
     """
     arc, roll, met, start = near
     least = np.where(np.isfinite(met), start, np.inf)
@@ -217,7 +218,7 @@ def _residual(pair, forms, arc, turns, order, pose):
 
 
 def _least(function, low, high, steps):
-    """Places of the least value between `low` and `high` (arrays) by golden section."""
+    """Find the arguments of the least value between `low` and `high` (arrays) by golden section search."""
     a, d = low, high
     b, c = d - GOLDEN * (d - a), a + GOLDEN * (d - a)
     at_b, at_c = function(b), function(c)

@@ -121,8 +121,8 @@ class FlankForm:
     def removed(self, roll: ArrayLike, derivative: int = 0) -> Floats:
         """Return the material removed at roll lengths [mm], or its derivative by the roll length, without pitch deviations.
 
-        Derivatives are those of the flank without the edge of its tip (for that see `bend`).
-        The fillet goes on with what is removed at the form point.
+        The derivatives exclude the edge of the tip (see `bend`). In the fillet, the material removed is that at the form
+        point.
         """
         at = self._on_flank(roll)
         out = self._formed(at, derivative)
@@ -199,7 +199,7 @@ class FlankForm:
         return np.minimum(roll, self.edge.start) if self.high > self.low else np.maximum(roll, self.edge.start)
 
     def bounds(self) -> tuple[float, float]:
-        """Least and most that any place of any tooth lies behind the involute [mm]."""
+        """Return the least and largest distance by which any point of any tooth lies behind the involute [mm]."""
         heights = np.linspace(0, self.gear.b, 33)
         form = self.at(heights)
         rolls = np.linspace(self.low, self.high, 65)[None, :]

@@ -23,8 +23,8 @@ SHARPEST = 1e-3  # Form points with a smaller change of direction [rad] are no c
 class Place(NamedTuple):
     """Places of a tooth side: roll length [mm], angle from the centre-line [rad], and direction of the outward normal.
 
-    The normal passes the gear's centre at `arm` [mm] (r_b on the flank) and its foot is `lean` [mm] away from the place (the roll
-    length on the flank).
+    The normal passes the gear's centre at the distance `arm` [mm] (r_b on the flank). The foot of the perpendicular from the
+    centre to the normal is `lean` [mm] away from the place (the roll length on the flank).
     """
 
     roll: Floats

@@ -15,7 +15,7 @@ def numbers(name: str, values: Any) -> list[float]:
     except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{name} = {shown(values)}, but give a sequence of numbers [mm]") from error
     if out.ndim != 1 or not np.isfinite(out).all() or np.ma.is_masked(values):
-        raise ValueError(f"{name} needs one row of finite numbers [mm], without holes")
+        raise ValueError(f"{name} needs one row of finite numbers [mm], none missing")
     return out.tolist()
 
 

@@ -34,7 +34,7 @@ class TipEdge:
         if not 0 < size <= LARGEST * gear.m_n:
             raise ValueError(
                 f"{name} = {size:g} mm, but give one between 0 and {LARGEST * gear.m_n:g} mm ({LARGEST} m_n) of z = {gear.z}: "
-                "larger ones are another tooth; change the addendum"
+                "a larger one is another tooth form; change the addendum instead"
             )
         if rounding:
             self.start = self._touching()
@@ -87,8 +87,9 @@ class TipEdge:
     def _angle(self, roll: Floats) -> Floats:
         """Angle of the edge from the tooth's centre-line [rad] at the radii of roll lengths.
 
-        The gear's centre, that of the arc and the place make a triangle with sides c, rounding and R; its angle at the gear's
-        centre is written by ``d = |r_a - R|``, so that it stays exact where the arc ends. On a chamfer ``|first + t cut| = R``.
+        For a rounding, the gear's centre, the centre of the arc and the point form a triangle with the sides c, rounding and
+        R. Its angle at the gear's centre is computed from ``d = |r_a - R|``, which is exact at the end of the arc. For a
+        chamfer, ``|first + t cut| = R`` is solved.
         """
         gear = self.gear
         radius = np.hypot(roll, gear.r_b)
@@ -102,7 +103,7 @@ class TipEdge:
         return np.arctan2(first[0] + t * cut[0], first[1] + t * cut[1])
 
     def removed(self, roll: Floats) -> Floats:
-        """Material removed at roll lengths [mm]. It is constant beyond the tip circle."""
+        """Return the material removed at roll lengths [mm]. It is constant beyond the tip circle."""
         gear, on = self.gear, self.on(roll)
         low, high = sorted((self.start, gear.roll_a))
         at = np.clip(np.where(on, roll, self.start), low, high)

@@ -2,6 +2,7 @@
 
 import copy
 import math
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +18,7 @@ from gearfe.comparison.vibration import analysis
 from gearfe.dynamics.machine.gearbox import gearbox
 from gearfe.dynamics.machine.of_scene import flat_machine
 from gearfe.dynamics.machine.sensor import with_sensors
+from gearfe.dynamics.motion.heard import gain
 from gearfe.scene.load import scene_of
 from gearfe.scene.toml_file import toml
 
@@ -88,19 +90,21 @@ def test_a_measured_path_beside_the_scene_file(run, tmp_path):
     strong = theirs.values > 0.05 * theirs.values.max()
     assert_allclose(own.values[strong], theirs.values[strong], rtol=0.02)
     assert strong.sum() > 5
-    row["frf"] = "nope.csv"
-    (tmp_path / "own.toml").write_text(toml(copy.deepcopy(BRANCHING) | {"sensor": {"box": row}}), encoding="utf-8")
-    with pytest.raises(ValueError, match=r"own.toml \[sensor.box\] frf = 'nope.csv': not readable"):
-        gf.load_scene(tmp_path / "own.toml")
+    os.mkfifo(tmp_path / "pipe.csv")
+    for name, reason in (("nope.csv", "not readable as a table: cannot read"), ("pipe.csv", "it is no regular file")):
+        row["frf"] = name
+        (tmp_path / "own.toml").write_text(toml(copy.deepcopy(BRANCHING) | {"sensor": {"box": row}}), encoding="utf-8")
+        with pytest.raises(ValueError, match=rf"own.toml \[sensor.box\] frf = '{name}'.*{reason}"):
+            gf.load_scene(tmp_path / "own.toml")
 
 
 def test_gain_is_the_amplitude_of_lines():
     """A harmonic force through the modes, sampled so often that lines between samples are the sine."""
     sensor, rate = gf.Sensor(("force left",), modes=tuple(zip(*MODE.values(), strict=True))), 400_000.0
     time, f = np.arange(200_000) / rate, np.array([500.0, 905.0, 2300.0])
-    for at, gain in zip(f, sensor.gain(f), strict=True):
+    for at, factor in zip(f, gain(sensor, f), strict=True):
         heard = gf.through_modes(gf.Signal(np.sin(2 * math.pi * at * time), rate, "N"), sensor.modes).values[80_000:]
-        assert_allclose(np.sqrt(2) * heard.std(), abs(gain), rtol=2e-4)  # (pi f / rate)**2 / 3 of the straight lines
+        assert_allclose(np.sqrt(2) * heard.std(), abs(factor), rtol=2e-4)  # (pi f / rate)**2 / 3 of the straight lines
 
 
 def test_a_scene_with_sensors_reaches_the_machine_and_its_damaged_case():

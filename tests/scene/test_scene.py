@@ -173,7 +173,7 @@ LINE = 'along = "contact_line"\nmiddle_mm = 15.0\n'
         (LINE + "pitch_mm = 6.0\nmirrored = true\n", None),
         ("", r"give first_mm \(.*\) or middle_mm \(.*\), one of them"),
         (ROW + "middle_mm = 15.0\n", r"give first_mm \(.*\) or middle_mm \(.*\), one of them"),
-        (ROW + 'along = "profile"\n', "first_mm and last_mm are of pits along the axis"),
+        (ROW + 'along = "profile"\n', "first_mm and last_mm apply to pits along the axis"),
         (LINE, "3 pits about middle_mm: give pitch_mm"),
         (LINE + "pitch_mm = 1.0\nspan_mm = 2.0\n", "pitch_mm and span_mm exclude each other"),
         (LINE + "pitch_mm = 1.0\nlast_mm = 2.0\n", "last_mm and middle_mm exclude each other"),

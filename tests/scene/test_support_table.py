@@ -97,7 +97,7 @@ def test_a_comparison_says_what_a_section_leaves_out(tmp_path):
         ("[support.a]\ngear = 'wheel'\nradial_N_per_um = 0\n", r"\[support.a\] radial_N_per_um = 0, but it must be above 0 N/um"),
         (
             HELD + "[support.b]\ngear = 'wheel'\n",
-            r"\[support.b\]: gear 'wheel' has support or shaft in pair 'main'; give each its pair",
+            r"\[support.b\]: gear 'wheel' has support or shaft in pair 'main'; give each of them a pair",
         ),
         (
             HELD.replace("gear_at_mm = 70", "gear_at_mm = 90"),

@@ -11,6 +11,7 @@ from gearfe.geometry.damage.crack import crack_path
 from gearfe.geometry.tooth.profile import fillet_length
 from gearfe.strength.kink import kinked, turn_angle
 from gearfe.strength.tip_response import fe_response, ritz_response
+from validation.make.growth import polyline_row, random_polyline
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=9.2, **RACK)
@@ -35,17 +36,6 @@ def test_a_polyline_through_the_corners_of_a_crack_is_that_crack(crack):
     assert k[1] == pytest.approx(k[0], rel=1e-3)
 
 
-def random_polyline(seed):
-    rng = np.random.default_rng(seed)
-    x, y = crack_path(GEAR, gf.Crack(length=0.1)).T[0]
-    points, heading = [], math.radians(rng.uniform(150, 250))
-    for _ in range(rng.integers(2, 5)):
-        heading += math.radians(rng.uniform(-25, 25))
-        x, y = x + 0.5 * math.cos(heading), y + 0.5 * math.sin(heading)
-        points.append((x, y))
-    return gf.Crack(path=points)
-
-
 def test_a_scene_has_the_same_polyline(tmp_path):
     """`path_mm` lists x and y of the corners; the crack of the wheel stays with the wheel."""
     scene = gf.new_scene(tmp_path / "mine.toml").read_text()
@@ -61,15 +51,8 @@ def test_a_scene_has_the_same_polyline(tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [*range(16), 25, 29, 34, 65])
 def test_both_methods_have_the_same_stress_intensity_on_random_polylines(seed):
-    roll = np.array([GEAR.roll_f + 0.6 * (GEAR.roll_a - GEAR.roll_f)])
-    carried = GEAR.roll_f + 0.1 * (GEAR.roll_a - GEAR.roll_f), GEAR.roll_a
-    crack = random_polyline(seed)
-    ritz = ritz_response(GEAR, STEEL, crack, (-1, 0, 1), 1.0)
-    fe = fe_response(GEAR, STEEL, crack, (-1, 0, 1), 1.0, carried)
-    size = np.hypot(*fe.under[0](roll)[0, -2:])
-    for tooth in (-1, 0, 1):
-        apart = ritz.under[tooth](roll)[0, -2:] - fe.under[tooth](roll)[0, -2:]
-        assert np.abs(apart).max() < 0.01 * size
+    """Under loads on three teeth, relative to K under the load on the cracked tooth."""
+    assert polyline_row(seed)["off_percent"] < 1.0
 
 
 @pytest.mark.slow

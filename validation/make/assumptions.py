@@ -39,8 +39,8 @@ CONVENTIONS = {
 def mean(one, changes=({}, {}), force=None):
     """Mean stiffness [N/m] with changed gears or force: of spur gears by `ritz`, of others by `ritz3d`.
 
-    The section of a helical gear neglects its ends: of `helical_pitting` it is 1.6 times too stiff, and its bore half as
-    important.
+    The transverse section of a helical gear neglects its ends. For `helical_pitting` it is 1.6 times too stiff, and the effect
+    of its bore is half as large.
     """
     gears = (replace(gear, **change) for gear, change in zip((one.pair.gear_1, one.pair.gear_2), changes, strict=True))
     pair = GearPair(*gears, one.pair.a)

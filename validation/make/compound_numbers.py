@@ -41,12 +41,12 @@ def converged(pair):
 
 
 def converged_stiffness():
-    """Mean stiffness of the same gears with teeth, foundation, contact and neighbouring teeth."""
+    """Return the converged mean stiffness of all pairs, with teeth, foundation, contact and neighbouring teeth."""
     return {(name, pair): converged(pair) for name, pair in PAIRS.items()}
 
 
 def stiffness_ratio():
-    """Means over that of sun and planet."""
+    """Return the mean stiffness of the pairs by beams, divided by that of sun 2 and its planet."""
     k = {name: float(beams(pair).k.mean()) for name, pair in PAIRS.items()}
     return {name: k[name] / k["s2_sun_planet"] for name in ("s2_planet_planet", "s1_ring_planet", "s2_ring_planet")}
 
@@ -57,7 +57,7 @@ def engaged(curve):
 
 
 def broken_tooth():
-    """Remaining share of the mean stiffness over the engagement of the broken tooth: beams without its load, converged model."""
+    """Return the remaining share of mean stiffness with a broken tooth: beams without its load, and the converged model."""
     curve = beams("sun_planet", span="tooth")
     on, own = engaged(curve), curve.force[:, np.flatnonzero(curve.order == 0)[0]]
     without = curve.k * (1 - own / curve.force.sum(axis=1))
@@ -84,7 +84,7 @@ def frequencies():
 
 
 def of_mesh_lines(one):
-    """Part of a signal's power in mesh lines and their harmonics, over whole periods of all lines: else they leak aside."""
+    """Return the share of a signal's power in mesh lines and harmonics, over whole periods of all lines to avoid leakage."""
     mesh, (slow, quick) = frequencies()
     step = quick - slow  # All line frequencies are multiples of this difference.
     count = round(one.rate * math.floor(one.values.size / one.rate * step + 1e-6) / step)

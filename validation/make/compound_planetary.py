@@ -79,7 +79,7 @@ def heard(case, law=HEARD, channel=SENSOR):
 
 @cache
 def _noisy(case, law=HEARD, channel=SENSOR):
-    """With noise of one size for all cases."""
+    """Return a signal with added noise, whose level is the same in all cases."""
     one, healthy = heard(case, law, channel), heard(None, law, channel).values.std()
     if isinstance(law, Draw):
         more = law["noise"] * healthy * noise(law, f"{case} {channel}", one.values.size)
@@ -110,7 +110,7 @@ def kurtogram_centre():
 
 
 def _stands_out(found, frequency, near=3.0):
-    """Whether the line at a frequency is three times the median of what is less than `near` [Hz] beside it."""
+    """Return whether the line at a frequency exceeds three times the median of the bins within `near` [Hz] of it."""
     beside = found.within(frequency - near, frequency + near)[1]
     return amplitude(found, frequency) > 3 * np.median(beside)
 
@@ -160,7 +160,10 @@ def below(law=HEARD, channel=SENSOR):
 
 
 def more_lines(law=HEARD, channel=SENSOR, broken=BROKEN):
-    """Parts of the lines f_2 apart in `BAND`, off mesh harmonics, that are `ABOVE` times and that are above the healthy ones."""
+    """Return the shares of lines at distances f_2 in `BAND` that exceed the healthy ones `ABOVE` times, and once.
+
+    Lines at mesh harmonics are omitted.
+    """
     mesh, fault = frequencies()
     hurt, healthy = (spectrum(_noisy(case, law, channel)) for case in (broken[1], None))
     places = [n * mesh[1] + k * fault[1] for n in range(7) for k in range(-5, 6) if k]
@@ -197,7 +200,7 @@ def drawn(draw):
 
 
 def write_more():
-    """Tables: phases of the meshes, and the stiffness left by each ingredient."""
+    """Write two tables: phases of the meshes, and the stiffness that remains with each ingredient of the model."""
     made = _made(None)
     beside("compound_planetary", BESIDE, *VIEWS)
     phases = [(name, *map(float, pair)) for name, pair in made.notes["relative phases"].items()]

@@ -116,14 +116,14 @@ def answer(growth, chosen, chance):
     """Return the first lines of the page."""
     lines = []
     for name, values in zip(NAMES, chance.T, strict=True):
-        length = first(growth.length[chosen], values)
+        length, name = first(growth.length[chosen], values), name.replace("noise", "noise of").replace(")", " m/s^2)")
         if math.isnan(length):
             lines.append(f"- By {name}, the crack is not detected with 90 % probability at any of these lengths.")
             continue
         left = 1 - float(np.interp(length, growth.length, growth.cycles)) / growth.cycles[-1]
         lines.append(
             f"- By {name}, the crack is detected with 90 % probability from {length:.1f} mm on. "
-            f"{100 * left:.0f} % of the revolutions from {growth.length[0]:g} mm to the end are then left."
+            f"{100 * left:.0f} % of the life is left then."
         )
     lines.append(
         f"- The crack grows from {growth.length[0]:g} mm to {growth.length[-1]:.1f} mm in {growth.cycles[-1]:.3g} revolutions "

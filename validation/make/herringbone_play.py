@@ -48,7 +48,7 @@ def error_of(case):
 
 @cache
 def grooved(factor, halves="LR"):
-    """Response of case 2 with damage in these halves and the groove's shaft so many times as stiff."""
+    """Return the response of case 2 with damage in these halves, and the groove's shaft stiffness times `factor`."""
     own = made("case2")
     springs = [
         replace(one, k=factor * one.k, c=np.sqrt(factor) * one.c) if " groove " in one.name else one for one in own.springs
@@ -58,7 +58,7 @@ def grooved(factor, halves="LR"):
 
 
 def apart(factor, halves="LR"):
-    """Sun's halves against each other over their common motion: standard deviations of the angles."""
+    """Return the standard deviation of the relative rotation of the sun's halves, over that of their common rotation."""
     left, right = (signal(grooved(factor, halves), f"sun{half}.theta").values for half in "LR")
     return float((left - right).std() / ((left + right) / 2).std())
 

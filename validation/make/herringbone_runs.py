@@ -47,7 +47,7 @@ def record_of(case, errors=ERRING):
 
 
 def settled(own):
-    """Response of a machine in its steady motion, or where none is found from rest, settled."""
+    """Return the response of a machine in its periodic motion, or after its start if none is found."""
     try:
         found = gf.steady_state(own).response
     except RuntimeError:
@@ -105,7 +105,7 @@ def _scattered(case, errors):
 
 
 def impulse_of(case, errors=ERRING, channel=TURNING):
-    """Largest difference of a channel from the healthy one."""
+    """Return the largest difference of a channel from that of the healthy machine."""
     return float(np.abs(heard(case, errors, channel).values - heard(None, errors, channel).values).max())
 
 

@@ -48,7 +48,7 @@ def compute(name, again=False):
 
 
 def said(name):
-    """Draws in which each statement holds, by channel: ``{statement: {channel: array of bool}}``."""
+    """Return, for each statement and channel, an array of bool: in which draws the statement holds."""
     rows, out = rows_of(name), {}
     for statement, channels in rows[0]["holds"].items() if rows else ():
         out[statement] = {one: np.array([row["holds"][statement][one] for row in rows]) for one in channels}
@@ -56,7 +56,7 @@ def said(name):
 
 
 def decides(name, held):
-    """Return the input whose larger and smaller half of draws differ most, in words."""
+    """Return in words the input whose upper and lower halves of draws differ most in a statement, with counts and probability."""
     if held.all() or not held.any():
         return ""
     best, names = 0, []
@@ -70,7 +70,10 @@ def decides(name, held):
 
 
 def by_chance(apart, held, inputs):
-    """Probability that halves of the draws differ by as many or more for one of so many inputs if none plays a part."""
+    """Return the probability of a difference of at least `apart` between halves of the draws, if no input has an effect.
+
+    It is the probability for any one of the number `inputs` of inputs.
+    """
     above, yes = np.arange(held.size // 2 + 1), int(held.sum())
     chance = hypergeom.pmf(above, held.size, yes, held.size // 2)[abs(2 * above - yes) >= apart].sum()
     return float(1 - (1 - chance) ** inputs)
@@ -83,14 +86,14 @@ def judged(name):
 
 
 def counts(name):
-    """Statements, on the channel that the page judges, that hold in all draws, in none and in some; none that we set."""
+    """Count the statements that hold in all, in none and in some of the draws, on the channel that the page judges."""
     ours = {row.case for row in read(name) if row.verdict == verdicts.ASSUMED}
     share = [held.mean() for word, held in judged(name).items() if word not in ours]
     return sum(x == 1 for x in share), sum(x == 0 for x in share), sum(0 < x < 1 for x in share)
 
 
 def sentence(name):
-    """Return the counts in words. The result is empty without rows."""
+    """Return a sentence with the numbers of statements that hold in all, in none and in some draws."""
     every, none, some = counts(name)
     return (
         f"of its {every + none + some} statements {every} {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
@@ -122,7 +125,7 @@ def section(name, judged_rows):
 
 
 def judges(name):
-    """Which channel a page judges its statements on, in words."""
+    """Describe the channel on which a page judges its statements."""
     chosen = getattr(home(name), "JUDGED_ON", {})
     words = {channel: [f"'{word}'" for word, one in chosen.items() if one == channel] for channel in chosen.values()}
     return "the first" + "".join(f"; for {', '.join(own)} {channel}" for channel, own in words.items())
@@ -134,7 +137,7 @@ def told(name):
 
 
 def numbers(name):
-    """Lines with printed numbers with the least and largest of the draws; none if the page names none."""
+    """Return lines with printed numbers and their range over all draws, or none if the page states none."""
     named = getattr(home(name), "PRINTED", {})
     if not named:
         return []

@@ -141,7 +141,7 @@ def decided(page, rows):
 
 
 def drawn_jointly(page):
-    """Sentence of the opening: how many statements hang on inputs that the article does not print."""
+    """Return a sentence on how many statements depend on inputs that the article does not print."""
     below = "([below](#within-which-unprinted-inputs-statements-hold))"
     return f"if all of them are drawn at random together, {joint.sentence(page)} {below}."
 

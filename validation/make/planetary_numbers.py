@@ -47,7 +47,7 @@ def carrier_speed():
 
 
 def mesh_frequency():
-    """Contact lines of all meshes."""
+    """Return the mesh frequency from the contacts of all meshes per time."""
     return {"simulated": speeds()[2]}
 
 
@@ -67,7 +67,7 @@ def fault_interval():
 
 
 def measured_lines():
-    """Return the nearest bins of the measured spectra to carrier and fault frequency at 1000 rpm."""
+    """Return the bins of the measured spectra that are nearest to carrier and fault frequency at 1000 rpm."""
     return {name: round(value / BINS) * BINS for name, value in (("carrier", speeds()[1] / 60), ("fault", speeds()[3]))}
 
 

@@ -69,7 +69,7 @@ def repeated(name, law=OWN):
 
 
 def apart(found, *, rising=True):
-    """Whether the ranges of the levels lie one above the other; not `rising`: upwards or downwards."""
+    """Return whether the ranges of successive levels do not overlap. If not `rising`, they may also decrease."""
     ranges = [(min(found[case]), max(found[case])) for case in CASES]
     up, down = (all(a[1] < b[0] for a, b in zip(order, order[1:], strict=False)) for order in (ranges, ranges[::-1]))
     return up or (down and not rising)

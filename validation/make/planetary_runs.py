@@ -133,7 +133,7 @@ def standing_out(case, law=OWN, channel=FORCE):
 
 
 def rises(quantity):
-    """Whether a quantity of a case rises with the levels, each 0.1 % from the last."""
+    """Return whether a quantity rises with each level of damage, by more than 0.1 %."""
     found = [quantity(case) for case in CASES]
     return all(b > 1.001 * a for a, b in zip(found, found[1:], strict=False))
 

@@ -59,7 +59,7 @@ def kind(row):
 
 
 def counts(rows, article):
-    """Numbers of an article by kind, in the order of `KINDS`."""
+    """Count the printed numbers of an article by kind, in the order of `KINDS`."""
     own = [row for row in rows if row["article"] == article]
     return [sum(len(row["values"]) for row in own if kind(row) == name) for name in KINDS]
 

@@ -73,7 +73,7 @@ def ours(seed):
 
 
 def reference():
-    """Press whole outlines of the pairs, and by CalculiX those that the two estimates do not cover."""
+    """Compute the independent values by whole outlines, and by CalculiX where both estimates do not cover the difference."""
     for table in (TRUTH, LARGE):
         kept_rows.begin(table)
     seed, known = FIRST, rows_of(TRUTH)
@@ -94,7 +94,7 @@ def reference():
 
 
 def _independent(seed):
-    """Rows of the outlines of a seed, one for each phase; none if the seed gives no case."""
+    """Return the rows of a seed by whole outlines, one for each phase, or none if the seed gives no valid case."""
     try:
         _, (_, pair, flanks, load, phases, damage) = ours(seed)
         both, cracks = ([of.get(name, none) for name in SIDES] for of, none in ((flanks, None), (damage, ())))
@@ -147,7 +147,7 @@ def run(again=True):
 
 
 def settled(row, large):
-    """Difference from CalculiX and its mesh error [%] of a row, by the rows `large`; None if CalculiX did not press it."""
+    """Return the difference from CalculiX and its mesh error [%] for a row, or None if CalculiX did not compute it."""
     for one in large:
         if (one["seed"], one["phase"]) == (row["seed"], row["phase"]):
             return 100 * (float(row["k_N_um_mm"]) / float(one["k_N_um_mm"]) - 1), float(one["error_percent"])
@@ -155,7 +155,7 @@ def settled(row, large):
 
 
 def open_rows(rows):
-    """Rows beyond the estimates, by CalculiX where it has pressed them, by the outlines elsewhere."""
+    """Return the rows beyond the estimates, compared with CalculiX if available and otherwise with the outlines."""
     large, out = rows_of(LARGE), []
     for row in rows:
         told = settled(row, large)

@@ -176,7 +176,7 @@ def _possible(kind, seed):
 
 
 def judged(found):
-    """By what is asked: which phases of a row are covered; none if a method failed."""
+    """Return, for each question of `ASKED`, the phases at which the estimate covers the difference; none if a method failed."""
     if "failed" in found:
         return {name: np.zeros(1, dtype=bool) for name in ASKED}
     away = np.array([np.abs(np.subtract(found[one], found[two])) for one, two in ASKED.values()])
@@ -185,7 +185,7 @@ def judged(found):
 
 
 def compute():
-    """Compute the rows that are not on file, each of one to three minutes; a run that stops goes on with the next row."""
+    """Compute the rows that are not stored, each in one to three minutes. An interrupted run continues with the next row."""
     for kind, seed in every():
         kept(TABLE, f"{kind} {seed}", lambda kind=kind, seed=seed: row(kind, seed))
 

@@ -47,8 +47,9 @@ def contact_row(phase):
 def springs(phases):
     """Return the relative increase of the approach by the contact springs of CalculiX, `PENALTY` E times the overlap.
 
-    Under Hertz's pressure a pair overlaps by ``8 p0 / (3 pi)`` over that stiffness, weighted by the work of the pressure; the
-    pairs count by the load they carry. None where a corner carries: its pressure has no peak.
+    Under the Hertzian pressure, the springs overlap by ``8 p0 / (3 pi)`` over their stiffness, weighted with the work of the
+    pressure. The pairs are weighted with their loads. The result is None where a corner carries load, because its pressure has
+    no maximum.
     """
     pair, steel = contact_pair()
     curve = gf.mesh_stiffness(pair, LINE_LOAD * pair.gear_1.b, steel, method="ritz", phases=phases)

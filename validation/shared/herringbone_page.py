@@ -57,7 +57,10 @@ PRINTED = """
 
 
 def said(rows):
-    """By how much the section of the hexahedra on file stiffens k, in a sentence; computed once, with them, in commit 7e0439a."""
+    """State the increase of k by the refined section of the hexahedra, in one sentence.
+
+    The numbers were computed once, together with the hexahedra, in commit 7e0439a.
+    """
     parts = (
         f"{row['pair'].replace('_', '-')} {100 * float(row['mean']):+.2f} % on average ({100 * float(row['least']):+.2f} to "
         f"{100 * float(row['most']):+.2f} %)"
@@ -135,7 +138,7 @@ def drop_table():
 
 
 def beyond():
-    """In how many of the ten rows the mean of `herringbone_article` is beyond 3 % of finite elements in the scene as it is."""
+    """Return in how many of the ten rows the mean of `herringbone_article` differs from finite elements by more than 3 %."""
     return sum(abs(float(row["error of mean"])) >= 0.03 for row in load(SCENE) if row["method"] == "herringbone_article")
 
 

@@ -33,7 +33,10 @@ def machine(name, case=None, method="ritz3d"):
 
 @cache
 def own_law(name, case=None, *, pulsed=True):
-    """Machine of a scene under the impact law of its article; `pulsed`: with the scene's pulses on the carrier."""
+    """Return the machine of a scene under the impact law of its article.
+
+    If `pulsed`, the carrier has the torque pulses that the scene states.
+    """
     table = dict(scene(name).machine)
     if not pulsed:
         table["impact"] = {key: value for key, value in table["impact"].items() if not key.startswith("pulse")}

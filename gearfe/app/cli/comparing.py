@@ -42,9 +42,11 @@ def _results(scene, printed, arguments):
     one = arguments.pair or arguments.case or arguments.model or arguments.plot
     several = arguments.all_cases or (printed and not one)
     if several and one:
-        raise ValueError("--all-cases is every pair in every case: leave out --pair, --case, --model and --plot")
+        raise ValueError("--all-cases compares every pair in every case: leave out --pair, --case, --model and --plot")
     if several and arguments.reference not in (None, "fe3d"):
-        raise ValueError(f"--reference {arguments.reference} with --all-cases: only fe3d can be asked for")
+        raise ValueError(
+            f"--reference {arguments.reference} with --all-cases: all cases are compared with fe3d only: use --reference fe3d"
+        )
     options = {"phases": arguments.phases, "reference": arguments.reference}
     with working("finite elements and energy methods"):
         if several:

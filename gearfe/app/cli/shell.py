@@ -107,7 +107,7 @@ def run(work, options=()):
         resumed = "; the same command goes on where it was" if "dry_run" in options else ""
         tell(f"interrupted; nothing half-written is left{resumed}")
         return 130
-    except Exception as error:
+    except Exception as error:  # After a signal, libraries convert the exit to an exception of any type.
         if not _ended:
             return _told(error, options)
     return _ended.pop() if _ended else 0

@@ -169,7 +169,7 @@ def _table(law):
 
 
 def _secant(deep, tangent, pairs, load, depth):
-    """Secant stiffness over `depth` at one phase, from loads, the depths they press to, and the tangents there."""
+    """Return the secant stiffness over `depth` at one phase, from the loads, their deflections and the tangents there."""
     i = np.clip(np.searchsorted(deep, depth, side="right") - 1, 0, load.size - 2)
     wide, on = deep[i + 1] - deep[i], depth - deep[i]
     u = on / wide

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...core.record import ranged
-from ...geometry.aliases import Floats
 from .tables import Machine
 
 RUNG = math.log(1000.0)  # time constants in which a mode falls to a thousandth
@@ -67,15 +66,6 @@ class Sensor:
                 raise ValueError("sensor: frf needs as many values as rising frequencies [Hz], two or more")
             rung = 1 / float(np.diff(at).min())  # the record of the measurement is as long
         object.__setattr__(self, "ringing", rung)
-
-    def gain(self, frequency: Floats) -> Floats:
-        """Complex gain of the path at frequencies [Hz], 1 without a path."""
-        if self.frf is not None:
-            at, values = (np.asarray(part) for part in self.frf)
-            return np.interp(frequency, at, values.real, 0.0, 0.0) + 1j * np.interp(frequency, at, values.imag, 0.0, 0.0)
-        ratios = ((frequency / f, zeta, mass) for f, zeta, mass in self.modes)
-        modes = [-(r**2) / (1 - r**2 + 2j * zeta * r) / mass for r, zeta, mass in ratios]
-        return np.sum(modes, axis=0) if modes else np.ones(frequency.size)
 
 
 def with_sensors(scene: Any, machine: Machine) -> Machine:

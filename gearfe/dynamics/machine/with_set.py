@@ -169,7 +169,7 @@ def _check(machine, mesh, pair, direction):
             f"mesh {mesh.name} has another direction than in the set: build the machine with the planet_angles of the set"
         )
     if mesh.damage:
-        raise ValueError(f"mesh {mesh.name} has damage besides the set: give it to the PlanetaryCase, and a healthy machine here")
+        raise ValueError(f"mesh {mesh.name} has damage of its own: give the damage to the PlanetaryCase, and a healthy machine")
 
 
 def _still(machine):
@@ -208,7 +208,7 @@ def ring_springs(case: Any) -> Floats:
     elif isinstance(ring, RimSupports):
         n = float(ring.count)
         if ring.pushes or ring.count < 3:
-            raise ValueError("lugs that only push, or fewer than 3 pads, are no springs of a body: give ring = 'lumped'")
+            raise ValueError("unilateral lugs, or fewer than 3 pads, are not linear springs of a body: give ring = 'lumped'")
     else:
         return np.full(3, math.inf)
     across = 1e3 * n * (ring.radial + ring.tangential) / 2

@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from ...signal.series import Signal
-from .transfer_path import through_frf, through_modes
+from .transfer_path import gain_of_modes, interpolated, through_frf, through_modes
 
 
 def heard(response, sensor, name):
@@ -19,6 +19,13 @@ def heard(response, sensor, name):
     if sensor.frf is not None:
         return through_frf(force, *sensor.frf, sensor.unit)
     return through_modes(force, sensor.modes) if sensor.modes else force
+
+
+def gain(sensor, frequency):
+    """Complex gain of the transfer path of a `Sensor` at frequencies [Hz], 1 without a path."""
+    if sensor.frf is not None:
+        return interpolated(frequency, *map(np.asarray, sensor.frf))
+    return gain_of_modes(frequency, sensor.modes)
 
 
 def input_unit(response, sensor):

@@ -134,16 +134,20 @@ def is_bent(machine):
     return bool((machine.law["straight"] == 0).any())
 
 
+def cycle_rate(machine):
+    """Return the steps per second that resolve mesh cycles, `STEPS` each [1/s]; 0 without mesh frequencies."""
+    return STEPS * (machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0))
+
+
 def default_step(machine):
     """Return the step that resolves mesh cycles (`STEPS` per cycle) and mesh vibration (`SHARE` of a period) [s].
 
     A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``. Supports of any stiffness are in the exact linear part.
     """
-    highest = machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0)
     x = machine.working()
     squared = machine.linear(x)[2] * (machine.G**2 / machine.mass).sum(axis=1)
     top = math.sqrt(squared.max()) / (2 * math.pi) if squared.size else natural_frequencies(machine)[0][-1]
-    return 1 / max(STEPS * highest, top / SHARE)
+    return 1 / max(cycle_rate(machine), top / SHARE)
 
 
 def _needs_rates(law, rub):

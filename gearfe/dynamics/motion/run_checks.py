@@ -49,9 +49,9 @@ def _check_output(duration, rate, step, dt, every):
     if rate is not None and not duration * rate * (1 + 1e-12) >= 1:
         raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
     if dt is not None and (rate is not None or step is not None):
-        raise ValueError("dt is both the step and the interval of the output: give rate and step instead, or one of them")
+        raise ValueError("dt states both the step and the output interval: leave out dt, or leave out rate and step")
     if rate is not None and every != 1:
-        raise ValueError(f"rate = {rate} Hz and every = {every}: both thin out the output; give a lower rate alone")
+        raise ValueError(f"rate = {rate} Hz and every = {every}: both reduce the output; give a lower rate alone")
 
 
 def check_run(machine, duration, method, rate, step, dt, start, every):

@@ -138,7 +138,7 @@ def steady_state(
         z = z + np.linalg.lstsq(np.eye(z.size) - matrix, away, rcond=1e-10)[0]
     raise RuntimeError(
         f"no periodic motion of period {period:.6g} s found in {iterations} iterations (residual {residual:.3g}): "
-        "the response may be of a longer period or not periodic; integrate from rest, start from a state of that, or add damping"
+        "the response may be of a longer period or not periodic; give initial from a simulation, or add damping"
     )
 
 

@@ -151,5 +151,6 @@ def _resolved(whole, material, own, degree, cache):
             return kept
     raise RuntimeError(
         f"z = {gear.z}, b = {gear.b:g} mm, refine = {whole.refine:g}: the mesh is too coarse for patches of degree {kept} along "
-        f"the width, one of them moves only {100 * least:.2g} % of what a half-space does: raise refine, or lower the degree"
+        f"the width, one of which has only {100 * least:.2g} % of the deflection of a half-space: raise refine, or lower "
+        "the degree"
     )

@@ -85,7 +85,7 @@ def plan(unknowns, *, columns=0, free=None):
     if cost.memory > free:
         raise RuntimeError(
             f"{n} unknowns need about {cost.memory / 1e9:.3g} GB and {float(f'{cost.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "
-            f"are free: coarsen the mesh (a smaller refine), or use a machine with more memory"
+            f"are free: coarsen the mesh (a smaller refine), or use a computer with more memory"
         )
     check_time(f"{n} unknowns", seconds, "coarsen the mesh (a smaller refine)")
     return cost

@@ -113,7 +113,9 @@ def read_about(folder: StrPath, form: str, shape: Mapping[str, Any]) -> dict[str
         raise ValueError(f"{file} is damaged: {error}; nothing in the folder was touched") from error
     if about["format"] != form:
         stated = about["format"]
-        raise ValueError(f"{file} says format = {stated!r}, not {form!r}: another program's or version's folder; give a new one")
+        raise ValueError(
+            f"{file} has format = {stated!r}, not {form!r}: the folder is of another program or version; give a new one"
+        )
     return about
 
 

@@ -142,7 +142,7 @@ def _check_names(pair, inputs):
     shape = ring and ring[0] in SHAPE
     if shape and not math.isclose(pair.a, free_centre_distance(pair.gear_1, pair.gear_2), rel_tol=1e-9):
         raise ValueError(
-            f"inputs: {ring[0]!r} moves the centre distance without backlash, which a surrogate then takes, but the pair has "
+            f"inputs: {ring[0]!r} changes the centre distance, which a surrogate sets without backlash, but the pair has "
             f"a = {pair.a:g} mm: give a pair with a = None, or leave {ring[0]!r} out"
         )
 

@@ -76,7 +76,7 @@ def _listed(file, key, value):
         raise ValueError(f"{file} [{where}] = {shown(value)}: give a list of values, or from, to and count")
     check_values(f"{file} [{where}]", value)
     if len({repr(entry) for entry in value}) < len(value):
-        raise ValueError(f"{file} [{where}]: a value stands in the list twice")
+        raise ValueError(f"{file} [{where}]: the list contains a value twice")
     return list(value)
 
 
@@ -99,7 +99,7 @@ def checked_sample(file, given):
     out["of"] = flat(out["of"])
     method, count = out["method"], out["count"]
     if not out["of"]:
-        raise ValueError(f"{file} [sample]: give [sample.of] with one key at least")
+        raise ValueError(f"{file} [sample]: give [sample.of] with at least one key")
     if method in ("sobol", "saltelli") and count & (count - 1):
         low = 2 ** math.floor(math.log2(count))
         raise ValueError(f"{file} [sample] count = {count}: a {method} sample has a power of two, such as {low} or {2 * low}")

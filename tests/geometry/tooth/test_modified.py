@@ -61,7 +61,7 @@ def test_derivatives_are_those_of_the_amount():
         ({"profile_crowning": math.nan}, "crowning = nan, but a flank needs a finite number"),
         ({"table": ([5.0, 6.0], [0.0, 0.01])}, "does not cover the flank"),
         ({"table": ([5.0, 4.0], [0.0, 0.01])}, "the roll lengths rising"),
-        ({"table": ([2.0, 20.0], [0.0, math.nan])}, "without holes"),
+        ({"table": ([2.0, 20.0], [0.0, math.nan])}, "none missing"),
         ({"pitch": [0.001, 0.002]}, r"pitch = \(0\.001, 0\.002\): 2 values, but z = 21"),
         ({"pitch": [5.0] * 21}, "pitch: the flank of z = 21 deviates"),
     ],

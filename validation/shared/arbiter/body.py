@@ -85,7 +85,7 @@ class MeshedBody:
         return out
 
     def seam_loads(self):
-        """Columns ``(dofs, n)`` of unit forces that press the faces of cracks apart, a pair of nodes each."""
+        """Return columns ``(dofs, n)`` of unit forces that push the faces of cracks apart, one column for each pair of nodes."""
         out = [np.zeros((2 * self.nodes.shape[1], 0))]
         for left, right, normal in self.seams:
             columns, number = np.zeros((2 * self.nodes.shape[1], left.size)), np.arange(left.size)

@@ -126,7 +126,7 @@ class _Phase:
         return self.stands[at], FirstTouch(*(part[:, at] for part in parts), touch.gear, touch.piece, touch.at[:, at])
 
     def first(self, refine):
-        """Zones from nothing but rigid gaps and a spring for each tooth pair."""
+        """Return the first zones, estimated from the rigid gaps and one spring for each tooth pair."""
         limit = self.least + OPEN * (self.approach - self.least)
 
         def shares(gap):
@@ -142,11 +142,11 @@ class _Phase:
         return zones
 
     def _missed(self, known, refine):
-        """Zones of pairs that the approach of the last answer closes, which teeth with deep cracks were too soft to foresee."""
+        """Return zones of pairs that the last approach closes, but that were missed because teeth with cracks deflect more."""
         return self._found(self.approach, lambda gap: max(self.spring * (self.approach - gap), 0.02 * self.load), refine, known)
 
     def again(self, answer, refine):
-        """Zones as wide as the pressures of an answer ask for; those of one tooth pair that meet become one."""
+        """Return zones adapted to the pressures of an answer. Zones of one tooth pair that meet are joined."""
         windows = []
         for zone, p, _, shift in answer.pressed:
             window = _window(zone, p, shift)
@@ -223,7 +223,7 @@ class _Phase:
         return _Answer(approach, parts, forces, edge)
 
     def _shift(self, zone, part, moved, bodies, approach):
-        """How far both outlines have moved elastically in a zone, mean over its pressure ``(2, 2)`` [mm]."""
+        """Return the mean elastic displacement of both outlines in a zone, weighted with its pressure ``(2, 2)`` [mm]."""
         stands, _ = self._pair(zone.order)
         places, weight = hats(zone.s)
         mean = (weight @ part / part.sum())[:, None]

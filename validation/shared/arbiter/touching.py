@@ -91,7 +91,10 @@ class Press:
         return seen - self.outlines[1 - own].half(away), away
 
     def approach(self, own, stand, radius, angle, steps=STEPS):
-        """Approach at which points ``(n, m)`` of gear `own` touch the other outline [mm], inf if never, and the radius met."""
+        """Return the approach at which points ``(n, m)`` of gear `own` touch the other outline [mm], and the radius there.
+
+        The approach is inf for points that never touch.
+        """
         mate = self.outlines[1 - own]
         before = np.zeros(np.broadcast_shapes(np.shape(radius), (stand.turn_1.size, 1)))
         was, away = self.outside(own, stand, radius, angle, before)

@@ -67,7 +67,7 @@ def sainsot(h, theta):
 
 
 def body_ratio(gear, foundation):
-    """``h = r_f / r_bore`` of a gear for Sainsot's polynomials; of a ring `RING_H`, if `foundation` is "printed".
+    """Return ``h = r_f / r_bore`` of a gear for Sainsot's polynomials, or `RING_H` for a ring with the foundation "printed".
 
     Raises
     ------

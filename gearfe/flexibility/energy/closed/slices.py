@@ -128,7 +128,7 @@ def _summed(pair, order, pits, bands):
             out[(order - sense * pit.tooth) % gear.z == 0] += width if pit.side == "loaded" else 0.0
     if (out >= 1).any():
         raise ValueError(
-            f"the damage's widths summed are {out.max():.3g} times the width they lie in and leave no contact: give fewer or "
+            f"the sum of the damaged widths is {out.max():.3g} times the width of its part and leaves no contact: give fewer or "
             "smaller ones, or lost = 'hertz'"
         )
     return out

@@ -40,7 +40,7 @@ def dissect(sector):
 
 
 def _cut(members, nodes, users, along):
-    """Return the order of a set of triangles along the best direction, and the number of triangles before the cut."""
+    """Find the cut of a set of triangles with the least work. Return their order along it, and the number before the cut."""
     count = along.shape[1]
     order = np.argsort(along, axis=1, kind="stable")
     rank = np.empty_like(order)
@@ -55,7 +55,7 @@ def _cut(members, nodes, users, along):
     inner, outer = nodes[ids] * ~shared, nodes[ids] * shared
 
     def before(place, weight):
-        """Nodes by direction, and by how many triangles go first, whose `place` is among these."""
+        """Sum `weight` over the nodes whose `place` is among the first triangles, by direction and number of triangles."""
         at = (np.arange(CUTS)[:, None] * count + place).ravel()
         return np.bincount(at, np.tile(weight, CUTS), CUTS * count).reshape(CUTS, count).cumsum(axis=1)[:, :-1]
 

@@ -282,7 +282,7 @@ def _bulge_slope():
 
 
 def _boundary(sector, bulges):
-    """Boundary edges as vertices ``(e,)``, ``(e,)`` with the material on the left, and their bulges ``(2, e, BULGE)``."""
+    """Return the boundary edges by start and end vertex ``(e,)``, with the material on the left, and bulges ``(2, e, BULGE)``."""
     a, b = np.array([sector.triangles[list(ends)] for ends in ENDS]).transpose(1, 0, 2).reshape(2, -1).astype(np.int64)
     count = sector.points.shape[1]
     edge, back = a * count + b, np.sort(b * count + a)

@@ -180,7 +180,7 @@ def _between():
 
 
 def _spline(gear, influence, other=None):
-    """Return the spline over the arcs of two flanks. The `other` tooth may have its own tip."""
+    """Return the `influence` between two flanks as a spline over their arcs. The `other` tooth may have its own tip."""
     arcs, matrix = _knots(gear)
     return RectBivariateSpline(arcs, _knots(other or gear)[0], matrix @ influence[:PLACES, :PLACES] @ matrix.T)
 
