@@ -7,9 +7,10 @@ displaced.
 
 import os
 import threading
+import time
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -118,6 +119,13 @@ def solved_gears(cache: "bool | SolvedGears") -> SolvedGears:
     if isinstance(cache, SolvedGears):
         return cache
     return PROCESS if truth("cache", cache) else SolvedGears()
+
+
+def timed(solve: Callable[[], Any], healthy: Any = None) -> Any:
+    """Return the flexibility computed by `solve` with its `seconds`. The time of the `healthy` gear that it requires is added."""
+    started = time.perf_counter()
+    found = solve()
+    return replace(found, seconds=time.perf_counter() - started + (healthy.seconds if healthy else 0.0))
 
 
 def memory(value) -> int:
