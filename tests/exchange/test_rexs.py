@@ -213,6 +213,17 @@ def test_a_helical_pair_is_read(tmp_path, suffix):
     assert "1 of lubricant" in unit.left_out
 
 
+@pytest.mark.parametrize("key", ["tip_corner_radius_cutter", "tip_corner_radius_reference_profile"])
+def test_a_tip_radius_of_the_tool_is_no_dedendum(tmp_path, key):
+    """A tool may state the radius of its corner and no addendum."""
+    unit = helical()
+    tool = next(values for kind, _, values in unit.components.values() if kind == "rack_shaped_tool")
+    tool.clear()
+    tool[key] = (0.6, "mm")
+    pinion = import_rexs(unit.write(tmp_path / "box.rexs")).scene.pair().pair.gear_1
+    assert (pinion.rack_tip_radius, pinion.dedendum) == (0.6 / 3.0, 1.25)
+
+
 def test_a_planetary_stage_closes_with_the_missing_shift_and_the_sign_of_the_ring(tmp_path):
     unit = import_rexs(planetary().write(tmp_path / "set.rexsj"))
     sun, ring = unit.scene.pairs["sun_planet"], unit.scene.pairs["planet_ring"]
