@@ -9,7 +9,7 @@ import os
 import threading
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Collection, Hashable
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
@@ -45,7 +45,7 @@ class SolvedGears:
 
     def __init__(self, most: int = MOST) -> None:
         self.most = most
-        self._kept: OrderedDict = OrderedDict()
+        self._kept: OrderedDict[Any, tuple[Any, int]] = OrderedDict()
         self._solving: dict[Hashable, _Solve] = {}
         self._lock = threading.Lock()
         self.size = 0  # memory of the kept results [bytes]
@@ -88,6 +88,14 @@ class SolvedGears:
             self.size += size
             while self.size > self.most and len(self._kept) > 1:
                 self.size -= self._kept.popitem(last=False)[1][1]
+
+    def of(self, kinds: Collection[str]) -> "SolvedGears":
+        """Return the stored results whose keys begin with one of `kinds`, as a cache of its own."""
+        out = SolvedGears(self.most)
+        with self._lock:
+            out._kept.update((key, one) for key, one in self._kept.items() if key[0] in kinds)
+        out.size = sum(size for _, size in out._kept.values())
+        return out
 
     def __contains__(self, key: Hashable) -> bool:
         """Whether a result is kept."""

@@ -90,6 +90,11 @@ def _solid_case(material, damage, options):
     return material, damage, tuple(sorted(options.items()))
 
 
+def gears_alone():
+    """Return the solved gears of this process in a cache of their own, without other results of the process."""
+    return PROCESS.of(("section", "solid", "energy"))
+
+
 def unsolved(gear, material, damage=(), *, cache=True, **options):
     """Return the costs (`finite_elements.solver.SolveCost`) of the solves that `solved_solid` still requires, by key.
 
