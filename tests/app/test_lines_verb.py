@@ -64,6 +64,8 @@ def test_lines_of_a_planetary_and_parallel_train():
     assert_allclose(lines["planet1", "a tooth meshes with either flank"], 2 * planet, rtol=1e-12)
     assert_allclose(lines["sun", "a tooth meshes with the same flank"], 3 * (sun - carrier), rtol=1e-12)
     assert_allclose(lines["bearing of each planet", "BPFI, inner race"], 17 / 2 * planet * (1 + 3 / 22), rtol=1e-12)
+    # the pin holds the inner ring: the middle of a roller moves at the mean of 0 and of the bore's speed, by the outer radius
+    assert_allclose(lines["bearing of each planet", "FTF, cage"], planet * (22 + 3) / 22 / 2, rtol=1e-12)
 
 
 @pytest.mark.parametrize("name", [name for name in scene_names() if gf.load_scene(name).machine])
