@@ -26,8 +26,8 @@ def with_broken(points, pair, flexibility, extended, flanks=None):
     gap = np.where(gone, np.inf, points.gap)
     if not np.isfinite(gap).any(axis=1).all():
         raise ValueError(
-            "at some phases only a missing tooth is near contact: keep contact off the path of contact (extended = True), "
-            "or take a pair with a larger contact ratio"
+            "at some phases only a missing tooth would be in contact: allow contact outside the path of contact "
+            "(extended = True), or use a pair with a larger contact ratio"
         )
     return replace(points, gap=gap, corner_gap=np.where(gone, np.inf, points.corner_gap)), path
 

@@ -121,7 +121,7 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
     pair, cache = case.pair, solved_gears(cache)
     step = STEP * pair.gear_1.m_n if step is None else step
     if not (math.isfinite(step) and step > 0):
-        raise ValueError(f"step = {step} mm, but it is the longest cell: give step > 0")
+        raise ValueError(f"step = {step} mm, but the largest length of a contact cell must be positive")
     phase = np.arange(phases) / phases if np.ndim(phases) == 0 else np.asarray(phases, dtype=float)
     for gear, pits in zip((pair.gear_1, pair.gear_2), case.pits, strict=True):
         check_hollows(gear, pits)

@@ -67,7 +67,7 @@ class SolvedGears:
                     started = self._solving[key] = _Solve(threading.get_ident())
                     break
             if other.thread == threading.get_ident():
-                raise RuntimeError(f"the solve of {key!r} requires its own result")
+                raise RuntimeError(f"the solve of {key!r} requires its own result (circular request)")
             other.ended.wait()
             if other.found:
                 return other.found[0]

@@ -151,7 +151,7 @@ def test_nodes_of_tets_lie_on_the_involute(damaged):
         ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "cannot contain damage"),
         ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta_x=0.01)}, "this deck is a section"),
         ({"damage": {"pinion": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}}, "through the whole width"),
-        ({"pits": "filled", "damage": {"pinion": [gf.Crack(level=0.3)]}}, "no pit in damage"),
+        ({"pits": "filled", "damage": {"pinion": [gf.Crack(level=0.3)]}}, "damage contains no pit"),
         ({"pits": "holes", "damage": {"pinion": [PIT]}}, "must be one of"),
     ],
 )

@@ -265,7 +265,7 @@ def test_impossible_widths_are_refused(options, message):
 @pytest.mark.parametrize("options", [{"width": (0.0, 0.5)}, {"ends": (1.0, 0.0)}])
 def test_sections_refuse_cracks_of_part_of_the_width(method, options):
     damage = {"pinion": [gf.Crack(level=0.3, **options)]}
-    with pytest.raises(ValueError, match=f"method = '{method}' has only cracks through the whole width"):
+    with pytest.raises(ValueError, match=f"method = '{method}' models only cracks through the whole width"):
         stiffness(PAIR, 127.0, STEEL, method=method, damage=damage)
 
 
