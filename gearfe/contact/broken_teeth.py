@@ -12,7 +12,7 @@ from ..geometry.pair.modified import touching_modified
 
 
 def with_broken(points, pair, flexibility, extended, flanks=None):
-    """Contacts of a pair with missing teeth and chipped tips, and ends of the path ``(2, pairs)`` [mm].
+    """Return the contacts of a pair with missing teeth and chipped tips, and the ends of its path ``(2, pairs)`` [mm].
 
     A missing tooth has an infinite gap. The flank of a chipped one ends at its corner. ValueError if no pair is left at a phase.
     """
@@ -33,7 +33,7 @@ def with_broken(points, pair, flexibility, extended, flanks=None):
 
 
 def without_recesses(case):
-    """Pits and spalls of both gears, and broken teeth with chips of a part of the width in place of their recesses."""
+    """Return pits and spalls of both gears, and broken teeth in which chips of a part of the width replace their recesses."""
     pits = tuple(tuple(pit for pit in own if not isinstance(pit, Recess)) for own in case.pits)
     parts = [
         tuple(

@@ -90,7 +90,7 @@ class SolvedGears:
                 self.size -= self._kept.popitem(last=False)[1][1]
 
     def of(self, kinds: Collection[str]) -> "SolvedGears":
-        """Return the stored results whose keys begin with one of `kinds`, as a cache of its own."""
+        """Return the stored results whose keys begin with one of `kinds`, as a separate cache."""
         out = SolvedGears(self.most)
         with self._lock:
             out._kept.update((key, one) for key, one in self._kept.items() if key[0] in kinds)

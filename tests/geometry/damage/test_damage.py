@@ -230,11 +230,11 @@ def test_bad_damage(damage, message):
         ([gf.Pit(radius=18.0, z=0.5, axes=(0.1, 0.1), depth=0.05)], {"method": "ritz"}, "pits with method"),
         ((), {"method": "ritz", "teeth": 5}, "only 'fe'"),
         ((), {"method": "ritz", "variants": {"root": "base"}}, "variants"),
-        ((), {"method": "textbook", "variants": {"roots": "base"}}, "it has contact, crack_model"),
+        ((), {"method": "textbook", "variants": {"roots": "base"}}, "there are contact, crack_model"),
         (
             (),
             {"method": "herringbone_article", "variants": {"roots": "base"}},
-            "'roots' is none of method = 'herringbone_article'",
+            "'roots' is no variant of method = 'herringbone_article'",
         ),
     ],
 )
