@@ -168,7 +168,7 @@ def test_nodes_of_tets_lie_on_the_involute(damaged):
         ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "cannot contain damage"),
         ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta_x=0.01)}, "this deck is a section"),
         ({"damage": {"pinion": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}}, "through the whole width"),
-        ({"pits": "filled", "damage": {"pinion": [gf.Crack(level=0.3)]}}, "no pit in damage"),
+        ({"pits": "filled", "damage": {"pinion": [gf.Crack(level=0.3)]}}, "damage contains no pit"),
         ({"pits": "holes", "damage": {"pinion": [PIT]}}, "must be one of"),
     ],
 )
@@ -184,7 +184,7 @@ def test_a_line_load_has_its_resultant_and_stays_on_the_flank(tmp_path):
     assert abs(np.linalg.norm(deck.load.sum(axis=0)) / 600.0 - 1) < 2e-3
     axial = deck.load.sum(axis=0)[2] / np.linalg.norm(deck.load.sum(axis=0))
     assert abs(axial - math.sin(gear.beta_b)) < 2e-3
-    with pytest.raises(ValueError, match="leaves the flank"):
+    with pytest.raises(ValueError, match="extends beyond the flank"):
         gf.write_line_inp(tmp_path / "g.inp", gear, gear.r_a, 100.0, STEEL)
     with pytest.raises(RuntimeError, match="does not exist"):
         deck.deflection(tmp_path / "none.dat")

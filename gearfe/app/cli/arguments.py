@@ -149,10 +149,10 @@ def _add_option(verb, flags, options):
         options["metavar"] = flags.pop()
     elif flags[0].startswith("-") and len(options) == 1:
         options["action"] = "store_true"
-    if isinstance(options.get("default"), (int, float)):
-        options["type"] = type(options["default"])
-    elif "type" in options:
+    if "type" in options:
         options["type"] = TYPES[options["type"]]
+    elif isinstance(options.get("default"), (int, float)):
+        options["type"] = type(options["default"])
     if isinstance(options.get("metavar"), list):
         options["metavar"] = tuple(options["metavar"])
     options["help"] = argparse.SUPPRESS if options.pop("hidden", False) else options["help"].format(**WORDS)
