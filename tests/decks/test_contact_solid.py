@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 import gearfe as gf
-from gearfe.decks.contact_solid import SolidDeck, _uncovered
+from gearfe.decks.contact_solid import SIZES, SolidDeck, _patch, _uncovered, touching
 from gearfe.decks.solid_deck import FACES, TWENTY, sides_of
 from gearfe.flexibility.finite_elements.hexahedron import gauss, shapes
+from gearfe.geometry.mesh.quads import quad_section
 from gearfe.geometry.mesh.relieved_solid import relieved_points
 from gearfe.geometry.pair.flanks import flank_forms
-from gearfe.geometry.tooth.profile import flank
+from gearfe.geometry.tooth.profile import arc_at, flank
 from validation.make import three
 from validation.shared import outsider, page
 from validation.shared.decks import digest
@@ -36,6 +37,22 @@ def pair_of(degrees, *, ring=False):
 def written(tmp_path, pair, **options):
     face = "helical" if pair.gear_1.beta else "spur"
     return gf.write_contact_inp(tmp_path / "p.inp", pair, 0.45, APPROACH, 300.0, (STEEL, STEEL), face=face, **options)
+
+
+@pytest.mark.parametrize("refine", [0.4, 0.6])
+@pytest.mark.parametrize("phase", [0.1, 0.45, 1.45])
+def test_coarse_sections_do_not_fold(phase, refine):
+    """One line covers the fillet and the root of a tooth at these resolutions."""
+    rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
+    gear = gf.Gear(z=17, r_bore=10.9, **rack)
+    case = gf.Case(gf.GearPair(gear, gf.Gear(z=38, r_bore=26.6, **rack)), 1500.0, STEEL)
+    touch = touching(case, phase, 0.02)
+    patches = {order: [_patch(gear, touch, 0, k, 1.5 * refine)] for k, order in enumerate(touch.order)}
+    section = quad_section(gear, loaded=tuple(patches), patches=patches, refine=refine, sizes=SIZES)
+    for tooth, (first, last, size) in ((tooth, places[0]) for tooth, places in patches.items()):
+        arcs = arc_at(gear, section.roll[tooth % gear.z])
+        inside = (arcs[1:] > first) & (arcs[:-1] < last)
+        assert (np.diff(arcs)[inside] < 1.5 * size).all()
 
 
 def depth(pair, part, order):
