@@ -55,7 +55,7 @@ def added_compliance(scene: Scene, force: float | None = None) -> AddedComplianc
 
 
 def cycles_of(case: Any) -> int:
-    """Number of mesh cycles after which a `PlanetaryCase` repeats for each planet."""
+    """Return the number of mesh cycles after which a `PlanetaryCase` repeats for each planet."""
     faulty = [name for name, flank in case.flanks.items() if flank.on(case.gear_of(name)).differs]
     faulty += [name for name, found in case.damage.items() if found]
     z = case.ring_gear.z
