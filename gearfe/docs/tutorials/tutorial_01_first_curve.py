@@ -4,9 +4,9 @@
 
 The stiffness of a gear mesh over one mesh cycle at one load, with its estimated error.
 
-**Mesh stiffness** is the force between two gears divided by the additional displacement of the driving gear, which is caused by the
-deflection of teeth, bodies and contacts. Force and displacement are measured along the *line of action* of the involute teeth. The
-stiffness varies over the mesh cycle, mainly because one or two tooth pairs carry the load.
+**Mesh stiffness** is the force between two gears divided by the additional displacement of the driving gear, which is caused
+by the deflection of teeth, bodies and contacts. Force and displacement are measured along the *line of action* of the
+involute teeth. The stiffness varies over the mesh cycle, mainly because one or two tooth pairs carry the load.
 """
 
 # %%
