@@ -104,7 +104,7 @@ def simulate(
         If False, channels are those of the integrator at the output times. Default: filtered, unless `dt` makes each step an
         output. Filtering needs two steps or more for each output.
     progress : callable, optional
-        Function that receives a line before compilation (8 to 30 s on the first run on a computer), and one with the expected
+        Function that receives a line before compilation (6 to 20 s on the first run on a computer), and one with the expected
         seconds of a long run.
 
     Returns
