@@ -18,7 +18,10 @@ def scene(tmp_path_factory):
     tables = {
         "title": "pair", "source": "own", "material": STEEL, "gear": {"a": gear(20, 2.0, 20.0), "b": gear(41, 2.0, 20.0)},
         "pair": {"only": {"gear_1": "a", "gear_2": "b", "force_N": 500.0}},
-        "crack": [{"case": "wheel", "gear": "b", "tooth": 17, "length_mm": 0.6}, {"case": "pinion", "gear": "a", "tooth": 3, "level": 0.1}],
+        "crack": [
+            {"case": "wheel", "gear": "b", "tooth": 17, "length_mm": 0.6},
+            {"case": "pinion", "gear": "a", "tooth": 3, "level": 0.1}
+        ],
     }  # fmt: skip
     file = tmp_path_factory.mktemp("growth") / "pair.toml"
     file.write_text(toml(tables), encoding="utf-8")
