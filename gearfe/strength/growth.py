@@ -142,7 +142,8 @@ class Growth:
 def single_crack(case: Case) -> tuple[str, Crack] | None:
     """Side and crack of a case whose only damage is a crack, or None."""
     found = [(side, one) for side, damage in (case.damage or {}).items() for one in damage]
-    return found[0] if len(found) == 1 and isinstance(found[0][1], Crack) else None
+    cracks = [(side, one) for side, one in found if isinstance(one, Crack)]
+    return cracks[0] if len(found) == len(cracks) == 1 else None
 
 
 def _step(gear, step):
