@@ -56,8 +56,8 @@ def _checked(function, called, record=False):
     @functools.wraps(function)
     def checked(*args, **options):
         if not rules:
-            rules.extend(_rules(function, called))
-        places, named = rules
+            rules.append(_rules(function, called))  # Threads that come together append equal rules.
+        places, named = rules[0]
         try:
             given = [_settled(*rule, value, record) for rule, value in zip(places, args, strict=False)]
             stated = {key: _settled(*named[key], value, record) if key in named else value for key, value in options.items()}
