@@ -159,6 +159,15 @@ def test_a_tooth_that_exceeds_the_mesh_lines_is_no_doubt_about_the_teeth(branchi
     assert all(row[2] > 20 for row in table.rows), "FM4"
 
 
+def test_a_line_of_two_stages_has_both_names():
+    """The pinion of both stages has one mesh frequency, 500 Hz; the sideband at 9.43 Hz is that of gear c alone."""
+    time, rng = np.arange(40_000) / 10_000.0, np.random.default_rng(2)
+    wave = np.sin(2 * np.pi * 500 * time) + 0.1 * np.sin(2 * np.pi * (500 + 25 * 20 / 53) * time)
+    record = gf.Signal(wave + 0.01 * rng.standard_normal(time.size), 10_000.0, "N")
+    names = [line.name for line in named_lines(gf.spectrum(record), scene_of("own.toml", copy.deepcopy(BRANCHING)))[0]]
+    assert names == ["mesh frequency, stage left or mesh frequency, stage right", "1 x mesh frequency + 1 f(c), stage right"]
+
+
 @pytest.mark.slow
 def test_lines_of_a_noisy_record_are_named(branching):
     """Every line of ten times the local median of a bearing's force has a name; an alien line has none."""
