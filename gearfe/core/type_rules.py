@@ -1,4 +1,4 @@
-"""Rules of argument types: what a value must be, and how it becomes a plain one."""
+"""Rules of argument types: permitted values, and their conversion to plain one."""
 
 import dataclasses
 import functools

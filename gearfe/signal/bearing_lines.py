@@ -17,9 +17,9 @@ def bearing_lines(
         cage     FTF  = f_inner (1 - c) / 2 + f_outer (1 + c) / 2
         outer    BPFO = rollers |f| (1 - c) / 2
         inner    BPFI = rollers |f| (1 + c) / 2
-        roller   BSF  = |f| (1 - c**2) D / (2 d), its spin; a pit of it strikes twice in a turn
+        roller   BSF  = |f| (1 - c**2) D / (2 d), its spin; a pit of a roller strikes twice per rotation
 
-    Rollers slip by some thousandths to some hundredths: ask `gearfe.find_lines` for a tolerance.
+    Real rollers slip by 0.1 to some percent. Give `gearfe.find_lines` a tolerance.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ class Line(NamedTuple):
 
 
 def scene_lines(scene: Scene) -> list[Line]:
-    """All frequencies of a scene's machine by rising frequency. Nothing is solved.
+    """Return all spectral lines of a scene's machine by increasing frequency, without a solution.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Types of study: a row of `KINDS` with its options, its columns and one function that computes a case."""
+"""Types of study. Each is a row of `KINDS` with options, columns and one function that computes a case."""
 
 import math
 from collections.abc import Callable
@@ -28,9 +28,9 @@ class Kind(NamedTuple):
     """A kind of study.
 
     `options` is their table in ``gearfe/runs/keys.toml``. `work` is called with a `Case` and the options, and gives a row for
-    each of its loads, with the columns of ``gearfe/runs/columns.toml``. `block`: cases in a shard, which takes seconds.
-    `whole`: it needs all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the
-    options.
+    each of its loads, with the columns of ``gearfe/runs/columns.toml``. `block` is the number of cases in a shard. If `whole`
+    is true, the study needs all pairs of the scene. Then `work` is called with the scene, its case of damage (None: healthy)
+    and the options.
     """
 
     options: str
@@ -76,8 +76,8 @@ def _te_row(curve, whole):
 def vibration(scene: Scene, case: str | None, options: dict[str, Any]) -> list[dict[str, Any]]:
     """Return the row of a machine's vibration: indicators of a channel (default: driven mesh force), the signal on request.
 
-    Method and resolution of the curves are the same for all cases only if ``curves`` names one: ``"auto"`` takes three dimensions
-    for pits.
+    Method and resolution of the curves are the same for all cases only if ``curves`` names a method: ``"auto"`` selects three
+    dimensions for pits.
     """
     machine = build_machine(scene, case, phases=options["phases"], method=options["curves"])
     duration = options["duration_s"]
