@@ -1,7 +1,7 @@
 """Stiffness matrix of a body of second-order hexahedra or tetrahedra, assembled by scikit-fem.
 
-The weak form is ``lambda div u div v + 2 mu eps(u) : eps(v)``. The gradients of the shape functions at the points of the quadrature
-are those of scikit-fem. Their products are summed element by element, so that no more than a few elements are held at a time.
+The weak form is ``lambda div u div v + 2 mu eps(u) : eps(v)``. The gradients of the shape functions are those of
+scikit-fem. Their products are summed element by element, so that no more than a few elements are held at a time.
 """
 
 from dataclasses import dataclass
