@@ -24,7 +24,7 @@ def bearing_lines(
     Parameters
     ----------
     turns : float
-        Turns of the inner ring per second [Hz].
+        Turns of the inner ring per second [Hz], 0 if only the outer ring turns.
     rollers : int
         Number of balls or rollers.
     roller, pitch : float
@@ -58,7 +58,7 @@ def bearing_lines(
     >>> {name: round(value, 4) for name, value in bearing_lines(1.0, 9, 0.3126, 1.537).items()}
     {'cage': 0.3983, 'outer': 3.5848, 'inner': 5.4152, 'roller': 2.3567}
     """
-    hertz("turns", turns)
+    turns = number("turns", turns) and hertz("turns", turns)
     roller, pitch, contact_angle = number("roller", roller), number("pitch", pitch), number("contact_angle", contact_angle)
     if not math.isfinite(number("outer", outer)) or outer == turns:
         raise ValueError(f"outer = {outer!r} Hz with an inner ring of {turns} Hz: give a finite number other than that")
