@@ -6,6 +6,7 @@ a row of hat functions with the exact gap at each (`gearfe.contact.rows`, `gearf
 """
 
 import math
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -20,7 +21,7 @@ from .directions import leaning
 from .kinks import kink_rows, near_kink
 from .rows import LEAST, RESOLVED, SHARP, Wanted, corner_rows, finest_hat
 from .sharing import LineContacts, line_contact, line_contacts, stacked
-from .sliding import bounded, left_out, sliding
+from .sliding import bounded, cracked_contacts, left_out, moved_contacts, sliding
 from .thinned import thinned_teeth
 from .unknowns import UNKNOWN, aligned, near_contacts, overlaps
 
@@ -64,6 +65,21 @@ class PairContact:
             self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
         self.sliding = sliding(self)
         self._rows = {}
+
+    @cached_property
+    def moved(self):
+        """Result of `moved_contacts`, for sliding under any load."""
+        return moved_contacts(self)
+
+    @cached_property
+    def cracked(self):
+        """Result of `cracked_contacts`, for the error of cracks under any load."""
+        return cracked_contacts(self)
+
+    @cached_property
+    def faces(self):
+        """Opening of the crack faces of both gears under unit forces that push them apart [mm per N/mm]."""
+        return block_diag(*(flexible.seam.influence for flexible in self.flexibility if flexible.seam))
 
     def solve(self, line_load):
         """Solve the contact under `line_load` [N/mm] at all phases."""
@@ -154,8 +170,7 @@ class PairContact:
         Faces that overlap under the line loads `carried` with open cracks are first assumed to touch. Sliding of the contacts at
         `phase` is then computed for gears with these faces closed.
         """
-        faces = block_diag(*(flexible.seam.influence for flexible in self.flexibility if flexible.seam))
-        opening = contacts["opening"].T
+        faces, opening = self.faces, contacts["opening"].T
         m, n = opening.shape
         extended = {
             "flexibility": np.block([[contacts["flexibility"], opening.T], [opening, faces]]),
