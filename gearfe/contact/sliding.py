@@ -37,7 +37,7 @@ def sliding(contact, phases=slice(None), stiffness=None):
 def moved_contacts(contact):
     """Return pairs with their contacts moved along the flanks by `STEP`, upwards and downwards on the pinion.
 
-    The results are the flexibility of each pair alone with bonded crack faces ``(2, phases, pairs)`` [mm per N/mm], the opening of
+    The results are the flexibility of each pair with bonded crack faces ``(2, phases, pairs)`` [mm per N/mm], the opening of
     the crack faces ``(2, phases, pairs, faces)`` or None, and whether the places are on both flanks ``(phases, pairs)``.
     """
     points, step = contact.found, STEP * contact.pair.gear_1.m_n
