@@ -162,7 +162,7 @@ def carry(gear, arc):
 
 
 def _carry(places):
-    """Matrix ``(n, PLACES)`` from values at the loads to values at `places` of `_variable`."""
+    """Interpolation matrix ``(n, PLACES)`` from values at the loads to values at `places`, coordinates of `_variable`."""
     nodes = chebyshev.chebvander(chebyshev.chebpts2(PLACES), PLACES - 1)
     return np.linalg.solve(nodes.T, chebyshev.chebvander(np.clip(places, -1, 1), PLACES - 1).T).T
 
