@@ -46,7 +46,7 @@ def changed(**values):
         (changed(fault__0__severity=[0.2, 1.2]), r"severity = \[0\.2, 1\.2\], but each number must lie between 0\.01 and 0\.9"),
         (changed(fault__0__severity=[0.2, 0.2]), "give different numbers"),
         (changed(fault__0__gear="moon"), "no such gear|only the teeth"),
-        (changed(fault__0__body="planet2"), r"damages body 'planet2' as \w+ of pair \w+, but in this machine the \w+ is sun"),
+        (changed(fault__0__body="planet2"), r"damages body 'planet2' as \w+ of pair \w+, but bodies with this gear are sun"),
         (changed(fault__0__depth=1.0), "unknown key 'depth'"),
         (changed(fault=[]), "no damaged class"),
         (changed(window__rate_Hz=-1.0), "rate_Hz = -1"),
