@@ -101,7 +101,7 @@ def _damaged(model, cracks, broken, neighbours, cache):
 
 
 def loaded_sector(model, cracks, cache=True, *, broken=None):
-    """Return the `Panel` of a sector with `cracks` under loads at `loaded_places`, and eight loads tilted both ways at `_leans`.
+    """Return the `Panel` of a sector with `cracks` under normal loads at `loaded_places` and eight inclined loads at `_leans`.
 
     The tooth may be `broken`. A missing tooth has no loads.
     """
@@ -122,7 +122,7 @@ def _limits(gear):
 
 
 def _leans(gear):
-    """Return the arcs of the tilted loads (see `leaning`)."""
+    """Return the four arcs at which inclined loads act [mm] (see `leaning`)."""
     low, high = _limits(gear)
     below = max(high - BELOW * gear.m_n, (low + high) / 2)
     return np.array([low, (low + below) / 2, below, high])
@@ -162,7 +162,7 @@ def carry(gear, arc):
 
 
 def _carry(places):
-    """Matrix ``(n, PLACES)`` from values at the loads to values at `places` of `_variable`."""
+    """Interpolation matrix ``(n, PLACES)`` from values at the loads to values at `places`, coordinates of `_variable`."""
     nodes = chebyshev.chebvander(chebyshev.chebpts2(PLACES), PLACES - 1)
     return np.linalg.solve(nodes.T, chebyshev.chebvander(np.clip(places, -1, 1), PLACES - 1).T).T
 
