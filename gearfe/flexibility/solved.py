@@ -14,7 +14,6 @@ from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import BivariateSpline, PPoly
 
 from ..core.checks import truth
 
@@ -140,10 +139,6 @@ def memory(value) -> int:
     """Memory of all nested arrays of a result [bytes]. Repeated arrays count repeatedly."""
     if isinstance(value, np.ndarray):
         return value.nbytes
-    if isinstance(value, PPoly):
-        return value.x.nbytes + value.c.nbytes
-    if isinstance(value, BivariateSpline):
-        return sum(part.nbytes for part in (*value.get_knots(), value.get_coeffs()))
     if isinstance(value, dict):
         return sum(memory(part) for part in value.values())
     if isinstance(value, (tuple, list)):
