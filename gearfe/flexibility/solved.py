@@ -17,6 +17,7 @@ import numpy as np
 
 from ..core.checks import truth
 
+GEARS = ("section", "solid", "energy")  # first part of the keys of solved gears that are stored on disk
 MOST = 512 * 2**20  # memory of the results kept [bytes]
 
 

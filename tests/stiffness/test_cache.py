@@ -21,7 +21,7 @@ from gearfe.flexibility.arrays import described, restored
 from gearfe.flexibility.finite_elements import fe
 from gearfe.flexibility.plane import Flexibility
 from gearfe.flexibility.solved import PROCESS, SolvedGears, memory, solved_gears
-from gearfe.stiffness import cache, flexibility_file
+from gearfe.stiffness import cache, disk, flexibility_file
 from gearfe.stiffness.flexibility_file import read_flexibility, write_flexibility
 
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -198,7 +198,7 @@ def test_solids_come_back_to_the_last_bit():
 
 
 def test_the_key_knows_every_source_file():
-    names = {source.relative_to(Path(gf.__file__).parents[1]).as_posix() for source in cache.sources()}
+    names = {source.relative_to(Path(gf.__file__).parents[1]).as_posix() for source in disk.sources()}
     assert {
         "gearfe/flexibility/finite_elements/fe.py",
         "gearfe/flexibility/plane.py",
