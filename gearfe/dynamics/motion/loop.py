@@ -1,10 +1,10 @@
 """Time integration by steps of `gearfe.dynamics.motion.propagator`, in scalar arithmetic compiled by numba.
 
-A step in which a mesh opens or closes, or a load bends, is halved up to `motion.propagator.LEVELS` times about it; under a
-law of contact that is not linear so is one whose estimate (`motion.propagator.RunMatrices.told`) is above what is allowed: flanks
-that come into contact are short, steep ramps of such a machine's coefficients, and all the rest of it is smooth.
+A step in which a mesh opens or closes, or a load has a kink, is halved up to `motion.propagator.LEVELS` times around this time.
+Under a nonlinear contact law, a step is also halved if its estimated error (`motion.propagator.RunMatrices.told`) is too large.
+The coefficients of such a machine change steeply where flanks come into contact, and smoothly elsewhere.
 
-Loads that do not change are taken out of the stages and added at the end.
+Constant loads are not part of the stages and are added at the end.
 """
 
 from typing import NamedTuple
@@ -162,7 +162,7 @@ def _add(g, first, second):
 
 @compiled
 def _aligned(at, whole, level):
-    """Return the level of a part that begins at `at` of `whole`: such parts begin at multiples of their length."""
+    """Return the level of a part that begins at `at` of `whole`. Parts begin at multiples of their length."""
     while at & ((whole >> level) - 1):
         level += 1
     return level
@@ -210,8 +210,9 @@ def _of_part(flat, now, follows, start, h, low, high):
 def _run(given, z, x0, clock, states, counts, acting):
     """Integrate all steps into `states`, `counts` and `acting`. Return the number of steps with a finite state.
 
-    The state `z` and the inputs `x0` of its forces change. Inside the loops no array is cut or taken out of a tuple: counting its
-    references costs as much as the arithmetic. Functions of numpy are left out, because each takes 0.1 to 0.5 s to compile.
+    The state `z` and the inputs `x0` of its forces are changed in place. Inside the loops no array is sliced or taken from a
+    tuple, because reference counting costs as much as the arithmetic. Functions of numpy are avoided, because each takes 0.1 to
+    0.5 s to compile.
     """
     matrices, laws, parts, flat, edges, work = given
     E, Y, S, T, PF, add, push, W = matrices

@@ -17,7 +17,7 @@ compiled = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=T
 
 
 def kept(function):
-    """Compile at the first call. The result is kept on disk where numba finds a writable folder.
+    """Compile at the first call. The result is stored on disk if numba finds a writable folder.
 
     The result contains the functions it calls, in other files and contact laws too. Any edit of these files compiles it again.
     """
