@@ -1,4 +1,4 @@
-"""Results on disk between processes: solved gears, and what a planetary set adds to its meshes.
+"""Results on disk between processes: solved gears, and the compliance that planetary sets add to their meshes.
 
 A stored result is used only if its digest agrees with the requested key: the gear, its material and damage, the options, the
 source code of both packages and the versions of the libraries. If the file is another one or damaged, the result is computed and
