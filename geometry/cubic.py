@@ -52,7 +52,7 @@ class Cubic:
         slope = solve_banded((1, 1), bands, right)
         bent = (slope[:-1] + slope[1:] - 2 * rise) / h
         parts = np.array([bent / h, (rise - slope[:-1]) / h - bent, slope[:-1], y[:-1]])
-        object.__setattr__(self, "c", parts.reshape(4, -1, *self.y.shape[1:]))
+        object.__setattr__(self, "c", parts.reshape(4, self.x.size - 1, *self.y.shape[1:]))
 
     def __call__(self, at: ArrayLike, order: int = 0) -> Floats:
         """Return the values ``(*at.shape, ...)``, or with `order` 1 the first derivatives. End parts continue beyond the ends."""
