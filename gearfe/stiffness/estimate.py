@@ -3,8 +3,8 @@
 import numpy as np
 
 COARSER = {"fe": 0.5, "ritz": 0.7}  # resolution of the coarser solve, relative to that of the curve
-# Least order of convergence of k in the edge length: 2 of finite elements (`fe`). The energy model has polynomials of order 4.
-# The coarser solve of the energy model has polynomials of one order less besides.
+# Lowest order of convergence of k in the edge length: 2 for finite elements (`fe`), 4 for the energy model with polynomials of
+# order 4. The coarser solution of the energy model also has polynomials of one order less.
 ORDER = {"fe": 2, "ritz": 4}
 SAFETY = 3.0  # safety factor for two meshes, P. J. Roache, J. Fluids Eng. 116 (1994) 405-413
 FINER = 2.0  # refinement of the hat functions at tip corners, whose error decreases at least linearly with their length
@@ -12,8 +12,8 @@ STEPS = 16  # number of fixed phases per base pitch
 # The largest difference is taken from the fixed phases this close, on either side. Meshes of different size can
 # agree by chance over a quarter of a base pitch.
 WINDOW = {"fe": 1 / 2, "ritz": 1 / 8}
-# Error of the contact against pressed whole outlines where no mesh is to blame, as a part of k, in nine of ten phases. Lines of
-# contact in three dimensions have the laws of the section.
+# Error of the contact model relative to k, from contact of whole outlines with negligible mesh error. Nine of ten phases have a
+# smaller one. Contact lines in three dimensions use the same law as the section.
 MODEL = 1e-3
 MEAN = 1 / 2  # half-width of the averaging window [base pitches]
 

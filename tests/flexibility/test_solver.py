@@ -165,7 +165,7 @@ def test_memory_is_checked_before_the_factor_and_before_the_solution(ordered, si
         solve(np.ones((BODY.shape[0], sides)))
     monkeypatch.setattr(solver, "free_memory", lambda: seen[0] - 1.0)
     monkeypatch.setattr(cholmod, "numeric", lambda *_: pytest.fail("factored"))
-    with pytest.raises(RuntimeError, match="1500 unknowns need about .* GB more"):
+    with pytest.raises(RuntimeError, match=r"1500 unknowns need about .* GB more"):
         solver.factor(BODY, "given")
 
 

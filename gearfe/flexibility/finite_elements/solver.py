@@ -19,9 +19,9 @@ WHOLE = 0  # system that CHOLMOD solves: the whole matrix
 # Size of right-hand sides given to cvxopt at once [bytes]. It counts the bytes of a column in 32 bits: from 2**31 on it reads
 # and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
 BLOCK = 2**27
-# memory [bytes] per unknown while the matrix is assembled and while it is factored, both with what the allocator keeps, and the
-# factor of n**(4/3) of the numbers that are factored, with and without METIS, see `plan`
-ASSEMBLED, KEPT, FACTORED = 11500.0, 8500.0, {True: 135.0, False: 165.0}
+# memory [bytes] per unknown while unknowns are ordered, and per unknown beside the factor; of the factor in n**(4/3) with and
+# without METIS, see `plan`
+ORDERED, KEPT, FACTORED = 7700.0, 4700.0, {True: 131.0, False: 153.0}
 SOLVED = 100.0, 100.0  # memory per unknown of a solution, and per unknown and right-hand side [bytes]
 PLANE = 8000.0  # memory per unknown of a factored plane body [bytes]; 7300 measured
 # factors of n, n**2, and n**(4/3) per right-hand side, with and without METIS
@@ -54,11 +54,11 @@ def plan(unknowns, *, columns=0, free=None):
     """Memory and time that the factor of a three-dimensional body takes. Raises RuntimeError if it does not fit.
 
     The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers, all of which are read for each
-    right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The memory is the larger one of
-    two steps: the assembly, and the factor with what remains of the assembly. The constants of time are measured on gears of
-    20-node hexahedra with 41 000 to 464 000 unknowns, on one thread of a processor of 2.5 GHz, for half solutions (``gram`` of
-    `factor`). Those of memory are measured on whole gears with 75 000 to 188 000 unknowns. Teeth of tetrahedra, being slender, take
-    less.
+    right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The memory is that of the
+    larger step: the order of elimination, or the factor with what the allocator keeps of the steps before. The constants of
+    time are measured on gears of 20-node hexahedra with 41 000 to 464 000 unknowns, on one thread of a processor of 2.5 GHz, for
+    half solutions (``gram`` of `factor`). Those of memory are measured on whole gears with 75 000 to 188 000 unknowns. Teeth of
+    tetrahedra, being slender, take less.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def plan(unknowns, *, columns=0, free=None):
     first, second, each = SECONDS[ordered]
     numbers = n ** (4 / 3)
     seconds = first * n + second * n**2 + each * columns * numbers
-    memory = max(ASSEMBLED * n, KEPT * n + FACTORED[ordered] * numbers + 8.0 * columns * n)
+    memory = max(ORDERED * n, KEPT * n + FACTORED[ordered] * numbers + 8.0 * columns * n)
     cost = SolveCost(n, memory, seconds, free)
     if cost.memory > free:
         raise RuntimeError(
@@ -129,24 +129,28 @@ def factor(matrix, plan_=None, *, node=3):
         reached(f"solving {plan_ or plan(matrix.shape[0])}", 0.0)
     else:
         _check_free(matrix.shape[0], PLANE * matrix.shape[0])
-    lower = csc_array(tril(matrix, format="csc"), dtype=float)
+    lower = csc_array(matrix, dtype=float)
+    n = lower.shape[0]
+    del matrix  # It takes about a fifth of the memory of the factor.
     lower.sum_duplicates()
+    if (lower.indices < np.repeat(np.arange(n), np.diff(lower.indptr))).any():
+        lower = tril(lower, format="csc")
     if not (lower.diagonal() > 0).all():
         raise RuntimeError("the stiffness matrix has an empty or negative diagonal: the body is not held")
-    rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(lower.shape[0]), np.diff(lower.indptr))
+    rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(n), np.diff(lower.indptr))
     held = spmatrix(dense(lower.data), dense(rows), dense(columns), lower.shape)
     factored = cholmod.symbolic(held, p=dense(dissection(rows, columns, node))) if dissects() else cholmod.symbolic(held)
     del rows, columns, lower
-    _check_free(matrix.shape[0], factor_memory(factored))
+    _check_free(n, factor_memory(factored))
     try:
         cholmod.numeric(held, factored)
     except ArithmeticError as error:
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
     def solve(rhs):
-        sides = csc_array(rhs) if issparse(rhs) else np.reshape(rhs, (matrix.shape[0], -1))
-        out, width = np.empty(sides.shape, order="F"), max(1, BLOCK // (8 * matrix.shape[0]))
-        _check_free(matrix.shape[0], (SOLVED[0] + SOLVED[1] * min(width, sides.shape[1])) * matrix.shape[0])
+        sides = csc_array(rhs) if issparse(rhs) else np.reshape(rhs, (n, -1))
+        out, width = np.empty(sides.shape, order="F"), max(1, BLOCK // (8 * n))
+        _check_free(n, (SOLVED[0] + SOLVED[1] * min(width, sides.shape[1])) * n)
         for start in range(0, sides.shape[1], width):
             span = slice(start, start + width)
             columns = sides[:, span].toarray() if issparse(rhs) else sides[:, span]
@@ -163,8 +167,8 @@ def _check_free(unknowns, memory):
     """Raise RuntimeError if less than `memory` [bytes] is free: where it runs out, CHOLMOD and cvxopt can end the process."""
     if (free := free_memory()) < memory:
         raise RuntimeError(
-            f"{unknowns} unknowns need about {memory / 1e9:.2g} GB more, but {free / 1e9:.2g} GB are free: raise the limit of memory "
-            "(`ulimit -v`), or give a smaller refine"
+            f"{unknowns} unknowns need about {memory / 1e9:.2g} GB more, but {free / 1e9:.2g} GB are free: raise the limit of "
+            "memory (`ulimit -v`), or give a smaller refine"
         )
 
 
