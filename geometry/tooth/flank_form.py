@@ -69,6 +69,15 @@ class FlankForm:
         """Whether the teeth of the gear differ from each other."""
         return bool(self.flank.eccentricity) or any(values.size and np.ptp(values) for values in (self._shifts, self._scales))
 
+    @property
+    def unlike(self) -> set[int]:
+        """Numbers of the teeth without the most frequent pitch deviation or scale. Of an eccentric gear, all teeth."""
+        found = set(range(self.gear.z)) if self.flank.eccentricity else set()
+        for values in filter(np.size, (self._shifts, self._scales)):
+            numbers, counts = np.unique(values, return_counts=True)
+            found |= set(np.flatnonzero(values != numbers[np.argmax(counts)]).tolist())
+        return found
+
     def of(self, tooth: ArrayLike) -> "FlankForm":
         """Return the same flank for teeth ``(...)``, which go with the leading axes of roll lengths."""
         if not (self._scales.size or self.flank.eccentricity):
@@ -105,8 +114,14 @@ class FlankForm:
         largest = max(1.0, float(np.abs(self._scales).max(initial=0.0)))
         given = {name: getattr(self.flank, name) for name in AMOUNTS}
         shape = ", ".join(f"{name} = {shown(amount)} mm" for name, amount in given.items() if np.any(amount))
+        shaped = sections._shaped(roll[None, :], 0)
+        if self._scales.size and not shaped.any():
+            raise ValueError(
+                f"tooth_scale of z = {self.gear.z} scales profile and helix modifications, but there are none; it does not scale "
+                "wear, pitch, edges and eccentricity: leave it out, or give a modification"
+            )
         for name, values in (
-            (shape or "table", largest * sections._shaped(roll[None, :], 0)),
+            (shape or "table", largest * shaped),
             ("pitch", self._shifts),
             (f"eccentricity = {self.flank.eccentricity:g} mm", np.array([self.flank.eccentricity])),
             ("wear", np.zeros(1) if self._worn is None else self._wear(roll, 0)),
