@@ -124,11 +124,15 @@ def factor(matrix, plan_=None, *, node=3):
             f"{matrix.shape[0]} unknowns need about {PLANE * matrix.shape[0] / 1e9:.2g} GB, but {free / 1e9:.2g} GB are free: "
             "raise the limit of memory (`ulimit -v`), or give a smaller refine"
         )
-    lower = csc_array(tril(matrix, format="csc"), dtype=float)
+    lower = csc_array(matrix, dtype=float)
+    n = lower.shape[0]
+    del matrix  # It takes about a fifth of the memory of the factor.
     lower.sum_duplicates()
+    if (lower.indices < np.repeat(np.arange(n), np.diff(lower.indptr))).any():
+        lower = tril(lower, format="csc")
     if not (lower.diagonal() > 0).all():
         raise RuntimeError("the stiffness matrix has an empty or negative diagonal: the body is not held")
-    rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(lower.shape[0]), np.diff(lower.indptr))
+    rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(n), np.diff(lower.indptr))
     held = spmatrix(dense(lower.data), dense(rows), dense(columns), lower.shape)
     factored = cholmod.symbolic(held, p=dense(dissection(rows, columns, node))) if dissects() else cholmod.symbolic(held)
     del rows, columns, lower
@@ -138,8 +142,8 @@ def factor(matrix, plan_=None, *, node=3):
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
     def solve(rhs):
-        sides = csc_array(rhs) if issparse(rhs) else np.reshape(rhs, (matrix.shape[0], -1))
-        out, width = np.empty(sides.shape, order="F"), max(1, BLOCK // (8 * matrix.shape[0]))
+        sides = csc_array(rhs) if issparse(rhs) else np.reshape(rhs, (n, -1))
+        out, width = np.empty(sides.shape, order="F"), max(1, BLOCK // (8 * n))
         for start in range(0, sides.shape[1], width):
             span = slice(start, start + width)
             columns = sides[:, span].toarray() if issparse(rhs) else sides[:, span]
