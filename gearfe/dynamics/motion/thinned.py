@@ -8,7 +8,6 @@ import math
 from functools import cache
 
 import numpy as np
-from scipy.signal import firwin
 
 PASSED = 0.4  # pass band, as a part of the rate; amplitudes above half the rate are reduced by 80 dB
 # pass band of filters before the last one, as a part of their output rate, at least nine times the final rate
@@ -73,7 +72,9 @@ def _weights(count, reach, passed):
     cut = 2 * (passed + STEEP / 2 / max(reach, 1e-9)) / count
     if cut >= 1:  # No sample is discarded.
         return np.eye(1, 2 * reach * count + 1, reach * count)[0]
-    return firwin(2 * reach * count + 1, cut, window=("kaiser", WIDTH))
+    at = np.arange(-reach * count, reach * count + 1)
+    weights = np.sinc(cut * at) * np.kaiser(at.size, WIDTH)
+    return weights / weights.sum()
 
 
 @cache

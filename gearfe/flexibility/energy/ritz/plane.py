@@ -8,8 +8,8 @@ from functools import partial
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.interpolate import CubicSpline, RectBivariateSpline
 
+from ....geometry.cubic import Bicubic, Cubic
 from ....geometry.damage.chip import loaded_side
 from ....geometry.damage.crack import check_through
 from ....geometry.damage.missing import MissingTooth, missing_teeth
@@ -180,24 +180,23 @@ def _between():
 
 def _spline(gear, influence, other=None):
     """Return the `influence` between two flanks as a spline over their arcs. The `other` tooth may have its own tip."""
-    arcs, matrix = _knots(gear)
-    return RectBivariateSpline(arcs, _knots(other or gear)[0], matrix @ influence[:PLACES, :PLACES] @ matrix.T)
+    return Bicubic(_basis(gear), influence[:PLACES, :PLACES], _basis(other or gear))
 
 
 def _opening(gear, opening):
     arcs, matrix = _knots(gear)
-    return CubicSpline(arcs, matrix @ opening[:, :PLACES].T)
+    return Cubic(arcs, matrix @ opening[:, :PLACES].T)
 
 
 @keeping(64)
 def _basis(gear):
     """Return the spline basis that represents a tooth's S(s, s'): from values at the loads to values at an arc."""
-    return CubicSpline(*_knots(gear))
+    return Cubic(*_knots(gear))
 
 
 def _own_tooth(gear, influence):
     """Return splines S(s, s) and S(s, s') between the loads along the normal, and `leaning`, from the influence of all loads."""
     (arcs, matrix), between = _knots(gear), influence[:PLACES, :PLACES]
-    near = CubicSpline(arcs, ((matrix @ between) * matrix).sum(axis=1))
+    near = Cubic(arcs, ((matrix @ between) * matrix).sum(axis=1))
     at, tilted = _leans(gear), np.diag(influence)[PLACES:]
     return near, (between + between.T) / 2, leaning(at, near(at), tilted[::2], tilted[1::2])
