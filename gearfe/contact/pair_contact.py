@@ -209,7 +209,7 @@ class PairContact:
         return 2 * np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load
 
     def finest(self, line_load):
-        """Return the length of the hats next to corners [mm] if the default is too long under this load, otherwise 0."""
+        """Return the length of hat functions next to corners [mm] for this line load [N/mm]. 0: the default is short enough."""
         if not self.extended:
             return 0.0
         gear, ends = self.pair.gear_1, np.array(self.pair.path)
