@@ -139,7 +139,7 @@ class ForceLaw:
 
     @property
     def periodic(self) -> bool:
-        """Whether it is of one whole mesh cycle."""
+        """True if the law covers one whole mesh cycle."""
         ends = self.phase[0] + 1 - self.phase[-1]
         return bool(0 < ends <= 1.5 * np.diff(self.phase).max() and self.phase[0] >= 0)
 
