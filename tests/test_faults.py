@@ -18,7 +18,7 @@ import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.core.files import PART, suffixes
 from gearfe.flexibility.finite_elements import fe
-from gearfe.stiffness import cache
+from gearfe.stiffness import cache, disk
 from gearfe.stiffness.flexibility_file import read_flexibility, write_flexibility
 
 ROOT = Path(gf.__file__).parents[1]
@@ -149,7 +149,7 @@ def test_a_file_limit_costs_only_the_reuse(tmp_path, monkeypatch):
         signal.signal(signal.SIGXFSZ, handler)
     assert list(tmp_path.iterdir()) == []
     assert read_flexibility(tmp_path / "x.gear", "key", None) is None
-    assert cache.folder() == tmp_path
+    assert disk.folder() == tmp_path
 
 
 def test_a_folder_that_may_not_be_written_is_refused_first(tmp_path, capsys):

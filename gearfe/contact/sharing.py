@@ -3,9 +3,9 @@
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 from scipy.linalg import cholesky, solve_triangular
 from scipy.linalg.lapack import dposv
-from scipy.optimize import nnls
 
 from ..flexibility.hertz import half_width
 
@@ -80,7 +80,7 @@ def share(flexibility, gap, load, weight=None, start=None):
     least = gap[weight > 0].min()
     corners = load * upper + np.outer(solve_triangular(upper, gap - least * weight, trans="T"), weight)
     corners /= np.linalg.norm(corners, axis=0).max()
-    weights, _ = nnls(np.vstack([corners, weight]), np.append(np.zeros(gap.size), 1.0))
+    weights, _ = scipy.optimize.nnls(np.vstack([corners, weight]), np.append(np.zeros(gap.size), 1.0))
     force = load * weights / (weights @ weight)
     closing = flexibility @ force + gap
     return force, float(force * weight @ closing / load)

@@ -280,8 +280,9 @@ def opposite(pair: GearPair, roll: ArrayLike, nominal: ArrayLike, *, driver: boo
 def facing(pair, roll, nominal, driver, turns=None):
     """Return the contact geometry of points of a side, with both gears moved from `nominal` along the line of action [mm].
 
-    The result is that of `opposite`, then the distances at which the normal passes the point's own centre and the other, over
-    their base radii (1 on the line of action), and the parts of a unit force on either gear that point away from its centre.
+    The result is that of `opposite`, followed by four values. Two are the lever arms of the normal about the centre of the
+    point's gear and of the other gear, divided by their base radii (1 on the line of action). Two are the radial components of a
+    unit force on either gear, positive outwards.
     `turns` is ``pair.turn(nominal)``, if known.
     """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
@@ -300,7 +301,7 @@ def facing(pair, roll, nominal, driver, turns=None):
         behind = mirror[other] * (seen - turns[other] - pushes[other] * moved / base) - met.angle
         # The normal of a modified flank is rotated by its slope.
         met_arm, lean = met.arm - slope * met.lean, met.lean + slope * met.arm
-        across = pushes[other] * (met_arm * y + lean * x) / away**2  # component of the met normal across the centre line
+        across = pushes[other] * (met_arm * y + lean * x) / away**2  # component of the mate's normal across the centre line
         arm = pushes[host] * (pushes[other] * met_arm - apart * across) / r_b
         up = pushes[other] * (lean * y - met_arm * x) / away**2  # component along the centre line
         out = sense * (across * x + up * (y - apart)) / radius
