@@ -175,15 +175,17 @@ def _mirrored(gear, lower, upper):
 def contact_of(case, phases, order, *, extended=True):
     """`Contact3D` of a case at `phases`, or at that of 16 where pair `order` carries most, of several alike at the middle one."""
     check_integral(case, "ritz3d")
-    if phases is not None:
-        return pair_stiffness3d(case, phases, extended=extended)
-    at = -order + (case.pair.eps_alpha + case.overlap()) * (np.arange(16) + 0.5) / 16
+    given = phases is not None
+    at = phases if given else -order + (case.pair.eps_alpha + case.overlap()) * (np.arange(16) + 0.5) / 16
     contact = pair_stiffness3d(case, at, extended=extended)
+    if given:
+        return contact
     carried = contact.load[:, contact.order == order].sum(axis=1)
     # A pair that carries the whole load has the same load at several phases.
     alike = np.flatnonzero(carried > (1 - 1e-9) * carried.max())
-    best = contact.phase[[alike[alike.size // 2]]]
-    return pair_stiffness3d(case, best, extended=extended)  # The cells, and thus the mesh, are those of the phase given alone.
+    best = int(alike[alike.size // 2])
+    numbers = {name: getattr(contact, name)[[best]] for name in ("phase", "k", "approach", "load", "unloaded")}
+    return replace(contact, cells=(contact.cells[best],), **numbers)
 
 
 def _lines(pair, cells, side, tooth, half):
