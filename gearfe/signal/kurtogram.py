@@ -15,7 +15,7 @@ HALF_TAPS, THIRD_TAPS = 33, 49  # filter taps for halves and thirds of a band; b
 ANALYTIC_TAPS = 1025  # limit of filter taps (also an eighth of the record), because this number of samples is lost at the ends
 WIDER = 1.3  # width of a filter at half amplitude relative to its band; the amplitude at the band edge is 0.96
 EMPTY = 1e-14  # A band below this part of the signal power contains only rounding errors.
-FEWEST = 128  # least number of samples at the deepest level, before the ends are cut
+FEWEST = 128  # least number of samples of a band at the deepest level, including the ends that are omitted
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -177,7 +177,7 @@ class FlankForm:
         return self.gear.outward * rise * self.gear.r_b / np.maximum(at, 1e-3 * self.gear.r_b)
 
     def _wear(self, roll: NDArray, derivative: int) -> Floats:
-        return np.nan_to_num(self._worn(roll, derivative, extrapolate=False))  # type: ignore[misc]  # asked for only if there is any
+        return np.nan_to_num(self._worn(roll, derivative, extrapolate=False))  # type: ignore[misc]  # only called with wear
 
     def _off_centre(self, roll: NDArray, derivative: int) -> Floats:
         """Return the distance of an eccentric gear's flank along the normal, which rotates with the roll length."""

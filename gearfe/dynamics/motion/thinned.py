@@ -57,7 +57,7 @@ def thinned(pieces, counts):
 
 
 def thinned_pieces(pieces, counts):
-    """Return the result of `thinned` in pieces."""
+    """Iterate over the blocks of the result of `thinned`. The whole record is not in memory."""
     for count in counts[:-1]:
         pieces = _filtered(pieces, count, SHORT, SHORT_PASSED)
     return _filtered(pieces, counts[-1], REACH, PASSED)
