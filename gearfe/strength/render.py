@@ -89,14 +89,15 @@ def render_stress(
     shown = pair.case(case) if isinstance(pair, ScenePair) else pair
     _check_size(shows_tooth(shown), refine)
     with part("", 0.0, 0.85):
-        found = (_tooth if shows_tooth(shown) else _gears)(shown, phase, refine)
-    return _drawn(shown, *found, path, size, title or (case or ""), top)
+        fields, told = (_tooth if shows_tooth(shown) else _gears)(shown, phase, refine)
+    return _drawn(shown, fields, told, path, size, title or (case or ""), top)
 
 
 def render_pressed(case, pressed, path, *, size, title):
     """Draw the stress of a solved tooth (`gearfe.strength.holed.pressed_tooth` with `FINE` and `STRIP`) as `render_stress`."""
     drawing_library()
-    return _drawn(case, *_of_tooth(case, pressed), path, size, title, None)
+    fields, told = _of_tooth(case, pressed)
+    return _drawn(case, fields, told, path, size, title, None)
 
 
 def shows_tooth(case):
