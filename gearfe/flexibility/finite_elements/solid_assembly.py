@@ -79,11 +79,12 @@ def assemble(points, cells, material, free, *, order=None):
 def _lower(gradients, lam, mu):
     """Lower triangle of the matrix of all components, from the matrices of `FORMS` of the scalar field."""
     trace = mu * sum(gradients[a, a] for a in range(3))
-    found = []
+    found, limit = [], 3 * trace.shape[0]
     for (a, b), matrix in gradients.items():
         block = coo_array((lam + mu) * matrix + trace if a == b else lam * matrix + mu * matrix.T)
-        row, column = (3 * nodes.astype(np.int64) for nodes in block.coords)
-        found += [(block.data, row + a, column + b)] + ([(block.data, column + b, row + a)] if a != b else [])
-    found = [[part[row >= column] for part in (data, row, column)] for data, row, column in found]
+        row, column = (3 * nodes.astype(np.int32) for nodes in block.coords)
+        for part in [(block.data, row + a, column + b), (block.data, column + b, row + a)][: 2 - (a == b)]:
+            low = part[1] >= part[2]
+            found.append([values[low] for values in part])
     data, row, column = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    return csc_array(coo_array((data, (row, column)), shape=(3 * trace.shape[0],) * 2))
+    return csc_array(coo_array((data, (row, column)), shape=(limit, limit)))

@@ -19,7 +19,8 @@ WHOLE = 0  # system that CHOLMOD solves: the whole matrix
 # Size of right-hand sides given to cvxopt at once [bytes]. It counts the bytes of a column in 32 bits: from 2**31 on it reads
 # and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
 BLOCK = 2**27
-MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] factors of n and n**(4/3), with and without METIS, see `plan`
+MEMORY = {True: (4000.0, 180.0), False: (4400.0, 220.0)}  # [bytes] factors of n and n**(4/3), with and without METIS, see `plan`
+LIBRARIES = 0.25e9  # address space that CHOLMOD, METIS and BLAS reserve at their first use [bytes]; 0.21e9 measured
 PLANE = 8000.0  # memory per unknown of a factored plane body [bytes]; 7300 measured
 # factors of n, n**2, and n**(4/3) per right-hand side, with and without METIS
 SECONDS = {True: (5e-5, 1.9e-10, 2e-10), False: (5e-5, 3.2e-10, 3e-10)}
@@ -53,7 +54,8 @@ def plan(unknowns, *, columns=0, free=None):
     The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers, all of which are read for each
     right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The constants are measured on
     gears of 20-node hexahedra with 41 000 to 464 000 unknowns, on one thread of a processor of 2.5 GHz, for half solutions
-    (``gram`` of `factor`); teeth of tetrahedra, being slender, take less.
+    (``gram`` of `factor`). Slender bodies take less memory: gears of 71 000 to
+    236 000 unknowns reserved 99 to 83 % of the plan, and used 76 to 67 %.
 
     Parameters
     ----------
@@ -81,11 +83,11 @@ def plan(unknowns, *, columns=0, free=None):
     first, second, each = SECONDS[ordered]
     numbers = n ** (4 / 3)
     seconds = first * n + second * n**2 + each * columns * numbers
-    cost = SolveCost(n, matrix * n + factored * numbers + 8.0 * columns * n, seconds, free)
+    cost = SolveCost(n, LIBRARIES + matrix * n + factored * numbers + 8.0 * columns * n, seconds, free)
     if cost.memory > free:
         raise RuntimeError(
             f"{n} unknowns need about {cost.memory / 1e9:.3g} GB and {float(f'{cost.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "
-            f"are free: coarsen the mesh (a smaller refine), or use a computer with more memory"
+            f"are free: coarsen the mesh (a smaller refine), or give more memory (the computer, `ulimit -v`)"
         )
     check_time(f"{n} unknowns", seconds, "coarsen the mesh (a smaller refine)")
     return cost
@@ -126,20 +128,23 @@ def factor(matrix, plan_=None, *, node=3):
         )
     lower = csc_array(tril(matrix, format="csc"), dtype=float)
     lower.sum_duplicates()
+    n = lower.shape[0]
+    del matrix  # Each copy takes up to a tenth of the memory of the factor.
     if not (lower.diagonal() > 0).all():
         raise RuntimeError("the stiffness matrix has an empty or negative diagonal: the body is not held")
-    rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(lower.shape[0]), np.diff(lower.indptr))
-    held = spmatrix(dense(lower.data), dense(rows), dense(columns), lower.shape)
-    factored = cholmod.symbolic(held, p=dense(dissection(rows, columns, node))) if dissects() else cholmod.symbolic(held)
+    rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(n), np.diff(lower.indptr))
+    options = {"p": dense(dissection(rows, columns, node))} if dissects() else {}
+    held = spmatrix(dense(lower.data), dense(rows), dense(columns), (n, n))
     del rows, columns, lower
+    factored = cholmod.symbolic(held, **options)
     try:
         cholmod.numeric(held, factored)
     except ArithmeticError as error:
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
     def solve(rhs):
-        sides = csc_array(rhs) if issparse(rhs) else np.reshape(rhs, (matrix.shape[0], -1))
-        out, width = np.empty(sides.shape, order="F"), max(1, BLOCK // (8 * matrix.shape[0]))
+        sides = csc_array(rhs) if issparse(rhs) else np.reshape(rhs, (n, -1))
+        out, width = np.empty(sides.shape, order="F"), max(1, BLOCK // (8 * n))
         for start in range(0, sides.shape[1], width):
             span = slice(start, start + width)
             columns = sides[:, span].toarray() if issparse(rhs) else sides[:, span]
