@@ -181,7 +181,7 @@ def load(given: dict[str, Any]) -> dict[str, Any]:
         text = (resources.files("gearfe.scene.scenes") / f"{name}.toml").read_text(encoding="utf-8")
     if not isinstance(text, str):
         raise ValueError(
-            f"no scene {shown(name)}: give the text of one, or the name of a built-in one: {', '.join(scene_names())}"
+            f"no scene {shown(name)}: give the text of a scene or the name of a built-in scene: {', '.join(scene_names())}"
         )
     chosen = {key: given.get(key) for key in ("pair", "case")}
     if not all(isinstance(choice, str | None) for choice in chosen.values()):

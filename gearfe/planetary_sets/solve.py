@@ -43,8 +43,8 @@ def planetary_stiffness(
 ) -> SetCurves:
     """Solve a planetary set: load and stiffness of every mesh, tooth loads, transmission error, ring deformation.
 
-    One contact problem at each position: each gear's flexibility over all its teeth, planets on both flanks, the ring on what
-    holds it, and in every mesh the contact that `mesh_stiffness` has for its pair alone, tip corners included.
+    Each position is one contact problem. It contains the flexibility of each gear between all its teeth, planets loaded on both
+    flanks, and the ring on its support. The contact in each mesh is that of `mesh_stiffness`, tip corners included.
 
     Parameters
     ----------
@@ -114,8 +114,8 @@ def _check_small(case, found):
     way, limit = max(ways, key=lambda name: ways[name]), REFUSE * case.gears.sun.m_n
     if ways[way] > limit:
         raise ValueError(
-            f"force = {case.force:g} N, pin = {case.pin:g} N/mm: {way} by {ways[way]:.3g} mm, but more than {limit:g} mm, "
-            f"{100 * REFUSE:g} % of the module, are beyond small displacements: give a smaller force, or stiffer pins"
+            f"force = {case.force:g} N, pin = {case.pin:g} N/mm: {way} by {ways[way]:.3g} mm, but more than {limit:g} mm "
+            f"({100 * REFUSE:g} % of the module) exceeds small displacements: give a smaller force, or stiffer pins"
         )
 
 

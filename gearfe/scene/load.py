@@ -1,6 +1,7 @@
-"""Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units stand in the key names."""
+"""Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units are part of the key names."""
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
@@ -36,10 +37,10 @@ from .train_tables import train_of
 
 @dataclass(frozen=True, slots=True)
 class ScenePair:
-    """A gear pair of a scene with its materials, its force along the line of action [N], and how its teeth run.
+    """Gear pair of a scene with its materials, its force along the line of action [N], and its type of teeth.
 
-    `owned` holds the damage of all bodies by case, side and `gearfe.scene.parts.Owner`. `flanks`, `misalignment`, `supports` are
-    as `gearfe.mesh_stiffness` has them.
+    `owned` holds the damage of all bodies by case, side and `gearfe.scene.parts.Owner`. `gearfe.mesh_stiffness` describes
+    `flanks`, `misalignment` and `supports`.
     """
 
     pair: GearPair
@@ -55,7 +56,7 @@ class ScenePair:
     @property
     def damage(self) -> dict[str, dict[str, list[Damage]]]:
         """Return the damage by case and side as an argument of `gearfe.mesh_stiffness`, of one body on each side."""
-        return {case: {side: parts.of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
+        return {case: parts.of_one_body(by_side) for case, by_side in self.owned.items()}
 
     def case(self, name: str | None = None) -> Case:
         """Return the pair as a `Case` with a case of damage, or healthy if None. Raises ValueError for an unknown case."""
@@ -104,7 +105,7 @@ class Scene:
         for one, other in zip(given, derived, strict=True):
             if one != other and not (isinstance(other, (int, float)) and math.isclose(one, other, rel_tol=1e-9)):
                 raise ValueError(
-                    f"scene {self.name}: a {what} was replaced, but others follow from the former one: give it with "
+                    f"scene {self.name}: a {what} was replaced, but other values were computed from the former one: give it with "
                     "load_scene(..., values={...})"
                 )
 
@@ -153,7 +154,14 @@ class Scene:
 
         ValueError if there is no such pair or case.
         """
-        return self.pair(pair).case(case)
+        chosen = self.pair(pair)
+        found = chosen.case(case)
+        if case and (left := parts.other_bodies(chosen.owned[case])):
+            warnings.warn(
+                f"case {case!r} also damages {', '.join(left)}: a pair has one body on each side; the machine has all of them",
+                stacklevel=2,
+            )
+        return found
 
     @property
     def cases(self) -> tuple[str, ...]:

@@ -27,12 +27,12 @@ class Signal:
     rate : float
         Samples per second [Hz].
     unit : str
-        For example ``m/s^2``; stated, never guessed.
+        Unit, for example ``m/s^2``.
     name : str
     angle : ndarray, shape (n,), optional
         Angle of the shaft at every sample [rad], rising.
     shaft_frequency : float, optional
-        Turns per second [Hz] of a shaft at constant speed; instead of `angle`.
+        Shaft frequency [Hz] at constant speed, instead of `angle`.
     """
 
     values: Floats
@@ -170,7 +170,7 @@ def decimate(signal: Signal, rate: float) -> Signal:
 def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
     """Integral over time of the content above a frequency, such as displacement from acceleration (article S4).
 
-    Divides the discrete Fourier transform by ``(2 pi i f)**times``; a record that does not close drifts at its ends.
+    The discrete Fourier transform is divided by ``(2 pi i f)**times``. A record that is not periodic has errors at its ends.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
     whole("times", times, 1)
     hertz("above", above)
     if not 0 < above < signal.rate / 2:
-        raise ValueError(f"above = {above} Hz, but give one between 0 and {signal.rate / 2:g} Hz")
+        raise ValueError(f"above = {above} Hz, but give a frequency between 0 and {signal.rate / 2:g} Hz")
     frequency = rfftfreq(signal.values.size, 1 / signal.rate)
     weight = np.zeros(frequency.size, dtype=complex)
     kept = frequency >= above

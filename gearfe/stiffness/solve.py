@@ -13,7 +13,7 @@ from ..core.case_parts import SIDES
 from ..core.checks import checked_refine, is_number, one_of, truth
 from ..core.frozen import frozen
 from ..core.material import Material, check_state
-from ..core.threads import one_thread
+from ..core.threads import in_turn, one_thread
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..geometry.aliases import Floats
 from .methods import METHODS, Method, current
@@ -195,7 +195,8 @@ def solve(case: Case, how: Solve | None = None) -> Any:
     row, why = how.chosen(case)
     row.refuses(case, how)
     how = replace(how, cache=solved_gears(how.cache))
-    with contextlib.nullcontext() if row.brute else one_thread():
+    short = in_turn() if row.cost == "milliseconds" else contextlib.nullcontext()
+    with short, contextlib.nullcontext() if row.brute else one_thread():
         curves = _curves(row, case, how)
     curves = [replace(curve, meta=curve.meta | {"why": why, "pose": how.pose}) for curve in curves]
     return curves if case.several else curves[0]
@@ -209,8 +210,8 @@ def _curves(row, case, how):
         curves = row.curves(loads, how, at)
         for curve in curves:
             check_plausible(curve, pair, case.materials)
-        if case.damaged and not any(case.broken) and how.span == "cycle" and row.kind != "solid":
-            _warn_if_unseen(case, curves[0].order)
+        if how.span == "cycle":
+            _warn_if_unseen(case, at, pair.eps_alpha + overlap)
         return curves
 
     def posed(at):
@@ -232,11 +233,17 @@ def _curves(row, case, how):
     return over_turns(posed, phase, pair, how.span, differs)
 
 
-def _warn_if_unseen(case, order):
-    """Warn if no damaged tooth is in contact at any of the phases."""
-    gears = zip((case.pair.gear_1, case.pair.gear_2), SIDES, case.cracks, case.pits, strict=True)
-    if not any(sense * hurt.tooth % gear.z in order % gear.z for gear, (_, sense), *kinds in gears for hurt in sum(kinds, ())):
+def _warn_if_unseen(case, phase, span):
+    """Warn if no tooth with damage or deviations is in contact at any of the phases. Engagements last `span` mesh cycles."""
+    sides = zip(SIDES, (case.pair.gear_1, case.pair.gear_2), case.forms or (None, None), strict=True)
+    teeth = {
+        (tooth, gear.z)
+        for (name, _), gear, form in sides
+        for tooth in {hurt.tooth for hurt in (case.damage or {}).get(name, ())} | (form.unlike if form else set())
+    }
+    if teeth and not any(((phase + tooth) % z <= span).any() for tooth, z in teeth):
         warnings.warn(
-            "no cracked tooth is in contact at these phases: tooth k is at phases from -k; use span='tooth' for tooth 0",
+            "no tooth with damage or deviations is in contact at these phases: tooth k is at phases from -k; use span='tooth' "
+            "for damage, span='revolution' for deviations",
             stacklevel=5,
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Unpack
@@ -29,9 +30,9 @@ class TransmissionError:
     phase : ndarray, shape (n,)
         Mesh phase.
     te : ndarray, shape (m, n)
-        Under each load, the unloaded part included [m].
+        Transmission error under each load, including the unloaded part [m].
     unloaded : ndarray, shape (n,)
-        Without load [m]: 0 for involutes.
+        Unloaded transmission error [m], 0 for involutes.
     curves : tuple of StiffnessCurve
         One for each load: stiffness, load sharing, pressure.
     """
@@ -44,7 +45,7 @@ class TransmissionError:
 
     @property
     def peak_to_peak(self) -> Floats:
-        """Largest less smallest transmission error over the phases, by load ``(m,)`` [m]."""
+        """Largest minus smallest transmission error over the phases, by load ``(m,)`` [m]."""
         return np.ptp(self.te, axis=1)
 
     def harmonics(self, count: int = 4) -> Floats:
@@ -74,8 +75,8 @@ class TransmissionError:
     ) -> Table:
         """`Table` of peak-to-peak, mean and first harmonics by load [um].
 
-        With the peak-to-peak of plain involutes, that of the `healthy` pair, and, if the base radius of the pinion `r_b` [mm] is
-        given, the torque.
+        It also contains the peak-to-peak values of unmodified involutes and of the `healthy` pair, and the torque if the base
+        radius of the pinion `r_b` [mm] is given.
         """
         shown: dict[Column, list[Any]] = {Column("force", "N", "{:.6g}"): [*self.force, "unloaded"]}
         if r_b is not None:
@@ -150,7 +151,12 @@ def transmission_error(
 
 def errors_under_loads(case: Case, how: Solve) -> TransmissionError:
     """`TransmissionError` of a case under its loads."""
-    curves = tuple(solve(replace(case, force=case.forces), how))
+    return errors_of(solve(replace(case, force=case.forces), how))
+
+
+def errors_of(curves: Iterable[StiffnessCurve]) -> TransmissionError:
+    """`TransmissionError` of curves at the same phases, one for each load."""
+    curves = tuple(curves)
     te, phase = np.array([curve.te for curve in curves]), curves[0].phase
     unloaded = np.zeros(phase.size) if curves[0].unloaded is None else curves[0].unloaded
     return TransmissionError(np.array([curve.meta["force_N"] for curve in curves]), phase, te, unloaded, curves)

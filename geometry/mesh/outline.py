@@ -17,7 +17,7 @@ GROWTH = 0.25  # growth of the edge length per length, away from fine places
 
 @dataclass(frozen=True, slots=True)
 class Half:
-    """Half a tooth from tip middle to root middle: vertices at even places, edge middles at odd. The last is left out.
+    """Half a tooth from tip middle to root middle without the last point: vertices at even indices, edge middles at odd ones.
 
     `flank`, `fillet` are the vertex numbers of flank (tip to form point) and fillet (form point to root), `mark` that of a
     crack's start.
@@ -34,8 +34,8 @@ def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1, growth=GR
     """Roll lengths [mm] of flank vertices, from the form point to the tip.
 
     The arc between them is about `spacing` [mm]. It is graded down to `tip` and `low` towards the two ends, where the
-    flexibility changes rapidly, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle]. With
-    the distance from these it grows by `growth` per length. The number of intervals is a multiple of `span`.
+    flexibility changes rapidly, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle]. It
+    grows by `growth` per length with the distance from these places. The number of intervals is a multiple of `span`.
     """
     start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
     fine = [*patches, (stop, stop, tip or spacing), (start, start, low or spacing)]
@@ -93,6 +93,19 @@ def half(gear, roll, fillet_size, size, *, mark=None, top=None):
     return Half(radius, angle, ends[0] + np.arange(roll.size), ends[1] + np.arange(root.size // 2 + 1), marked)
 
 
+def bare(gear, size):
+    """Return half a pitch of the root circle with edges of about `size` [mm], in place of half a tooth."""
+    pitch = math.pi / gear.z
+    angle = doubled(np.linspace(0.0, pitch, math.ceil(gear.r_f * pitch / size) + 1))[:-1]
+    return Half(np.full(angle.size, gear.r_f), angle, np.zeros(0, dtype=int), np.zeros(0, dtype=int), None)
+
+
+def chipped_half(gear, chip, side, fillet_size, size, *, roll=None, mark=None):
+    """Return half a chipped tooth, as `half`. Its flank vertices are by default at `stations` of the remaining flank."""
+    left = stations(shortened(gear, chip.end_roll(gear, side)), size) if roll is None else roll
+    return half(gear, left, fillet_size, size, mark=mark, top=chip.top(gear, side))
+
+
 def _chipped(top, size, corner):
     """Radius and angle along the pieces of a chipped tip, to the flank."""
     points = [np.zeros((2, 0))]
@@ -145,8 +158,7 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None,
         chip = chip_of(gear, broken, tooth)
         if chip is not None:
             given = rolls.get(tooth) if side == "loaded" else None
-            roll = stations(shortened(gear, chip.end_roll(gear, side)), size) if given is None else given
-            return half(gear, roll, fillet_size, size, mark=marks.get((tooth, side)), top=chip.top(gear, side))
+            return chipped_half(gear, chip, side, fillet_size, size, roll=given, mark=marks.get((tooth, side)))
         if (tooth, side) in marks or (distance == 0 and side == "loaded"):
             roll = rolls[tooth] if side == "loaded" and tooth in rolls else stations(gear, size)
             return half(gear, roll, fillet_size, size, mark=marks.get((tooth, side)))
@@ -165,8 +177,8 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None,
 def around(gear, choose):
     """Return all teeth clockwise from the middle of tooth 0's tip, made of the `Half` of `choose` for a tooth and a side.
 
-    Returns the points ``(2, 2 n)`` [mm], vertices at even places and edge middles at odd, and by tooth and side the half, the
-    vertex number of its tip middle, and the sense (1 or -1) in which vertices are numbered from there to the root.
+    The result has the points ``(2, 2 n)`` [mm], vertices at even and edge middles at odd indices. By tooth and side it has the
+    half, the vertex number of its tip middle, and the sense (1 or -1) of the vertex numbers from there to the root.
     """
     radii, angles, places, count = [], [], {}, 0
     for tooth in range(gear.z):

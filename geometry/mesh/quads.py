@@ -22,13 +22,17 @@ from .tooth_pieces import GROWTH, half_tooth, no_tooth, quarters
 # Edge lengths in modules: loaded flanks, their tip corner, their fillets, other fillets, adjacent teeth, all others,
 # largest crack edge, crack tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
-ATTEMPTS = tuple((finer, algorithm) for own in ((5, 6), (8,)) for finer in (1.0, 1.07, 1.15, 1.24, 1.4, 1.6) for algorithm in own)
-# finer, gmsh's algorithm: it may leave triangles, or fold quads; 8 comes last: it does not always give the same mesh
+FINER = 1.0, 1.07, 1.15, 1.24, 1.4, 1.6
+# finer, largest edge lengths relative to `SIZES`, gmsh's algorithm: it may leave triangles, or fold quads where one line covers a
+# whole fillet; 8 comes last: it does not always give the same mesh
+ATTEMPTS = tuple(
+    (finer, most, algorithm) for own in ((5, 6), (8,)) for most in (math.inf, 1.0) for finer in FINER for algorithm in own
+)
 
 
 @dataclass(frozen=True, slots=True)
 class Cut:
-    """The line that parts a cracked tooth from the body: `edges` (3, n) start, middle, end from a mouth on.
+    """Line that separates a cracked tooth from the body.
 
     `edges` (3, n) are start, middle and end of its edges from a mouth on. `crack` (n,) is the number of the crack of each
     edge, -1 on the part that stays closed. `depth` (n,) is the distance of the edge's middle from the mouth of its crack,
@@ -52,7 +56,7 @@ class QuadSection:
         Corners counter-clockwise, then the middles of the edges 01, 12, 23, 30.
     corners : int
     part : ndarray, shape (m,)
-        0 the body, k + 1 the tooth above `cuts[k]`.
+        0 for the body, k + 1 for the tooth above `cuts[k]`.
     held : ndarray, shape (3, n)
         Edges on the held circle: start, middle, end.
     flank : dict of int to ndarray, shape (3, n)
@@ -117,8 +121,8 @@ def quad_section(gear, *, loaded=(0,), cracks=(), broken=(), patches=(), refine=
         patches = {tooth % gear.z: places for tooth, places in patches.items()}
     else:
         patches = dict.fromkeys(teeth, patches)
-    for finer, algorithm in ATTEMPTS:
-        edges = {name: value / refine / finer for name, value in size.items()}
+    for finer, most, algorithm in ATTEMPTS:
+        edges = {name: min(value / refine, most * SIZES[name] * gear.m_n) / finer for name, value in size.items()}
         try:
             return _attempt(gear, teeth, (cracks, broken), patches, edges, algorithm)
         except RuntimeError as error:
@@ -182,7 +186,7 @@ class _Draft:
 
 
 def _mouths(gear, size, found):
-    """By side of a cracked tooth: arc where the parting line starts and the edge length there [mm]."""
+    """Return, by side of a cracked tooth, the arc at which the parting line starts and the edge length there [mm]."""
     ends = {crack.side: (start_arc(gear, crack), lengths(meshed_path(gear, crack))[-1]) for _, crack in found}
     mouths = {side: (arc, min(size["fillet"], length / 4)) for side, (arc, length) in ends.items()}
     (only,) = [*mouths.values()][:1]

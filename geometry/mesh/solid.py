@@ -1,9 +1,8 @@
 """Whole gear in twisted 20-node hexahedra: the section of `gearfe.geometry.mesh.quads`, extruded along the width.
 
-The transverse section at z = 0 is that of `gearfe.geometry.tooth.profile`; at height z it is turned clockwise by ``w z``,
-``w = tan(beta) / r``, with the sign of the gear's beta. Nodes, also those in the middle of edges, lie exactly on the helicoid. A
-ring's own section is seen in the mirror (`gearfe.GearPair.turn`): like an external wheel, it meshes with a pinion of the
-opposite beta.
+The transverse section at z = 0 is that of `gearfe.geometry.tooth.profile`; at height z it is rotated clockwise by ``w z``, ``w
+= tan(beta) / r``, with the sign of the gear's beta. Nodes, also those in the middle of edges, lie exactly on the helicoid. The
+section of a ring is mirrored (`gearfe.GearPair.turn`). Like an external wheel, a ring meshes with a pinion of opposite beta.
 """
 
 import math
@@ -40,7 +39,7 @@ class Solid:
     levels : ndarray, shape (layers + 1,)
         Heights of the element layers [mm].
     section : QuadSection
-        At z = 0.
+        Section at z = 0.
     held : ndarray
         Nodes on the bore, or on the outside of a ring.
     faces : dict of str to ndarray, shape (8, k)
@@ -76,7 +75,9 @@ MOST = 5000  # largest number of element layers
 def layers(b, size, *, breaks=(), fine=()):
     """Return heights [mm] of element layers about `size` apart over 0..b, with borders at `breaks`, finer at `fine`."""
     if b > MOST * size:
-        raise ValueError(f"layers of {size:.3g} mm in a gear of b = {b:g} mm: more than {MOST}; give higher ones, or less refine")
+        raise ValueError(
+            f"layers of {size:.3g} mm in a gear of b = {b:g} mm: more than {MOST}; give thicker layers, or a smaller refine"
+        )
     ends = np.unique([0.0, b, *(z for z in breaks if 0 < z < b)])
     parts = [spaced(low, high, size, list(fine)) for low, high in zip(ends[:-1], ends[1:], strict=True)]
     return np.concatenate([parts[0][:1], *[part[1:] for part in parts]])
@@ -93,8 +94,8 @@ def _levels(gear, layer, refine, cracks, fronts, fine):
 def solid(gear, *, layer, loaded=(0,), cracks=(), broken=(), patches=(), refine=1.0, sizes=None, fine=()):
     """Mesh a whole gear, all teeth and the true rim.
 
-    The elements follow the front of a straight crack whose depth changes along the width (`geometry.mesh.front`); that of a
-    crack that has turned is a staircase of element faces.
+    The elements follow the front of a straight crack whose depth changes along the width (`geometry.mesh.front`). The front of
+    a crack with a bend is stepped along element faces.
 
     Parameters
     ----------
@@ -230,7 +231,7 @@ def _open(made, cut, part, cracks):
         opened |= of_crack[:, None] & (cut.depth[:, None] <= length * reach * (1 + 1e-9))
     opened = opened.ravel()
     if not opened.any():
-        raise ValueError("the crack is narrower or shallower than the mesh: give smaller layers or a larger refine")
+        raise ValueError("the crack is narrower or shallower than an element: give thinner layers or a larger refine")
     free = np.setdiff1d(walls[:, opened], walls[:, ~opened])
     double = np.arange(made.points.shape[1])
     double[free] = made.points.shape[1] + np.arange(free.size)

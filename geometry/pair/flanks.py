@@ -18,11 +18,11 @@ STEEPEST = 0.01  # largest misalignment per face width, beyond which the axes ar
 class Misalignment:
     """Misalignment of the axes of a gear pair.
 
-    Only what is left in the plane of action matters; over the common width b the flanks of a pair then open by::
+    Only the component in the plane of action has an effect. Over the common width b the gap of the flanks changes by::
 
         F_beta_x + (f_sigma_beta cos(alpha_wt) + f_sigma_delta sin(alpha_wt)) b / length
 
-    more at z = b than at z = 0 (heights as of a `Pit`); none in the middle of the width.
+    The gap is larger at z = b than at z = 0 (heights of a `Pit`), and unchanged in the middle of the width.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Misalignment:
             if not is_finite(value):
                 raise ValueError(f"misalignment: {name} = {value!r}, but it needs a finite number [mm]")
         if self.length is not None and not self.length > 0:
-            raise ValueError(f"misalignment: length = {self.length:g} mm, but the bearings are some way apart: give length > 0")
+            raise ValueError(f"misalignment: length = {self.length:g} mm, but the span of the bearings must be positive")
         if (self.f_sigma_beta or self.f_sigma_delta) and self.length is None:
             raise ValueError(
                 "misalignment: f_sigma_beta and f_sigma_delta are deviations over a length: give length, the span of the "
@@ -92,7 +92,7 @@ def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
 def flank_forms(
     pair: Any, flanks: Mapping[str, Flank] | None, misalignment: Misalignment | None = None
 ) -> tuple[FlankForm, FlankForm] | None:
-    """Flanks of pinion and wheel on their gears, each taking half of the misalignment, or None if all are involutes.
+    """Return the flanks of pinion and wheel on their gears, each with half of the misalignment, or None for involutes.
 
     ValueError if `flanks` are not given by gear (``{"pinion": Flank(...), "wheel": Flank(...)}``, or one of them), or do not
     fit.

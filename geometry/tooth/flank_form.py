@@ -27,8 +27,8 @@ STEP = 1e-6  # roll length of the difference quotient for slopes [m_n]
 class FlankForm:
     """Flank on its gear: removed material by roll length, and by height in the form of `at`.
 
-    `kinks` are the roll lengths [mm] at which the flank bends suddenly, and by how much the material removed then rises by mm of
-    roll length: there, contact has no radius of curvature. A parabolic relief bends the flank at its start: its curvature jumps.
+    `kinks` are the roll lengths [mm] at which the slope of the flank jumps, and the jump of the removed material per mm of roll
+    length. The contact has no radius of curvature there. At the start of a parabolic relief the curvature jumps.
     """
 
     def __init__(self, flank: Any, gear: Gear) -> None:
@@ -69,6 +69,15 @@ class FlankForm:
         """Whether the teeth of the gear differ from each other."""
         return bool(self.flank.eccentricity) or any(values.size and np.ptp(values) for values in (self._shifts, self._scales))
 
+    @property
+    def unlike(self) -> set[int]:
+        """Numbers of the teeth without the most frequent pitch deviation or scale. Of an eccentric gear, all teeth."""
+        found = set(range(self.gear.z)) if self.flank.eccentricity else set()
+        for values in filter(np.size, (self._shifts, self._scales)):
+            numbers, counts = np.unique(values, return_counts=True)
+            found |= set(np.flatnonzero(values != numbers[np.argmax(counts)]).tolist())
+        return found
+
     def of(self, tooth: ArrayLike) -> "FlankForm":
         """Return the same flank for teeth ``(...)``, which go with the leading axes of roll lengths."""
         if not (self._scales.size or self.flank.eccentricity):
@@ -105,8 +114,14 @@ class FlankForm:
         largest = max(1.0, float(np.abs(self._scales).max(initial=0.0)))
         given = {name: getattr(self.flank, name) for name in AMOUNTS}
         shape = ", ".join(f"{name} = {shown(amount)} mm" for name, amount in given.items() if np.any(amount))
+        shaped = sections._shaped(roll[None, :], 0)
+        if self._scales.size and not shaped.any():
+            raise ValueError(
+                f"tooth_scale of z = {self.gear.z} scales profile and helix modifications, but there are none; it does not scale "
+                "wear, pitch, edges and eccentricity: leave it out, or give a modification"
+            )
         for name, values in (
-            (shape or "table", largest * sections._shaped(roll[None, :], 0)),
+            (shape or "table", largest * shaped),
             ("pitch", self._shifts),
             (f"eccentricity = {self.flank.eccentricity:g} mm", np.array([self.flank.eccentricity])),
             ("wear", np.zeros(1) if self._worn is None else self._wear(roll, 0)),
@@ -224,7 +239,7 @@ class FlankForm:
     def bend(self, roll: ArrayLike) -> Floats:
         """Curvature that the modification adds to the flank, by its arc [1/mm] (kinks left out).
 
-        Eccentricity shifts the whole gear, which bends no flank.
+        Eccentricity shifts the whole gear and does not change the curvature.
         """
         at = np.maximum(np.asarray(roll, dtype=float), 1e-3 * self.gear.r_b)  # The roll length is zero at the base circle.
         on = self._on_flank(at)
@@ -233,7 +248,7 @@ class FlankForm:
 
 
 def _bends(gear: Gear, roll: float, jump: float) -> bool:
-    """Whether a `jump` of the second derivative of the material removed by roll length [1/mm] counts, see `BENT`."""
+    """Whether a `jump` of the second derivative of the removed material [1/mm] exceeds `BENT`."""
     return jump * gear.r_b**2 / max(roll, 1e-3 * gear.r_b) > BENT
 
 

@@ -51,7 +51,7 @@ def test_faces_that_overlap_anywhere_are_closing():
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore:no cracked tooth is in contact")
+@pytest.mark.filterwarnings("ignore:no tooth with damage")
 @pytest.mark.parametrize("method", ["ritz", "fe"])
 def test_contacts_slide_as_well_where_crack_faces_touch(method):
     """A crack of 0.5 % of the thickness changes nothing where its faces touch. Contacts that do not slide lose 0.18 % here."""

@@ -1,9 +1,9 @@
 """One gear mesh of a machine: its row, its stiffness over the mesh phase with damaged teeth, its errors and its contact law.
 
-The phase of a mesh runs on without end, ``phase + frequency t``; the pair that enters at the whole number n is formed by tooth
-``first[0] + n`` of body 1 and ``first[1] + n`` of body 2 (modulo their tooth numbers, numbered in the order they enter). A
-damaged tooth therefore returns every z cycles of *each* mesh its body takes part in, and two damaged teeth meet at the hunting
-interval.
+The phase of a mesh, ``phase + frequency t``, is not reduced to one cycle. The pair that enters at the whole number n is formed
+by tooth ``first[0] + n`` of body 1 and ``first[1] + n`` of body 2, modulo their tooth numbers and numbered in the order of
+engagement. A damaged tooth therefore returns after z cycles in *each* mesh of its body. Two damaged teeth meet once per hunting
+period.
 """
 
 import math
@@ -115,7 +115,9 @@ class GearMesh:
             self, push=truth(f"{what}: push", self.push), contact=law_of(self.power, self.depth) if self.law is None else self.law
         )
         if not callable(getattr(self.contact, "force", None)):
-            raise ValueError(f"{what}: law = {shown(self.law)}, but give a row of gearfe.dynamics.machine.contact_law.LAWS")
+            raise ValueError(
+                f"{what}: law = {shown(self.law)}, but give one of the laws in gearfe.dynamics.machine.contact_law.LAWS"
+            )
         self._check_teeth()
         self._check_contact()
         settle(self, cycle=cycle_table(self.stiffness))
@@ -162,7 +164,8 @@ class GearMesh:
             change = hurt.change([(1.0, 0.0, healthy), *(out if hurt.every else ())], first, z, name)
             if change.end - change.start > z + ALIKE:
                 raise ValueError(
-                    f"mesh {self.name}: the curve of a damaged tooth is longer than the {z} mesh cycles after which it returns"
+                    f"mesh {self.name}: the curve of a damaged tooth is longer than the {z} mesh cycles after which that tooth "
+                    "meshes again"
                 )
             out.append((float(z), first, change))
         return tuple(out)
@@ -197,7 +200,7 @@ class GearMesh:
 
     @property
     def openings(self) -> tuple[tuple[float, float, float], ...]:
-        """The errors of the mesh as sinusoids, with its gap as a constant one."""
+        """Return the errors of the mesh as sinusoids. The gap is a constant one."""
         return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
 
     def k(self, t: ArrayLike) -> Floats:

@@ -105,11 +105,19 @@ def gearbox(scene, stiffness, damage):
         "torques [N m]": dict(train.torques),
         "mass of shafts": "lumped at the stations",
     }
-    if len(train.stages) == 1:  # counter-clockwise like the planet numbers, for sensors on the ring
-        (name, stage), *_ = train.stages.items()
-        notes["carrier frequency [Hz]"] = sense_of(scene, name)[1] * train.speeds[stage.carrier] / (2 * math.pi)
+    notes |= _passes(scene)
     _check_held(scene, layout, [*(spring.row for spring in springs if spring.k), *(mesh.row for mesh in meshes)])
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, _stages(scene), rotors=rotors)
+
+
+def _passes(scene):
+    """Return notes on planets that pass a sensor, counter-clockwise positive; by pair if there are several stages."""
+    train, out = scene.train, {}
+    for name, stage in train.stages.items():
+        turns, spacing = train.speeds[stage.carrier] / (2 * math.pi), sense_of(scene, name)[1] * 360 / stage.n_planets
+        for key, value in {"carrier frequency [Hz]": turns, "planet spacing [deg]": spacing}.items():
+            out[key] = out.get(key, {}) | dict.fromkeys(stage.pairs, value)
+    return out if len(train.stages) > 1 else {key: next(iter(by_pair.values())) for key, by_pair in out.items()}
 
 
 def _check_held(scene, layout, rows):
@@ -121,8 +129,8 @@ def _check_held(scene, layout, rows):
         moved = np.where([".theta" in dof for dof in layout.dofs], 0.0, np.abs(free).max(axis=0))
         dof = layout.dofs[int(np.argmax(moved))]
         raise ValueError(
-            f"{scene.name}.toml: {dof} moves without deflection, besides the rotation of the train: give its shaft two bearings "
-            "or more, or a stiffness to its pins"
+            f"{scene.name}.toml: {dof} can move without any deflection, and not only by rotation of the train: give its shaft "
+            "two bearings or more, or its pins a stiffness"
         )
 
 
@@ -198,8 +206,9 @@ def _joints(layout: Layout, train: Train, chains: dict[str, Chain]) -> list[Spri
 def pair_phases(scene):
     """Return the phase at t = 0 of each pair between shafts, from the angular positions of the gears on each shaft.
 
-    Tooth 0 of the first gear of the motor's shaft stands at 0; tooth 0 of a driven gear meets tooth 0 of its driver. The driving
-    flank of a tooth at the angle c passes the pitch point, at the angle d, where ``sense (c - d) + half thickness = 0``.
+    Tooth 0 of the first gear of the motor's shaft is at the angle 0. Tooth 0 of a driven gear meets tooth 0 of its driver. The
+    driving flank of a tooth at the angle c passes the pitch point, at the angle d, where ``sense (c - d) + half thickness =
+    0``.
     """
     train, out = scene.train, {}
     base = {train.ends["motor"]["shaft"]: 0.0}  # angle of the mark on each shaft, zero after couplings and planetary stages
@@ -241,7 +250,7 @@ def _parallel(scene, layout, stiffness, damage):
 
 
 def _stages(scene):
-    """Return the `Stage` of each pair and planetary stage, against the flow of power: the stage of the motor is the last."""
+    """Return the `Stage` of each pair and planetary stage, from the loads to the motor, whose stage is the last."""
     train, out = scene.train, []
     for link in train.links:
         turns = [abs(train.speeds[shaft]) / (2 * math.pi) for shaft in (link.one, link.two)]

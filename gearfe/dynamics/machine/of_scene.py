@@ -1,7 +1,7 @@
 """Machine of a scene: the table of models that `build_machine` uses, and the errors of a scene.
 
-A model is one file that states its bodies, stages and springs and a function ``(scene, case, **options) -> Machine`` of it, and
-one row here.
+A model is one file with its bodies, stages and springs, a function ``(scene, case, **options) -> Machine``, and one row in the
+table here.
 """
 
 import math
@@ -79,7 +79,8 @@ def build_machine(
     build, contact = _builder(scene, case)
     if contact == "impact" and tuple(loads) != (1.0,):
         raise ValueError(
-            f"loads = {tuple(loads)}: the impact law has a coefficient and no curves under loads; take contact = 'linear'"
+            f"loads = {tuple(loads)}: the impact law has a stiffness coefficient and no curves at several loads; use contact = "
+            "'linear'"
         )
     if contact == "impact":
         return with_scene_errors(scene, with_sensors(scene, build(scene, case)))
@@ -150,7 +151,7 @@ def _check_contact(scene, case, contact):
         for name, pair in scene.pairs.items():
             if pair.flanks or pair.misalignment:
                 raise ValueError(
-                    f"[pair.{name}] has flanks or misalignment, but the impact law is of involutes without deviations: use "
+                    f"[pair.{name}] has flanks or misalignment, but the impact law neglects flank deviations: use "
                     "contact = 'linear'"
                 )
             if name in hurt and any(hurt[name].broken):
@@ -176,7 +177,7 @@ def with_flanks(machine):
 
 
 def _unloaded(curve):
-    """Unloaded error at the phases of a curve; of a law without the extra phases where pairs come in."""
+    """Return the unloaded transmission error at equally spaced phases of a curve or a force law."""
     phase = curve.phase
     if isinstance(curve, ForceLaw):
         at = phase[0] + np.arange(round(1 / np.diff(phase).max())) * np.diff(phase).max()

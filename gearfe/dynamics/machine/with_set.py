@@ -1,4 +1,4 @@
-"""Dynamic model with the mesh stiffnesses of a planetary set. Every deflection counts once."""
+"""Dynamic model with the mesh stiffnesses of a planetary set. Each deflection is contained once."""
 
 import math
 from dataclasses import replace
@@ -29,8 +29,9 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
     """Return the machine with every mesh as stiff as in a planetary set, one curve for each mesh of each planet.
 
     `SetCurves.k` contains the deflection of a mesh without the rotations and shifts of sun and planet. Rotations, pins and a
-    floating sun are therefore those of the machine, and its bearings of planets and sun should be those of the set. The motion of
-    the ring is part of k or of the machine. In both cases, its sun rotates as far under the set's torque as that of the set.
+    floating sun are therefore those of the machine, and its bearings of planets and sun should be those of the set. The motion
+    of the ring is part of k or of the machine. In both cases, the rotation of its sun under the torque of the set equals that
+    of the set.
 
     Parameters
     ----------
@@ -169,7 +170,7 @@ def _check(machine, mesh, pair, direction):
             f"mesh {mesh.name} has another direction than in the set: build the machine with the planet_angles of the set"
         )
     if mesh.damage:
-        raise ValueError(f"mesh {mesh.name} has damage of its own: give the damage to the PlanetaryCase, and a healthy machine")
+        raise ValueError(f"mesh {mesh.name} is damaged: give the damage to the PlanetaryCase, and a healthy machine")
 
 
 def _still(machine):
@@ -200,7 +201,8 @@ def _still(machine):
 def ring_springs(case: Any) -> Floats:
     """Stiffness of a rigid ring on the bed or pads of a `PlanetaryCase` in x, y and rotation [N/m, N m/rad] (inf if rigid).
 
-    Of n pads, radial k_r and tangential k_t: ``n (k_r + k_t) / 2`` and ``n k_t R**2``; of a bed the same with its length for n.
+    For n pads of radial stiffness k_r and tangential stiffness k_t these are ``n (k_r + k_t) / 2`` and ``n k_t R**2``. For a bed,
+    n is its length.
     """
     ring, radius = case.ring, float(case.ring_gear.held)
     if isinstance(ring, RimBed):
@@ -228,7 +230,7 @@ def _on_springs(machine, case):
         row, place = machine.row(dof), machine.dofs.index(dof)
         old = [one for one in springs if one.row[place]]
         if any((one.row != row).any() for one in old):
-            raise ValueError(f"springs of the machine's ring act between bodies: {', '.join(one.name for one in old)}")
+            raise ValueError(f"the ring of the machine has springs to other bodies: {', '.join(one.name for one in old)}")
         damping = sum(one.c for one in old) * math.sqrt(k / sum(one.k for one in old)) if old else 0.0
         springs = [one for one in springs if not one.row[place]] + [Spring(f"{BODY}-ground {axis}", row, float(k), damping)]
     return replace(machine, springs=tuple(springs))

@@ -1,4 +1,4 @@
-"""Excitation of a machine over time: by arrays from its meshes and loads, and as flat tables for the fast path."""
+"""Excitation of a machine over time: as arrays from its meshes and loads, and as flat tables for the fast integrator."""
 
 import math
 from typing import NamedTuple
@@ -40,7 +40,7 @@ class Flat(NamedTuple):
 
 
 def records(**columns):
-    """Arrays of one length by name as an array of records, ``records[i].name``."""
+    """Structured array from arrays of equal length: ``records(k=a, c=b)[i].k`` is ``a[i]``."""
     dtype = np.dtype([(name, values.dtype) for name, values in columns.items()], align=True)
     out = np.empty(len(next(iter(columns.values()))), dtype)
     for name, values in columns.items():
@@ -49,7 +49,7 @@ def records(**columns):
 
 
 def _columns(rows, **types):
-    """Return `records` of rows by the names and types of their columns."""
+    """Structured array from rows, with the names and types of their columns."""
     columns = list(zip(*rows, strict=True)) or [()] * len(types)
     return records(**{name: np.array(column, kind) for (name, kind), column in zip(types.items(), columns, strict=True)})
 
@@ -79,7 +79,7 @@ def flatten(machine, times):
 
 
 def _tables(meshes):
-    """Entries (mesh, period, first, table) of the cycles, of damaged teeth, of teeth off their place and of friction rows."""
+    """Return entries (mesh, period, first, table) of cycles, damaged teeth, teeth with position errors and friction rows."""
     numbered = list(enumerate(meshes))
     cycles = [(i, 1.0, 0.0, mesh.cycle) for i, mesh in numbered]
     teeth = [[(i, *one) for i, mesh in numbered for one in getattr(mesh, kind)] for kind in ("changes", "shifts")]

@@ -48,14 +48,15 @@ def housing_signal(
     Parameters
     ----------
     response : gearfe.dynamics.motion.response.Response
-        Response of a machine with one planetary stage.
+        Response of a machine with planetary stages.
     kind : str
         Meshes whose forces reach the sensor, one or more per planet, named ``kind`` and the number of the planet
         (``planet_ring1``, ``planet_ring1L``...).
     sensor : float
         Angle of the sensor [rad].
     planet_angles : sequence of float, optional
-        Angles of the planets at time 0 [rad]; default: equally spaced from 0, as all stages of `gearfe.dynamics.machine` are.
+        Angles of the planets at time 0 [rad]; default: equally spaced from 0, as all stages of `gearfe.dynamics.machine` are. The
+        note ``"planet spacing [deg]"`` states the sense of their numbers.
     carrier : float, optional
         Carrier frequency at nominal speed [Hz], counter-clockwise if positive; default: from the machine's notes, ``"carrier
         frequency [Hz]"``.
@@ -89,12 +90,11 @@ def housing_signal(
 def ring_window(radius: float, bending: float, foundation: float) -> Callable[[Floats], Floats]:
     """Window for `housing_signal`: deflection of a thin ring on an elastic foundation at the sensor.
 
-    The radial displacement at an angle phi from a radial force, over that under the force, of a ring whose centre line keeps its
-    length::
+    It is the radial displacement at an angle phi from a radial force, relative to that under the force, of an inextensible ring::
 
         w(phi) = sum over n >= 1 of cos(n phi) / (bending (n**2 - 1)**2 / radius**3 + foundation radius),   over w(0)
 
-    A stiff ring moves as a whole, w = cos(phi); a soft one gives near the planet only.
+    A stiff ring moves as a whole, w = cos(phi). A flexible ring deflects only near the planet.
 
     Parameters
     ----------

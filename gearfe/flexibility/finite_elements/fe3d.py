@@ -1,4 +1,4 @@
-"""Flexibility of one gear between patches of its flanks, by brute force: three-dimensional finite elements.
+"""Flexibility of one gear between patches of its flanks, by three-dimensional finite elements.
 
 A patch carries a pressure of known resultant along minus the flank's normal::
 
@@ -38,7 +38,7 @@ class Patches:
         Number of functions along the width: the Legendre polynomials ``P_a(2 z / b - 1) / b``, of which the first is a uniform
         line load of unit resultant.
     own : dict of int to ndarray, shape (3, arcs)
-        Knots of teeth whose loaded flanks end elsewhere.
+        Knots of teeth whose loaded flanks end below the tip circle.
     """
 
     teeth: tuple
@@ -71,10 +71,11 @@ class Patches:
         slack = 1e-9 * gear.m_n
         knots = np.asarray(self.knots)
         if not (knots.ndim == 2 and knots.shape[0] == 3 and knots.size and (np.diff(knots, axis=0) > 0).all()):
-            raise ValueError(f"knots = {self.knots}, but each hat needs a start, a top beyond it and an end beyond that [mm]")
+            raise ValueError(f"knots = {self.knots}, but each hat function needs three increasing numbers: start, top, end [mm]")
         if knots.min() < low - slack or knots.max() > high + slack:
             raise ValueError(
-                f"hats from {knots.min():.4g} to {knots.max():.4g} mm leave the flank, which runs from {low:.4g} to {high:.4g} mm"
+                f"hat functions from {knots.min():.4g} to {knots.max():.4g} mm leave the flank, which runs from {low:.4g} to "
+                f"{high:.4g} mm"
             )
         if self.modes < 1:
             raise ValueError(f"modes = {self.modes}, but at least one function along the width is required")
@@ -106,8 +107,8 @@ def mesh_patches(gear, patches, *, cracks=(), broken=(), refine=1.0, per_hat=4, 
     """Mesh `gear` for `patches`: `per_hat` edges across each hat and layers of height `layer` [mm].
 
     `layer` is b / 12 by default, at most a module. `refine` divides all edge lengths and the layers; `cracks`, `broken`, `sizes`,
-    `fine` as in `gearfe.geometry.mesh.solid.solid`. What converges last are loads that run over the end faces:
-    ``fine = [(0, 0, w), (b, b, w)]`` gives layers of w there.
+    `fine` as in `gearfe.geometry.mesh.solid.solid`. Loads at the end faces converge slowest:
+    ``fine = [(0, 0, w), (b, b, w)]`` gives layers of height w there.
     """
     patches.check(gear)
     places = {

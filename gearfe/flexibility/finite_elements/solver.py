@@ -19,7 +19,7 @@ WHOLE = 0  # system that CHOLMOD solves: the whole matrix
 # Size of right-hand sides given to cvxopt at once [bytes]. It counts the bytes of a column in 32 bits: from 2**31 on it reads
 # and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
 BLOCK = 2**27
-MEMORY = {True: (4000.0, 180.0), False: (4400.0, 220.0)}  # [bytes] factors of n and n**(4/3), with and without METIS, see `plan`
+MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] factors of n and n**(4/3), with and without METIS, see `plan`
 LIBRARIES = 0.25e9  # address space that CHOLMOD, METIS and BLAS reserve at their first use [bytes]; 0.21e9 measured
 PLANE = 8000.0  # memory per unknown of a factored plane body [bytes]; 7300 measured
 # factors of n, n**2, and n**(4/3) per right-hand side, with and without METIS
@@ -54,8 +54,8 @@ def plan(unknowns, *, columns=0, free=None):
     The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers, all of which are read for each
     right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The constants are measured on
     gears of 20-node hexahedra with 41 000 to 464 000 unknowns, on one thread of a processor of 2.5 GHz, for half solutions
-    (``gram`` of `factor`). Slender bodies take less memory: gears of 71 000 to
-    236 000 unknowns reserved 99 to 83 % of the plan, and used 76 to 67 %.
+    (``gram`` of `factor`); teeth of tetrahedra, being slender, take less. Of the memory for one right-hand side, gears of
+    71 000 to 236 000 unknowns reserved 87 to 97 % and used 56 to 85 %.
 
     Parameters
     ----------
@@ -126,10 +126,12 @@ def factor(matrix, plan_=None, *, node=3):
             f"{matrix.shape[0]} unknowns need about {PLANE * matrix.shape[0] / 1e9:.2g} GB, but {free / 1e9:.2g} GB are free: "
             "raise the limit of memory (`ulimit -v`), or give a smaller refine"
         )
-    lower = csc_array(tril(matrix, format="csc"), dtype=float)
-    lower.sum_duplicates()
+    lower = csc_array(matrix, dtype=float)
     n = lower.shape[0]
-    del matrix  # Each copy takes up to a tenth of the memory of the factor.
+    del matrix  # It takes about a fifth of the memory of the factor.
+    lower.sum_duplicates()
+    if (lower.indices < np.repeat(np.arange(n), np.diff(lower.indptr))).any():
+        lower = tril(lower, format="csc")
     if not (lower.diagonal() > 0).all():
         raise RuntimeError("the stiffness matrix has an empty or negative diagonal: the body is not held")
     rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(n), np.diff(lower.indptr))

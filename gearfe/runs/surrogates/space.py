@@ -31,7 +31,7 @@ SHAPE = ("z_1", "z_2", "x_1", "x_2")  # inputs that change the contact ratio or 
 
 @dataclass(frozen=True)
 class Space:
-    """Ranges of some `INPUTS` about a pair of spur gears. The others are held."""
+    """Ranges of some `INPUTS` of a pair of spur gears. The other inputs are fixed."""
 
     pair: GearPair  # pair that provides all other values
     ranges: dict[str, tuple[float, float]]  # limits of the varied inputs
@@ -68,7 +68,7 @@ class Space:
             if not is_number(value) or not low <= value <= high:
                 raise ValueError(
                     f"{name} = {value!r}, but this surrogate was fitted from {low:g} to {high:g} and is invalid outside: give "
-                    "a value within, fit another, or ask mesh_stiffness"
+                    "a value within, fit another surrogate, or use mesh_stiffness"
                 )
             if name in WHOLE and value != int(value):
                 raise ValueError(f"{name} = {value!r}, but give a whole number of teeth")

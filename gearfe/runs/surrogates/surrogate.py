@@ -1,4 +1,4 @@
-"""`Surrogate`: stiffness curves of `ritz` by polynomials, within stated ranges, with the error found in a test."""
+"""`Surrogate`: stiffness curves of `ritz` by polynomials within stated ranges, with an error measured on other cases."""
 
 import json
 from dataclasses import asdict, dataclass, field
@@ -37,17 +37,17 @@ class Surrogate:
     Attributes
     ----------
     space : Space
-        Pair, ranges of the inputs, and what is held.
+        Pair, ranges of the inputs, and fixed inputs.
     powers : ndarray of int, shape (terms, d)
         Degrees of the products of Legendre polynomials.
     weights : ndarray, shape (terms, breaks + pieces * (DEGREE + 1))
-        Of the breaks of the mesh cycle, then of the coefficients of ln k.
+        Weights of the breaks of the mesh cycle, then of the coefficients of ln k.
     error : dict of str to float
         Relative differences of k from `ritz` on cases that had no part in the fit: ``mean`` over all their phases, ``worst`` of
         any phase, ``worst mean k`` of the mean of a case, and the number of ``cases`` and ``phases``. The discretisation error of
-        `ritz` itself (`mesh_stiffness` with ``error=True``) comes on top.
+        `ritz` itself (`mesh_stiffness` with ``error=True``) is not included.
     worst : ndarray, shape (pieces,)
-        The worst by piece of the mesh cycle.
+        Largest relative difference by piece of the mesh cycle.
     meta : dict
         Cases, degrees, seconds, material, versions: all that is needed to repeat it.
     """
@@ -137,7 +137,7 @@ class Surrogate:
             return breaks[0] + (phase - breaks[0]) % 1.0
         if phase.size and not (breaks[0] <= phase.min() and phase.max() <= breaks[-1]):
             raise ValueError(
-                f"phases from {phase.min():g} to {phase.max():g}, but the cracked tooth is known from {breaks[0]:.4g} to "
+                f"phases from {phase.min():g} to {phase.max():g}, but the curve of the cracked tooth covers {breaks[0]:.4g} to "
                 f"{breaks[-1]:.4g}: other phases belong to other teeth"
             )
         return phase

@@ -1,4 +1,4 @@
-"""Plain sum of tooth pairs: uncoupled pairs in parallel, each a chain of two teeth and a contact."""
+"""Independent tooth pairs in parallel. The compliance of a pair is the sum of those of two teeth and a contact."""
 
 from functools import partial
 
@@ -133,10 +133,9 @@ def _depth(gear, roll):
 
 
 def _solver(at, count, teeth, law):
-    """`solve` of `plain_sum`: a fixed point of the closing.
+    """Return the function `solve` of `plain_sum`, which finds the approach by fixed-point iteration.
 
-    A fixed-point iteration finds the approach. It converges fast, because the contact depends on the load only by a logarithm
-    or F**0.1.
+    The iteration converges fast, because the contact compliance varies only with the logarithm of the load or with F**0.1.
     """
 
     def total(values):
@@ -164,7 +163,9 @@ def _solver(at, count, teeth, law):
             if settled:
                 break
         else:
-            raise RuntimeError(f"the loads of the pairs do not settle at {line_load:g} N/mm: use contact = 'linear'")
+            raise RuntimeError(
+                f"the load sharing of the tooth pairs did not converge at {line_load:g} N/mm: use contact = 'linear'"
+            )
         tangent = total(touch / (teeth + tangent / at.touching))
         pairs = np.zeros((count, at.order.size))
         np.add.at(pairs, (at.phase, at.column), at.weight * line)
