@@ -174,7 +174,7 @@ class PhaseContact:
         return float(half_width(self.sized / length, self.radius, self.modulus))
 
     def _close(self, pieces, sizes):
-        """Return `cells_of` the pieces, with shorter cells where only a few cells carry because flanks change along the width."""
+        """Return the cells of the pieces, shorter where modified flanks leave contact on a few cells only."""
         arguments = self.pair, pieces, self.bands, math.tan(self.beta_b), sizes, self.flanks
         fine = {}
         if self.flanks is not None and any(form.wide for form in self.flanks):

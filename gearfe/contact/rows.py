@@ -203,8 +203,15 @@ def _between(knots, kernel, on):
     `kernel` is the result for all knots, if it is known.
     """
     if kernel is None:
-        return hat_logarithm(knots[:, on], knots[:, on])
+        return _logarithm(knots[:, on].tobytes())
     return kernel if on.all() else kernel[np.ix_(on, on)]
+
+
+@keeping(512)
+def _logarithm(data):
+    """Return `gearfe.flexibility.hertz.hat_logarithm` of knots, given by their bytes. Gears that differ by a crack share it."""
+    knots = np.frombuffer(data).reshape(3, -1)
+    return hat_logarithm(knots, knots)
 
 
 def _alone(one):

@@ -57,7 +57,7 @@ class WholeGear:
 
     @property
     def edge(self) -> int:
-        """Unknowns of the held edge of a sector."""
+        """Number of unknowns of the held edge of a sector."""
         return 2 * self.angle.size
 
     def between(self, inverse: NDArray[np.complex128]) -> NDArray:
@@ -102,7 +102,7 @@ def _pseudo(stiffness):
     """Return the inverse of a Hermitian matrix on the complement of its one rigid motion."""
     values, vectors = np.linalg.eigh(stiffness)
     if not abs(values[0]) < NULL * values[-1] < abs(values[1]):
-        raise RuntimeError("the sectors of the gear do not move freely as a whole: change refine a little")
+        raise RuntimeError("the mesh of a gear has no exact rigid-body motion: change refine slightly")
     return (vectors[:, 1:] / values[1:]) @ np.conj(vectors[:, 1:].T)
 
 

@@ -86,7 +86,7 @@ def report(
 
 
 def _numbered():
-    """Return a function that makes a figure an element of a page. The elements are numbered."""
+    """Return a function that converts figures to HTML elements with the identifiers ``figure-1``, ``figure-2``, ..."""
     numbers = itertools.count(1)
     return lambda figure: part_of_page(figure, f"figure-{next(numbers)}")
 

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from html import escape
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +32,8 @@ from .set_table import SceneSet, set_of
 from .toml_file import read_toml
 from .train import Train
 from .train_tables import train_of
+
+SCENES = Path(__file__).with_name("scenes")  # folder of the built-in scenes
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,9 +177,7 @@ class Scene:
 
 def scene_names() -> list[str]:
     """Names of the built-in scenes."""
-    return sorted(
-        f.name.removesuffix(".toml") for f in resources.files("gearfe.scene.scenes").iterdir() if f.name.endswith(".toml")
-    )
+    return sorted(file.stem for file in SCENES.glob("*.toml"))
 
 
 def load_scene(name_or_path: StrPath, values: Mapping[str, Any] | None = None) -> Scene:
@@ -214,7 +213,7 @@ def _no_scene(name):
 def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
     """Name and unchecked tables of a scene's file, as `scene_of` takes them."""
     if isinstance(name_or_path, str) and name_or_path in scene_names():
-        file = resources.files("gearfe.scene.scenes") / f"{name_or_path}.toml"
+        file = SCENES / f"{name_or_path}.toml"
     else:
         check_path("scene", name_or_path)
         file = Path(name_or_path)

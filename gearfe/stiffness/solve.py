@@ -78,7 +78,7 @@ class Solve:
         `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.wide_curves.solid_curves`).
     cache : bool
         Reuse earlier solutions of this process; for ``ritz3d``, ``fe`` and ``fe3d`` also of earlier processes (see
-        `gearfe.stiffness.cache`). False: solve everything again and store nothing.
+        `gearfe.stiffness.disk`). False: solve everything again and store nothing.
     tell : callable, optional
         For ``fe3d``: gets a line of text before the first of several gears, with the expected seconds of all (with `error`,
         coarser gears included), and one before each, with its unknowns, seconds and memory. A gear that does not fit into memory

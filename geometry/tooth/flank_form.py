@@ -5,8 +5,8 @@ from copy import copy
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
 
 from ..aliases import Floats
 from ..checks import shown
@@ -47,10 +47,10 @@ class FlankForm:
         self.edge = TipEdge(gear, flank.tip_rounding, flank.tip_chamfer) if flank.tip_rounding or flank.tip_chamfer else None
         if self.edge is not None:
             self.kinks += ((self.edge.start, self.edge.kink),)
-        self._worn = None if flank.wear is None else PchipInterpolator(*flank.wear)
+        self._worn = None if flank.wear is None else scipy.interpolate.PchipInterpolator(*flank.wear)
         self._spline = None
         if flank.table is not None:
-            self._spline = PchipInterpolator(*covering(flank.table, gear))
+            self._spline = scipy.interpolate.PchipInterpolator(*covering(flank.table, gear))
         self._shifts = each_tooth("pitch", flank.pitch, gear) * gear.r_b / gear.r
         self._scales = each_tooth("tooth_scale", flank.tooth_scale, gear)
         self._tooth: NDArray[np.int64] | None = None
@@ -177,7 +177,7 @@ class FlankForm:
         return self.gear.outward * rise * self.gear.r_b / np.maximum(at, 1e-3 * self.gear.r_b)
 
     def _wear(self, roll: NDArray, derivative: int) -> Floats:
-        return np.nan_to_num(self._worn(roll, derivative, extrapolate=False))  # type: ignore[misc]  # asked for only if there is any
+        return np.nan_to_num(self._worn(roll, derivative, extrapolate=False))  # type: ignore[misc]  # only called with wear
 
     def _off_centre(self, roll: NDArray, derivative: int) -> Floats:
         """Return the distance of an eccentric gear's flank along the normal, which rotates with the roll length."""

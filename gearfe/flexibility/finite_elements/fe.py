@@ -18,9 +18,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import CubicSpline, RectBivariateSpline
 from scipy.sparse import coo_matrix, hstack
 
+from ...geometry.cubic import Bicubic, Cubic, through
 from ...geometry.damage.chip import loaded_side
 from ...geometry.damage.missing import missing_teeth
 from ...geometry.mesh.outline import GROWTH, stations
@@ -154,10 +154,10 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
     loaded, c = on[0], half_plane(material, state)
     near, block = own_tooth(loaded, influence[at[0], at[0]], c)
     leans = _leaning(gear, loaded, influence, at[0], at[-2:], c)
-    far = {(0, k): RectBivariateSpline(loaded.arc, on[k].arc, influence[at[0], at[k]]) for k in on if k}
-    limits = loaded.arc[0], loaded.arc[-1]
+    base, limits = through(loaded.arc), (loaded.arc[0], loaded.arc[-1])
+    far = {(0, k): Bicubic(base, influence[at[0], at[k]], through(on[k].arc)) for k in on if k}
     return Flexibility(
-        gear, {0: near}, far, {0: block}, limits, refine, 2 * mesh.mesh.doflocs.shape[1], basis=basis(loaded), leans={0: leans}
+        gear, {0: near}, far, {0: block}, limits, refine, 2 * mesh.mesh.doflocs.shape[1], basis=base, leans={0: leans}
     )
 
 
@@ -217,18 +217,23 @@ def damaged_flexibility(
     own, ahead = glued(gear, solved, lambda i, j: influence[at[i], at[j]], opening, stiffness)
     parts = {tooth: own_tooth(on[tooth], own[tooth], half_plane(material, state)) for tooth in solved}
     near, blocks = ({tooth: part[k] for tooth, part in parts.items()} for k in (0, 1))
-    far = {(i, j): RectBivariateSpline(on[i].arc, on[j].arc, one) for (i, j), one in ahead.items()}
-    seam = SeamFaces({t: CubicSpline(on[t].arc, opening[t].T) for t in solved}, apart, stiffness) if cracks else None
-    tips = {tooth: _shortened(mesh, tooth, on[tooth]) for tooth in solved if loaded_side(gear, broken, tooth) is not gear}
+    bases = {tooth: through(on[tooth].arc) for tooth in solved}
+    far = {(i, j): Bicubic(bases[i], one, bases[j]) for (i, j), one in ahead.items()}
+    seam = SeamFaces({t: Cubic(on[t].arc, opening[t].T) for t in solved}, apart, stiffness) if cracks else None
+    tips = {
+        tooth: _shortened(mesh, tooth, on[tooth], bases[tooth])
+        for tooth in solved
+        if loaded_side(gear, broken, tooth) is not gear
+    }
     whole = next(tooth for tooth in solved if tooth not in tips)
     limits = on[whole].arc[0], on[whole].arc[-1]
-    options = {"basis": basis(on[whole]), "leans": leans, "missing": gone, "tips": tips}
+    options = {"basis": bases[whole], "leans": leans, "missing": gone, "tips": tips}
     return Flexibility(gear, near, far, blocks, limits, refine, faces.shape[0], healthy, seam, **options)
 
 
-def _shortened(mesh, tooth, on):
-    """Return the last roll length, the ends and the `basis` of the flank of a chipped tooth with hats `on`."""
-    return float(mesh.roll[tooth][-1]), (on.arc[0], on.arc[-1]), basis(on)
+def _shortened(mesh, tooth, on, base):
+    """Return the last roll length, the ends and the `base` of the flank of a chipped tooth with hats `on`."""
+    return float(mesh.roll[tooth][-1]), (on.arc[0], on.arc[-1]), base
 
 
 def face_columns(mesh):
@@ -246,11 +251,6 @@ def face_columns(mesh):
     return coo_matrix((forces, (np.concatenate(rows), np.tile(at, 4))), shape=(2 * mesh.mesh.doflocs.shape[1], at.size)).tocsc()
 
 
-def basis(on):
-    """Return the spline basis that represents S(s, s') of a tooth: from values at hats to values at an arc."""
-    return CubicSpline(on.arc, np.eye(on.arc.size))
-
-
 def own_tooth(on, influence, coefficient):
     """Return the spline S(s, s) of one tooth, and S(s, s') between its hats, from their influence matrix.
 
@@ -260,8 +260,8 @@ def own_tooth(on, influence, coefficient):
     smooth = influence - coefficient * hat_logarithm(on.knots, on.knots)
     arc, wide, single = on.arc[:-1], wider(on.knots[:, :-1]), np.diag(smooth)[:-1]  # The corner's hat function is excluded.
     middle, values = wide @ arc, np.einsum("ij,jk,ik->i", wide, smooth[:-1, :-1], wide)
-    inner = CubicSpline(middle[1:-1], values[1:-1])
+    inner = Cubic(middle[1:-1], values[1:-1])
     values[[0, -1]] = single[[0, -1]] + inner(arc[[1, -2]]) - single[[1, -2]]
-    near = CubicSpline(middle, values)
+    near = Cubic(middle, values)
     excess = near(arc) - single
     return near, (smooth + smooth.T) / 2 + np.diag(np.append(excess, excess[-1]))

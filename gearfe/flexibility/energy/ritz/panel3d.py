@@ -95,7 +95,7 @@ def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
     load = np.concatenate([section.load, apart], axis=2)
     nodes = int(every.max()) + 1
     own_degrees = degrees(gear, sector, every, sides, degree, model.order)
-    kinds = np.zeros(nodes + load.shape[2], dtype=int)  # indices of functions along the width
+    kinds = np.zeros(nodes + load.shape[2], dtype=int)  # kind of polynomials along the width, by node and load
     kinds[:nodes] = _kinds(gear, sector, every, own_degrees, sides, parts, bends, [right for _, right in seams])
     kinds[nodes + knots.shape[1] :] = [2 + 4 * i for i in owner]
     body = body_of(section._replace(load=load), along, seams=seams, kinds=kinds, bent=bent)
