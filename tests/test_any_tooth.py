@@ -9,11 +9,12 @@ import pytest
 import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.comparison.losses import LARGEST, damage_phases
-from gearfe.comparison.simulated import responses
+from gearfe.comparison.simulated import responses, simulated_gear
 from gearfe.comparison.vibration import analysis
 from gearfe.planetary_sets.of_scene import build_set
 from gearfe.runs.sweeps.kinds import KINDS
 from gearfe.scene.load import read_tables, scene_of
+from gearfe.signal.tooth_verdict import entered_teeth, tooth_verdict
 
 RACK = {"m_n_mm": 3.0, "alpha_n_deg": 20.0, "b_mm": 15.0, "material": "steel"}
 TEETH = {"pinion": 17, "wheel": 38}
@@ -181,3 +182,14 @@ def test_damage_of_a_planet_that_its_pair_leaves_out_is_pointed_out():
     scene = scene_of("set.toml", given | {"crack": rows})
     with pytest.warns(UserWarning, match="also damages planet3"):
         assert [one.tooth for one in scene.case("sun_planet", "x").damage["wheel"]] == [2]
+
+
+@pytest.mark.parametrize(("gear", "tooth"), [("pinion", 5), ("wheel", 5), ("wheel", 11)])
+def test_the_average_of_a_record_names_the_damaged_tooth(gear, tooth):
+    """Largest impulse of a simulated record below resonance: the damaged tooth is one of the last two that entered there."""
+    given = tables(gear, tooth)
+    given["machine"]["speed_rpm"] = 1000.0
+    records = simulated_gear(scene_of("pair.toml", given), "cracked", gear, duration=2.0)
+    verdict = tooth_verdict(records["simulated cracked"], TEETH[gear], records["simulated healthy"])
+    assert tooth in entered_teeth(verdict.angle, TEETH[gear])
+    assert f"tooth {tooth} " in verdict.told(TEETH[gear])

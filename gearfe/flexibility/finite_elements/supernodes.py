@@ -62,6 +62,12 @@ def gram(factored: object, rhs: csr_array) -> NDArray:
     return out
 
 
+def factor_memory(factored: object) -> int:
+    """Return the memory [bytes] of the numbers of a factor that is analysed and not computed; 0 if it has no supernodes."""
+    found = _structure(factored)
+    return 8 * (found.xsize + found.maxcsize) if found.is_super else 0
+
+
 def _reached(rhs, begin, row, rows):
     """Return the right-hand sides without the unknowns that no load reaches, and the row of each unknown in them, -1 if absent.
 
