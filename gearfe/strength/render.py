@@ -175,7 +175,7 @@ def enlarged(opening, module):
 
 
 def _text(title, told):
-    lines = [title, f"phase {told['phase']:.3g}, {told['load']:.0f} N {told['where']}"]
+    lines = [title, f"phase {told['phase']:.4g}, {told['load']:.0f} N {told['where']}"]
     if told["enlarged"]:
         lines.append(f"displacements x {told['enlarged']}, which opens the crack")
     return "\n".join(line for line in lines if line)
