@@ -133,7 +133,7 @@ class PhaseContact:
         return done
 
     def _grown(self, loaded, reach, closing):
-        """Return reach and closing [mm] with which a phase is solved again, None if it is complete."""
+        """Return larger `reach` and `closing` [mm] if the solution `loaded` of a phase requires more contacts, otherwise None."""
         closes = loaded.approach - loaded.least  # part of the approach that closes gaps between teeth
         normal = closes * math.cos(self.beta_b)
         if any(closing < depth < normal for depth in self.floors):

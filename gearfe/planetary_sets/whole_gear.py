@@ -124,8 +124,10 @@ def _solved(gear, material, refine):
     second[next_, to] = 1.0
 
     def chained(matrix, first, second):
-        across = wave * (first.T @ matrix @ second)
-        return first.T @ matrix @ first + second.T @ matrix @ second + across + np.conj(across.transpose(0, 2, 1))
+        across, out = first.T @ matrix @ second, np.empty((wave.size, first.shape[1], first.shape[1]), dtype=complex)
+        out.real = first.T @ matrix @ first + second.T @ matrix @ second + wave.real * (across + across.T)
+        out.imag = wave.imag * (across - across.T)
+        return out
 
     stiffness, m = chained((matrix + matrix.T) / 2, first, second), own.size - e
     at = np.concatenate([[0, 1], np.arange(m, m + e + 2)])

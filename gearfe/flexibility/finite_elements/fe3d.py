@@ -48,7 +48,7 @@ class Patches:
 
     @property
     def shape(self):
-        """Numbers of teeth, hats and modes."""
+        """Numbers of teeth, of hat functions along the profile, and of modes along the width."""
         return len(self.teeth), self.knots.shape[1], self.modes
 
     def along_profile(self, arc):
