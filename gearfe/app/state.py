@@ -166,8 +166,8 @@ def _damage_heads(name, rows, sides, case):
         if len(rows[kind]) > shown or any(row["tooth"] for row in rows[kind]):
             teeth = ", ".join(str(row["tooth"]) for row in rows[kind])
             raise ValueError(
-                f"{name}: case {case!r} has [[{kind}]] of tooth {teeth}, but the page shows one crack and one row of pits of tooth "
-                "0 of either gear; compute this scene by gearfe compare"
+                f"{name}: case {case!r} has [[{kind}]] of tooth {teeth}, but the page shows one crack and one row of pits of "
+                "tooth 0 of either gear; compute this scene by gearfe compare"
             )
         for row in rows[kind]:
             if kind == "pits" and row["last_mm"] is None:
