@@ -111,7 +111,7 @@ class PairContact:
         return Solved(points.order, closing, tangent, line, pressure, *marked, unloaded, left_out=doubt)
 
     def problems(self, line_load, phases, possible, corners, kink, tilt):
-        """Return contact problems at some phases under a load [N/mm] (see `contacts_at`), and rows of hats by phase and column.
+        """Return contact problems at some phases under a load [N/mm] (see `contacts_at`), and the `HatRow` by phase and column.
 
         `possible` and `kink` ``(phases, pairs)`` mark pairs that may touch and pairs on a kink. `tilt` is an argument of
         `line_contacts`, and `corners` is the result of `PairContact.corners`.
@@ -128,9 +128,10 @@ class PairContact:
     def _solved(self, sets, line_load, smooth, phases):
         """Solve contact problems: line loads and pressures by pair, approach, tangent, closed faces and fillets.
 
-        `phases` are the phase numbers of the sets. `smooth` are the line loads if all contacts were single. Hats are initially
-        in contact up to the gap at the ends of the Hertzian contact under these loads, which is the same for any radius. The
-        last two results are the numbers of the sets in which crack faces touch, and in which a tip touches a fillet.
+        `phases` are the phase numbers of the sets. `smooth` are the line loads if all contacts were single. Hat functions are
+        initially in contact up to the gap at the ends of the Hertzian contact under these loads, which is the same for any
+        radius. The last two results are the numbers of the sets in which crack faces touch, and in which a tip touches a
+        fillet.
         """
         names = ("flexibility", "gap", "coefficient", "radius", "column", "tilt")
         flexibility, gap, coefficient, radius, column, tilt = (stacked([contacts[name] for contacts in sets]) for name in names)
@@ -266,7 +267,7 @@ class PairContact:
             Number of a phase; columns of the pairs that may touch; for each of them 0 for a single contact, or what makes it a
             row.
         rows : dict of (int, int) to Row
-            Rows of hats by phase and column.
+            Rows of hat functions by phase and column.
         tilt : ndarray, shape (phases, pairs)
             As of `line_contacts`.
 

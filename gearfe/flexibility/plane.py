@@ -111,7 +111,7 @@ class Flexibility:
     limits : tuple of float
         Arcs between which the splines hold [mm]; contacts outside are clamped to them.
     fine : float
-        How many times shorter than by default the hats of contacts at corners are to be (`gearfe.contact.rows`).
+        How many times shorter than by default the hat functions of contacts at corners are to be (`gearfe.contact.rows`).
     dofs : int
         Unknowns of the solve.
     healthy : Flexibility or None

@@ -1,7 +1,7 @@
 """Contacts of one mesh of a set at one phase: gaps and local flexibility, from the contact of its pair.
 
-`gearfe.contact.pair_contact.PairContact` computes them: smooth contacts with Hertz's logarithm, rows of hats at corners and
-kinks, exact gaps, cracks.
+`gearfe.contact.pair_contact.PairContact` computes them: smooth contacts with Hertz's logarithm, rows of hat functions at
+corners and kinks, exact gaps, cracks.
 """
 
 import math
@@ -124,7 +124,7 @@ class Meshes:
         return float(solved.closing[number[phase]]), float(solved.left_out[number[phase]])
 
     def _of(self, i, inner, planet):
-        """`SetMesh`, its phases' numbers, phase, and whole cycles of tooth 0 at position i."""
+        """`SetMesh`, indices of its phases, its phase, and the number of whole cycles of tooth 0 at position i."""
         key = self._kind[inner, planet]
         phase = float(self._phases[inner][i, planet])
         whole = math.floor(phase)

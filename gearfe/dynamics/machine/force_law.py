@@ -65,12 +65,14 @@ class ForceLaw:
 
     def __post_init__(self) -> None:
         """Make the table. Raises ValueError if loads, phases or depths do not rise."""
-        if not self.depth.shape == self.tangent.shape == self.pairs.shape == (self.phase.size, self.load.size):
+        if not self.depth.shape == self.tangent.shape == self.pairs.shape == (*self.phase.shape, *self.load.shape):
             raise ValueError("a force law needs depth, tangent stiffness and pairs of the shape (phases, loads)")
         if self.load.size < 2 or not (np.diff(self.load) > 0).all() or not self.load[0] > 0:
             raise ValueError(f"loads {self.load} N: a force law needs two or more, all different and above 0")
         if self.phase.size < 2 or not (np.diff(self.phase) > 0).all():
             raise ValueError("a force law needs phases that rise, two or more")
+        if not self.force > 0:
+            raise ValueError(f"force = {self.force:g} N, but a mesh is pressed together: give a force > 0")
         closing = np.diff(self.depth, axis=1, prepend=0.0)
         if not (np.isfinite(closing).all() and (closing > 0).all() and (self.tangent > 0).all()):
             i, j = np.argwhere(~((closing > 0) & (self.tangent > 0)))[0]
@@ -139,7 +141,7 @@ class ForceLaw:
 
     @property
     def periodic(self) -> bool:
-        """Whether it is of one whole mesh cycle."""
+        """True if the law covers one whole mesh cycle."""
         ends = self.phase[0] + 1 - self.phase[-1]
         return bool(0 < ends <= 1.5 * np.diff(self.phase).max() and self.phase[0] >= 0)
 

@@ -13,7 +13,7 @@ from .one_tooth import load_at
 from .solid_assembly import assemble
 from .solver import factor, plan
 
-SPREAD = 0.15  # half width of the hat over which a load is spread [m_n]
+SPREAD = 0.15  # half width of the hat function over which a load is spread [m_n]
 ACROSS, ALONG = 8, 4  # Gauss points of the load on an edge and along a layer
 
 

@@ -23,7 +23,7 @@ from .panel import SectionModel, check_order, panel
 
 PLACES = 16  # number of loads on each flank
 FOOT = 20 * NEAREST  # distance of the first load from the form point [m_n]; the last load is `NEAREST` from the tip corner
-HATS = 2  # ratio of the hat lengths of `fe` at corners to these
+HATS = 2  # ratio of the lengths of hat functions of `fe` at corners to these
 KNOTS = 48  # number of knots of the splines that represent the polynomials
 
 
@@ -44,7 +44,7 @@ def flexibility(gear, material, cracks=(), *, broken=(), neighbours=1, state="pl
     order : int
         Polynomial order, 2 to 8.
     refine : float
-        Divides the edge lengths of the triangles and the hats at corners.
+        Divides the edge lengths of the triangles and the hat functions at corners.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 
@@ -157,7 +157,7 @@ def loaded_places(gear):
 
 
 def carry(gear, arc):
-    """Matrix ``(n, PLACES)`` from values at the loads to values at arcs ``(n,)`` of the flank [mm]."""
+    """Interpolation matrix ``(n, PLACES)`` from values at the loads to values at arcs ``(n,)`` of the flank [mm]."""
     return _carry(_variable(gear, arc))
 
 
