@@ -176,7 +176,7 @@ def render(arguments):
     elif arguments.what == "contact":
         with working("contact lines"):
             told = render_contact(case, arguments.output, phase=arguments.phase, title=title)
-        print(f"phase {told['phase']:.3g}: k {in_newton_per_um(told['k'])} N/um, largest pressure {told['pressure']:.0f} MPa")
+        print(f"phase {told['phase']:.4g}: k {in_newton_per_um(told['k'])} N/um, largest pressure {told['pressure']:.0f} MPa")
     else:
         with working("stress"):
             told = render_stress(case, arguments.output, refine=arguments.refine, phase=arguments.phase, title=title)

@@ -201,8 +201,8 @@ def force_law(
     ----------
     pair : GearPair or Case
     forces : sequence of float
-        Loads along the line of action [N], up to the largest that the mesh will see. Each 1.4 times the one before gives
-        is 1.4 times the one before for accelerations within about 1 % of those of more loads; a ratio of 2 gives 3 %.
+        Increasing loads along the line of action [N], up to the largest mesh force. With a ratio of 1.4 between successive
+        loads, the error of accelerations is about 1 %; with a ratio of 2 it is 3 %.
     material : Material or (Material, Material)
     force : float, optional
         The load at which the mesh works on average, see `ForceLaw`; default: that in the middle.
