@@ -52,7 +52,7 @@ def test_machine_sweep_and_record_show_the_tooth(name, row, body, meshes, tooth,
     found = responses(scene, "x", duration=0.3, phases=8)
     forces = {mesh: [np.asarray(record[f"force {mesh}"]) for record in found.values()] for mesh in meshes}
     assert all(abs(hurt - healthy).max() > 1e-3 * np.ptp(healthy) for healthy, hurt in forces.values())
-    options = {"phases": 8, "curves": "ritz", "duration_s": 0.6, "rate_Hz": 8000.0, "method": "fast",
+    options = {"phases": 8, "curves": "ritz", "duration_s": 1.0, "rate_Hz": 8000.0, "method": "fast",
                "channel": f"force {meshes[0]}", "signal": False}  # fmt: skip
     before, after = (KINDS["vibration"].work(scene, case, options)[0]["peak"] for case in (None, "x"))
     assert abs(after / before - 1) > 1e-5
