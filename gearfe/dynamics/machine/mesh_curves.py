@@ -1,11 +1,13 @@
 """Stiffness over the mesh phase as tables, and its changes by damaged teeth."""
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import PchipInterpolator
 
 from ...core.checks import numbers
 from ...geometry.aliases import Floats
@@ -71,6 +73,20 @@ def cells_of(changes: Iterable[Change], start: float, width: float, count: int) 
     return out
 
 
+def evenly(phase: Floats, values: Floats, period: float | None) -> tuple[Floats, Floats]:
+    """Phases `FINE` per mesh cycle, and values there by monotone cubics through those at uneven rising phases.
+
+    With a `period` [mesh cycles] the values repeat.
+    """
+    low, high = math.ceil(phase[0] * FINE - ALIKE), math.floor(phase[-1] * FINE + ALIKE) + 1
+    if period is not None:
+        high, near = low + round(period * FINE), min(3, phase.size)
+        phase = np.concatenate([phase[-near:] - period, phase, phase[:near] + period])
+        values = np.concatenate([values[-near:], values, values[:near]])
+    at = np.arange(low, high) / FINE
+    return at, PchipInterpolator(phase, values)(at)
+
+
 def cycle_table(stiffness: Stiffness) -> PhaseTable:
     """`PhaseTable` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law.
 
@@ -86,8 +102,14 @@ def cycle_table(stiffness: Stiffness) -> PhaseTable:
         phase = np.asarray(stiffness.phase, dtype=float) % 1.0
         order = np.argsort(phase, kind="stable")
         phase, values = phase[order], np.asarray(stiffness.k, dtype=float)[order]
-        if not np.allclose(phase, np.arange(phase.size) / phase.size, atol=1e-9):
+        if np.allclose(phase, np.arange(phase.size) / phase.size, atol=1e-9):
+            pass
+        elif isinstance(stiffness, Samples):
             values = np.interp(np.arange(FINE) / FINE, phase, values, period=1.0)
+        else:
+            phase, first = np.unique(phase, return_index=True)
+            at, values = evenly(phase, values[first], 1.0)
+            values = np.roll(values, round(at[0] * FINE))
     if values.ndim != 1 or not values.size or not np.isfinite(values).all() or (values < 0).any():
         raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
     if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # the curve has kinks where pairs enter

@@ -54,7 +54,7 @@ def build_machine(
     case : str, optional
         Case of damage; None: healthy.
     phases : int
-        Per mesh cycle, of the curves.
+        Per mesh cycle, of the curves. Further ones are added where pairs enter or leave (`gearfe.mesh_cycle`, `fine`).
     method : str
         As in `mesh_stiffness`.
     loads : sequence of float
@@ -176,13 +176,11 @@ def with_flanks(machine):
 
 
 def _unloaded(curve):
-    """Unloaded error at the phases of a curve; of a law without the extra phases where pairs come in."""
+    """Unloaded error at the equally spaced phases of a curve or law, without those added where pairs come in."""
     phase = curve.phase
-    if isinstance(curve, ForceLaw):
-        at = phase[0] + np.arange(round(1 / np.diff(phase).max())) * np.diff(phase).max()
-        kept = np.abs(phase[:, None] - at).min(axis=1) < EVEN
-        return Samples(phase[kept], curve.unloaded[kept])
-    return Samples(phase, curve.unloaded)
+    at = phase[0] + np.arange(round(1 / np.diff(phase).max())) * np.diff(phase).max()
+    kept = np.abs(phase[:, None] - at).min(axis=1) < EVEN
+    return Samples(phase[kept], curve.unloaded[kept])
 
 
 def with_scene_errors(scene, machine):
